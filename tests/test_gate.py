@@ -193,7 +193,7 @@ def test_waivers_in_the_settings_and_in_a_file_until_their_day(ran: Ran) -> None
     code, out, _ = ran(*check, "--today", "2027-01-01", "--waivers", "more.toml", "--format", "json")
     told = json.loads(out)["gate"]
     assert (code, told["waived_findings"], told["waivers"]) == (0, 1, {"active": 1, "expired": 0, "unmatched": 1})
-    assert told["notes"] == ["more.toml:2: no finding is like that: ukhc.r126.* (jo); correct or drop it"]
+    assert told["notes"] == ["more.toml:2: no finding matches ukhc.r126.* (jo); correct or remove it"]
     assert ran("inspect", COLLISION, *ON_ROAD[:-2])[0] == 0, "waivers are no option of other commands"
 
 

@@ -180,7 +180,7 @@ def test_memory_that_does_not_do_is_no_error(
         assert notes.said == [], "the limit is lifted only where nothing else helps"
     else:
         assert re.fullmatch(
-            r"1\.2 GB of memory do not do \(--memory\): the database may take up to .* GiB", notes.said[0]
+            r"1\.2 GB of memory are not enough \(--memory\): the database may use up to .* GiB", notes.said[0]
         )
         assert len(notes.said) == 1
 

@@ -22,7 +22,7 @@ class ExitCode(IntEnum):
 
 LEAST_BYTES: Final = 2_000_000_000
 """With fewer addresses (`ulimit -v`) libraries end the process while they are loaded, in words and with exit codes of their own."""
-_LIMITED: Final = "the limit of memory (ulimit -v) is too low: raise it, and give the same command again"
+_LIMITED: Final = "the limit of memory (ulimit -v) is too low: raise it, and run the same command again"
 LONGEST_LINE: Final = 2000
 """Characters of an error that are shown: a damaged file may hold a name of a megabyte."""
 
@@ -122,7 +122,7 @@ def of_the_machine(error: Exception) -> tuple[str, ExitCode] | None:
     """
     if isinstance(error, MemoryError) or any(words in str(error).casefold() for words in _NO_MEMORY):
         limited = least_limit_bytes() is not None
-        return _LIMITED if limited else "there is too little memory: give the same command again", ExitCode.TEMPFAIL
+        return _LIMITED if limited else "there is too little memory: run the same command again", ExitCode.TEMPFAIL
     if isinstance(error, OSError) and error.errno == errno.ENAMETOOLONG:
         return f"{error.filename}: the name is too long for this system: choose a shorter one", ExitCode.USAGE
     return None

@@ -91,7 +91,7 @@ class RunRules(NamedTuple):
         params = catalogue.parse_params(rules, settings.params)
         profiles = profile_table(load_profiles(settings.rules_dirs), settings.profiles)
         if (settings.margins or settings.keep_db) and settings.out is None:
-            raise UsageError("--margins and --keep-db write files: say where with --out DIR")
+            raise UsageError("--margins and --keep-db write files: name their folder with --out DIR")
         return cls(rules, required, params, profiles)
 
 

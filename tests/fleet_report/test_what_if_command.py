@@ -135,13 +135,13 @@ def test_a_rule_that_is_not_as_it_was_needs_another_audit(own: Own, judged: Path
     finally:
         file.write_text(before, encoding="utf-8")
     assert done.code == 4
-    assert "the rule is not as it was in the audit" in done.out
+    assert "the rule has changed since the audit" in done.out
 
 
 def test_where_only_a_bound_is_stored_it_says_so(filled: lake.Lake) -> None:
     done = ran("what-if", filled.folder, "ukhc.overtake-zone.margin_s=1.2", "--by", "site")
     assert done.code == 4
-    assert "only a bound of what was observed" in done.out
+    assert "only a bound of the observed value" in done.out
     assert "unknown -> needs a new audit" in done.out
 
 

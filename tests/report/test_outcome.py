@@ -264,7 +264,7 @@ def test_a_rule_that_did_not_apply_somewhere_is_not_said_to_be_judged_nowhere() 
 
 def test_a_run_in_which_no_rule_applied_says_so() -> None:
     of = result([verdict("not_applicable"), verdict("not_applicable", ego_id="2")])
-    words = "not applicable no findings, as no rule applied: what they are about did not happen"
+    words = "not applicable no findings, because no rule applied: the situations that they are about did not happen"
     assert heads(of) == [words] * 3
     assert exit_status(of).code == ExitCode.OK
     assert any(re.match(r"d1 +no rule applied ", line) for line in screen(of))

@@ -214,8 +214,8 @@ def test_a_program_that_ends_by_itself_is_waited_for(tmp_path: Path) -> None:
         ({"on": ("ukhc.no-collision",)}, "write SEL=COMMAND"),
         ({"on": ("stvo.rg1=true",)}, "none of the selected rules is meant"),
         ({"command": ("true",)}, "there is no program to start"),
-        ({"command": ("true",), "replay": None}, "is there already: the program behind -- must write a new file"),
-        ({"command": ("true",), "replay": None, "source": "-"}, "is there before the program behind -- is started"),
+        ({"command": ("true",), "replay": None}, "exists already: the program after -- must write a new file"),
+        ({"command": ("true",), "replay": None, "source": "-"}, "stdin exists before the program after -- is started"),
     ],
 )
 def test_mistakes(asked: dict[str, Any], said: str) -> None:

@@ -23,10 +23,10 @@
 -- [params.crossing_rad]
 -- default = 0.7854
 -- unit = "rad"
--- why = "our default: 45 degrees; ways that meet at less merge or part, as in a lane change, where the follower's headway and time to collision say how close it was"
+-- why = "our default: 45 degrees; paths that meet at less merge or divide, as in a lane change, where the headway of the follower and the time to collision measure how close it was"
 --
 -- [reasons.pet_at_most]
--- says = "Not decided: at most {pet_s:.1f} s were between the two, but one of them was not seen all the time."
+-- says = "Not decided: at most {pet_s:.1f} s were between the two, but one of them was not recorded all the time."
 
 -- @reference
 SELECT drive_id, ego_id, t_ego_in_ns AS t_ns, object_id, occurrence, NULL AS code FROM conflict

@@ -18,8 +18,8 @@
 -- why = "our default, since maps do not show them: eight marks of two metres and the space between"
 --
 -- [reasons.crossing_kind_unknown]
--- says = "the map does not say whether crossing {crossing_id} is a zebra, has lights, or neither"
--- advice = "give one that does"
+-- says = "the map does not state whether crossing {crossing_id} is a zebra, has lights, or neither"
+-- advice = "use a map that does"
 --
 -- [reasons.zigzags_at_junction]
 -- says = "crossing {crossing_id} has lights and lies at a junction, where a crossing of the junction's own lights has no zig-zags"
@@ -28,7 +28,7 @@
 -- says = "passed {object_ids} before crossing {crossing_id}"
 --
 -- [reasons.may_have_given_way]
--- says = "whether {object_id} stood before crossing {crossing_id} to give way is not known"
+-- says = "it is not known whether {object_id} stood before crossing {crossing_id} to give way"
 --
 -- [reasons.may_have_been_passed]
 -- says = "actor {object_id} may have been passed before crossing {crossing_id}"

@@ -45,7 +45,7 @@ def ask(dest: str, query: str, format_: str, warn: Callable[[str], None] = lambd
         try:
             statements = con.extract_statements(query)
             if len(statements) != 1 or statements[0].type != duckdb.StatementType.SELECT:
-                raise UsageError("drivelint sql takes one SELECT: give one, without others before or behind it")
+                raise UsageError("drivelint sql takes exactly one SELECT, without other statements before or after it")
             if format_ == "text":
                 return inert(f"{con.sql(query)}\n")
             if format_ == "csv":
@@ -108,9 +108,7 @@ def _warn_of_changes(
             warn(str(error))
     elif isinstance(results, LocalFolder):  # the files of a bucket would have to be copied here
         for name in changed_files(results.root)[:1]:
-            warn(
-                f"{dest.rstrip('/')}/{name}: is not as drivelint check wrote it with the others: check the drives again"
-            )
+            warn(f"{dest.rstrip('/')}/{name}: was changed since drivelint check wrote it: check the drives again")
 
 
 def _view(con: duckdb.DuckDBPyConnection, results: ResultStore, name: str, file: str, home: Path) -> None:

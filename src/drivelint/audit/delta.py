@@ -57,7 +57,7 @@ class DeltaChange(NamedTuple):
         """Return the sentence for a person."""
         if not self.n_added and not self.n_removed:
             return f"{dest}: the Delta tables were up to date"
-        return f"{dest}: {plural(self.n_added, 'file')} added to the Delta tables, {self.n_removed} taken out"
+        return f"{dest}: {plural(self.n_added, 'file')} added to the Delta tables, {self.n_removed} removed"
 
 
 def ready(dest: str, out: str, run: str) -> None:
@@ -71,7 +71,7 @@ def ready(dest: str, out: str, run: str) -> None:
     except ModuleNotFoundError as error:
         raise UsageError(f"--delta: {error.name} is not installed: pip install 'drivelint[delta]'") from error
     if f"{_absolute(dest)}/".startswith(f"{_absolute(out)}/"):
-        raise UsageError(f"--delta {dest}: lies within the audit: choose a place outside {out}")
+        raise UsageError(f"--delta {dest}: lies within the audit: choose a folder outside {out}")
     if not is_url(dest) and Path(dest).exists() and not Path(dest).is_dir():
         raise UsageError(f"--delta {dest}: is a file: give a folder for the Delta tables")
     for table in NAMES:
@@ -200,5 +200,5 @@ def _persistent(where: str, job: Callable[[], T]) -> T:
         except (DeltaError, OSError) as error:
             if attempt + 1 == _ATTEMPTS:
                 why = " ".join(_COLOUR.sub("", str(error)).split())[:300]
-                raise OutputError(f"{where}: the Delta table failed: {why}: give the same command again") from error
+                raise OutputError(f"{where}: the Delta table failed: {why}: run the same command again") from error
     raise AssertionError("unreachable")

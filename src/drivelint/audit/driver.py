@@ -106,7 +106,7 @@ class Driver:
             return [replace(task, drives=(drive,), attempts=attempts) for drive in task.drives]
         if attempts < MOST_ATTEMPTS:
             return [replace(task, attempts=attempts)]
-        for receipt in self._quarantine(task.drives[0], f"{attempts} workers were lost over it: {why}"):
+        for receipt in self._quarantine(task.drives[0], f"{attempts} workers died on this drive: {why}"):
             self.tell(receipt)
         self.mark_done(task.drives)
         return []

@@ -81,4 +81,6 @@ def _locked_store(results: ResultStore) -> Iterator[None]:
 
 
 def _in_use_error(where: str) -> UsageError:
-    return UsageError(f"{where}: another audit is at work there: wait for its end, or share the drives with --claim")
+    return UsageError(
+        f"{where}: another audit is running there: wait until it has ended, or share the drives with --claim"
+    )

@@ -99,13 +99,11 @@ def audit(request: AuditRequest, progress: Progress, executor: Executor | None =
     alone = request.shard is None and not request.claim
     if request.delta is not None:
         if not alone:
-            raise UsageError(
-                "--delta has tables that are packed: give drivelint merge --delta, when all parts have ended"
-            )
+            raise UsageError("--delta needs packed tables: when all parts have ended, run drivelint merge --delta")
         delta.ready(request.delta, request.out, id_)
     was_whole = _begin(request, results, id_)
     if not alone and (request.retry_errors or request.prune):
-        raise UsageError("--retry-errors and --prune take results out: give them without --shard and --claim")
+        raise UsageError("--retry-errors and --prune remove results: use them without --shard and --claim")
     part = parts.name_of(request.shard, claim=request.claim)
     with locked(results, shared=not alone):
         parts.begin(results, part)
@@ -148,7 +146,7 @@ def _audited(
         progress.stage("auditing", n_drives)
         progress.advance(n_known)
         if not alone and (n_stale := len(_stale(con, retry=False))):
-            raise UsageError(f"{plural(n_stale, 'log')} changed since: give the audit once without --shard and --claim")
+            raise UsageError(f"{plural(n_stale, 'log')} changed since: run the audit once without --shard and --claim")
         audit_summary = _judge(request, con, results, progress, id_=id_, executor=executor)
         n_reused = n_known + audit_summary.reused
         if not alone:
@@ -164,10 +162,10 @@ def _doubtful_tags(con: duckdb.DuckDBPyConnection) -> Iterator[str]:
     rows = con.execute("SELECT DISTINCT unnest(map_keys(tags)) FROM _listed ORDER BY 1").fetchall()
     names = [name for (name,) in rows]
     if conditions := listed([f"column {name}" for name in names if name in CONDITION_VALUES]):
-        yield f"the manifest's {conditions} is a tag only: what holds in a drive stands in the column environment, such as weather=wet"
+        yield f"the manifest's {conditions} is only a tag: conditions of a drive stand in the column environment, such as weather=wet"
     for name in names:
         for meant in get_close_matches(name.casefold(), OPTION_COLUMNS, n=1, cutoff=_ALIKE):
-            yield f"the manifest's column {name} is a tag only: did you mean {meant}?"
+            yield f"the manifest's column {name} is only a tag: did you mean {meant}?"
 
 
 def _judge(
@@ -316,7 +314,7 @@ def _absent(con: duckdb.DuckDBPyConnection, results: ResultStore, request: Audit
     absent = con.execute(statement("audit/absent")).to_arrow_table()["key"].combine_chunks()
     if request.prune and len(absent):
         drop(results, absent)
-        progress.note(f"{plural(len(absent), 'result')} taken out: their logs are not among the sources")
+        progress.note(f"{plural(len(absent), 'result')} removed: their logs are not among the sources")
     return len(absent)
 
 
@@ -356,7 +354,7 @@ def told_of(results: ResultStore, dest: str) -> dict[str, Any] | None:
     except (ValueError, KeyError, TypeError, RecursionError):
         pass
     raise UsageError(
-        f"{dest}: {AUDIT_FILE} is not as drivelint audit wrote it: audit the drives again into another --out"
+        f"{dest}: {AUDIT_FILE} was changed since drivelint audit wrote it: audit the drives again into another --out"
     )
 
 

@@ -56,7 +56,7 @@ def drives(sources: Sequence[str], options: DriveInput) -> Iterator[AuditDrive]:
     if logs:
         for path in expand_traces(logs, but=options.map):
             if not is_utf8(str(path)):
-                raise UsageError(f"{path}: its name is not UTF-8, in which results name it: rename it")
+                raise UsageError(f"{path}: its name is not UTF-8, which results need: rename it")
             yield AuditDrive(str(path), options)
 
 
@@ -76,7 +76,7 @@ def with_manifests(traces: Sequence[str], options: DriveInput) -> tuple[tuple[st
         for drive in _of_manifest(Path(trace), trace, plain):
             if own.setdefault(Path(drive.log), drive.options) != drive.options:
                 raise UsageError(
-                    f"{trace}: names {drive.log} twice, with other options: drivelint audit judges it by both"
+                    f"{trace}: names {drive.log} twice, with different options: drivelint audit judges it with both"
                 )
             logs.append(drive.log)
     return tuple(logs), own
@@ -137,7 +137,7 @@ def _is_manifest(path: Path, *, with_mapping: bool) -> bool:
         is_name = "/" in text or text.lower().endswith(tuple(TRACE_SUFFIXES))
         if is_name and name not in OPTION_COLUMNS and (is_url(text) or _exists(path.parent / text)):
             raise UsageError(
-                f"{path}: a manifest needs a column log: its column {name!r} names logs: call that one log"
+                f"{path}: a manifest needs a column log: its column {name!r} names logs: rename that column to log"
             )
     if not with_mapping and (not _TABLE_NEVER_HAS.isdisjoint(names) or not _may_have_states(path)):
         apart = "; separate them by commas" if re.search(r"[;\t]", "".join(names)) else ""

@@ -28,7 +28,7 @@ MOST_COPIES: Final = 3
 MOST_LOGS: Final = 3
 _NAMES_IN_FILE: Final = {"n_judged": "judged", "n_refused": "refused"}
 """Fields with another name in `summary.json`."""
-_UNDECIDED: Final = "nothing failed, as nothing could be decided"
+_UNDECIDED: Final = "nothing failed, because nothing could be decided"
 
 
 @dataclass

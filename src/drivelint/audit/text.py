@@ -49,7 +49,7 @@ def _lines(audit_summary: AuditSummary, out: str, code: ExitCode, gate: Iterable
         return
     found = [f"{audit_summary.findings.get(severity, 0)} {severity}" for severity in SEVERITIES]
     sure = f"examined: {audit_summary.possible} only possible" if audit_summary.robust else "not examined: --robustness"
-    yield f"findings: {', '.join(found)}{_contacts(audit_summary)}; how sure they are was {sure}"
+    yield f"findings: {', '.join(found)}{_contacts(audit_summary)}; certainty: {sure}"
     yield from _broken(audit_summary, out)
     yield from _unknown(audit_summary, out)
     yield from _not_judged(audit_summary, out)

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from drivelint.audit.store import ResultStore
 
 SUMMARY_FILE: Final = "summary.json"
-AT_WORK: Final = "an audit is at work there and has just packed results: ask again"
+AT_WORK: Final = "an audit is running there and has just packed results: repeat the query"
 
 
 class Standing(NamedTuple):
@@ -93,7 +93,7 @@ def views_of_all(con: duckdb.DuckDBPyConnection, results: ResultStore, home: Pat
     except (duckdb.Error, ValueError) as error:
         why = " ".join(str(error).split())[:300]
         raise UsageError(
-            f"a file there is not as drivelint audit wrote it ({why}): audit the drives again into another --out"
+            f"a file there was changed since drivelint audit wrote it ({why}): audit the drives again into another --out"
         ) from error
     unfinished_parts = parts.unfinished_parts(results)
     return Standing(told.get("digest"), len(loose), n, parts.n_expected_drives(results), tuple(unfinished_parts))

@@ -165,7 +165,9 @@ def _parsed(file: Path, text: str) -> list[Case]:
     cases = []
     for line, item in zip(lines, raw, strict=True):
         if not isinstance(item, dict) or "line" in item:
-            raise RuleError(f"{file}:{line}: a case is 'key: value' pairs: {', '.join(Case.__struct_fields__[:-1])}")
+            raise RuleError(
+                f"{file}:{line}: a case consists of 'key: value' pairs: {', '.join(Case.__struct_fields__[:-1])}"
+            )
         try:
             cases.append(msgspec.convert({**item, "line": line}, Case))
         except msgspec.ValidationError as error:

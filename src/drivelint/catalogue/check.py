@@ -176,10 +176,10 @@ class _SyntaxFindings:
         """Look at one node; `ctes`: the names of those in sight."""
         kind = part.get("type")
         if part.get("sample"):
-            self._refuse(part, "a sample is another one every time: a rule may not take one")
+            self._refuse(part, "a sample differs every time: a rule may not use one")
         modifiers = {each["type"] for each in part.get("modifiers") or ()}
         if modifiers & {"LIMIT_MODIFIER", "LIMIT_PERCENT_MODIFIER"} and "ORDER_MODIFIER" not in modifiers:
-            self._refuse(part, "LIMIT without ORDER BY takes other rows every time: order them")
+            self._refuse(part, "LIMIT without ORDER BY returns different rows every time: add ORDER BY")
         if part.get("ref_type") == "POSITIONAL":
             self._refuse(part, "POSITIONAL JOIN depends on the order of rows, which is not fixed")
         if "class" in part:
@@ -203,11 +203,13 @@ class _SyntaxFindings:
         if name and name not in allowed_sql.functions():
             self._refuse(
                 part,
-                f"function {name}() is not allowed in a rule: only those that give the same answer every time and touch "
+                f"function {name}() is not allowed in a rule: only functions that always return the same value and use "
                 "nothing but the tables, and the library's macros",
             )
         if name in allowed_sql.ORDERED and not _is_ordered(part):
-            self._refuse(part, f"{name}() without ORDER BY takes another row every time: order them, or write max(...)")
+            self._refuse(
+                part, f"{name}() without ORDER BY returns a different row every time: add ORDER BY, or write max(...)"
+            )
         if name == "why":
             place = self._text.at(offset_of(part))
             code, *rest = part["children"]
@@ -220,7 +222,7 @@ class _SyntaxFindings:
         if kind == "COLUMN_REF" and len(part["column_names"]) == 1:
             word = part["column_names"][0].lower()
             if word in allowed_sql.REFUSED_NAMES:
-                self._refuse(part, f"{word} does not give the same answer every time: a rule may not use it")
+                self._refuse(part, f"{word} does not return the same value every time: a rule may not use it")
 
     def _table(self, part: Node, ctes: frozenset[str]) -> None:
         name = part["table_name"].lower()

@@ -202,7 +202,7 @@ def _kind_problems(h: Header) -> Iterator[tuple[str, str]]:
     if h.combine != "each" and h.kind == "invariant":
         yield "combine", "an invariant is judged per object: combine is for conditions at a reference point"
     if measured and h.unit is None:
-        yield "sense", "unit is missing: a measured condition says in which unit"
+        yield "sense", "unit is missing: a measured condition needs its unit"
     if not measured and h.near_margin is not None:
         yield "near_margin", "near_margin needs a measured condition, not sense = 'holds'"
     if h.kind == "invariant" and h.reference is not None:

@@ -86,7 +86,7 @@ def read_rule(file: Path, *, with_words: bool = True) -> Rule:
     """
     pack = _pack_folder(file)
     if not file.is_file():
-        raise RuleError(f"{file}: a rule stands in a file, and this is none")
+        raise RuleError(f"{file}: a rule must be a file, but this is not one")
     return _known_rule(file, pack.name, _title(pack), file.read_bytes(), with_words=with_words)
 
 
@@ -113,4 +113,4 @@ def _title(folder_: Path) -> str:
     try:
         return msgspec.toml.decode(file.read_bytes(), type=_Pack).title
     except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
-        raise RuleError(f'{file}: {error}: write title = "...", what the pack is about') from error
+        raise RuleError(f'{file}: {error}: write title = "...", the subject of the pack') from error

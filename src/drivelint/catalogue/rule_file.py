@@ -57,7 +57,7 @@ def checked_rule(file: Path, pack: str, pack_title: str, content: bytes, *, with
         raise RuleError(f"{file}: not UTF-8 at byte {error.start}") from error
     if hidden := _HIDDEN.search(text):
         line = text.count("\n", 0, hidden.start()) + 1
-        raise RuleError(f"{file}:{line}: the character U+{ord(hidden[0]):04X} hides what the rule does: take it out")
+        raise RuleError(f"{file}:{line}: the character U+{ord(hidden[0]):04X} hides what the rule does: remove it")
     toml, sections = split_sections(text, str(file))
     problems: list[str] = []
     with noted(problems):
@@ -272,4 +272,4 @@ def _check_reasons(header: Header, queries: dict[str, Query], file: Path, toml: 
             yield (f"{place}: the words of {code!r} need the argument {absent[0]!r}: add it to why({code!r}, {{...}})")
     if unused := sorted(header.reasons.keys() - {reason.code for reason in given}):
         line = line_of(toml, f"reasons.{unused[0]}")
-        yield (f"{file}:{line}: the reason {unused[0]!r} is never given: give it by why({unused[0]!r}), or remove it")
+        yield (f"{file}:{line}: the reason {unused[0]!r} is never used: use it in why({unused[0]!r}), or remove it")

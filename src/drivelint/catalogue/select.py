@@ -70,11 +70,11 @@ def required_rules(
     for selector in required:
         stable = {rule.id for rule in _matching(rules, selector) if rule.status == "stable"}
         if not stable:
-            raise UsageError(f"--require {selector!r}: is no stable rule, and others do not gate")
+            raise UsageError(f"--require {selector!r}: is not a stable rule, and other rules cannot fail a run")
         # a selector of many rules is about those of the run: a severity has rules of every pack
         lacking = sorted(stable - chosen - (left_out - {selector}))
         if not stable & chosen and not lacking:
-            raise UsageError(f"--require {selector!r}: --ignore leaves out all of it")
+            raise UsageError(f"--require {selector!r}: --ignore excludes all of its rules")
         if lacking and (selector in rules or not stable & chosen):
             raise UsageError(f"--require {selector!r}: not selected by --rules: {listed(lacking, 3)}")
         found |= stable & chosen

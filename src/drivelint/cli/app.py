@@ -185,7 +185,7 @@ def main() -> NoReturn:
 
     streams.prepare()
     if (limit := least_limit_bytes()) is not None and limit < LEAST_BYTES:
-        _fail(f"a limit of {limit / 1e6:.0f} MB of memory (ulimit -v) is too low: give more", ExitCode.TEMPFAIL)
+        _fail(f"a limit of {limit / 1e6:.0f} MB of memory (ulimit -v) is too low: raise it", ExitCode.TEMPFAIL)
     leave_out_pandas()
     _end_as_ctrl_c_does()
     gc.set_threshold(GARBAGE_AFTER)

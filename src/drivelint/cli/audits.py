@@ -128,7 +128,7 @@ def audit(
     in_parts = shard is not None or claim
     if in_parts and not (baseline is None and waivers is None and min_judged is None):
         raise UsageError(
-            "--baseline, --waivers and --min-judged are of a whole audit: when all parts have ended, give it without parts"
+            "--baseline, --waivers and --min-judged need a whole audit: when all parts have ended, run the audit without parts"
         )
     gate = None
     if not in_parts:
@@ -189,11 +189,11 @@ def _stored_results_sentence(out: str) -> str:
         with TemporaryDirectory(prefix="drivelint-kept-") as home:
             n = n_results(open_store(out), Path(home))
     except (DriveLintError, OSError):  # The user interrupts to stop: an error of the store does not matter then.
-        return f"what was judged stays in {inert_line(out)}: the same command goes on with the rest"
+        return f"results so far stay in {inert_line(out)}: the same command continues with the rest"
     if not n:
         return f"no drive has a result in {inert_line(out)} yet (drives are judged some at a time): the same command begins again"
     kept = f"{plural(n, 'drive')} {'has' if n == 1 else 'have'} a result, which stays in {inert_line(out)}"
-    return f"{kept}: the same command goes on with the rest"
+    return f"{kept}: the same command continues with the rest"
 
 
 def merge(

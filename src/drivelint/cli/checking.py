@@ -248,7 +248,9 @@ def _with_manifests(settings: CheckOptions, *, packed: bool) -> CheckOptions:
 
     logs, manifest_options = with_manifests(settings.traces, settings)
     if manifest_options and packed:
-        raise UsageError("--evidence: a pack has one set of options for all logs: audit the manifest, and pack that")
+        raise UsageError(
+            "--evidence: a pack has one set of options for all logs: audit the manifest, and pack that audit"
+        )
     return replace(settings, traces=logs, manifest_options=manifest_options)
 
 

@@ -123,7 +123,7 @@ def resolve_sizes(states: States, actors: Actors) -> list[QualityFinding]:
         (
             "size_unknown",
             dropped_sizes,
-            "wider than long, and nothing tells which side is the front: {}: length and width are unknown",
+            "wider than long, and it is not known which side is the front: {}: length and width are unknown",
         ),
     ):
         if ids := _names(actors, rows):

@@ -89,14 +89,14 @@ def resolve(
         findings += states.findings(frozen, "motion_unknown", "warning", text)
         set_unknown(states, frozen)
         astray = _mismatched(states, step)
-        text = "for half a second and longer the velocity leads elsewhere than the positions: it is unknown"
+        text = "for half a second or longer, the velocity does not match the positions: it is unknown"
         findings += states.findings(astray, "velocity_unknown", "warning", COUNT_PREFIX + text)
         set_unknown(states, astray, MOTION_COLUMNS)
     for each in places:
         findings += _upon_others(states, step, actors, each, split_tracks.alias)
     turned, sideways = _headings(states, step, actors)
     yaw = states.numbers["yaw_rad"]
-    text = COUNT_PREFIX + "the heading is turned round, the motion is not: the motion counts"
+    text = COUNT_PREFIX + "the heading is turned round, but the motion is not: the motion is used"
     findings += states.findings(turned, "heading_turned", "warning", text)
     text = COUNT_PREFIX + "the heading is across the motion: it is unknown"
     findings += states.findings(sideways, "heading_unknown", "warning", text)
@@ -133,9 +133,7 @@ def _upon_others(
         rows = upon & (rejected_states.actor[place] == number)
         others = sorted({states.ids[i] for i in states.actor[other_row[rows]]})
         times = np.unique(rejected_states.t_ns[place[rows]])
-        message = (
-            f"a place of {name} that is not believed lies upon {listed(others)}: whether they met there is unknown"
-        )
+        message = f"a position of {name} that is not credible lies on {listed(others)}: it is unknown whether they touched there"
         findings.append(QualityFinding("jumps_onto", "warning", message, len(times), int(times[0]), name))
     return findings
 

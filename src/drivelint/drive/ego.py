@@ -44,7 +44,7 @@ def choose(
         return [ego_option], []
     egos = sorted(ids.intersection(named_egos))
     if not egos:
-        absent = "the log does not say which actor is the ego"
+        absent = "the log does not name the ego"
         if named_egos:
             absent = f"the log's ego {listed([repr(each) for each in named_egos])} has no states"
         message = f"no ego: {absent}: use --ego ID or --ego all (ids: {listed(actors.ids)})"
@@ -65,13 +65,16 @@ def fill_sizes(actors: Actors, egos: list[str], size: EgoSize | None) -> list[Qu
     for i in (actors.ids.index(name) for name in egos):
         known = actors.sizes["length_m"][i], actors.sizes["width_m"][i]
         if any(map(isnan, known)):
-            message = "size as --ego-size says, not recorded"
+            message = "size from --ego-size, not recorded"
             findings.append(QualityFinding(ASSUMED_SIZE, "info", message, actor_id=actors.ids[i]))
         for name, has, given in zip(SIZE_COLUMNS, known, size[:2], strict=False):
             if isnan(has):
                 actors.sizes[name][i] = given
             elif abs(has - given) > SIZE_DIFFERENCE_M:
-                message = f"--ego-size gives {actors.ids[i]} a {name.removesuffix('_m')} of {given:g} m, the log {has:g} m, which counts"
+                message = (
+                    f"--ego-size gives {actors.ids[i]} a {name.removesuffix('_m')} of {given:g} m, but the log states "
+                    f"{has:g} m, which is used"
+                )
                 findings.append(QualityFinding("ego_size", "warning", message, actor_id=actors.ids[i]))
     return findings
 
@@ -84,5 +87,5 @@ def _every(path: Path, actors: Actors) -> tuple[list[str], list[QualityFinding]]
         raise TraceError(f"{path}: no ego: {why}: use --ego ID or --ego all (ids: {listed(actors.ids)})")
     if not unknown:
         return egos, []
-    message = f"actors of unknown class are not taken as egos ({listed(unknown)})"
+    message = f"actors of unknown class are not judged as egos ({listed(unknown)})"
     return egos, [QualityFinding("ego_count", "warning", message, len(unknown))]

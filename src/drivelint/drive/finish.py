@@ -202,7 +202,7 @@ def _refuse_no_drive(path: Path, states: States) -> None:
     if len(longest) > LONGEST_ID:
         raise TraceError(
             f"{path}: an actor's id of {len(longest)} characters, which begins {longest[:40]!r}: the log is damaged, or another "
-            "column holds the ids"
+            "column has the ids"
         )
     first, last = int(states.t_ns.min()), int(states.t_ns.max())
     if max(-first, last) > LATEST_NS:

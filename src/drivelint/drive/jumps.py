@@ -73,7 +73,7 @@ def split_tracks(states: States, step: Steps, *, kept_ids: Collection[str]) -> S
     recorded = replace(states, numbers=dict(states.numbers))
     set_unknown(states, unknown)
     beside = outlier_samples(states, step)
-    text = "the position is beside its track, for a sample or by a step that nobody drives: they are unknown there"
+    text = "the position is beside its track, for one sample or by a step that no vehicle can drive: they are unknown there"
     findings += states.findings(beside, "teleport", "warning", COUNT_PREFIX + text)
     set_unknown(states, beside)
     return SplitTracks(findings, alias, recorded.take(unknown | beside)) if findings else NO_SPLIT
@@ -173,9 +173,7 @@ def _renamed(
             ids.append(name)
             alias[name] = states.ids[i]
     if alias:
-        message = (
-            f"the track goes on elsewhere after a jump: from there on it is another actor's ({listed(sorted(alias))})"
-        )
+        message = f"the track continues at another place after a jump: from there on it is another actor's ({listed(sorted(alias))})"
         findings.append(QualityFinding("track_parted", "warning", message, len(alias), actor_id=None))
     states.ids, states.actor = ids, actor
     return alias
@@ -206,7 +204,7 @@ def without_removed_actors(
     out = np.zeros(len(states), np.bool_)
     for first, end in gone:
         out[first:end] = True
-    text = "after a jump they stand in one place: they were taken out of the scene, and their tracks end there"
+    text = "after a jump they stand in one place: they were removed from the scene, and their tracks end there"
     return states.take(~out), states.findings(out, "removed", "warning", COUNT_PREFIX + text)
 
 

@@ -47,7 +47,7 @@ def complete_velocities(states: States, step: Steps, *, most_replaced_share: flo
 
 
 def _end_zeros(states: States, step: Steps, starts: Indices) -> list[QualityFinding]:
-    """Replace a velocity of exactly 0 in the first or last sample of a track that moves there: it stands for none."""
+    """Replace a velocity of exactly 0 in the first or last sample of a track that moves there: it means that there is no velocity."""
     n = len(states)
     if n < 3:
         return []
@@ -88,7 +88,7 @@ def _velocity(states: States, step: Steps, starts: Indices, most_replaced_share:
         (astray & ~still, "velocity that is not the motion of the positions"),
         (
             biased & ~astray & ~still,
-            "velocity that is too high or too low by a constant share, against the way of the positions",
+            "velocity that is too high or too low by a constant factor, compared with the positions",
         ),
     ):
         if not tracks.any():

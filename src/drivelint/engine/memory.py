@@ -54,7 +54,9 @@ class Memory:
             return False
         self.limited = False
         given = store.lift_memory_limit(self._con)
-        self._note(f"{format_bytes(self._limit)} of memory do not do (--memory): the database may take up to {given}")
+        self._note(
+            f"{format_bytes(self._limit)} of memory are not enough (--memory): the database may use up to {given}"
+        )
         return True
 
     def release(self) -> None:

@@ -244,7 +244,7 @@ class JudgingSession:
         # a rule that erred on a crowd is tried on each drive alone: the fault of one is not the others'
         erred = "SELECT rule_id FROM verdict WHERE verdict = 'error' AND list_contains(?, drive_id) ORDER BY rule_id LIMIT 1"
         if len(ids) > 1 and (row := self._con.execute(erred, [list(ids)]).fetchone()):
-            raise RuleError(f"{row[0]} erred on a batch of {len(ids)} drives")
+            raise RuleError(f"{row[0]} failed on a batch of {len(ids)} drives")
 
     def close(self) -> None:
         """Finish the files that grew with the batches."""

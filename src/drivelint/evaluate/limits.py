@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 DEFAULT_TIMEOUT_S: Final = 30.0
 """Seconds of computing per rule and batch."""
 MOST_EXCESSES: Final = 3
-"""A rule that went beyond its limits so often is not tried again: every drive of a batch is judged alone after a rule failed on it."""
+"""A rule that exceeded its limits so often is not tried again: every drive of a batch is judged alone after a rule failed on it."""
 _LOOK_S: Final = 0.1
 _MEMORY_GRACE_S: Final = 0.5
 """How long a rule may compute before it heeds an interrupt for its memory, unless it takes too much more meanwhile."""
@@ -146,7 +146,7 @@ class RuleLimits:
                 if rule_run.over.is_set():
                     return
                 rule_run.excess = excess
-                machine_bound(f"rule {rule_id} went beyond its limits")
+                machine_bound(f"rule {rule_id} exceeded its limits")
                 con.interrupt()
                 if now >= patience and self._deaf is not None:
                     self._deaf.restart_without(self._task, rule_id, excess)

@@ -168,10 +168,10 @@ def _notes(case: VerdictContext, now: str) -> list[str]:
     if case.rule.version != version:
         notes.append(
             f"The rule has changed since (version {version[:8]} then, {case.rule.version[:8]} now): "
-            "the SQL and what follows from it are today's."
+            "the SQL and everything computed from it are those of the present version."
         )
     if now != before:
-        notes.append(f"Judged anew it is {now}, not {before} as in the result: the tool or the rule has changed.")
+        notes.append(f"Judged again it is {now}, not {before} as in the result: the tool or the rule has changed.")
     return notes
 
 

@@ -39,8 +39,8 @@ _JSON_NAMES: Final = {"other_verdicts": "others", "description": "what", "neares
 _MEANS: Final = {
     "fail": "the rule was broken",
     "pass": "the rule was kept",
-    "unknown": "it cannot be told whether the rule was kept: that is no pass",
-    "not_applicable": "what the rule is about did not happen",
+    "unknown": "it is not known whether the rule was kept: this is not a pass",
+    "not_applicable": "the situation that the rule is about did not happen",
     "error": "the rule could not be run",
 }
 
@@ -71,7 +71,7 @@ def render(explanation: Explanation, width: int) -> Group:
         ("What would change it", prose["changes"]),
         ("Margin over time" if explanation.rule["sense"] != "holds" else "Over time", _series(explanation, width)),
         ("What it was judged on", prose["rows"]),
-        ("What the rule asks", prose["asks"]),
+        ("What the rule demands", prose["asks"]),
         ("How it was judged", [*prose["judged"], *_sql(explanation)]),
     ]
     for heading, lines in sections:

@@ -72,7 +72,7 @@ def compare(
     """
     if any("recorded" not in con.table(f"{of}drives").columns for of in (base, new)):
         raise UsageError(
-            "an audit was made by an earlier drivelint, which did not keep when each actor was recorded: audit the drives again"
+            "an audit was made by an earlier drivelint, which did not store when each actor was recorded: audit the drives again"
         )
     numbers = {"near_s": f"{NEAR_S!r}", "near_m": f"{NEAR_M!r}"}
     con.execute(statement("fleet/same_drive", base=base, new=new))

@@ -17,9 +17,9 @@ SITUATIONS: Final = {**CONDITION_VALUES, **MEASURED_SITUATIONS}
 """Situation -> its values. Those that are no measured ones are tags, conditions given to `check`, or what the log says."""
 CANNOT_TELL: Final = {
     "junction kind": "the tables say which rules applied, not at which junction: see the rules of junctions",
-    "road type, as the map has it": "only a road type that was given for the whole drive is known",
+    "road type, as the map has it": "only a road type that was set for the whole drive is known",
     "speed at each moment": "the band is that of the mean speed of a drive",
-    "density of the traffic": "the number of recorded actors depends on how far the sensors see",
+    "density of the traffic": "the number of recorded actors depends on the range of the sensors",
 }
 """What the tables of an audit do not tell -> why, or what to look at instead."""
 

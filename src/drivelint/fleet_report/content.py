@@ -98,9 +98,9 @@ class FleetContent:
         looked = (
             f"examined: {n:,} only possible"
             if self.audit.settings.get("robustness")
-            else "not examined: audit --robustness does it"
+            else "not examined: use audit --robustness"
         )
-        said = "; ".join([*touched, f"how sure the findings are was {looked}"])
+        said = "; ".join([*touched, f"certainty of the findings: {looked}"])
         return said[0].upper() + said[1:]
 
     @property

@@ -69,7 +69,7 @@ def ask_what_if(dest: str, setting: str, by: str | None) -> AskedWhatIf:
         version, was = _used(con, rule_id, param)
         rule = rules[rule_id]
         if version != rule.version:
-            why = "the rule is not as it was in the audit: its stored verdicts say nothing of the rule as it is now"
+            why = "the rule has changed since the audit: its stored verdicts do not apply to the present rule"
             return AskedWhatIf(audit, setting, was, by, WhatIf(rule_id, param, float(value), why))
         tagged = _answer(con, rule, param, value, by)
         if tagged.needs_check:
@@ -107,15 +107,15 @@ def to_text(analysis: AskedWhatIf) -> str:
         return "\n".join([*lines, f"needs a new audit: {answer.needs_check}", _command(analysis)])
     total, flips = sum(each.n for each in answer.verdicts), sum(each.n for each in answer.flips)
     words = ", ".join(f"{n} {was} -> {becomes}" for (was, becomes), n in _totals(answer.flips))
-    lines.append(f"{flips} of {total} verdicts become others{f': {words}' if words else ''}")
+    lines.append(f"{flips} of {total} verdicts change{f': {words}' if words else ''}")
     if answer.not_known:
         lines.append(
             f"{plural(answer.not_known, 'verdict')} {'needs' if answer.not_known == 1 else 'need'} a new audit: the stored value may be "
-            "only a bound of what was observed"
+            "only a bound of the observed value"
         )
     lines += _table(analysis)
     lines += _flipped_verdict_lines(analysis.flipped, flips + answer.not_known)
-    lines.append("Findings are not told: one verdict may have several, whose ends depend on every step.")
+    lines.append("Findings are not predicted: one verdict may have several, and their ends depend on every step.")
     return "\n".join([*lines, _command(analysis)] if answer.not_known else lines)
 
 
@@ -166,7 +166,10 @@ def _becomes(flip: Flip) -> str:
 
 
 def _command(analysis: AskedWhatIf) -> str:
-    return f"to be told all: drivelint audit SOURCE --param {analysis.setting} --out OTHER, then drivelint diff {analysis.audit.dest} OTHER"
+    return (
+        f"for the complete answer: drivelint audit SOURCE --param {analysis.setting} --out OTHER, then "
+        f"drivelint diff {analysis.audit.dest} OTHER"
+    )
 
 
 def to_json(analysis: AskedWhatIf) -> str:

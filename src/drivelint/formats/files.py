@@ -183,7 +183,7 @@ def identify(path: Path) -> Identity:
         raise _unreadable(path, error) from error
     whole = os.path.abspath(path)  # noqa: PTH100 (resolve would name the target of a link)
     if not is_utf8(whole):
-        raise TraceError(f"{escape_invisible(whole)}: its name is not UTF-8, in which results name it: rename it")
+        raise TraceError(f"{escape_invisible(whole)}: its name is not UTF-8, which results need: rename it")
     name = Path(whole).name
     stem = name if path.is_dir() else Path(name).stem
     return Identity(f"{stem}-{digest[:8]}", name, digest)

@@ -62,18 +62,18 @@ def tree(root: Path, suffixes: Collection[str]) -> Tree:
 def why_not_here(path: Path) -> str | None:
     """Return why there may be a log at a path that cannot be looked at, and what to do; None: it can be, or there is nothing."""
     if os.path.islink(path) and not path.exists():  # noqa: PTH114 - of a name that no file can have, as a damaged bag gives one
-        return f"a dead link, to {path.readlink()}: what it stands for is not here: fetch or mount it (git annex get, dvc pull)"
+        return f"a dead link, to {path.readlink()}: its target is not here: fetch or mount it (git annex get, dvc pull)"
     if _is_pointer(path) and path.is_file():
-        return "a pointer of DVC, and what it stands for is not here: fetch that with dvc pull"
+        return "a pointer of DVC, and its file is not here: fetch it with dvc pull"
     if is_pipe_or_device(path):
-        return "a pipe or a device, and a log is read more than once: write what it gives to a file, and name that"
+        return "a pipe or a device, but a log is read more than once: write its output to a file, and name that file"
     if not os.path.isdir(path):  # noqa: PTH112 - as above
         return None
     try:
         with os.scandir(path):
             return None
     except OSError as error:
-        return f"a folder that cannot be looked through ({error.strerror or error}): whether it has logs is not known: make it readable"
+        return f"a folder that cannot be searched ({error.strerror or error}): it is not known whether it has logs: make it readable"
 
 
 def is_pipe_or_device(path: Path | str) -> bool:

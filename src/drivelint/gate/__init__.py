@@ -81,7 +81,8 @@ def refuse_own_baseline(baseline: Path | None, out: Path | None) -> None:
     """Refuse a baseline that the run would replace. Errors: `UsageError`."""
     if baseline is not None and out is not None and baseline.resolve() == out.resolve():
         raise UsageError(
-            f"--baseline {baseline}: is also --out: what is new today would be known tomorrow; write the results elsewhere"
+            f"--baseline {baseline}: is also --out: findings that are new now would be known in the next run; "
+            "write the results into another folder"
         )
 
 

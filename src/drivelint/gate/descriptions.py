@@ -30,10 +30,10 @@ DIFF_SCHEMA: Final = 1
 
 DIFF_STATUS_TITLES: Final = {
     "new": "New",
-    "changed": "Changed: known, but not as it was",
+    "changed": "Changed: known, but different from before",
     "elsewhere": "Not fixed: the rule still fails, at another step or place",
-    "unknown": "Not fixed: it cannot be told any more",
-    "lost": "Not fixed: not looked at any more",
+    "unknown": "Not fixed: it cannot be judged any more",
+    "lost": "Not fixed: not judged any more",
     "fixed": "Fixed",
 }
 """Diff status -> heading, in the order shown; unchanged findings are counted only."""
@@ -191,9 +191,9 @@ def waiver_warnings(gate: Gate) -> Iterator[str]:
         if waiver.state == "expired":
             like_that = plural(waiver.findings, "finding") if waiver.findings else "no finding is"
             like_that += " like that"
-            yield f"{waiver.where}: expired {waiver.expires} ({waiver.owner}): it waives nothing; {like_that}"
+            yield f"{waiver.where}: expired {waiver.expires} ({waiver.owner}): it has no effect; {like_that}"
         elif waiver.state == "unmatched":
-            yield f"{waiver.where}: no finding is like that: {waiver_scope(waiver)} ({waiver.owner}); correct or drop it"
+            yield f"{waiver.where}: no finding matches {waiver_scope(waiver)} ({waiver.owner}); correct or remove it"
 
 
 def waiver_scope(waiver: Waiver) -> str:

@@ -308,7 +308,7 @@ class ResultLookup:
         if any(match.gap_s(other, at) <= match.NEAR_S for other in alike):
             return LookupResult("fail", "the rule fails there still, at another step or place")
         if verdict["n_judged"] == verdict["n_expected"]:
-            return LookupResult("pass", "kept there, though not at another time of the same stretch of driving")
+            return LookupResult("pass", "kept there, but not at another time of the same stretch of driving")
         missing = verdict["n_expected"] - verdict["n_judged"]
         why = f"the rule fails at another time, and {missing} of {verdict['n_expected']} steps were not judged"
         return LookupResult("unknown", why)

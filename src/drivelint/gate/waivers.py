@@ -54,7 +54,7 @@ def read(file: Path, *, only_waivers: bool = True) -> list[Waiver]:
     bad TOML, an unknown key (with the nearest), a missing rule, reason, owner or expiry, or a value of another kind.
     """
     if file.exists() and not file.is_file():
-        raise UsageError(f"{file}: waivers stand in a file, and this is none")
+        raise UsageError(f"{file}: waivers must be in a file, but this is not one")
     try:
         text = file.read_text(encoding="utf-8")
         content = tomllib.loads(text) if only_waivers else settings_table(file)
@@ -65,7 +65,7 @@ def read(file: Path, *, only_waivers: bool = True) -> list[Waiver]:
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
         raise UsageError(f"{file}: not TOML: {error}") from error
     if only_waivers and (excess := sorted(set(content) - {"waiver"})):
-        raise UsageError(f"{file}: unknown key {excess[0]!r}: it holds tables [[waiver]] only")
+        raise UsageError(f"{file}: unknown key {excess[0]!r}: it may have only tables [[waiver]]")
     tables = content.get("waiver", [])
     if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
         raise UsageError(f"{file}: waiver must be tables, each headed [[waiver]]")
@@ -118,7 +118,7 @@ def _waiver(table: Row, file: Path, place: tuple[int, Mapping[str, int]]) -> Wai
         if key not in known:
             raise refuse(key, f"unknown key {key!r}; {hint(key, known)}")
     if missing := [key for key in _MUST if key not in table]:
-        raise refuse("", f"{' and '.join(missing)} missing: somebody must answer for it, say why, and until when")
+        raise refuse("", f"{' and '.join(missing)} missing: a waiver needs an owner, a reason and a date")
     for key in ("rule", "reason", "owner", *_PATTERNS):
         if key in table and not (isinstance(table[key], str) and table[key].strip()):
             raise refuse(key, f"{key} = {table[key]!r}: must be a text, and not an empty one")

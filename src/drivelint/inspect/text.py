@@ -38,7 +38,7 @@ _SOURCES: Final = {
     "junctions": "as the map's junctions are linked",
     "lanes": "as its lanes lie beside each other",
     "traces": "as the log's traffic drives",
-    "default": "only by the standard's default: say it with --handedness",
+    "default": "only by the standard's default: set it with --handedness",
 }
 """Source of the side that is driven on -> who says so."""
 Line = tuple[str, Text]
@@ -61,7 +61,7 @@ def render(inspection: model.Inspection, trace: str) -> Group:
     if draft is not None:
         save = f"Save it as my.toml, then: drivelint inspect {shlex.quote(trace)} --mapping my.toml"
         parts += [
-            Text(f"A mapping says which column is what. One to start from, to be checked line by line:\n\n{draft}"),
+            Text(f"A mapping states the meaning of each column. This is a draft; check it line by line:\n\n{draft}"),
             Text(save, style="bold"),
         ]
     return Group(*(Padding(part, (0, 0, 1, 0)) for part in parts))
@@ -202,7 +202,7 @@ def _actor(actor: model.Actor) -> str:
 def _road(drive: model.Drive) -> Iterator[Line]:
     road = drive.road
     if road is None:
-        why = drive.road_problem or "none: what the road has to do with cannot be decided; give it with --map"
+        why = drive.road_problem or "none: rules about the road cannot be decided; name a map with --map"
         yield "map", Text(why, style="bold red" if drive.road_problem else "yellow")
         return
     yield "map", _map(road)
@@ -239,7 +239,7 @@ def _fit(fit: model.MapRegistration) -> Text:
 
 def _quality(findings: Sequence[model.Quality]) -> Iterator[Line]:
     if not any(q.severity != "info" for q in findings):
-        yield "data", Text("nothing that speaks against it", style="green")
+        yield "data", Text("no problem found", style="green")
     yield from _first_of("data", [_finding(finding) for finding in findings])
 
 
@@ -277,7 +277,7 @@ def _about(drive: model.Drive, egos: list[model.Ego], log: str) -> list[Renderab
         parts.append(Text(f"It can: {', '.join(told)}.", style="dim"))
     if ego.missing_signals:
         parts += [Text("\nTo decide more, provide:", style="bold"), _by_signal(ego)]
-        parts += [Text("\nWhich rules wait for what:", style="bold"), _by_rule(ego, drive.drafts)]
+        parts += [Text("\nRules and the signals that they need:", style="bold"), _by_rule(ego, drive.drafts)]
     return parts
 
 

@@ -86,10 +86,10 @@ def _of_evidence(folder: Path, result: Result, evidence: dict[str, Any]) -> list
     keys += sorted(evidence.keys() - due.keys() - set(_NOT_FACTS))
     keys += _misplaced(json.loads((folder / RESULT / "run.json").read_text("utf-8")), evidence)
     keys += sheets.misnamed(folder, evidence, result.findings["finding_id"].to_pylist())
-    wrong = [Problem("evidence.json does not fit the result", key) for key in keys]
+    wrong = [Problem("evidence.json does not match the result", key) for key in keys]
     said, counted = summary_of(folder), json.loads(summary.render(result))
     keys = sorted(key for key in counted.keys() | said.keys() if key != "tool" and said.get(key) != counted.get(key))
-    return wrong + [Problem("summary.json does not fit the tables", key) for key in keys]
+    return wrong + [Problem("summary.json does not match the tables", key) for key in keys]
 
 
 def differing(
@@ -155,7 +155,7 @@ def _of_reports(folder: Path, result: Result, evidence: dict[str, Any]) -> list[
     if packed_by(evidence) != __version__:
         return []
     return [
-        Problem("report does not fit the tables", f"{RESULT}/{name}")
+        Problem("report does not match the tables", f"{RESULT}/{name}")
         for name, render in REPORT_FORMATS.values()
         if (folder / RESULT / name).is_file() and (folder / RESULT / name).read_bytes() != render(result)
     ]
@@ -177,7 +177,7 @@ def of_findings(folder: Path, result: Result, check_request: RunRequest) -> tupl
     except DriveLintError as error:
         return [], f"the findings' SQL was not run: {error}"
     if why := unlike_rules(list(rules.values()), result.rules, check_request):
-        return [Problem("run.json does not fit the result", why)], ""
+        return [Problem("run.json does not match the result", why)], ""
     rows = {f"{FINDINGS}/{row['finding_id']}": row for row in result.findings.to_pylist()}
     wrong, n = of_sql(folder, rows, rules, check_request)
     return wrong, f"{plural(n, 'finding')} gave {'its' if n == 1 else 'their'} numbers from the rows in the pack"

@@ -50,7 +50,7 @@ def private_key(path: Path) -> Ed25519PrivateKey:
     try:
         key = load(content, password=None)
     except TypeError as error:
-        raise UsageError(f"{path}: has a password, which drivelint does not ask for: give a key without one") from error
+        raise UsageError(f"{path}: has a password, which drivelint cannot enter: use a key without one") from error
     except (ValueError, UnsupportedAlgorithm) as error:
         raise UsageError(f"{path}: no private key in PEM: openssl genpkey -algorithm ed25519 makes one") from error
     if not isinstance(key, Ed25519PrivateKey):

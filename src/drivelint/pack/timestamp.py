@@ -63,7 +63,7 @@ def of_pack(folder: Path, roots: Path | None) -> StampCheck:
     except ModuleNotFoundError as error:
         if roots is not None:
             raise UsageError(_missing_package_text("--timestamp-root")) from error
-        return StampCheck([], "with a time stamp that was not looked at", [_missing_package_text("its time stamp")])
+        return StampCheck([], "with a time stamp that was not examined", [_missing_package_text("its time stamp")])
 
 
 def look(content: bytes, envelope: bytes, roots: Path | None) -> StampCheck:
@@ -81,13 +81,13 @@ def look(content: bytes, envelope: bytes, roots: Path | None) -> StampCheck:
         return StampCheck([Problem("time stamp of another statement", FILE)])
     shown = f"{time:%Y-%m-%dT%H:%M:%SZ}"
     if roots is None:
-        return StampCheck([], f"with a time stamp of {shown} (only --timestamp-root tells whose)")
+        return StampCheck([], f"with a time stamp of {shown} (only --timestamp-root identifies its authority)")
     builder = VerifierBuilder(roots=_certificates(roots))
     try:
         builder.build().verify(response, imprint.message)
     except (VerificationError, ValueError) as error:
-        return StampCheck([Problem("time stamp of nobody who is trusted", f"{FILE}: {error}")])
-    return StampCheck([], f"there since {shown}, as an authority that is trusted says")
+        return StampCheck([Problem("time stamp of an authority that is not trusted", f"{FILE}: {error}")])
+    return StampCheck([], f"existed by {shown}, as a trusted authority states")
 
 
 def _in_order(content: bytes) -> bytes:

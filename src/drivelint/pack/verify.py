@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 _OUTCOMES: Final = {
     "PASSED": "every rule that applied was kept",
-    "WARNED": "no rule was broken, but not everything was judged and kept with room",
+    "WARNED": "no rule was broken, but not everything was judged and kept with a margin",
     "FAILED": "the drives broke rules",
 }
 
@@ -77,13 +77,15 @@ def _of_request(request: VerifyRequest) -> list[Problem]:
     found = []
     if request.require_signature and request.key is None:
         what = (
-            "its own key says nothing of whose it is" if (request.folder / ENVELOPE).is_file() else "it is not signed"
+            "the key in the pack does not identify its owner"
+            if (request.folder / ENVELOPE).is_file()
+            else "it is not signed"
         )
-        found.append(Problem("nobody identified", f"{what}: give the signer's with --key"))
+        found.append(Problem("nobody identified", f"{what}: use the signer's key with --key"))
     date = bag.date_of(request.folder)
     if request.not_before is not None and (date is None or date < request.not_before):
         said = "without a date" if date is None else f"dated {date}"
-        found.append(Problem("older pack", f"{said}, and not before {request.not_before} was asked for"))
+        found.append(Problem("older pack", f"{said}, but --not-before {request.not_before} was required"))
     return found
 
 
@@ -91,7 +93,9 @@ def _given_key(request: VerifyRequest) -> Ed25519PublicKey | None:
     if request.key is None:
         return None
     if request.key.resolve().is_relative_to(request.folder.resolve()):
-        raise UsageError(f"--key {request.key}: comes with the pack, so it tells nothing: give one from elsewhere")
+        raise UsageError(
+            f"--key {request.key}: comes with the pack, so it proves nothing: use a key from another source"
+        )
     return signature.public_key(request.key)
 
 
@@ -123,13 +127,13 @@ def _of_envelope(folder: Path, pack_key: Ed25519PublicKey, key: Ed25519PublicKey
         return [Problem("another key", f"signed by {has}, not by {wanted}, which was given")], ""
     wrong = [] if by_own else [Problem("another key", f"{PUBLIC_KEY} is not the key that signed")]
     if not signature.is_as_written(content, signer):
-        wrong.append(Problem("text beside what is signed", ENVELOPE))
+        wrong.append(Problem("text beside the signed content", ENVELOPE))
     if (folder / PUBLIC_KEY).read_bytes() != signature.public_pem(pack_key):
         wrong.append(Problem("text beside the key", PUBLIC_KEY))
     if (folder / FILE).is_file():
         wrong.append(Problem("file added", FILE))
     if key is None:
-        return wrong, f"signed by the key in the pack ({wanted}; only --key tells whose that is)"
+        return wrong, f"signed by the key in the pack ({wanted}; only --key identifies its owner)"
     return wrong, f"signed by the key that was given ({wanted})"
 
 
@@ -152,7 +156,7 @@ def _of_contents(request: VerifyRequest, stated: Stated) -> tuple[str, list[Prob
     except UsageError as error:
         if request.traces or request.map is not None:
             raise
-        return "", [Problem("inputs do not fit the result", str(error))], notes
+        return "", [Problem("inputs do not match the result", str(error))], notes
     if sheets.sheet_files(evidence) and evidence["packed_with"] != library_versions():
         notes.append("packed with other versions of libraries: its incident sheets are not written again")
     judging, wrong = _of_result(request.folder, stated, check_request)
@@ -173,7 +177,7 @@ def _notes(evidence: dict[str, Any], result: Result) -> list[str]:
     if sheets.has_printed(evidence):
         notes.append("an incident sheet as PDF is as the pack says: the page beside it is what is written again")
     if result.gate is not None:
-        notes.append("baseline and waivers are as the pack says: they are not held against anything again")
+        notes.append("baseline and waivers are as the pack says: they are not checked again")
     return notes
 
 

@@ -87,7 +87,7 @@ def ready(request: PackRequest) -> signature.SigningKey | None:
     if (url := as_url(request.out)) is not None:
         raise UsageError(f"{url}: a pack is a folder of this machine: write it here and copy it there")
     if request.timestamp is not None and request.key is None:
-        raise UsageError("--timestamp is of a signed statement: give the key, too, with --sign")
+        raise UsageError("--timestamp is for a signed statement: use --sign with the key, too")
     key = None if request.key is None else signature.signing_key(request.key)
     _free(request.out, overwrite=request.overwrite)
     if request.out.resolve().is_relative_to(request.folder.resolve()):

@@ -97,7 +97,7 @@ def clause_coverage(rules: Iterable[Rule], table: Sequence[Clause]) -> list[Clau
         covered = tuple(sorted(i for i, rule in mine.items() if rule.status == "stable"))
         drafted = tuple(sorted(i for i, rule in mine.items() if rule.status == "draft"))
         if not mine and not clause.why:
-            raise RuleError(f"clauses.toml: {clause.of}: no rule covers it, and it does not say why")
+            raise RuleError(f"clauses.toml: {clause.of}: no rule covers it, and it has no reason")
         rows.append(ClauseCoverage(clause, covered, drafted))
     return rows
 

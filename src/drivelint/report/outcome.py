@@ -184,9 +184,9 @@ def _without_findings(result: Result, verdict_counts: Mapping[str, int], label: 
         not verdict_counts["pass"] + verdict_counts["fail"]
         and verdict_counts["unknown"] + verdict_counts["error"] + counts.unrecorded(result.verdicts).num_rows
     ):
-        return "no findings, as nothing could be decided"
+        return "no findings, because nothing could be decided"
     if not verdict_counts["pass"] + verdict_counts["fail"]:
-        return "no findings, as no rule applied: what they are about did not happen"
+        return "no findings, because no rule applied: the situations that they are about did not happen"
     if label == _MOSTLY:
         return "no findings, but most could not be judged"
     return "no findings" if whole else "no findings, as far as it could be judged"

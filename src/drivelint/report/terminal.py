@@ -201,7 +201,7 @@ def _assumptions(result: Result) -> Text | None:
     if not assumed:
         return None
     verb = "verdict assumes" if assumed == 1 else "verdicts assume"
-    return Text(f"{assumed} {verb} that whoever a log does not have is not in plain view (--visibility)", "dim")
+    return Text(f"{assumed} {verb} that an actor that a log does not have is not in plain view (--visibility)", "dim")
 
 
 def _table(title: str, style: str, columns: Mapping[str, int] | None = None) -> Table:

@@ -316,7 +316,7 @@ def _end(result: Result, findings: list[Row], out: str | None) -> list[Text]:
     if gate is not None:
         lines += [Text(f"waiver   {line}", "yellow") for line in descriptions.waiver_warnings(gate)]
     if counts.total(result.verdicts)["unknown"] or counts.unrecorded(result.verdicts).num_rows:
-        lines.append(Text("inspect  drivelint inspect TRACE tells what a log lacks: unknown is not pass"))
+        lines.append(Text("inspect  drivelint inspect TRACE shows what a log lacks: unknown is not pass"))
     if out is None:
         lines.append(Text("keep     --out DIR writes a report, the tables and the logs with their verdicts", "dim"))
         return lines

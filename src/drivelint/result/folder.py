@@ -44,7 +44,7 @@ def working_folder(
     foreign = sorted(present - written_files(out) - {MANIFEST})
     if foreign and not overwrite:
         raise UsageError(
-            f"--out {out}: has {listed(foreign, 3)}, which drivelint is not known to have written there ({MANIFEST} does not list it): "
+            f"--out {out}: has {listed(foreign, 3)}, which drivelint did not write there ({MANIFEST} does not list it): "
             "choose another folder, or replace it with --overwrite"
         )
     with _locked(out) as is_ours:

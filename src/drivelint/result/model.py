@@ -137,7 +137,7 @@ def _not_judged(result: Result) -> Iterator[ExitStatus]:
             ExitCode.NOT_JUDGED, f"{lost} of {plural(result.drives.num_rows, 'drive')} could not be judged"
         )
     if (limited := _erring(result, beyond_limits=True)).num_rows:
-        yield ExitStatus(ExitCode.NOT_JUDGED, f"{_in_error(limited)}: went beyond its limits: {_rules_of(limited)}")
+        yield ExitStatus(ExitCode.NOT_JUDGED, f"{_in_error(limited)}: exceeded its limits: {_rules_of(limited)}")
     off_map = [reason for drive in result.drives.to_pylist() if (reason := off_map_reason(drive)) is not None]
     if off_map:
         drives = plural(result.drives.num_rows, "drive")
@@ -257,7 +257,7 @@ def _nothing_decided(result: Result) -> str | None:
     if not n or _count(result.verdicts, "unknown") + lacking != n:
         return None
     why = "the log lacks a signal for every rule" if lacking == n else "every verdict is unknown"
-    return f"nothing failed, as nothing could be decided: {why}"
+    return f"nothing failed, because nothing could be decided: {why}"
 
 
 def ego_absences(drive: Row) -> list[str]:

@@ -116,7 +116,7 @@ def opposite_side(side: str) -> str:
 def correction_hint(side: str, source: str) -> str:
     """Return what the user must do for the opposite side; `source`: what chose `side`, such as option, attribute or lanes."""
     return (
-        f"leave the option out, or give {opposite_side(side)}"
+        f"leave the option out, or set {opposite_side(side)}"
         if source == "option"
         else f"give --handedness {opposite_side(side)}"
     )
@@ -128,12 +128,12 @@ def choose_side(
     """Return the side driven on and what says so: the first of (source, side) that has a side; report that others disagree."""
     stated_sides = [(source, side) for source, side in statements if side is not None]
     if not stated_sides:
-        message = f"nothing in {where} says which side is driven on: right-hand traffic is a guess; give --handedness"
+        message = f"{where} does not state which side is driven on: right-hand traffic is a guess; set --handedness"
         quality.add("handedness_default", "warning", None, message)
         return "rht", "default"
     source, side = stated_sides[0]
     if len({side for _, side in stated_sides}) > 1:
         opinions = ", ".join(f"{source}: {side}" for source, side in stated_sides)
-        message = f"{opinions}; the first is taken: if it is wrong, {correction_hint(side, source)}"
+        message = f"{opinions}; the first is used: if it is wrong, {correction_hint(side, source)}"
         quality.add("handedness_disagrees", "warning", None, message)
     return side, source

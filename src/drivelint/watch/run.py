@@ -111,10 +111,10 @@ class Watch:
         judge: WindowJudge | None = None,
     ) -> None:
         if options.window_s * S <= 2 * WARM_UP_NS:
-            raise UsageError(f"--window {options.window_s:g}: give more than {2 * WARM_UP_NS / S:g} s")
+            raise UsageError(f"--window {options.window_s:g}: use more than {2 * WARM_UP_NS / S:g} s")
         if options.every_s * S > options.window_s * S - WARM_UP_NS:
             raise UsageError(
-                f"--every {options.every_s:g}: give at most {options.window_s - WARM_UP_NS / S:g} s, or a longer --window"
+                f"--every {options.every_s:g}: use at most {options.window_s - WARM_UP_NS / S:g} s, or a longer --window"
             )
         self._options = options
         self._source = source
@@ -231,7 +231,7 @@ class Watch:
             since_ns, until_ns = self._window.jumps.pop(0)
             self._emit(
                 messages.note(
-                    f"the clock jumps from {since_ns / S:.3f} s to {until_ns / S:.3f} s: nothing is judged across"
+                    f"the clock jumps from {since_ns / S:.3f} s to {until_ns / S:.3f} s: nothing is judged across the jump"
                 )
             )
         return frames
@@ -254,7 +254,7 @@ class Watch:
             return  # too little of a log, or none: the window tells what is wrong with it
         except Exception as error:  # noqa: BLE001 - the windows are still judged
             self._contacts = None
-            self._emit(messages.note(f"contacts are found by windows alone: {error}"))
+            self._emit(messages.note(f"contacts are only found in windows: {error}"))
             return
         now_ns = self._looked_until_ns = trace.tables["data_log"]["t_end_ns"][0].as_py()
         self._say(self.alarms.look(rows, now_ns), now_ns, self._start_ns)

@@ -73,7 +73,7 @@ class _Viewer:
 class ViewerServer:
     """Serves viewers at `ws://host:port` in a thread of its own. Port 0: any that is free.
 
-    `allowed_origins`: origins of pages that may connect. Errors: `OSError` where nothing can be served there.
+    `allowed_origins`: origins of pages that may connect. Errors: `OSError` where the server cannot start there.
     """
 
     def __init__(self, host: str, port: int, allowed_origins: Sequence[str] = ()) -> None:

@@ -26,7 +26,7 @@ class _PlacedFrame(NamedTuple):
 class Window:
     """The frames of the last `length_ns` of a log, and those that wait.
 
-    Where the log's clock jumps by more than `length_ns`, forwards or back, the window begins anew: nothing is judged across.
+    Where the log's clock jumps by more than `length_ns`, forwards or back, the window begins anew: nothing is judged across the jump.
     Memory: the frames of the window and those that wait.
     """
 

@@ -224,7 +224,7 @@ def test_a_flipped_byte_is_refused_or_unseen(tmp_path: Path, file: str) -> None:
 
 
 def test_a_log_without_annotations(tmp_path: Path) -> None:
-    with pytest.raises(TraceError, match=r"annotations\.feather: no annotations: .*give a log that is annotated"):
+    with pytest.raises(TraceError, match=r"annotations\.feather: no annotations: .*use a log with annotations"):
         read(sensor_log(tmp_path / "log", []))
 
 

@@ -179,7 +179,7 @@ def test_carlas_origins(tmp_path: Path) -> None:
     assert at(trace, "12", T0)["z_m"] == 0.0
     found = quality(trace)["reference_point"]
     assert found["severity"] == "info"
-    assert "taken as the centres of their boxes" in found["message"]
+    assert "used as the centres of their boxes" in found["message"]
     assert "reference_point" not in quality(seen(tmp_path, others(), ego="9"))
 
 
@@ -216,7 +216,7 @@ def test_ego_size(tmp_path: Path) -> None:
     assert math.hypot(state["x_m"], state["y_m"]) == pytest.approx(math.hypot(20, 1.4))
     assert math.hypot(state["vx_mps"], state["vy_mps"]) == pytest.approx(rate * math.hypot(20, 1.4))
     assert {"no_size", "velocity_mismatch", "reference_point", "twist_frame"}.isdisjoint(quality(trace))
-    assert quality(trace)["assumed_size"]["message"] == "size as --ego-size says, not recorded"
+    assert quality(trace)["assumed_size"]["message"] == "size from --ego-size, not recorded"
 
 
 @pytest.mark.parametrize("text", ["4.9", "4.9,0", "-4.9,1.9", "4.9,x", "nan,1.9", "4.9,1.9,1.4,2", ""])

@@ -110,10 +110,10 @@ class DaskCluster:
             self._workerless_since = now
         elif now - self._workerless_since >= WORKERLESS_S:
             raise ClusterError(
-                f"--cluster {self._address}: no worker for {WORKERLESS_S:.0f} s: start some and give the same command"
+                f"--cluster {self._address}: no worker for {WORKERLESS_S:.0f} s: start some and run the same command again"
             )
 
     def _scheduler_error(self, why: str) -> ClusterError:
         return ClusterError(
-            f"--cluster {self._address}: the scheduler is gone ({why}): start it and give the same command"
+            f"--cluster {self._address}: the scheduler is gone ({why}): start it and run the same command again"
         )

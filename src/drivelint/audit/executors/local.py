@@ -134,7 +134,7 @@ class _Worker:
         """Return that the worker was lost if it takes too much; then it is ended."""
         if self._memory is not None and (taken := resident_bytes(self._process.pid)) > self._memory:
             return self._lost_outcome(
-                f"the worker took {taken / 1e6:.0f} MB of memory, and may take {self._memory / 1e6:.0f} MB"
+                f"the worker took {taken / 1e6:.0f} MB of memory, but the limit is {self._memory / 1e6:.0f} MB"
             )
         if self._timeout_s is None or self._begun_s is None or self.task is None:
             return None

@@ -55,21 +55,24 @@ def implausible_motion(states: States, step: Steps, actors: Actors, *, derived: 
         jolt,
         "velocity_jolt",
         "warning",
-        "velocity jumps there and back as no tyre can in {n} of {of} states ({ids})",
+        "velocity jumps and returns, faster than any tyre can, in {n} of {of} states ({ids})",
         quantity="velocity",
     )
-    text = "velocities of most actors change alike at once, and back, in {n} of {of} states ({ids}): the times or places of the log do"
+    text = (
+        "velocities of most actors change alike at the same time, and change back, in {n} of {of} states "
+        "({ids}): the times or positions of the log are wrong"
+    )
     findings += states.findings(common_jolts(states, step), "common_jolt", "warning", text, quantity="velocity")
     if not derived:
         aside = _displaced(states, step)
-        text = "position steps aside, which the velocity does not, in {n} of {of} states ({ids})"
+        text = "position steps aside, but the velocity does not, in {n} of {of} states ({ids})"
         findings += states.findings(aside, "position_step", "warning", text, quantity="position")
     spin = _spins(states, step, actors)
     text = "heading turns on the spot, as no vehicle can, in {n} of {of} states ({ids})"
     findings += states.findings(spin, "heading_spin", "warning", text, quantity="heading")
     fast = _too_fast(states, actors)
     return findings + states.findings(
-        fast, "class_implausible", "warning", "faster than anybody of their class: {ids}", quantity="class"
+        fast, "class_implausible", "warning", "faster than any actor of their class: {ids}", quantity="class"
     )
 
 

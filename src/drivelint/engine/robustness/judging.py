@@ -180,7 +180,7 @@ class Robustness:
             evaluate(self._con, judged, params, may_retry=True, limits=self._limits)
             erred = "SELECT rule_id FROM verdict v SEMI JOIN _copy c ON v.drive_id = c.copy_id WHERE verdict = 'error' LIMIT 1"
             if len(chunk) > 1 and (row := self._con.execute(erred).fetchone()):
-                raise RuleError(f"{row[0]} erred on copies of {len(chunk)} windows")
+                raise RuleError(f"{row[0]} failed on copies of {len(chunk)} windows")
             stays = self._con.execute(
                 statement("robustness/stays"), {"same_reference_ns": SAME_REFERENCE_NS}
             ).fetchall()

@@ -112,7 +112,7 @@ def _rows(path: Path) -> pa.Table:
     optional = [name for name in (*_CLOCK, "city", "scenario_id") if name in has]
     rows = parquet.table(path, [*_REQUIRED, *optional])
     if len(names := _distinct(path, rows, "scenario_id")) > 1:
-        raise TraceError(f"{path}: holds {len(names)} scenarios: write one file per scenario")
+        raise TraceError(f"{path}: has {len(names)} scenarios: write one file per scenario")
     return rows
 
 
@@ -154,7 +154,7 @@ def _add_map(recording: Recording, path: Path) -> None:
         name = path.name.removeprefix("scenario_").removesuffix(".parquet")
         own = [file for file in files if name in file.name]
         if own:
-            recording.notes.append(f"its map {own[0].name} lies beside it: give the folder, or --map")
+            recording.notes.append(f"its map {own[0].name} lies beside it: name the folder, or use --map")
     elif len(files) > 1:
         names = listed([file.name for file in files])
         message = f"the scenario has {len(files)} maps ({names}), and none is used: keep one"

@@ -66,7 +66,7 @@ def read(probe: Probe) -> Recording:
     steps, step = np.unique(t_ns, return_inverse=True)
     if not len(steps):
         raise TraceError(
-            f"{file}: no annotations: nothing says who was around the vehicle: give a log that is annotated"
+            f"{file}: no annotations: the actors around the vehicle are not known: use a log with annotations"
         )
     rear_axle = _poses_at(probe.path / POSES_FILE, steps)
     findings += [vehicle.assumed_size(EGO_ID), *_unplaced(steps, rear_axle, np.bincount(step, minlength=len(steps)))]
@@ -139,7 +139,7 @@ def _annotated_states(path: Path, rows: pa.Table, t_ns: Times, rear_axle: Poses)
     names = ids.dictionary.to_pylist()
     if riders:
         who = listed([names[i] for i in riders])
-        notes.append(f"riders and what they ride are one road user each, with the box around both: {who}")
+        notes.append(f"each rider and vehicle are one road user, with the box around both: {who}")
     if is_ego.any():
         notes.append(f"the boxes of category {EGO_CATEGORY} are the ego itself: they are not read")
     states = States([EGO_ID, *names], actor + np.int32(1), t_ns, boxes, {"actor_class": classes}, odd)

@@ -79,7 +79,7 @@ def read(probe: Probe) -> Recording:
         )
     obstacles = [*root.findall("dynamicObstacle"), *root.findall("staticObstacle"), *root.findall("obstacle")]
     if not obstacles:
-        raise TraceError(f"{path}: the scenario has no obstacles: there is nobody to judge")
+        raise TraceError(f"{path}: the scenario has no obstacles: there is no actor to judge")
     ids = [str(o.get("id")) for o in obstacles]
     if len(set(ids)) < len(ids):
         twice = listed(sorted({i for i in ids if ids.count(i) > 1}))
@@ -148,11 +148,11 @@ def _unread(root: etree._Element, obstacles: Sequence[etree._Element]) -> list[Q
         message = f"values of obstacles given as intervals or areas: {uncertain}: they are not known"
         findings.append(QualityFinding("uncertain_value", "warning", message, uncertain))
     if sets:
-        message = f"of {listed(sets)} only the initial state is known: what follows is a set of areas where it may be"
+        message = f"of {listed(sets)} only the initial state is known: after it, there is only a set of areas where the actor may be"
         findings.append(QualityFinding.of_actors("uncertain_value", "warning", message, sets))
     if still:
         message = (
-            f"environment and phantom obstacles are not read: {listed(still)}: a contact with them is not looked for"
+            f"environment and phantom obstacles are not read: {listed(still)}: a contact with them is not detected"
         )
         findings.append(QualityFinding("unread_obstacle", "warning", message, len(still)))
     return findings

@@ -97,7 +97,7 @@ class Signs:
             self.quality.add("missing_signal", "warning", None, message, lost.total())
         held = {ref for lanelet in lanelets for ref in signal_refs(lanelet)}
         if idle := sorted(known_ids - held):
-            message = f"signs and lights to which no lanelet refers hold for no lane: {', '.join(idle)}"
+            message = f"signs and lights to which no lanelet refers apply to no lane: {', '.join(idle)}"
             self.quality.add("signal_without_lane", "info", None, message, len(idle))
 
     def _report_codes(self) -> None:
@@ -121,7 +121,9 @@ class Signs:
                     continue
                 trouble = "it has no number" if element.value is None else _implausible(element.value)
                 if trouble is None and any(_restricts(e) for e in on_post):
-                    trouble = f"it holds only as its plates say ({', '.join(e.code for e in on_post if _restricts(e))})"
+                    trouble = (
+                        f"it applies only as its plates state ({', '.join(e.code for e in on_post if _restricts(e))})"
+                    )
                 if trouble:
                     self.quality.add(
                         "invalid_speed", "warning", None, f"the limit of sign {name} is not taken: {trouble}"
@@ -231,7 +233,7 @@ def points(parent: etree._Element | None) -> Floats:
     both = np.array([[safe_xml.number(p.findtext(axis)) for axis in "xy"] for p in found], np.float64).reshape(-1, 2)
     bad = np.flatnonzero(~(np.abs(both) < FARTHEST_M).all(axis=1))
     if len(bad):
-        raise ValueError(f"the point in line {found[bad[0]].sourceline} has no x and y that can be")
+        raise ValueError(f"the point in line {found[bad[0]].sourceline} has impossible values of x and y")
     return both
 
 

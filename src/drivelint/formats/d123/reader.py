@@ -40,7 +40,7 @@ takes_mapping: Final = False
 _NO_ROAD_USERS: Final = QualityFinding(
     "no_road_users",
     "warning",
-    f"the log has no {BOXES}.arrow: who is around the ego is not recorded: rules that look at others than the ego are unknown",
+    f"the log has no {BOXES}.arrow: the actors around the ego are not recorded: rules about other actors are unknown",
 )
 _ROUNDED_US: Final = 10  # in which nobody moves by a millimetre
 _MALFORMED: Final = (
@@ -128,7 +128,7 @@ def _frames(folder: Path, sync: Mapping[str, pa.Array], ego: Modality, boxes: Mo
     if boxes is not None:
         if n := int((whole & (box_rows < 0)).sum()):
             notes.append(
-                f"{n} of {int(whole.sum())} frames have no boxes: they are not read, as nobody knows who was there"
+                f"{n} of {int(whole.sum())} frames have no boxes: they are not read, because the other actors are not known there"
             )
         if n := boxes.n - len(np.unique(box_rows[(box_rows >= 0) & (box_rows < boxes.n)])):
             notes.append(f"{n} of {boxes.n} rows of boxes belong to no frame of {SYNC}.arrow: they are not read")

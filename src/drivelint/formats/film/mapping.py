@@ -73,7 +73,7 @@ class OvertakeStages(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class DetectedActor(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """Somebody who is detected: the column with his distance ahead (of a table), or the id and width of his box (of an MCAP)."""
+    """Somebody who is detected: the column with its distance ahead (of a table), or the id and width of his box (of an MCAP)."""
 
     id: str
     lane: Literal["own", "opposing"]

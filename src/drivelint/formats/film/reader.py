@@ -80,9 +80,11 @@ def read(probe: Probe) -> Recording:
     t_ns = np.rint((film.frames.start_s + frames / film.frames.rate_hz) * 1e9).astype(np.int64)
     states, egos_x = _states(film, frames, t_ns, [ahead[judged] for ahead in detections.ahead_m])
     assumed = "speeds, lanes and the ego's way across them"
-    message = f"mapping {stem!r} assumes {assumed}; only distances ahead are measured: rules about anything else judge what is assumed"
+    message = (
+        f"mapping {stem!r} assumes {assumed}; only distances ahead are measured: all other rules judge assumed values"
+    )
     findings.append(QualityFinding(ASSUMED_MOTION, "warning", message))
-    findings.append(QualityFinding(ASSUMED_SIZE, "info", f"size as the mapping {stem!r} says, not recorded"))
+    findings.append(QualityFinding(ASSUMED_SIZE, "info", f"size from the mapping {stem!r}, not recorded"))
     recording = Recording(stem, states, ego_ids=[film.ego.id], findings=findings)
     recording.embedded_map = _road(film, egos_x)
     recording.sensor_range_m = film.sensor_range_m
@@ -102,14 +104,14 @@ def _table(path: Path, name: str, film: VideoMapping, findings: list[QualityFind
             f"{path}: no column {missing[0]!r}, which mapping {name!r} needs: it has {', '.join(sheet.names)}"
         )
     if unsaid := [actor.id for actor in film.actor if actor.ahead is None]:
-        raise UsageError(f"mapping {name!r}: actor {unsaid[0]} has no 'ahead', the column with his distance")
+        raise UsageError(f"mapping {name!r}: actor {unsaid[0]} has no 'ahead', the column with its distance")
     sheet.load(columns)
     number, bad = sheet.number(film.frames.column)
     bad |= ~(np.abs(number) < MOST_FRAMES) | (number != np.floor(number))
     rows = np.flatnonzero(~bad)
     frames, first = np.unique(number[rows].astype(np.int64), return_index=True)
     if not len(frames):
-        raise TraceError(f"{path}: column {film.frames.column!r} holds no frame numbers")
+        raise TraceError(f"{path}: column {film.frames.column!r} has no frame numbers")
     whole = np.arange(frames[0], frames[-1] + 1)
     at = np.searchsorted(whole, frames)
     ahead = []
@@ -127,9 +129,7 @@ def _table(path: Path, name: str, film: VideoMapping, findings: list[QualityFind
     if lost or bad.any():
         n = len(lost) + int(bad.sum())
         where = describe_places("line", lost, len(lost)) if lost else sheet.describe_rows(np.flatnonzero(bad))
-        message = (
-            f"{path.name}, {where}: not the {len(sheet.names)} cells of the header: nobody has a place in these frames"
-        )
+        message = f"{path.name}, {where}: not the {len(sheet.names)} cells of the header: no actor has a place in these frames"
         findings.append(QualityFinding("malformed_row", "warning", message, n))
     return Sightings(whole, ahead)
 

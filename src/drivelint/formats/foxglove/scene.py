@@ -196,7 +196,7 @@ def _recording(
     if not len(rows):
         raise TraceError(f"{path}: no entity on {topic!r} has a cube and an id: nothing can be judged")
     if scene.without_box:
-        message = f"{topic}: entities without a cube: {scene.without_box}: they are taken for no road users"
+        message = f"{topic}: entities without a cube: {scene.without_box}: they are not treated as road users"
         findings.append(QualityFinding("no_box", "info", message, scene.without_box))
     own_times = choose_clock({topic: rows}, findings)
     frames = _frames(transforms, own_times=own_times)

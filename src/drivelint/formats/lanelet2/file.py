@@ -39,11 +39,11 @@ def load(source: MapSource, request: MapOptions, quality: MapQuality) -> tuple[A
     if local:
         _place_locally(root, quality)
         if request.origin is not None:
-            message = "the map has local coordinates, which are taken: --map-origin is not used"
+            message = "the map has local coordinates, which are used: --map-origin is not"
             quality.add("map_origin_unused", "info", None, message)
     elif request.origin is None:
         raise MapError(
-            f"map {source.name} is in latitude and longitude: say which point is 0,0 in the log with --map-origin LAT,LON"
+            f"map {source.name} is in latitude and longitude: set the point that is 0,0 in the log with --map-origin LAT,LON"
         )
     latitude, longitude = (0.0, 0.0) if local or request.origin is None else request.origin
     origin = lanelet2.io.Origin(latitude, longitude)

@@ -186,7 +186,9 @@ class Container:
 
     def _refuse_second_file(self, view: memoryview, at: int) -> None:
         if bytes(view[at : at + len(MAGIC)]) == MAGIC:
-            raise TraceError(f"{self.path}: a second MCAP file begins at byte {at}: split the two, give each by itself")
+            raise TraceError(
+                f"{self.path}: a second MCAP file begins at byte {at}: split the two, and use each by itself"
+            )
 
     def _refuse_second_file_within(self, view: memoryview, start: int, end: int) -> None:
         """Refuse a file of which lost bytes hold the beginning of another: what comes then may be of another drive."""
@@ -239,7 +241,7 @@ class Container:
                 raise self._damaged(at, "a message record without its header", end)
             number, _, log_time, _ = _MESSAGE.unpack_from(body)
             if number not in self.channels:
-                raise self._damaged(at, f"a message on channel {number}, which was never announced,", end)
+                raise self._damaged(at, f"a message on channel {number}, which was never declared,", end)
             self._messages += 1
             self.counts.add(number, log_time)
             self.losses.message(log_time)
@@ -250,7 +252,7 @@ class Container:
         elif opcode == Opcode.CHANNEL:
             channel = self._parsed(Channel.read, body, at)
             if channel.schema_id and channel.schema_id not in self.schemas:
-                raise self._damaged(at, f"channel {channel.topic!r} with a schema that was never announced,", end)
+                raise self._damaged(at, f"channel {channel.topic!r} with a schema that was never declared,", end)
             self.channels[channel.id] = channel
 
     def _chunk(self, body: memoryview, at: int, end: int) -> Iterator[Packet]:
@@ -358,13 +360,15 @@ class Container:
             is_damaged = any(each.check_id == "index_damaged" for each in self.findings)
             told = self.counts.contradiction(self._statistics, self.channels, is_damaged=is_damaged)
             if told is not None:
-                message = f"the index counts {told}: these are read, and what is missing is lost"
+                message = f"the index counts {told}: these are read, and missing messages are lost"
                 self.findings.append(QualityFinding("index_mismatch", "error", message))
         if self._unprotected:
-            message = f"chunks without a CRC: {self._unprotected}: flipped bits in them cannot be seen"
+            message = f"chunks without a CRC: {self._unprotected}: flipped bits in them cannot be detected"
             self.findings.append(QualityFinding("unprotected", "info", message, self._unprotected))
         elif self._loose and not self._data_crc:
-            message = f"messages outside of chunks, without a CRC: {self._loose}: flipped bits in them cannot be seen"
+            message = (
+                f"messages outside of chunks, without a CRC: {self._loose}: flipped bits in them cannot be detected"
+            )
             self.findings.append(QualityFinding("unprotected", "info", message, self._loose))
 
 

@@ -29,7 +29,7 @@ class UnreadTopics:
     def findings(self) -> list[QualityFinding]:
         """Return a finding for each topic."""
         return [
-            QualityFinding("unread_topic", "error", f"{_topic_text(topic, *what)}: what it says is unknown", what[2])
+            QualityFinding("unread_topic", "error", f"{_topic_text(topic, *what)}: its content is unknown", what[2])
             for topic, what in sorted(self.topics.items())
         ]
 
@@ -41,7 +41,7 @@ class UnreadTopics:
         for topic, what in sorted(self.topics.items()):
             if what[0] in kinds:
                 choice = f", or judge without it: --topic {min(read_topics)}" if read_topics else ""
-                raise TraceError(f"{path}: {_topic_text(topic, *what)}: who is on it is unknown: convert it{choice}")
+                raise TraceError(f"{path}: {_topic_text(topic, *what)}: its actors are unknown: convert it{choice}")
 
 
 def _topic_text(topic: str, kind: str, encoding: str, n: int) -> str:

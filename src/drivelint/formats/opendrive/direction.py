@@ -103,9 +103,7 @@ class DrivingSideStatements:
             else self._with_side_by_lanes(side_by_lanes, quality)
         )
         if direction.source == "default":
-            message = (
-                "nothing in the map says which side is driven on: right-hand traffic is a guess; give --handedness"
-            )
+            message = "the map does not state which side is driven on: right-hand traffic is a guess; set --handedness"
             if side_by_lanes is None and direction.forward_source != "default":
                 message = (
                     f"which way the lanes run is known by {direction.forward_source}, but none has one of the other direction beside it: "
@@ -141,9 +139,7 @@ class DrivingSideStatements:
         ways += [w for w in self.statements if w.of_lanes]
         way = ways[0] if ways else side
         if side is None:  # then no option says anything of the lanes' direction
-            _disagreements(
-                self.statements, quality, "every direction", "give a map whose roads have the rule attribute"
-            )
+            _disagreements(self.statements, quality, "every direction", "use a map whose roads have the rule attribute")
         else:
             _disagreements(
                 self.statements, quality, "the side for overtaking" if way and way.of_lanes else "every direction"

@@ -88,7 +88,7 @@ def _contacts_at(
     contact = join.contact or (back[0] if len(back) == 1 else None)
     if contact is None:
         name = lanelet_id(key)
-        message = f"lane {name} goes on in road {join.element_id}, but the file does not say at which end"
+        message = f"lane {name} goes on in road {join.element_id}, but the file does not state at which end"
         quality.add("missing_link", "error", name, message)
         return
     for target in targets:

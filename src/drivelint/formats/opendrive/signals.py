@@ -154,7 +154,7 @@ class _Reader:
         placed = {row["signal_id"] for row in self.signals}
         for name, (road, _) in self.defined.items():
             if name not in placed:
-                message = f"signal {name} of road {road.road_id} holds for no lane that vehicles drive on"
+                message = f"signal {name} of road {road.road_id} applies to no lane that vehicles drive on"
                 self.quality.add("signal_without_lane", "info", road.road_id, message)
 
 

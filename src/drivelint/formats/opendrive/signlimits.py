@@ -63,7 +63,10 @@ def speed_limits(
         if any(_contradict(sign, lane) for sign in sign_rows for lane in of_lane):
             contradicted.append(name)
     if contradicted:
-        message = f"signs give other limits than the lanes that they hold for, the first {contradicted[0]}: those of the signs count"
+        message = (
+            f"signs state other limits than the lanes that they apply to, the first {contradicted[0]}: the limits "
+            "of the signs are used"
+        )
         quality.add("limit_contradicted", "info", contradicted[0], message, len(contradicted))
     return sorted(rows, key=lambda r: (r["lanelet_id"], r["s_start_m"], r["s_end_m"], r["limit_mps"] or 0.0))
 

@@ -91,7 +91,7 @@ def _lane(message: Any, bounds: Mapping[int, Any]) -> LogicalLane:
     driven = kinds.LANE_KINDS.get(message.type) in kinds.DRIVABLE
     way = message.move_direction
     if driven and way not in {kinds.INCREASING, kinds.DECREASING, kinds.BOTH}:
-        raise UnbuildableError("its move_direction does not say in which direction it is driven")
+        raise UnbuildableError("its move_direction does not state in which direction it is driven")
     left, right = _side(message.left_boundary_id, bounds, "left"), _side(message.right_boundary_id, bounds, "right")
     begin, end = message.start_s, message.end_s
     low, high = max(left[0, 3], right[0, 3]), min(left[-1, 3], right[-1, 3])

@@ -115,7 +115,7 @@ def _refuse_lost_end_of_converted(container: Container) -> None:
     """Refuse a log of `drivelint convert` that lost its end: its declared events, of any time, stand there."""
     if container.library == metadata.LIBRARY and any(each.until_ns is None for each in container.losses.lost_bytes):
         raise TraceError(
-            f"{container.path}: the end of this converted log is lost, where its declared events stand "
+            f"{container.path}: the end of this converted log, with its declared events, is lost "
             f"({container.losses.last.cause}): convert it again"
         )
 

@@ -104,7 +104,7 @@ class Log:
         for topic in self.requested_topics:
             if topic in self.detections:
                 raise TraceError(
-                    f"{self.path}: the detections on topic {topic!r} have no ids, so they are nobody's track: choose a topic of "
+                    f"{self.path}: the detections on topic {topic!r} have no ids, so they form no tracks: choose a topic of "
                     f"{' or '.join(SAME_BODIES)}"
                 )
             if topic not in read_topics:

@@ -48,8 +48,8 @@ def merge_ego(
         ego.ids = ids_in_objects[:1] or [_free_id(names[0] if names else DEFAULT_EGO_ID, object_states.ids)]
     if not carla and not is_centre:
         message = (
-            f"{odometry[0]}: the ego's place is that of the odometry's child frame, taken as the centre of its box: where "
-            "that frame is at the rear axle, say how far ahead of it the centre is: --ego-size LENGTH,WIDTH,AHEAD"
+            f"{odometry[0]}: the ego's place is that of the odometry's child frame, used as the centre of its box: if "
+            "that frame is at the rear axle, set how far ahead of it the centre is: --ego-size LENGTH,WIDTH,AHEAD"
         )
         first = int(ego.t_ns.min())
         findings.append(QualityFinding("reference_point", "warning", message, len(ego), first, ego.ids[0]))
@@ -110,7 +110,7 @@ def _carla_origins(topic: str, states: States, findings: list[QualityFinding]) -
     lift = np.where(walks, 0.0, np.nan_to_num(0.5 * states.numbers["height_m"]))
     states.numbers["z_m"] = states.numbers["z_m"] + lift
     message = (
-        f"{topic}: places are the origins of CARLA's actors, taken as the centres of their boxes: by the model of the vehicle "
+        f"{topic}: places are the origins of CARLA's actors, used as the centres of their boxes: by the model of the vehicle "
         "these lie up to a few decimetres ahead or behind; vehicles are lifted by half their height"
     )
     findings.append(QualityFinding("reference_point", "info", message, len(states), int(states.t_ns.min())))

@@ -168,7 +168,7 @@ def _other_centre(box: VehicleBox, ahead_m: float) -> list[QualityFinding]:
     said = box.centre[0]
     if ahead_m == 0.0 or abs(ahead_m - said) <= SIZE_DIFFERENCE_M:
         return []
-    message = f"--ego-size puts the centre of the ego's box {ahead_m:g} m ahead of base_link, the log {said:g} m, which counts"
+    message = f"--ego-size puts the centre of the ego's box {ahead_m:g} m ahead of base_link, but the log states {said:g} m, which is used"
     return [QualityFinding("ego_size", "warning", message)]
 
 
@@ -178,10 +178,10 @@ def _no_road_users(log: Log) -> QualityFinding:
     cause = "no topic of this log has road users"
     if n:
         cause = (
-            f"the only road users of this log, on {listed(sorted(log.detections))}, are detections without ids, so nobody's track: "
+            f"the only road users of this log, on {listed(sorted(log.detections))}, are detections without ids, which form no tracks: "
             f"record {' or '.join(SAME_BODIES)} too"
         )
-    message = f"{cause}: rules that look at others than the ego are unknown"
+    message = f"{cause}: rules about other actors are unknown"
     return QualityFinding("no_road_users", "warning", message, max(n, 1))
 
 

@@ -119,7 +119,7 @@ def signal_states(
     since, until = span_ns
     usable = (t_ns != 0) | (until < LEAST_UTC_NS)
     if not usable.any() or t_ns[usable].min() > until or t_ns[usable].max() + LONGEST_HOLD_NS < since:
-        why = f"{topic}: the messages are of another time than the states of the drive: what the lights show is unknown"
+        why = f"{topic}: the messages are of another time than the states of the drive: the states of the lights are unknown"
         return None, [QualityFinding("signal_clock", "warning", why, len(t_ns))]
     keep = usable[message]
     message, group, state = message[keep], group[keep], state[keep]
@@ -140,7 +140,10 @@ def signal_states(
     }
     findings = []
     if not usable.all():
-        why = f"{topic}: {int((~usable).sum())} messages without a time stamp are left out: what the lights show then is unknown"
+        why = (
+            f"{topic}: {int((~usable).sum())} messages without a time stamp are left out: the states of the "
+            "lights at their time are unknown"
+        )
         findings.append(QualityFinding("signal_clock", "warning", why, int((~usable).sum())))
     return (pa.table(rows) if len(ids) else None), findings
 

@@ -73,7 +73,7 @@ def vehicle_box(
         return None, []
     measures = np.array([[*box.size[:2], *box.centre[:2]] for box in boxes])
     if (np.ptp(measures, axis=0) > _SAME_M).any():
-        message = f"{listed([box.source for box in boxes])} give the ego different sizes, and none is used: say it with --ego-size"
+        message = f"{listed([box.source for box in boxes])} give the ego different sizes, and none is used: set it with --ego-size"
         return None, [QualityFinding("ego_size", "warning", message, len(boxes))]
     return boxes[0], []
 

@@ -140,7 +140,7 @@ def _report_guessed(centres: Mapping[str, CentreLine], guessed: Mapping[str, flo
         whole = sum(float(lane.s[-1]) for lane in centres.values())
         part = sum(share * float(centres[name].s[-1]) for name, share in of.items())
         message = (
-            f"along {part / whole:.0%} of the lanes' sides ({len(of)} of {len(centres)} lanes) nothing says where the lane ends: "
-            "it is taken to be as wide as the lanes that it joins, or as on its other side"
+            f"along {part / whole:.0%} of the lanes' sides ({len(of)} of {len(centres)} lanes) the edge of the lane is not known: "
+            "the lane is assumed to be as wide as the lanes that it joins, or as on its other side"
         )
         quality.add("assumed_width", "info", None, message, len(of))

@@ -30,7 +30,7 @@ _NAMES: Final = {
 _KINDS: Final = "biufUS"
 """Kinds of numpy types that are read: numbers and texts."""
 _EMPTY: Final[dict[str, Callable[[], Any]]] = {"dict": dict, "list": list, "bytes": bytes}
-_OBJECTS: Final = "it holds an array of Python objects, which is refused: write numbers"
+_OBJECTS: Final = "it has an array of Python objects, which is refused: write numbers"
 
 
 class PickleError(ValueError):
@@ -48,7 +48,7 @@ def name_of(module: Any, name: Any) -> Name:
     meaning = _NAMES.get((module, name)) if isinstance(module, str) and isinstance(name, str) else None
     if meaning is None:
         what = f"{str(module)[:100]}.{str(name)[:100]}"
-        raise PickleError(f"it calls for {what!r}, which is refused: only numpy arrays and plain values are read")
+        raise PickleError(f"it requests {what!r}, which is refused: only numpy arrays and plain values are read")
     return Name(meaning)
 
 

@@ -100,7 +100,7 @@ def _n_points(feature: Mapping[str, Any]) -> int:
 
 def _part(content: Any, name: str) -> dict[str, Any]:
     if not isinstance(content, dict) or not isinstance(content.get(name), dict):
-        raise PickleError(f"it holds no scenario of ScenarioNet, which has a dict {name!r}: give a file sd_*.pkl")
+        raise PickleError(f"it has no scenario of ScenarioNet, which has a dict {name!r}: give a file sd_*.pkl")
     return dict(content[name])
 
 

@@ -48,7 +48,7 @@ def drop_differences(tracks: Tracks) -> list[QualityFinding]:
         tracks.velocity[group] = np.nan
         message = (
             f"velocities of {owner} are differences of the positions, half a step {when} and 0 or repeated at an end of the track: "
-            "they are derived anew"
+            "they are derived again"
         )
         findings.append(QualityFinding("velocity_dropped", "warning", message, n))
     return findings
@@ -158,9 +158,9 @@ def turn_boxes(tracks: Tracks, dataset: Dataset) -> list[QualityFinding]:
     ids_by_reason: dict[str, list[str]] = {}
     for i in np.flatnonzero(long_kind & (width > _WIDER * length)):
         if _moves_ahead(tracks, int(i)):
-            why = "length and width of {} are in each other's place, as its motion along the short side shows: they are exchanged"
+            why = "length and width of {} are exchanged, as its motion along the short side shows: they are exchanged"
         elif i == tracks.ego and np.allclose((width[i], length[i]), dataset.ego_box_m or (0.0, 0.0), atol=0.01):
-            why = "length and width of {} are in each other's place, as always in this data set: they are exchanged"
+            why = "length and width of {} are exchanged, as always in this data set: they are exchanged"
         else:
             why = "wider than long, and no motion tells which side is the length: {}: the size is unknown"
         tracks.size[i, :, :2] = np.nan if why.endswith("unknown") else tracks.size[i, :, 1::-1]

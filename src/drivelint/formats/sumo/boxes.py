@@ -118,8 +118,8 @@ def _findings(tracks: Tracks, changing: Mask, sizeless: Mask) -> list[QualityFin
     if changing.any():
         ids = [tracks.ids[i] for i in np.unique(tracks.actor[changing])]
         message = (
-            f"the type of {listed(ids)} changes to {_types(tracks, changing)}, of which the length is another or not known: the log has "
-            "their front bumper, and where their box is then is not known"
+            f"the type of {listed(ids)} changes to {_types(tracks, changing)}, whose length is different or not known: the log has "
+            "their front bumper, so the place of their box is then not known"
         )
         findings.append(QualityFinding("size_changes", "warning", message, int(changing.sum())))
     return findings

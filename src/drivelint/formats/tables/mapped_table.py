@@ -84,10 +84,10 @@ def _assumptions(name: str, mapping: Mapping) -> list[QualityFinding]:
     findings = []
     given = mappings.fields(mapping)
     if any(side in given and given[side].value is not None for side in ("length", "width")):
-        findings.append(QualityFinding(ASSUMED_SIZE, "info", f"size as the mapping {name!r} says, not recorded"))
+        findings.append(QualityFinding(ASSUMED_SIZE, "info", f"size from the mapping {name!r}, not recorded"))
     turns = {"y": mapping.frame.flip_y, "heading": mapping.frame.flip_yaw}
     if turned := [what for what, is_turned in turns.items() if is_turned]:
-        message = f"{' and '.join(turned)} turned, as the mapping {name!r} says: the log's frame is left-handed"
+        message = f"{' and '.join(turned)} turned, as the mapping {name!r} states: the log's frame is left-handed"
         findings.append(QualityFinding(TURNED_FRAME, "info", message))
     return findings
 

@@ -173,7 +173,7 @@ def refuse_if_none(name: str) -> None:
     """Refuse a name that is neither a file's nor a shipped mapping's. Errors: `UsageError` with the nearest."""
     known = sorted(file.stem for file in MAPPINGS_FOLDER.parents[1].glob("*/mappings/*.toml"))  # those of films too
     if is_pipe_or_device(name):
-        raise UsageError(f"mapping {name}: a pipe or a device: write what it gives to a file, and name that")
+        raise UsageError(f"mapping {name}: a pipe or a device: write its output to a file, and name that file")
     if not os.path.isfile(name) and name not in known:  # noqa: PTH113 - also of a name that is too long for a file
         raise UsageError(f"mapping {name!r}: neither a file nor a shipped mapping: {hint(name, known)}")
 

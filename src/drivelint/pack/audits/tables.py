@@ -123,10 +123,12 @@ def unlike_receipts(results: ResultStore, rules: pa.Table, *, same_libraries: bo
             is_one = len(receipts.get(key, ())) == rows_of_key["drives"].num_rows == 1 and key not in seen
             seen.add(key)
             if not is_one:
-                yield Problem("receipts do not fit the tables", f"{key}: a drive has one receipt and one row in drives")
+                yield Problem(
+                    "receipts do not match the tables", f"{key}: a drive has one receipt and one row in drives"
+                )
                 continue
             for what in _unlike(receipts[key][0], said_of_rows(rows_of_key, stable), same_libraries=same_libraries):
-                yield Problem("receipts do not fit the tables", f"{receipts[key][0]['drive_id']} ({key}): {what}")
+                yield Problem("receipts do not match the tables", f"{receipts[key][0]['drive_id']} ({key}): {what}")
 
 
 def _unlike(receipt: Row, due: dict[str, Any], *, same_libraries: bool) -> list[str]:
@@ -216,7 +218,7 @@ def logs_of(con: duckdb.DuckDBPyConnection, findings: Sequence[Row], log_paths: 
     likely = [path for path in there if path.is_dir() or path.stat().st_size in sizes]
     found = {digest: path for path in likely if (digest := identify(path).sha256) in wanted}
     if not found:
-        raise UsageError(f"--trace {log_paths[0]}: no log there is of a drive with a finding in the pack")
+        raise UsageError(f"--trace {log_paths[0]}: no log there belongs to a drive with a finding in the pack")
     return found
 
 

@@ -106,15 +106,15 @@ def _of_tables(pack: _Pack) -> Iterator[Problem]:
     told = pack.audit.audit_json
     said = json.loads((place / SUMMARY_FILE).read_bytes())
     for key in tables.unlike_summary(pack.con, pack.audit, said):
-        yield Problem("summary.json does not fit the tables", key)
+        yield Problem("summary.json does not match the tables", key)
     yield from tables.unlike_receipts(LocalFolder(place), pack.rules, same_libraries=_same_libraries(pack))
     if pack.rules_by_id is not None:
         check_request = tables.asked_of(pack.audit, None, pack.rules_dirs)
         if why := consistency.unlike_rules(list(pack.rules_by_id.values()), pack.rules, check_request):
-            yield Problem("audit.json does not fit the result", why)
+            yield Problem("audit.json does not match the result", why)
     settings = replace(tables.settings_of(pack.audit), rules_dirs=pack.rules_dirs)
     if told["versions"] == versions() and told["run_id"] != run_id(settings):
-        yield Problem("audit.json does not fit the result", "run_id")
+        yield Problem("audit.json does not match the result", "run_id")
 
 
 def _of_evidence(pack: _Pack, findings: Sequence[Row]) -> Iterator[Problem]:
@@ -129,7 +129,7 @@ def _of_evidence(pack: _Pack, findings: Sequence[Row]) -> Iterator[Problem]:
     if evidence["inputs"] is not None and inputs["traces"].keys() != of_findings:
         keys.append("inputs")
     for key in [*keys, *sorted(evidence.keys() - due.keys() - _NOT_FACTS)]:
-        yield Problem("evidence.json does not fit the result", key)
+        yield Problem("evidence.json does not match the result", key)
     named = {EVIDENCE, *due["outputs"], *(rule["file"] for rule in evidence["rules"])}
     places = [
         *evidence["rules_dirs"],
@@ -168,7 +168,7 @@ def _of_drive(pack: _Pack, drive: tables.PackedDrive, log: Path | None, map_: Pa
     except UsageError as error:
         if log is not None:
             raise
-        return [Problem("inputs do not fit the result", str(error))]
+        return [Problem("inputs do not match the result", str(error))]
     pack.n_judged += 1
     try:
         fresh = again.check_again(drive.result, check_request, None, evidence=False)

@@ -39,7 +39,7 @@ def open_source(options: WatchOptions, progress: Progress) -> Iterator[Source]:
             if source is not None:
                 source.close()
             if not is_done and options.out is None and any(home.iterdir()):
-                progress.note(f"what was recorded is kept: {home}")
+                progress.note(f"the recording is kept: {home}")
                 keep(home)
 
 
@@ -59,8 +59,8 @@ def _refuse_with_command(options: WatchOptions) -> None:
     if not options.command:
         return
     if options.source == "-":
-        raise UsageError("-: is there before the program behind -- is started: start that by itself")
+        raise UsageError("-: stdin exists before the program after -- is started: start that program separately")
     if "://" not in options.source and Path(options.source).exists():
         raise UsageError(
-            f"{options.source}: is there already: the program behind -- must write a new file: remove it, or name another"
+            f"{options.source}: exists already: the program after -- must write a new file: remove it, or name another"
         )

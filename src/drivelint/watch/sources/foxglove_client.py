@@ -118,7 +118,7 @@ class FoxgloveClient:
                     why = one_line(str(error)) or "timed out"
                     raise TraceError(f"{self._uri}: no Foxglove WebSocket server answers: {why}") from error
                 if not is_told:
-                    self._notes.append(f"{self._uri}: no server answers yet: it is waited for")
+                    self._notes.append(f"{self._uri}: no server answers yet: waiting for it")
                     is_told = True
                 yield []
                 time.sleep(RETRY_S)
@@ -147,7 +147,7 @@ class FoxgloveClient:
                 self._notes.append(f"{self._uri} says: {one_line(str(message['message']))}")
         except (ValueError, KeyError, TypeError, binascii.Error) as error:
             self._notes.append(
-                f"{self._uri}: a message of the server that cannot be understood ({error!r}): it is passed over"
+                f"{self._uri}: a message of the server that cannot be understood ({error!r}): it is ignored"
             )
         return []
 
@@ -195,4 +195,4 @@ def _refuse_what_is_no_address(uri: str) -> None:
     try:
         parse_uri(uri)
     except InvalidURI as error:
-        raise UsageError(f"{uri}: no address of a WebSocket: give ws://HOST:PORT") from error
+        raise UsageError(f"{uri}: no address of a WebSocket: write ws://HOST:PORT") from error

@@ -124,7 +124,7 @@ class FileReceiver:
         data = self._file.read(timeout_s)
         found = self._cutter.cut(data or b"", ended=data is None)
         if self._cutter.trouble is not None:
-            self._notes.append(f"{self._path}: {self._cutter.trouble}: nothing behind that is read")
+            self._notes.append(f"{self._path}: {self._cutter.trouble}: nothing after that is read")
         self._ended = data is None or self._cutter.trouble is not None
         return found or (None if self._ended else [])
 
@@ -156,7 +156,7 @@ class StreamReceiver:
         blocks = self._reader.take(timeout_s)
         found = self._cutter.cut(b"".join(blocks or ()), ended=blocks is None)
         if self._cutter.trouble is not None:
-            self._notes.append(f"{self._cutter.trouble}: nothing behind that is read")
+            self._notes.append(f"{self._cutter.trouble}: nothing after that is read")
         self._ended = blocks is None or self._cutter.trouble is not None
         return found or (None if self._ended else [])
 

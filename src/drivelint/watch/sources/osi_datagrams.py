@@ -64,8 +64,8 @@ class Losses:
         """Return the counts that are not 0, in words."""
         counts = {
             f"datagrams missing or out of order in {plural(self.gaps, 'place')}": self.gaps,
-            f"{plural(self.dropped, 'datagram')} that found no room": self.dropped,
-            f"{plural(self.distrusted, 'message')} left out behind them": self.distrusted,
+            f"{plural(self.dropped, 'datagram')} for which the buffer had no room": self.dropped,
+            f"{plural(self.distrusted, 'message')} left out after them": self.distrusted,
             f"{plural(self.strange, 'datagram')} of no OSI message": self.strange,
             f"{plural(self.foreign, 'datagram')} of another sender": self.foreign,
         }
@@ -110,7 +110,7 @@ class Assembler:
             return None
         if counter == 0:
             raise TraceError(
-                f"{self._where}: the datagrams are counted from 0, as an old esmini does: one that is lost could not be told: "
+                f"{self._where}: the datagrams are counted from 0, as an old esmini does: a lost one could not be detected: "
                 "use a newer one, or let it write a file (--osi_file) and watch that"
             )
         if self._is_interrupted(datagram) and self._parts:

@@ -64,7 +64,9 @@ class SumoSimulation(WrittenWindows):
         options = _options(config)
         found = [name for name in _LEAVES_OUT if any(each.tag == name for each in options.iter())]
         self._notes = (
-            [f"{config.name}: {listed(found)}: whom SUMO does not write after that is not judged"] if found else []
+            [f"{config.name}: {listed(found)}: actors that SUMO does not write after that are not judged"]
+            if found
+            else []
         )
         base = config.stem.replace(".", "-")  # the reader knows the lights' file by the part before the first dot
         own = next(each for n in count(1) if not (each := folder / (base if n == 1 else f"{base}-{n}")).exists())
