@@ -27,7 +27,7 @@ _OF_API = frozenset(__all__) - {"DriveLintError"}
 
 
 def __getattr__(name: str) -> object:
-    """Import the Python interface when it is asked for: `import drivelint` itself loads nothing heavy."""
+    """Import the Python interface on first use: `import drivelint` itself loads nothing heavy."""
     if name not in _OF_API:
         raise AttributeError(f"module 'drivelint' has no attribute {name!r}")
     return getattr(import_module("drivelint.api"), name)

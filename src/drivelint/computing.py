@@ -28,7 +28,7 @@ class Work:
         return self._seconds
 
     def _cpu_s_of_other_threads(self) -> dict[int, float]:
-        """Return how long each other Python thread has computed; nothing where the system does not tell."""
+        """Return how long each other Python thread has computed; nothing if the system does not report it."""
         found: dict[int, float] = {}
         for thread in threading.enumerate():
             if (number := thread.native_id) is not None and number != self._thread:
@@ -38,7 +38,7 @@ class Work:
 
 
 def resident_bytes(process: int | None = None) -> int:
-    """Return the memory that a process (None: this one) has at present; 0 where the system does not tell."""
+    """Return the memory that a process (None: this one) has at present; 0 if the system does not report it."""
     try:
         return int(_content(f"/proc/{process or 'self'}/statm").split()[1]) * os.sysconf("SC_PAGE_SIZE")
     except (OSError, ValueError, IndexError):  # a process that ends meanwhile may leave the file empty

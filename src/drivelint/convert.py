@@ -50,7 +50,7 @@ class Clip(NamedTuple):
 
 @dataclass(frozen=True)
 class ConvertRequest(DriveInput):
-    """What `convert` is asked to do; the names are those of its options."""
+    """A request to `convert`; the names are those of its options."""
 
     trace: str
     to: Literal["mcap", "parquet"]
@@ -182,7 +182,7 @@ def _road(request: ConvertRequest, trace: Trace) -> tuple[MapSource | None, Trac
         return _own_road(request, trace, MapSource(MAP_FILE, own))
     if request.to == "mcap" and (why := _unfit_for_mcap(road)):
         raise UsageError(why)
-    # a wrong map is refused now, not by whoever checks the converted log
+    # a wrong map is refused now, not when the converted log is checked
     return road, library.find(trace)[1], []
 
 

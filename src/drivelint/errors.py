@@ -129,7 +129,7 @@ def of_the_machine(error: Exception) -> tuple[str, ExitCode] | None:
 
 
 def least_limit_bytes() -> int | None:
-    """Return the least limit of this process's memory that its user has set; None: there is none, or the system does not tell."""
+    """Return the least limit of this process's memory that its user has set; None: there is none, or the system does not report it."""
     try:
         import resource
     except ImportError:  # Windows

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def parse_today(text: str | None) -> date:
-    """Read the day that waivers are held against; the system's if none is given. Errors: `UsageError`."""
+    """Read the date that decides whether a waiver has expired; by default the system's. Errors: `UsageError`."""
     if text is None:
         return datetime.now().astimezone().date()
     try:

@@ -186,7 +186,7 @@ def _without(part: JudgedLogs, drives: Sequence[str]) -> JudgedLogs:
 
 
 class _Listener:
-    """Shows what the workers tell, each text once."""
+    """Shows the messages of the workers, each text once."""
 
     def __init__(self, progress: Progress, n_logs: int) -> None:
         self.progress = progress

@@ -24,7 +24,7 @@ MAX_BOXES: Final = 1_000_000
 """A drive with more states shows only every second, third ... step: about 30 MB of boxes are enough for any viewer."""
 CHUNK_BYTES: Final = 2 << 20
 EGO_FRAME: Final = "base_link"
-"""The name that viewers follow without being asked."""
+"""The frame that viewers follow by default."""
 EGO_COLOUR = Colour(0.13, 0.45, 0.95)
 VEHICLE_COLOUR = Colour(0.62, 0.66, 0.72)
 ON_FOOT_COLOUR = Colour(0.95, 0.78, 0.25)

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from drivelint.road.map_reader import MapTables
 
 LAYOUT_FILE = "viewer-layout.json"
-"""Panels and topics as Foxglove and Lichtblick import them: there, topics are hidden until somebody asks for them."""
+"""Panels and topics as Foxglove and Lichtblick import them: there, topics are hidden until a user shows them."""
 _BUFFER = 1 << 20
 _OF_PARTS = ("evidence/overtake_space", "evidence/chain_point", "evidence/first_ego_measures")
 """What the database only has while it has that part: danger spaces in overtakes, the chains that they lie on, measures of the ego."""
@@ -138,5 +138,5 @@ def _whole(path: Path) -> Iterator[BinaryIO]:
             "or use --no-annotate"
         ) from error
     finally:
-        with suppress(OSError):  # the folder itself may be what is wrong: the first error is the one to tell
+        with suppress(OSError):  # the folder itself may be the problem: the first error is reported
             temporary.unlink(missing_ok=True)

@@ -81,7 +81,7 @@ def log_messages(
 def _log_line(row: dict[str, Any], time: int, sense_by_rule: Mapping[str, str]) -> Message:
     critical = (row["verdict"], row["severity"]) == ("fail", "critical")
     level = foxglove.ERROR if critical else _LEVELS[row["verdict"]]
-    # a reason that tells the numbers needs no headline with the same numbers
+    # a reason that states the numbers needs no headline with the same numbers
     said = f"{_subject(row)}:" if row["reason_measures"] else f"{headline(row, sense_by_rule)}."
     text = f"{said} {row['reason'][:1].upper()}{row['reason'][1:]}"
     return Message(

@@ -1,4 +1,4 @@
-"""What a check found, for whoever asks it in Python."""
+"""The result of a check, for Python."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ class CheckResult(TableSet):
 
     @property
     def margins(self) -> Table | None:
-        """Every judged step, if `check` was asked for it; None: it was not."""
+        """Every judged step; None: `check` ran without `margins`."""
         if self._margins_file is None:
             return None
         import pyarrow.parquet as pq

@@ -1,4 +1,4 @@
-"""The difference of two results, for whoever asks in Python."""
+"""The difference of two results, for Python."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class Comparison:
-    """What `drivelint diff` tells of two results."""
+    """The content of `drivelint diff` for two results."""
 
     def __init__(self, difference: Difference, failing: list[ComparedFinding], least: str, gate: Gate | None) -> None:
         self._difference, self._failing, self._least, self._gate = difference, failing, least, gate

@@ -1,4 +1,4 @@
-"""Why one verdict is what it is, for whoever asks in Python."""
+"""The reason for one verdict, for Python."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tables for whoever works with them in Python: held in Arrow, handed over as Arrow, polars or pandas, queried with SQL."""
+"""Tables for Python: kept in Arrow, returned as Arrow, polars or pandas, queried with SQL."""
 
 from __future__ import annotations
 

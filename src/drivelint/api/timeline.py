@@ -1,4 +1,4 @@
-"""What happened around a finding over time: a table for whoever computes with it, and strips to look at."""
+"""A finding over time: a table to compute with, and charts to look at."""
 
 from __future__ import annotations
 

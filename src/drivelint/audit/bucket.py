@@ -28,9 +28,9 @@ _RETRY: Final[Any] = {
     "retry_timeout": timedelta(seconds=120),
     "backoff": {"init_backoff": timedelta(seconds=0.1), "max_backoff": timedelta(seconds=10), "base": 2},
 }
-"""A store that is busy is asked again, ever more slowly; after that the run ends with exit code 75."""
+"""Requests to a busy store are repeated after longer and longer pauses; then the run ends with exit code 75."""
 _ATTEMPTS: Final = 6
-"""How often an answer that is cut off is asked for."""
+"""Number of requests for an answer that is cut off."""
 _CLIENT: Final[Any] = {"allow_http": True, "timeout": timedelta(seconds=60)}
 
 

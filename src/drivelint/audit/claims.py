@@ -1,7 +1,7 @@
 """Claims: how several audits into one place share its drives without a scheduler.
 
-Who judges a drive writes a claim with its name first, and a sign of life every few seconds. A claim of somebody without a sign of life
-for `LEASE_S` counts no more. Claims only save work: should two judge the same drive, one receipt wins.
+Before an audit judges a drive, it writes a claim with its name. It writes a sign of life every few seconds. If an audit shows no sign of
+life for `LEASE_S`, its claims no longer count. Claims only save work: if two audits judge the same drive, one receipt wins.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The driver: cuts drives into tasks, keeps the workers busy, tries again what was lost, and quarantines what kills workers."""
+"""The driver: divides drives into tasks, keeps the workers busy, repeats lost tasks, and quarantines drives that kill workers."""
 
 from __future__ import annotations
 

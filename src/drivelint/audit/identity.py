@@ -1,4 +1,4 @@
-"""What decides a result besides the log: its hash keys the results of an audit by content."""
+"""Everything that decides a result besides the log: its hash is part of the key of a result."""
 
 from __future__ import annotations
 

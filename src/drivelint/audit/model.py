@@ -1,4 +1,4 @@
-"""The data of an audit: what was asked, one drive of it, a task for a worker, and the receipt that proves a drive's result."""
+"""The data of an audit: its request, one drive of it, a task for a worker, and the receipt that proves a drive's result."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class JudgeSettings:
 class AuditDrive:
     """One drive of an audit: a row of the manifest, or a log that was found in a folder.
 
-    `log`: path or URL. `size` in bytes and `stamp` (time of the last change, or ETag) tell that it is still the same file.
+    `log`: path or URL. `size` in bytes and `stamp` (time of the last change, or ETag) identify an unchanged file.
     `source_id`: hash of them, of the tags, of the options and of the run; `options_id`: hash of the options and of what the map holds.
     """
 

@@ -1,4 +1,4 @@
-"""One run of an audit: finds what has no result yet, has it judged, packs the results and sums them up."""
+"""One run of an audit: finds the drives without a result, has them judged, packs the results and summarises them."""
 
 from __future__ import annotations
 

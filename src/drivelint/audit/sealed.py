@@ -1,4 +1,4 @@
-"""Tells whether an audit's files were changed after they were written.
+"""Checks whether an audit's files were changed after they were written.
 
 An audit that has ended has `files.json`, the sha256 of tables and summary, as in the folder of a check. One that has not ended has
 the receipts, each with the hash of its drive's rows.

@@ -1,4 +1,4 @@
-"""Where an audit's results lie: a folder, or a prefix in an object store. Whatever is there under its name is whole."""
+"""The place of an audit's results: a folder, or a prefix in an object store. A file under its final name is always complete."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an audit comes to, and its exit code."""
+"""The summary of an audit, and its exit code."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What `drivelint audit` prints at its end, in one screen."""
+"""The text that `drivelint audit` prints at its end, on one screen."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reads an audit that has not ended, or whose results are not packed yet, as a whole one is read, and says that it is not one."""
+"""Reads an audit that has not ended, or whose results are not packed yet, like a complete one, with a warning."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """Judges each mutant of a rule by the rule's cases, and counts the mutants that some case notices.
 
-A mutant that no case notices asks for a case. Where none can be written (it is the same rule in other words), the
+A mutant that no case notices shows that a case is missing. Where none can be written (it is the same rule in other words), the
 pack's `survivors.toml` says so: `[[survivor]]` with `rule` (its id), `mutant` (the fault as printed) and `reason`.
 """
 

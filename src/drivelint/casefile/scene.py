@@ -1,4 +1,4 @@
-"""Completes the tables of a case from the few columns, ranges and times that it gives."""
+"""Completes the tables of a case from the few columns, ranges and times in it."""
 
 from __future__ import annotations
 

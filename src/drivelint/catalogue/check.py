@@ -105,7 +105,7 @@ def complained_line(error: duckdb.Error, text: str) -> int | None:
     return found[0] if len(found) == 1 else None
 
 
-@lru_cache(maxsize=2048)  # whoever judges twice in a process reads the same rules again
+@lru_cache(maxsize=2048)  # a process that judges twice reads the same rules again
 def check_query(sql: str, file: str, line: int = 1) -> Query:
     """Check the SQL of one section, which begins at `line` of `file`, and return what it is made of.
 

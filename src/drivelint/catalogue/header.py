@@ -64,13 +64,13 @@ class Conditions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 CONTACT: Final = "contact"
-"""Tag of the rules whose findings are contacts: of the boxes, or told by the speeds."""
+"""Tag of the rules whose findings are contacts: of the boxes, or found from the speeds."""
 STANDING: Final = "standing"
 """Tag of the rules that an ego which never moves is judged by, too."""
 EXCUSES: Final = "excuses"
 """Tag of the rules that may be kept although their title is false, as their hypothesis says: leaving the lane to overtake."""
 ROAD_USERS: Final = "road_users"
-"""The signal that every rule needs that looks at others than the ego: whoever was around the ego was recorded."""
+"""The signal that every rule about other actors needs: the actors around the ego were recorded."""
 
 
 class Header(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):

@@ -1,4 +1,4 @@
-"""One rule, as the rest of the program knows it."""
+"""One rule, as the rest of the program uses it."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Rule(Header, frozen=True, forbid_unknown_fields=True, kw_only=True):
 
     @property
     def needed_signals(self) -> tuple[str, ...]:
-        """The signals that it cannot do without: those that it requires, and whoever is around the ego if it looks at others."""
+        """The signals that it needs: those that it requires, and `road_users` if it is about other actors."""
         from drivelint.sql.derivations import with_sources  # and with it the database
 
         return (*self.requires, *((ROAD_USERS,) if "pair" in with_sources(self.reads) else ()))

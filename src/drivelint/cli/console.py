@@ -1,4 +1,4 @@
-"""What the commands share: a job beside the main thread, progress, printing for a person."""
+"""Shared by the commands: a job beside the main thread, progress, printing for a person."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ from typing import Final
 from drivelint.errors import DriveLintError, ExitCode
 
 READER_LEFT: Final = 141
-"""The exit code where whoever read stdout left before its end, as `head` does: the one that a shell gives for SIGPIPE."""
+"""The exit code if the reader of stdout leaves before its end, as `head` does: the code that a shell returns for SIGPIPE."""
 
 
 class ReaderLeftError(Exception):

@@ -25,7 +25,7 @@ LONG_CLASSES: Final = frozenset({"car", "van", "truck", "bus", "vehicle", "trail
 WIDER_SHARE: Final = 1.1
 """A detector's box of a small car may be a little wider than long; one by more than a tenth is turned or wrong."""
 DIRECTION_LEAST_MPS: Final = 2.0
-"""From this speed on the velocity of a box tells which way it moves."""
+"""From this speed on, the velocity of a box shows its direction of motion."""
 LEAST_MOVING_SAMPLES: Final = 5
 ALONG_RAD: Final = np.deg2rad(30.0)
 """A box moves along its heading if most of its moving samples are no further off."""

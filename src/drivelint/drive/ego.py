@@ -22,7 +22,7 @@ SIZE_DIFFERENCE_M: Final = 0.05
 
 
 def asks_for_all(ego_option: str | None, ids: Collection[str]) -> bool:
-    """Say whether the user asks for every motor vehicle: by `all`, if no actor is called so."""
+    """Return whether the user requests every motor vehicle: by `all`, if no actor has this id."""
     return ego_option == ALL_EGOS and ALL_EGOS not in ids
 
 

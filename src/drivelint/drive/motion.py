@@ -128,7 +128,7 @@ def _astray(states: States, step: Steps, most_replaced_share: float) -> Mask:
     off, moved, told = np.hypot(*(went - led)), np.hypot(*went), np.hypot(*led)
     fastest = np.maximum(moved, told)
     moving = whole & (fastest > MISMATCH_MPS * span)
-    # positions that stand still do not tell how somebody moves: see `contradiction`
+    # positions that stand still do not show how an actor moves: see `contradiction`
     bad = moving & (moved > MISMATCH_MPS * span) & (off > MISMATCH_MPS * span + MISMATCH_SHARE * fastest)
     seconds, astray = (np.bincount(states.actor[:-k][rows], minlength=len(states.ids)) for rows in (moving, bad))
     wrong = (astray >= LEAST_MISMATCHES) & (2 * astray > seconds)

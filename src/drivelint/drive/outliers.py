@@ -37,7 +37,7 @@ AROUND_NS: Final = 300_000_000
 COMMON_NS: Final = 500_000_000
 """What is derived from the velocities within so long before and after is in error too: accelerations, jerks."""
 LEAST_COMMON_MPS: Final = 1.0
-"""Whoever is slower tells nothing by the share of a change."""
+"""For a slower actor, the share of a change means nothing."""
 SIGMAS: Final = 6.0
 """So many standard deviations of its positions' noise a sample is off before it counts."""
 LEAST_STEP_DERIVED_VELOCITY_M: Final = (0.05, 0.25)
@@ -165,7 +165,7 @@ def common_jolts(states: States, step: Steps) -> Mask:
     around = (before + after) / 2.0
     with np.errstate(invalid="ignore", divide="ignore"):
         share = speed[middle] / around
-        # a speed that itself changes much around the moment tells nothing
+        # a speed that changes much around the moment shows nothing
         usable = (around > LEAST_COMMON_MPS) & (abs(after - before) < around / 2.0) & np.isfinite(share)
     middle, share = (values[usable & (holes[middle - width] == holes[middle + width])] for values in (middle, share))
     times, moment, count = np.unique(states.t_ns[middle], return_inverse=True, return_counts=True)

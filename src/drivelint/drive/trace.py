@@ -96,7 +96,7 @@ class IngestOptions:
     """What holds in the drive, as (condition, word): see `drivelint.drive.conditions`."""
     ego_size: EgoSize | None = None
     in_sight: bool = False
-    """Whoever is not recorded for a while is taken not to be in plain view."""
+    """An actor that is not recorded for a while is assumed not to be in plain view."""
     as_recorded: bool = False
     """The states are those of the log: none that is doubted is made unknown, none is derived. Whoever reads them again doubts again."""
     map: Path | None = None

@@ -2,7 +2,7 @@
 
 The velocity at a state is the least-squares slope over the positions within some time to both sides: the narrowest of `HALF_WIDTHS_S`
 over which three standard errors are at most `LARGEST_ERROR_MPS`. Exact positions (a simulator's) get central differences; five centimetres
-of noise at 10 Hz get half a second to both sides. What even a second does not tell is unknown. An actor that stays within its noise
+of noise at 10 Hz get half a second to both sides. What even a second does not show is unknown. An actor that stays within its noise
 over two seconds stands: its velocity is zero.
 """
 

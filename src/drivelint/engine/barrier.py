@@ -1,4 +1,4 @@
-"""Tells a fault of one drive, which is refused, from a fault of the whole run."""
+"""Distinguishes a fault of one drive, which is refused, from a fault of the whole run."""
 
 from __future__ import annotations
 

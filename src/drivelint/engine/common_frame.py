@@ -36,7 +36,7 @@ def move_into_map_frame(trace: Trace, environment: MapTables) -> Trace:
     """Return the trace in the coordinates of the map, with a finding that says so; as it is where nothing says that they differ.
 
     Each position is moved by itself, each heading, velocity and acceleration turned by the angle between the two norths there.
-    Whoever gives `--map-offset` or `--map-origin` has said how they lie to each other. Heights stay as they are.
+    With `--map-offset` or `--map-origin`, the user states how they lie relative to each other. Heights stay as they are.
     Errors: `MapError` where lengths or shapes would not be kept.
     """
     log_frame, map_frame = frame_of_log(trace)[0], frame_of_map(environment)

@@ -97,7 +97,7 @@ class Memory:
 
 
 def peak_bytes() -> int | None:
-    """Return the most bytes of memory that this process has had; None where the system does not tell."""
+    """Return the most bytes of memory that this process has had; None if the system does not report it."""
     try:
         import resource
     except ImportError:  # Windows
@@ -107,7 +107,7 @@ def peak_bytes() -> int | None:
 
 
 def free_bytes() -> int | None:
-    """Return how many bytes of memory programs can still get; None where the system does not tell."""
+    """Return how many bytes of memory programs can still get; None if the system does not report it."""
     try:
         found = re.search(r"^MemAvailable:\s*(\d+) kB", Path("/proc/meminfo").read_text(encoding="ascii"), re.MULTILINE)
     except OSError:  # not Linux

@@ -2,7 +2,7 @@
 
 The time is that of the processor, so that verdicts do not depend on what else the machine does. A statement beyond its limit is
 interrupted. DuckDB heeds an interrupt between two vectors of rows, not inside one: a function that works on one huge value, or many of
-them, goes on. What to do about such a rule is for whoever made the limits (`DeafRules`).
+them, goes on. The maker of the limits decides what to do about such a rule (`DeafRules`).
 """
 
 from __future__ import annotations

@@ -46,7 +46,7 @@ _DRIVE: Final = ["drive_id", "file_name", "format", "t_start_ns", "duration_s", 
 
 @dataclass(frozen=True)
 class ExplainRequest:
-    """What `explain` is asked: a finding or rule, the result folder, and where log and map are if they were moved."""
+    """A request to `explain`: a finding or rule, the result folder, and where log and map are if they were moved."""
 
     name: str
     folder: Path
@@ -146,7 +146,7 @@ def _case(run_options: RunRequest, target: Target, memory: int | None) -> Verdic
 
 
 def _asks(rule: Rule, row: Mapping[str, Any], start_ns: int) -> str | None:
-    """Return what the reason of a verdict asks to record or to provide, with its subject; None: nothing."""
+    """Return what to record or to provide, by the reason of a verdict, with its subject; None: nothing."""
     if row["cause_code"] is not None:
         return reason_text.advice_sentence(
             row["cause_code"], json.loads(row["cause_args"] or "{}"), start_ns, rule.reasons

@@ -86,7 +86,7 @@ class Explanation:
     other_verdicts: list[Row]
     """Further verdict rows of this rule in this drive: profile, object_id, t_start_ns, verdict."""
     asks: str | None
-    """What the reason asks to record or to provide."""
+    """What to record or to provide, by the reason."""
     decides_ns: int | None
     parts: list[Part]
     """What the verdict's `required` is made of; empty: not known."""

@@ -58,7 +58,7 @@ class SituationCoverage:
 
 @dataclass(frozen=True)
 class Coverage:
-    """The rules by what the fleet says about them; the situations with those that never occurred; and what the tables cannot tell."""
+    """The rules by their results in the fleet; the situations, with those that never occurred; and what the tables do not show."""
 
     rules: tuple[RuleCoverage, ...]
     situations: tuple[SituationCoverage, ...]

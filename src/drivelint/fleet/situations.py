@@ -1,4 +1,4 @@
-"""The situations by which a fleet's drives are told apart, as far as the tables of an audit tell them."""
+"""The situations by which a fleet's drives are divided, as far as the tables of an audit have them."""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ MAX_CHANGES: Final = 50
 
 @dataclass(frozen=True)
 class FleetContent:
-    """An audit as the fleet page tells it.
+    """An audit as the fleet page shows it.
 
     `totals`: the row of `totals.sql`. `severities`: severity -> row of `severities.sql`. `rules`: rule_id -> row of the table `rule`.
     `rates`: the gravest and most frequent first. `worst`: rows of `worst.sql` with `command` and `explain`. `not_judged`: some of the

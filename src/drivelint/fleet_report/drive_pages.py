@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 FOLDER: Final = "drives"
 MOST_DRIVES: Final = 100
-"""Drives that get a page if nothing else is asked for."""
+"""Number of drives that get a page by default."""
 MAX_FINDINGS: Final = 200
 """Findings on a page."""
 MAX_NOTES: Final = 40

@@ -35,7 +35,7 @@ MAX_FLIPPED: Final = 10_000
 
 @dataclass(frozen=True)
 class AskedWhatIf:
-    """The answer, and what was asked. `was`: the value that the audit used. `by`: the tag by which verdicts are told apart.
+    """The answer, and the request. `was`: the value that the audit used. `by`: the tag by which verdicts are told apart.
 
     `by_value`: the verdicts by profile and value of that tag. One of a log that is there with several values counts for each, and once
     in `answer`.

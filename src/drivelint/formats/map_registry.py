@@ -1,4 +1,4 @@
-"""Map formats, told by what a file holds and never by its name."""
+"""Map formats, recognised by the content of a file and never by its name."""
 
 from __future__ import annotations
 

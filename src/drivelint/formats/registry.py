@@ -1,4 +1,4 @@
-"""The trace formats, in the order in which they are asked: by what the file holds; a suffix with a fixed beginning must have it."""
+"""The trace formats, in the order in which they are tried: by the content of a file; a suffix with a fixed beginning must have it."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ UNPROTECTED: Final = QualityFinding(
 
 
 def readers() -> Iterator[Reader]:
-    """Yield the readers in the order in which they are asked, each imported when it is its turn."""
+    """Yield the readers in the order in which they are tried, each imported in its turn."""
     for name in READERS:
         yield cast("Reader", import_module(f"drivelint.formats.{name}"))
 

@@ -45,7 +45,7 @@ _NO_VEHICLES: Final = frozenset({"pedestrian", "animal", "object"})
 
 @dataclass(frozen=True)
 class IncidentRequest:
-    """What `report --incident` is asked: a finding, as `explain` takes it, and where log and map are if they were moved."""
+    """A request to `report --incident`: a finding, as `explain` takes it, and where log and map are if they were moved."""
 
     name: str
     folder: Path

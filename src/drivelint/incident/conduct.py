@@ -1,4 +1,4 @@
-"""What one party did around the moment, by the verdicts on it: rules broken, kept, not decided, and never asked."""
+"""The conduct of one party around the moment, by its verdicts: rules broken, kept, not decided, and never applicable."""
 
 from __future__ import annotations
 

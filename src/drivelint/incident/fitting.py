@@ -1,4 +1,4 @@
-"""Fits what is told into the room of two pages: a reason loses its rules' titles before any reason is left out."""
+"""Fits the content into two pages: a reason loses the titles of its rules before any reason is left out."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 _ROOM: Final = {"broken": 1500, "kept": 300, "excused": 80, "reasons": 350}
-"""Characters that each part has on the page at least; the number of what is left out is told."""
+"""The fewest characters of each part on the page; the number of left-out texts is printed."""
 _FIRST: Final = ("broken", "reasons")
-"""Parts that are told whole before any other, in this order."""
+"""Parts that are printed whole before any other, in this order."""
 _MAY_GO: Final = frozenset({"kept", "excused"})
 """Parts whose number stands in the party's first line."""
 _WASTE: Final = {"broken": 30}
@@ -113,8 +113,8 @@ def shared_reasons(parties: Sequence[dict[str, Any]]) -> dict[str, Any]:
 def fit(parties: Sequence[dict[str, Any]], seconds_left: int, used_characters: int) -> None:
     """Cut the lists of what both parties did to what fits into two columns that share their room.
 
-    What the lists leave goes first to what was broken, then to the reasons, until all are told; where other lines take more, each list
-    loses its share, that of what was broken last.
+    Room that the lists leave goes first to the broken rules, then to the reasons, until all are printed. If other lines take more room,
+    each list loses its share, the list of broken rules last.
     `seconds_left`: rows that the table second by second does not fill; `used_characters`: characters of other lines.
     """
     parts = [

@@ -50,7 +50,7 @@ if TYPE_CHECKING:
     from drivelint.result.text import Row
 
 SPAN_S: Final = (15, 7)
-"""What each party did is told from so long before the moment to so long after it."""
+"""The conduct of each party is reported from this long before the moment to this long after it."""
 _NO_NUMBER: Final = "-"
 _CLIP: Final = re.compile(r"^(.+)-clip-[0-9a-f]{8}$")
 """Name of a clip that `convert --clip` cut, see `clip.py`."""

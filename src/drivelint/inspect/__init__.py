@@ -42,7 +42,7 @@ _SEVERITIES: Final = ("error", "warning", "info")
 
 @dataclass(frozen=True)
 class InspectRequest(DriveInput):
-    """What `inspect` is asked to do; the names are those of its options."""
+    """A request to `inspect`; the names are those of its options."""
 
     trace: str
     rules: tuple[str, ...] = ()
@@ -98,7 +98,7 @@ def exit_code(inspection: model.Inspection) -> ExitCode:
 def _content_of_unread(path: Path, options: IngestOptions) -> model.Content:
     try:
         return content(path, None, [], has_reader=not may_be_mapped_table(path, options))
-    except (TraceError, OSError):  # the problem that the reader has told already
+    except (TraceError, OSError):  # the problem that the reader has reported already
         return model.Content()
 
 

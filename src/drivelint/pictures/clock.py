@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 SEARCHED_NS: Final = 2_000_000_000
 """Frames are looked for so far around a time in the log: one may be recorded up to a second after it was taken."""
 NEAR_NS: Final = 500_000_000
-"""A frame farther from the time that is asked for does not show it."""
+"""A frame farther from the requested time does not show it."""
 _SAME_CLOCK_NS: Final = 1_000_000_000
 """A camera's stamps are of the drive's clock if both differ from the log's by the same up to this."""
 

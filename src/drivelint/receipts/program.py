@@ -1,4 +1,4 @@
-"""What decides a result besides its inputs: the program, what is installed beside it, what was asked, and where."""
+"""Everything that decides a result besides its inputs: the program, the installed packages, the request, and the working folder."""
 
 from __future__ import annotations
 

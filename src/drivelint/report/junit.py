@@ -97,7 +97,7 @@ def _unfixed_case(entry: ComparedFinding) -> Case:
 
 
 class _Lines(NamedTuple):
-    """What a test case has to tell, one line each."""
+    """The content of a test case, one line each."""
 
     erred: list[str]
     stopping: list[str]

@@ -43,7 +43,7 @@ _NO_MAP: Final = {
 }
 """Check that leaves a drive without a map -> words."""
 _COUNTED_LABEL: Final = "counted"
-"""Findings that the asked confidence does not let through."""
+"""Findings that do not fail the run because of the requested confidence."""
 
 
 class Part(NamedTuple):

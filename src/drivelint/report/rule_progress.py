@@ -1,4 +1,4 @@
-"""Tells by how many rules a batch was judged. A module of its own: whoever only tells what was judged before loads no database."""
+"""Reports by how many rules a batch was judged. This is a module of its own, so that printing an earlier result loads no database."""
 
 from __future__ import annotations
 

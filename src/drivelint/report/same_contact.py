@@ -1,4 +1,4 @@
-"""Which findings tell of one contact: it is as sure as the surest of them."""
+"""The findings about one contact: it is as sure as the surest of them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from drivelint.result.text import Row
 
 SAME_NS: Final = 1_000_000_000
-"""Findings of two rules whose failing stretches are no farther apart tell of the same contact."""
+"""Findings of two rules whose failing stretches are no farther apart are about the same contact."""
 
 
 def same_contact(rows: Iterable[Row], rules: Mapping[str, Row]) -> dict[str, list[Row]]:

@@ -1,4 +1,4 @@
-"""Reads the geo reference of a map, compares it with that of a log, and tells whether it gives positions on the earth."""
+"""Reads the geo reference of a map, compares it with that of a log, and checks whether it yields positions on the earth."""
 
 from __future__ import annotations
 

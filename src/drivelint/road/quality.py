@@ -1,4 +1,4 @@
-"""What is wrong with a map, collected while it is read."""
+"""The problems of a map, collected while it is read."""
 
 from __future__ import annotations
 

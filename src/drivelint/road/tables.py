@@ -58,7 +58,7 @@ def map_tables(
     """
     x, y = (float(v) + 0.0 for v in request.offset)
     shift = f"{x:+}{y:+}" if x or y else ""
-    # a side that is only the standard's default is marked: the traces of another drive may tell it for sure
+    # a side that is only the standard's default is marked: the traces of another drive may prove it
     marks = f"{'?' if side[1] == 'default' else ''}{'~' if lanes_reversed else ''}"
     name = f"{PurePath(source.name).stem}-{source.sha256[:8]}{shift}@{side[0]}{marks}"
     tables = {table: owned_table(table, name, rows, kind) for table, rows in content.items()}

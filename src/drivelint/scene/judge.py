@@ -1,4 +1,4 @@
-"""Judges the scenes of a file in one run, and holds what comes out against what each expects."""
+"""Judges the scenes of a file in one run, and compares the verdicts with the expected ones."""
 
 from __future__ import annotations
 

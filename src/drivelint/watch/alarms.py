@@ -1,7 +1,7 @@
-"""Tells which findings of a window are new, and keeps those that were said.
+"""Finds which findings of a window are new, and stores those that were reported.
 
-Windows overlap, so a finding is seen again and again. It is the same where rule, profile, ego and object are, and its failing steps
-follow those that were said. A reference point that moved a little is the same, too.
+Windows overlap, so a finding is seen again and again. It is the same finding if rule, profile, ego and object are the same, and its
+failing steps follow those that were reported. A reference point that moved a little is the same, too.
 """
 
 from __future__ import annotations

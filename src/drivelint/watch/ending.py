@@ -1,4 +1,4 @@
-"""What follows the live part of a watch: the recording is checked, and what was said is held against the result."""
+"""What follows the live part of a watch: the recording is checked, and the alarms and verdicts are compared with the result."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The watch as it goes, for viewers: a Foxglove WebSocket server with the road users, the alarms and the margins.
+"""The running watch, for viewers: a Foxglove WebSocket server with the road users, the alarms and the margins.
 
 Topics and messages are those of annotated logs where these have them, so that the same layout shows both.
 """

@@ -1,4 +1,4 @@
-"""Says verdicts whose windows have closed, and holds them against those of the whole log."""
+"""Reports verdicts whose windows have closed, and compares them with those of the whole log."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a source of a growing log has to do, whatever it comes from."""
+"""The interface of a source of a growing log."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Runs commands of the user's when there are alarms."""
+"""Runs commands of the user at alarms."""
 
 from __future__ import annotations
 

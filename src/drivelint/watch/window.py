@@ -42,7 +42,7 @@ class Window:
         self.is_whole = True
         """No frame of the log has left the window yet."""
         self.jumps: list[tuple[int, int]] = []
-        """From when to when the log's clock jumped; for whoever tells it."""
+        """The time before and after a jump of the log's clock, for the note about it."""
 
     def add(self, frames: Iterable[Frame]) -> None:
         """Take frames that came; they wait until `advance`."""

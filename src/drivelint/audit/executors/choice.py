@@ -1,4 +1,4 @@
-"""Chooses the executor that the command line names."""
+"""Chooses the executor named on the command line."""
 
 from __future__ import annotations
 

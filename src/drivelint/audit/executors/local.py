@@ -1,4 +1,4 @@
-"""A pool of processes on this machine: one warm worker per core, each held to an amount of memory and of computing time."""
+"""A pool of processes on this machine: one warm worker per core, each with limits of memory and computing time."""
 
 from __future__ import annotations
 

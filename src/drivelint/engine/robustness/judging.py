@@ -9,7 +9,7 @@ passes loses the stretch. Where the first window has only a part of the stretch 
 unless so few copies keep the finding that it is only possible anyway.
 
 Of a rule that an ego breaks several times, the gravest finding is judged, and those that are as near to the threshold as the errors are
-large. Where the gravest is only possible, the others are judged too. Whoever asks for them gets the copies of all findings.
+large. Where the gravest is only possible, the others are judged too. On request, the copies of all findings are judged.
 
 100 copies are judged, 32 where all of these keep the finding, or 20 where their margins are far from 0, too. Fewer are enough where so
 many of them lose it that it is only possible, whatever the others would tell.
@@ -162,7 +162,7 @@ class Robustness:
                 question.take(window.numbers, outcome.margins, outcome.passes)
 
     def _stays(self, chunk: Sequence[Window]) -> list[dict[int, Outcome]]:
-        """Return for each window: question -> what its copies tell."""
+        """Return for each window: question -> the result of its copies."""
         made = [copies(window.part(f"{no:05}"), self._errors, window.numbers) for no, window in enumerate(chunk)]
         asked = [(no, question) for no, window in enumerate(chunk) for question in window.questions]
         rules = {question.rule.id: question.rule for _, question in asked}

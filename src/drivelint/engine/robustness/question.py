@@ -1,4 +1,4 @@
-"""Findings that copies are judged for: how many copies each needs, and what these tell."""
+"""Findings for which copies are judged: how many copies each needs, and the result of these."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ NOT_FAR: Final = 10.0
 
 @dataclass
 class Question:
-    """A finding, and what its copies have told so far."""
+    """A finding, and the result of its copies so far."""
 
     finding: dict[str, Any]
     rule: Rule

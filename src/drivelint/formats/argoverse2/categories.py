@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 EGO_CATEGORY: Final = "EGO_VEHICLE"
 """A category that is not Argoverse's: tools write the recording vehicle itself under it, as a box whose centre is the rear axle."""
 SENSOR_CLASSES: Final = {
-    "REGULAR_VEHICLE": "car",  # a passenger car, van, pickup or SUV: no rule tells these of others apart
+    "REGULAR_VEHICLE": "car",  # a passenger car, van, pickup or SUV: no rule distinguishes these
     "LARGE_VEHICLE": "vehicle",  # what has no category of its own: a camper van, a fire engine, ...
     "TRUCK": "truck", "BOX_TRUCK": "truck", "TRUCK_CAB": "truck",
     "BUS": "bus", "SCHOOL_BUS": "bus", "ARTICULATED_BUS": "bus",

@@ -99,7 +99,7 @@ class Losses:
                 self.lost_bytes[k] = replace(each, since_ns=since, until_ns=until, timed=True)
 
     def times(self, path: Path) -> list[LostTime]:
-        """Return what was lost as stretches of log time, each with the sentence that tells it."""
+        """Return what was lost as stretches of log time, each with its sentence."""
         lost_times = []
         for loss in self.lost_bytes:
             since, until = loss.since_ns, loss.until_ns

@@ -1,4 +1,4 @@
-"""Topics that would be read if their messages were in another encoding: what they hold is not known, which is told."""
+"""Topics whose messages are in an encoding that is not read: their content is not known, which is reported."""
 
 from __future__ import annotations
 

@@ -29,7 +29,7 @@ MAX_FIT_ERROR_MPS = 0.5
 SAMPLED_ACTORS = 8
 """Of so many actors, those that move most."""
 MIN_SAMPLES = 20
-"""So many moving samples tell in which frame velocities are."""
+"""This many moving samples show in which frame velocities are."""
 
 
 @dataclass

@@ -1,4 +1,4 @@
-"""How the lanes of a scenario follow one another and lie side by side, as it says or as their shapes tell."""
+"""How the lanes of a scenario follow one another and lie side by side, as it states or as their shapes show."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What data sets write of a motion that is no measurement of it, told by the numbers themselves wherever they tell it.
+"""Values of motion in data sets that are no measurements, recognised by the numbers themselves wherever possible.
 
 Velocities that are differences of the positions, one step apart, are those of half a step before or after, and one of them is 0
 at an end of the track. Boxes that were annotated now and then and interpolated have no acceleration. A box whose length and width are

@@ -49,7 +49,7 @@ FILES: Final = (AUDIT_FILE, SUMMARY_FILE, RULES_FILE)
 FINDING_KEYS: Final = ("key", *SAID_OF_FINDINGS)
 """What `evidence.json` says of a finding of an audit: its drive is known by its key."""
 _OF_RUN: Final = frozenset({"reused", "n_asked", "n_absent"})
-"""What `summary.json` says of the run that wrote it; no table tells it."""
+"""The facts in `summary.json` about the run that wrote it; no table has them."""
 
 
 class PackedDrive(NamedTuple):

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from drivelint.result.text import Row
 
 MOST_BEFORE_NS: Final = 1_000_000_000
-"""Speeds longer before the contact do not tell how fast it was."""
+"""Speeds longer before the contact do not show the speed at the contact."""
 
 
 def before_contact(scene: Row, contact: Row, start_ns: int) -> dict[str, Any] | None:

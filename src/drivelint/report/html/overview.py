@@ -34,7 +34,7 @@ def page_headline(result: Result) -> tuple[str, str, str]:
 def contacts(result: Result, lines: Sequence[FindingLine], rules: Mapping[str, Row]) -> dict[str, Any] | None:
     """Return who touched whom and when, from all findings (`lines`: those of the page); None if no finding is a contact.
 
-    `named`: contacts of the boxes, or told by the speeds, in words, each with the link to its surest finding; `n_more`: those that are
+    `named`: contacts of the boxes, or found from the speeds, in words, each with the link to its surest finding; `n_more`: those that are
     not named; `sure`: no contact is only possible.
     """
     starts = result.start_times

@@ -1,4 +1,4 @@
-"""This module reads a socket or a pipe in a thread of its own, so that nothing is lost while nobody asks."""
+"""This module reads a socket or a pipe in a thread of its own, so that nothing is lost between two reads."""
 
 from __future__ import annotations
 

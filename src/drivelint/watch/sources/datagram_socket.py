@@ -1,4 +1,4 @@
-"""Receives datagrams with what tells that others were lost: when each came, and how many the system dropped by then."""
+"""Receives datagrams with signs of lost ones: the time of each, and how many the system had dropped by then."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What only the first OSI message of a drive says, and what of it is put into a part of the drive that begins later."""
+"""The content that only the first OSI message of a drive has, and the part of it that is copied into a later part of the drive."""
 
 from __future__ import annotations
 
