@@ -1,4 +1,4 @@
-"""What work takes: seconds of the processor, which do not depend on what else the machine does, and memory."""
+"""The costs of work: seconds of the processor, which do not depend on other programs of the machine, and memory."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What `drivelint demo` writes: the paper's overtakes and their road, and the command that checks them.
+"""The files of `drivelint demo`: the paper's overtakes and their road, and the command that checks them.
 
 The files are those of `fixtures/scenes`, made by the scenes of `tests/demo`.
 """

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 
 _LOOK_S: Final = 0.2
 _PATIENCE_S: Final = 5.0
-"""How long a process may take to end by itself."""
+"""The time that a process has to end by itself."""
 
 
 class WorkerLostError(DriveLintError):
@@ -64,7 +64,7 @@ class _Part(NamedTuple):
 
 
 class _Ended(NamedTuple):
-    """What a part came to, and what was read for it."""
+    """The result of a part, and the inputs that were read for it."""
 
     judged_logs: JudgedLogs
     inputs: Inputs | None

@@ -110,7 +110,7 @@ class LogNote(NamedTuple):
 
 @dataclass(frozen=True)
 class JudgedLogs:
-    """What became of some logs of a run, in their order: a result whose notes are these."""
+    """The outcome of some logs of a run, in their order: a result with their notes."""
 
     result: Result
     notes: tuple[LogNote, ...]

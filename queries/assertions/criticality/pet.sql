@@ -50,6 +50,6 @@ SELECT
     CASE WHEN c.pet_s >= $least_s AND c.pet_at_most THEN why('pet_at_most', {'pet_s': c.pet_s}) END AS reason
 FROM reference r
 LEFT JOIN conflict c USING (drive_id, ego_id, occurrence)
--- Who leave the ground in one direction have merged: one follows the other.
+-- Two actors that leave the ground in one direction have merged: one follows the other.
 LEFT JOIN ego_state e ON e.drive_id = c.drive_id AND e.ego_id = c.ego_id AND e.t_ns = c.t_ego_out_ns
 LEFT JOIN state_dynamics o ON o.drive_id = c.drive_id AND o.actor_id = c.object_id AND o.t_ns = c.t_object_out_ns

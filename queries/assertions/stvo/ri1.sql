@@ -39,8 +39,8 @@ SELECT drive_id, ego_id, t_start_ns AS t_ns, ahead_id AS object_id, ahead_gap_m,
 FROM standstill
 
 -- @condition
--- To stop means to halt by choice. An ego that stands for somebody in its way does not stop in this sense, nor does an ego that broke down.
--- Hazard lights say that it may have broken down.
+-- To stop means to halt by choice. An ego that stands for an actor in its way does not stop in this sense, nor does an ego that broke down.
+-- Hazard lights show that it may have broken down.
 WITH possible_breakdown AS (
     SELECT r.ref_id
     FROM reference r

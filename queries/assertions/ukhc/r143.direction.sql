@@ -86,7 +86,7 @@ WITH ego_step AS (
     SELECT drive_id, ego_id, t_ns, front_s_m, rear_s_m, width_m, speed_mps, with_direction, $closed_m + $closed_s * speed_mps AS reach_m FROM ego_state
 ),
 -- Steps at which the ego is beyond the end of the lane that it came along, in a lane of a two-way road: the map joins the two roads by no
--- link. Whether the ego is still on its way past somebody is not known then, for as long as an overtake takes.
+-- link. Whether the ego is still passing another actor is not known then, for as long as an overtake takes.
 chain_end AS (
     SELECT drive_id, ego_id, chain_id, max(s_start_m + length_m) AS end_m FROM chain GROUP BY ALL
 ),

@@ -39,7 +39,7 @@
 
 -- @reference
 SELECT drive_id, ego_id, t_in_ns AS t_ns, coalesce(t_out_ns, t_in_ns) AS t_out_ns, crossing_id, kind, occurrence,
-    -- Whether there is somebody for whom a vehicle may have stopped; NULL: not known.
+    -- Whether there is an actor for whom a vehicle may have stopped; NULL: not known.
     on_id IS NOT NULL OR coming_id IS NOT NULL OR waiting_id IS NOT NULL OR CASE WHEN known AND coming_known THEN false END AS for_whom
 FROM crossing_passage
 

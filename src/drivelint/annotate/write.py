@@ -40,7 +40,7 @@ _TRANSFORMS: Final = ("FrameTransform", "FrameTransforms", "TFMessage", "tfMessa
 
 @dataclass(frozen=True)
 class Annotation:
-    """What was found in one drive, which is written beside its log.
+    """The results of one drive, which are written beside its log.
 
     `result` is that of the drive as if it had been checked alone. `spaces` are the danger spaces in overtakes, `chains` what they
     lie on. `measures` and `margins` are rows of `evidence/first_ego_measures.sql` and of `evidence/least_margin.sql`. `road` is

@@ -74,7 +74,7 @@ class CheckResult(TableSet):
 
     @property
     def exit_code(self) -> int:
-        """What the command line's exit code is: 0 nothing failed, 1 something did, 3 lossy, 4 not judged, 2 a rule erred."""
+        """The exit code of the command line: 0 nothing failed, 1 something failed, 3 lossy, 4 not judged, 2 a rule could not be run."""
         return int(exit_status(self._result).code)
 
     @property

@@ -36,7 +36,7 @@ class Comparison:
 
     @property
     def text(self) -> str:
-        """What the command line prints."""
+        """The output of the command line."""
         return descriptions.difference_text(self._difference, self._failing, self._least, self._gate)
 
     def findings(self) -> list[dict[str, Any]]:

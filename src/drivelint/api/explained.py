@@ -22,7 +22,7 @@ class Explained:
 
     @property
     def text(self) -> str:
-        """What the command line prints."""
+        """The output of the command line."""
         from rich.console import Console
 
         console = Console(width=_WIDTH, highlight=False, color_system=None, force_jupyter=False)

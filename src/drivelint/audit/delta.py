@@ -48,7 +48,7 @@ _COLOUR: Final = re.compile(r"\x1b\[[0-9;]*m")
 
 
 class DeltaChange(NamedTuple):
-    """How many files a writing has added and taken out, in all tables."""
+    """The number of files that a write added and removed, in all tables."""
 
     n_added: int
     n_removed: int

@@ -30,7 +30,7 @@ TASK_BYTES: Final = 8_000_000
 TASK_DRIVES: Final = 64
 """A task ends with the drive with which its logs have so many bytes or so many are in it: short drives are judged together."""
 LEAST_TASK_DRIVES: Final = 8
-"""Where there are few drives, tasks have so many, so that results come soon and all workers have something to do."""
+"""The number of drives in a task if there are few drives, so that results come soon and all workers have work."""
 MOST_ATTEMPTS: Final = 3
 """A drive over which so many workers were lost is quarantined; from the second on it is judged alone."""
 

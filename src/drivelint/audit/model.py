@@ -20,7 +20,7 @@ Status = Literal["judged", "refused", "quarantined"]
 
 @dataclass(frozen=True)
 class JudgeSettings:
-    """What decides the verdicts of an audit besides its logs and maps: the options of `check` of the same names."""
+    """The settings that decide the verdicts of an audit besides its logs and maps: the options of `check` of the same names."""
 
     rules: tuple[str, ...] = ()
     ignore: tuple[str, ...] = ()

@@ -53,7 +53,7 @@ _LISTED: Final = "(FROM receipts SEMI JOIN _listed USING (source_id))"
 """The receipts of the drives of this part that were packed before."""
 RECEIPTS_PER_COMPACTION: Final = 4_000
 WORKER_BYTES: Final = 500_000_000
-"""What a worker takes beside its database: programs, rules, and a log that is being read."""
+"""The memory of a worker besides its database: programs, rules, and a log that is being read."""
 _ALIKE: Final = 0.8
 """From this likeness on, the name of a tag is taken for a misspelt column: `maps` is, `lap` is not."""
 

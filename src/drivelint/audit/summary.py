@@ -33,7 +33,7 @@ _UNDECIDED: Final = "nothing failed, because nothing could be decided"
 
 @dataclass
 class AuditSummary:
-    """What an audit comes to. `digest` is that of all rows; None where the results are not packed (`--shard`, `--claim`).
+    """The summary of an audit. `digest` is that of all rows; None where the results are not packed (`--shard`, `--claim`).
 
     `off_map`: drives that their map does not fit. `failed`: severity -> failed verdicts of stable rules; `findings`: severity -> findings.
     `errors`: verdicts that are errors; `beyond_limits`: of these, those of rules that took too much time or memory.

@@ -74,7 +74,7 @@ class Case(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True
     missing_signals: tuple[str, ...] = msgspec.field(default=(), name="missing")
     findings: int | None = None
     line: int = 0
-    """Where it stands in its file: filled in, never written."""
+    """Its line in the file: filled in, never written."""
 
     def categories(self) -> set[str]:
         """Return which of CATEGORIES this case shows: those in `shows`, else those in its name."""

@@ -31,7 +31,7 @@ Scene = dict[str, list[Row]]
 
 
 class CaseOutcome(NamedTuple):
-    """What one rule said about one case: its verdict rows, in the order that `expect` uses, and its finding rows."""
+    """The result of one rule for one case: its verdict rows, in the order that `expect` uses, and its finding rows."""
 
     verdicts: list[Row]
     findings: list[Row]

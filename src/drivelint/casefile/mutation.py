@@ -45,7 +45,7 @@ class MutationResult(NamedTuple):
 
     @property
     def noticed(self) -> int:
-        """How many mutants some case noticed; 0 if the mutants could not be judged."""
+        """The number of mutants that some case noticed; 0 if the mutants could not be judged."""
         return 0 if self.problem else self.n - len(self.survivors)
 
     @property

@@ -1,6 +1,6 @@
 """Mechanical checks of a rule's SQL: one SELECT, known tables and functions only, bound parameters, named columns.
 
-What stands in DuckDB's syntax tree is held against the lists in `allowed_sql`: that DuckDB can parse or serialise a statement
+The content of DuckDB's syntax tree is compared with the lists in `allowed_sql`: that DuckDB can parse or serialise a statement
 says nothing (it does so with two statements, DESCRIBE, `query('...')` and `FROM '/etc/passwd'`).
 """
 
@@ -30,7 +30,7 @@ _DEEP = "too deeply nested to be checked: split it into CTEs"
 
 
 class Query(NamedTuple):
-    """What one SELECT is made of.
+    """The parts of one SELECT.
 
     `places`: table or `$parameter` -> `file:line` of its first mention. `columns` is None where a star hides them.
     `needs`: tables that must have rows for it to have any. `column_names`: the names of columns that stand in it, but for

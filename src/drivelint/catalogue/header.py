@@ -74,12 +74,12 @@ ROAD_USERS: Final = "road_users"
 
 
 class Header(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """What a rule says about itself, field by field as in the design."""
+    """The header of a rule, field by field."""
 
     title: str
     """A statement that is true when the rule is kept."""
     breach: str | None = None
-    """What happened where it is not, as the title of its findings; None: they are told as "Not kept" and the title."""
+    """What happened when it is broken, as the title of its findings; None: their title is "Not kept" and that of the rule."""
     clause: str
     hypothesis: str
     kind: Kind
@@ -94,7 +94,7 @@ class Header(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     sense: Literal[">=", ">", "<=", "<", "holds"]
     unit: str | None = None
     observes: str | None = None
-    """What `observed` is, as a short noun phrase, for the sentence of a verdict."""
+    """The name of `observed`, as a short noun phrase, for the sentence of a verdict."""
     near_margin: float | None = None
     reads: tuple[str, ...]
     requires: tuple[str, ...] = ()
@@ -102,13 +102,13 @@ class Header(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     """Signals without which the rule can be found broken, but not kept."""
     reference: str | None = None
     without_time: str | None = None
-    """What the log does not show where the time of a reference point is not known, as a clause."""
+    """What the log does not show if the time of a reference point is not known, as a clause."""
     without_anchor: str | None = None
     """The same for an anchor without a time."""
     exempt_after_s: Seconds = 0.0
     merge_gap_s: Seconds = 1.0
     tags: tuple[str, ...] = ()
-    """What reports know a rule by: `contact`, its findings are contacts; `danger_space`, its pictures show danger spaces."""
+    """The tags by which reports recognise a rule: `contact`, its findings are contacts; `danger_space`, its pictures show danger spaces."""
     unaffected_by: tuple[Quantity, ...] = ()
     """Quantities that may be doubted without making a step unknown, although the rule reads columns made of them."""
     law: tuple[str, ...] = ()

@@ -30,7 +30,7 @@ _REQUIRED: Final = frozenset({"drive_id", "ego_id", "t_ns"})
 
 
 class RequirementParts(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What a requirement is made of: column of `sql` -> what it is, in words."""
+    """The parts of a requirement: column of `sql` -> its name in words."""
 
     sql: str
     parts: dict[str, str]

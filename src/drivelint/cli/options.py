@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 Format = Literal["text", "json"]
-"""How results are printed on stdout."""
+"""The formats of results on stdout."""
 ConvertTarget = Literal["mcap", "parquet"]
 ReportFormat = Literal["html", "junit", "sarif", "xqar", "markdown"]
 SqlFormat = Literal["text", "csv", "json"]
@@ -25,7 +25,7 @@ RuleKind = Literal["invariant", "execution", "precondition", "postcondition"]
 FailOn = Literal["critical", "major", "minor", "never"]
 """The least severity that makes exit code 1."""
 Texts = list[str] | None
-"""What an option that may be given several times has."""
+"""The value of an option that may be repeated."""
 
 
 def argument(metavar: str, words: str, **more: Any) -> Any:

@@ -30,7 +30,7 @@ INDICATORS = words("indicator")
 BRAKE_LIGHTS = words("brake_light")
 ACTOR_CLASSES = words("actor_class")
 MOTOR_VEHICLES = ("car", "van", "truck", "bus", "motorcycle", "vehicle")
-"""What `--ego all` takes as an ego: driven by an engine and by somebody of its own."""
+"""The actors that `--ego all` judges: driven by an engine, with a driver of their own."""
 LEAST_UTC_NS = 946_684_800_000_000_000
 """2000-01-01 UTC: a clock beyond it counts from 1970 in UTC, a smaller one from the start of the recording."""
 SIGNAL_STATES = words("light_state")
@@ -93,7 +93,7 @@ class IngestOptions:
     sensor_range_m: float | None = None
     need_ego: bool = True
     conditions: tuple[tuple[str, str], ...] = ()
-    """What holds in the drive, as (condition, word): see `drivelint.drive.conditions`."""
+    """The conditions of the drive, as (condition, word): see `drivelint.drive.conditions`."""
     ego_size: EgoSize | None = None
     in_sight: bool = False
     """An actor that is not recorded for a while is assumed not to be in plain view."""
@@ -324,7 +324,7 @@ class LostTime(NamedTuple):
 
 @dataclass
 class Recording:
-    """What a reader hands over: rows in the log's own order, nothing sorted or checked yet.
+    """The output of a reader: rows in the log's own order, nothing sorted or checked yet.
 
     `actors` is an Arrow table with the columns of `actor` where the log has one apart from its states. `ego_ids` are
     the log's or mapping's egos, `lost` what damage took from it, `conditions` what it says of the drive (condition -> word),

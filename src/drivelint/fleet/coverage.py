@@ -1,4 +1,4 @@
-"""What a fleet's drives covered: the rules that were decided, and the situations that occurred."""
+"""The coverage of a fleet: the rules that were decided, and the situations that occurred."""
 
 from __future__ import annotations
 

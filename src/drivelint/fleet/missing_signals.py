@@ -1,4 +1,4 @@
-"""What a fleet's logs and maps lack, and how much would be judged if it were recorded."""
+"""The signals that a fleet's logs and maps lack, and how much could be judged with them."""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ OTHER_PREFIX: Final = "other_"
 
 @dataclass(frozen=True)
 class Rate:
-    """What a rule found at one value of a tag. `tag_value` is None for drives that do not have the tag, and without a tag.
+    """The results of a rule at one value of a tag. `tag_value` is None for drives that do not have the tag, and without a tag.
 
     `egos_*`: subjects that were wholly judged; of these, with a failed verdict; not wholly judged; where the rule was never in force
     (another nation, other conditions, or the automated driver never drove). `drives_not_judged`: their way is not known at all.

@@ -21,7 +21,7 @@ CANNOT_TELL: Final = {
     "speed at each moment": "the band is that of the mean speed of a drive",
     "density of the traffic": "the number of recorded actors depends on the range of the sensors",
 }
-"""What the tables of an audit do not tell -> why, or what to look at instead."""
+"""The situations that the tables of an audit do not show -> why, or what to use instead."""
 
 
 def value_of(by: str | None) -> str:

@@ -1,4 +1,4 @@
-"""Which verdicts of a fleet would be others with another value of a rule's parameter, from what is stored of them.
+"""The verdicts of a fleet that change with another value of a rule's parameter, from their stored values.
 
 A verdict stores the observed value of its worst step only. That is enough where the rule compares an observed value, which the parameter
 has no part in, with the parameter itself. Every other rule or parameter needs a new check.

@@ -1,4 +1,4 @@
-"""What the fleet page says of an audit, in whatever format: gathered from SQL, each table as long as it is shown."""
+"""The content of the fleet page of an audit, for every format: gathered from SQL, each table as long as it is shown."""
 
 from __future__ import annotations
 

@@ -35,9 +35,9 @@ RESULT_FILES = frozenset(
         "tracks", "verdicts",
     )
 )  # fmt: skip
-"""What `check --out` writes and a folder of traces is not searched for, where it lies with its `summary.json`."""
+"""Files of `check --out`, which are not treated as traces if their `summary.json` is beside them."""
 SCENARIO_LISTS = frozenset({"dataset_summary.pkl", "dataset_mapping.pkl"})
-"""What ScenarioNet writes beside its scenarios, and is none."""
+"""Files that ScenarioNet writes beside its scenarios, which are no scenarios."""
 ANNOTATED_FOLDER = "annotated"
 """The folder beside them: logs that were judged already."""
 

@@ -1,6 +1,6 @@
 """Bounds what reading a file may take. A small file can describe a huge drive or map: nobody should wait for it, or lose all memory to it.
 
-What is bounded is computing and growth of memory, by the size of the file. Where reading goes beyond, it is interrupted between two
+Computing and growth of memory are limited, by the size of the file. Where reading goes beyond, it is interrupted between two
 steps of Python; a single call into a library goes on to its end.
 """
 

@@ -19,7 +19,7 @@ TOPICS: Final = (
 """The topics in reading order; each is the stem of a file."""
 FOLDER: Final = Path(__file__).parent
 REFERENCE_TOPICS: Final = ("dictionary", "catalogue", "reasons", "macros")
-"""What `drivelint docs` prints beside the guides: the tables, the rules, the reason codes and the macros."""
+"""The topics of `drivelint docs` besides the guides: the tables, the rules, the reason codes and the macros."""
 OUTPUT_TABLES_MARK: Final = "<!-- tables: output -->"
 """The line of a guide that stands for the columns of every output file."""
 _MARK = re.compile(r"^<!-- .* -->\n", re.MULTILINE)

@@ -212,4 +212,4 @@ REFERENCE: Final[dict[str, Callable[[], str]]] = {
     "reasons": reasons_page,
     "macros": macros_page,
 }
-"""What `drivelint docs` prints beside the guides, and the page of each."""
+"""The topics of `drivelint docs` besides the guides, and the page of each."""

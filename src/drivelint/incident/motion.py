@@ -1,4 +1,4 @@
-"""How two parties moved against each other: gap, closing speed, who slowed, and a table second by second."""
+"""The relative motion of two parties: gap, closing speed, braking, and a table second by second."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Who the parties are, how fast they were, whether they slowed, and in which lanes; and who else stood or drove around them."""
+"""The parties of an incident: their speeds, braking and lanes, and the other actors around them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the two pages of an incident sheet say, as plain values for the template."""
+"""The content of the two pages of an incident sheet, as plain values for the template."""
 
 from __future__ import annotations
 

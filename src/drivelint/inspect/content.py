@@ -1,4 +1,4 @@
-"""What a file holds, whether or not it can be read as a drive: channels, tables, columns and what is read of them."""
+"""The content of a file, whether or not it can be read as a drive: channels, tables, columns and what is read of them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What `inspect` finds out, as its JSON has it: `schemas/inspect.schema.json` is made from here.
+"""The result of `inspect`, as its JSON has it: `schemas/inspect.schema.json` is made from here.
 
 Times are seconds; those named `t_...` or `..._at_s` count from the first time stamp of the log. Lengths are metres.
 """
@@ -61,7 +61,7 @@ class Sheet(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Content(msgspec.Struct, frozen=True, kw_only=True):
-    """What the file holds."""
+    """The content of the file."""
 
     channels: Annotated[list[Channel], described("of an MCAP file, by topic")] = []
     sheets: Annotated[list[Sheet], described("tables, of CSV and Parquet")] = []
@@ -110,7 +110,7 @@ class Actor(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class MapRegistration(msgspec.Struct, frozen=True, kw_only=True):
-    """How an ego's track lies on the map."""
+    """The fit of an ego's track to the map."""
 
     ok: Annotated[bool, described("good enough for rules that need the map")]
     reason: str

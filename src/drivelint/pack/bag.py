@@ -26,7 +26,7 @@ _UNFIT: Final = re.compile(r"[\r\n%\\\ud800-\udfff]")
 
 
 class Problem(NamedTuple):
-    """What is wrong with a pack: of which kind, and what it is about."""
+    """A problem of a pack: its kind and its subject."""
 
     kind: str
     subject: str

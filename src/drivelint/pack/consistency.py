@@ -38,7 +38,7 @@ _REFERENCE: Final = re.compile(r"\bref_id = (\d+);\n\Z")
 
 
 class Stated(NamedTuple):
-    """What a pack says, read: the result, `evidence.json`, the statement's result in a word."""
+    """The content of a pack: the result, `evidence.json`, the statement's result in a word."""
 
     result: Result
     evidence: dict[str, Any]

@@ -1,4 +1,4 @@
-"""What `evidence.json` says of a pack: what was judged, by what, with which outputs and findings."""
+"""The content of `evidence.json`: the logs, rules, outputs and findings of a pack."""
 
 from __future__ import annotations
 

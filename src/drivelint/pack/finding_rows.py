@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from drivelint.pack.finding_sql import Row
 
 PADDING_NS: Final = 10_000_000_000
-"""How much around a finding is tried before all of a drive is."""
+"""The spans around a finding that are tried before the whole drive."""
 _SPANS: Final = (("t_ns", "t_ns"), ("t_start_ns", "t_end_ns"), ("t_from_ns", "t_to_ns"), ("t_first_ns", "t_last_ns"))
 _OBJECTS: Final = ("object_id", "vbp_id", "ov_id", "lead_id", "actor_id")
 SQL_FILE: Final = "finding.sql"

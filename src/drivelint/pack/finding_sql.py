@@ -26,7 +26,7 @@ _MACRO: Final = re.compile(r"\bCREATE OR REPLACE (?:TEMP )?MACRO (\w+)")
 _COMMENT: Final = re.compile(r"--.*")
 _SPATIAL: Final = re.compile(r"\bST_\w+\s*\(")
 COMPARED: Final = ("observed", "required", "margin")
-"""What the SQL of a finding gives, as the finding has it."""
+"""The results of the SQL of a finding, as the finding has them."""
 
 
 def tables_of(rule: Rule) -> list[str]:

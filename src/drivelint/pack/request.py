@@ -60,7 +60,7 @@ class VerifyRequest:
 
 @dataclass(frozen=True)
 class Verification:
-    """What is wrong with a pack, in words if nothing is, and what was not looked at."""
+    """The problems of a pack, a sentence if there are none, and what was not examined."""
 
     problems: list[Problem]
     sentence: str

@@ -29,7 +29,7 @@ class EnvelopeError(Exception):
 
 
 class SigningKey(Protocol):
-    """What signs: a private key from a file, or one that ssh-agent holds."""
+    """A signing key: a private key from a file, or one in ssh-agent."""
 
     def public_key(self) -> Ed25519PublicKey:
         """Return the public key."""

@@ -29,7 +29,7 @@ _CHUNKS_KEPT: Final = 4
 
 
 class Place(NamedTuple):
-    """Where a frame is: its log time, file, channel, chunk, and offset in the unpacked chunk."""
+    """The place of a frame: its log time, file, channel, chunk, and offset in the unpacked chunk."""
 
     log_ns: int
     file: int

@@ -23,7 +23,7 @@ ADVICE: Final[dict[str, str]] = {
     **TEXTS["advice"],
 }
 SIGNALS: Final = ADVICE.keys() - CONDITION_VALUES.keys()
-"""What a rule may require: the signals of the table `capability`. The others are conditions of a drive."""
+"""The signals that a rule may require: those of the table `capability`. The others are conditions of a drive."""
 MISSING_PREFIX: Final = "missing_"
 """Begins the reason code of a rule that is unknown for want of a signal."""
 UNRECORDED_PREFIX: Final = "unrecorded_"

@@ -54,7 +54,7 @@ def matches(pattern: str, is_output: IsOutput) -> str:
 
 @dataclass(frozen=True)
 class Inputs:
-    """What a run read. `states`: absolute path -> state; `globs`: pattern -> hash of the names that it matched."""
+    """The inputs of a run. `states`: absolute path -> state; `globs`: pattern -> hash of the names that it matched."""
 
     states: dict[str, str] = field(default_factory=dict)
     globs: dict[str, str] = field(default_factory=dict)

@@ -1,4 +1,4 @@
-"""What a run was given, in one line: whether the map fits, whether logs are whole and none is there twice, what was not judged."""
+"""The inputs of a run in one line: whether the map fits, whether logs are complete and none is there twice, what was not judged."""
 
 from __future__ import annotations
 

@@ -54,7 +54,7 @@ class Part(NamedTuple):
 
 
 class Headline(NamedTuple):
-    """What a run comes to. `label`: the word; `kind`: fail, near, unknown, not_applicable or pass; `parts`: the sentence.
+    """The outcome of a run. `label`: the word; `kind`: fail, near, unknown, not_applicable or pass; `parts`: the sentence.
 
     near: there are findings, and a gate lets all of them through.
     """

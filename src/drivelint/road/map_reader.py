@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class MapSource:
-    """What is to be read: the bytes of a map, wherever they came from."""
+    """The input of a map reader: the bytes of a map, wherever they came from."""
 
     name: str  # file name, or the log it was embedded in
     content: bytes = field(repr=False)

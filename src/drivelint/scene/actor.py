@@ -58,7 +58,7 @@ class Motion(NamedTuple):
 
 @dataclass(frozen=True)
 class Actor:
-    """Who it is, and how it moves."""
+    """An actor and its motion."""
 
     name: str
     text: ActorText

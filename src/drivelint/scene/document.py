@@ -49,7 +49,7 @@ class LaneText(_Part, frozen=True):
 
 
 class Thing(_Part, frozen=True):
-    """What stands at or lies on a road: a light, a stop line, a crossing, or a sign."""
+    """A thing at or on a road: a light, a stop line, a crossing, or a sign."""
 
     kind: str = msgspec.field(name="what")
     """light NAME, stop line, zebra, signalled crossing, crossing, sign COUNTRY CODE, or sign NAME."""
@@ -115,7 +115,7 @@ class Layout(_Part, frozen=True):
 
 
 class Step(_Part, frozen=True):
-    """What an actor does from a time or place on, in place of knots."""
+    """A step of an actor from a time or place on, instead of knots."""
 
     at: float | None = None
     """Second."""
@@ -135,7 +135,7 @@ class Step(_Part, frozen=True):
 
 
 class Faults(_Part, frozen=True):
-    """What the recorder does to the samples of one actor."""
+    """The faults of the recorder in the samples of one actor."""
 
     jitter: float = 0.0
     """Standard deviation of places, and of speeds in m/s; always the same draw."""
@@ -152,7 +152,7 @@ class Faults(_Part, frozen=True):
 
 
 class ActorText(_Part, frozen=True):
-    """Who moves, and how. One of `lane`, `route`, `path`, `track` and `place` says where."""
+    """An actor and its motion. One of `lane`, `route`, `path`, `track` and `place` says where."""
 
     kind: str | None = "car"
     size: list[float | None] | None = None
@@ -190,7 +190,7 @@ class ActorText(_Part, frozen=True):
 
 
 class SceneText(_Part, frozen=True, kw_only=True):
-    """What happens, and what a careful examiner says of it."""
+    """A scene and the verdicts of a careful examiner."""
 
     name: str
     summary: str = msgspec.field(name="what")
@@ -208,7 +208,7 @@ class SceneText(_Part, frozen=True, kw_only=True):
     expect: dict[str, str]
     """Rule -> verdict, a reason code in brackets, and why: `unknown (no_width): the log has no width`."""
     line: int = 0
-    """Where it stands in its file: filled in, never written."""
+    """Its line in the file: filled in, never written."""
 
 
 class SceneFile(_Part, frozen=True):

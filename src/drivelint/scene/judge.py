@@ -38,7 +38,7 @@ _MET: Final = {
     "not fail": {"pass", "unknown", "not_applicable", NOT_JUDGED},
     "not pass": {"fail", "unknown", "not_applicable", NOT_JUDGED},
 }
-"""What may be expected -> the verdicts that meet it."""
+"""Expected words -> the verdicts that match them."""
 _EXPECTATION: Final = re.compile(
     r"(?P<verdict>[a-z_]+(?: [a-z]+)?)(?: \((?P<code>\w+)\))?(?:: (?P<why>.+))?", re.DOTALL
 )

@@ -68,7 +68,7 @@ class Road:
     after: str | None = None
     """The road that it continues."""
     turn: Turn | None = None
-    """Which lanes of a junction it joins; None: it is no part of one."""
+    """The lanes of a junction that it joins; None: it is not part of a junction."""
 
     @property
     def length(self) -> float:

@@ -30,7 +30,7 @@ TASKS_PER_WORKER: Final = 500
 """After so many tasks a worker is replaced, so that nothing that a library keeps can add up."""
 _LOOK_S: Final = 0.1
 _BEGUN: Final = "begun"
-"""What a worker sends when it has opened its database, from where on its time counts."""
+"""The message of a worker that has opened its database; its time counts from then on."""
 
 
 class LocalPool:

@@ -95,7 +95,7 @@ class Robustness:
 
     @property
     def n_waiting(self) -> int:
-        """How many drives wait."""
+        """The number of waiting drives."""
         return len(self._waiting)
 
     def n_asked(self) -> int:

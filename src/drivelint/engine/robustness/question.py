@@ -38,12 +38,12 @@ class Question:
     finding: dict[str, Any]
     rule: Rule
     size: int = 0
-    """Which size of window is tried."""
+    """The size of the present window."""
     ends_early: bool = True
     """It ends as soon as it is only possible; whoever gives a confidence of their own needs the share of all copies."""
     n_copies: int = 0
     n_stays: int = 0
-    """How many of them keep it."""
+    """The number of copies that keep it."""
     margins: list[float | None] = field(default_factory=list)
     """The margins in those that keep it."""
     is_doubtful: bool = False

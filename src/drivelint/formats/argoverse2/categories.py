@@ -1,4 +1,4 @@
-"""What Argoverse 2 calls an annotated object, and the actor class that it is.
+"""The categories of annotated objects in Argoverse 2, and their actor classes.
 
 Source: the taxonomies of the sensor and the motion forecasting dataset (Argoverse user guide; av2-api, `AnnotationCategories` and
 `ObjectType`).

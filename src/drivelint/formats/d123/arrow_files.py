@@ -30,7 +30,7 @@ METADATA_KEY: Final = b"metadata"
 
 
 class LogInfo(NamedTuple):
-    """What a log says of itself: data set, place (None: it does not say) and version of py123d."""
+    """The metadata of a log: data set, place (None: not stated) and version of py123d."""
 
     dataset: str
     location: str | None

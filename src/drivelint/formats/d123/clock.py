@@ -32,7 +32,7 @@ class Clock(NamedTuple):
 
     @property
     def notes(self) -> list[str]:
-        """What the user should know."""
+        """Notes for the user."""
         if not self.zero_us:
             return []
         return [

@@ -1,4 +1,4 @@
-"""What 123D's numbers and data sets mean, as `facts.toml` has it."""
+"""The meaning of 123D's numbers and data sets, from `facts.toml`."""
 
 from __future__ import annotations
 

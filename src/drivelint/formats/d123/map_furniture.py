@@ -1,4 +1,4 @@
-"""What lies on and beside the lanes of a 123D map: lights, crossings, road lines, and what of it is not read."""
+"""The furniture of a 123D map: lights, crossings, road lines, and the layers that are not read."""
 
 from __future__ import annotations
 

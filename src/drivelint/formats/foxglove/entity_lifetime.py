@@ -1,7 +1,7 @@
-"""How long the entities of a scene are there: until they are replaced, deleted or expired.
+"""The lifetime of the entities of a scene: until they are replaced, deleted or expired.
 
-Who is still there without a message of its own has states too. One that stood still is where it was; of one that moved
-nobody knows where it is now: it is there but not placed.
+An actor that is still there without a message of its own has states too. If it stood still, it is where it
+was. If it moved, its place is not known: it is there but not placed.
 """
 
 from __future__ import annotations

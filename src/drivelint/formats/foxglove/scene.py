@@ -62,7 +62,7 @@ DELETE_ALL: Final = 1
 
 @dataclass
 class _Scene:
-    """What was read of one topic."""
+    """The content of one topic."""
 
     rows: list[RecordedPoses] = field(default_factory=list)
     deletions: list[tuple[Times, Mask, Times, list[str | None]]] = field(default_factory=list)

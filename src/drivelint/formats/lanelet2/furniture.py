@@ -1,4 +1,4 @@
-"""What lies on or beside the lanes of a Lanelet2 map: lights, signs, stop lines and crossings."""
+"""The furniture of a Lanelet2 map: lights, signs, stop lines and crossings."""
 
 from __future__ import annotations
 

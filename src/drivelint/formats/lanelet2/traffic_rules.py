@@ -1,7 +1,7 @@
-"""Who may use a lanelet, which way, and how fast: what the library of Lanelet2 says by its German rules, the only ones that it has.
+"""The participants, directions and speeds that a lanelet allows, by the German rules of the library of Lanelet2, the only ones that it has.
 
-By those rules a tag `participant:*` replaces everybody whom the subtype lets in, and a tag `one_way:*` counts for a kind of road user where
-there is no tag `one_way` for all.
+By these rules, a tag `participant:*` replaces all participants that the subtype allows. A tag `one_way:*` counts for its kind of road user
+if there is no tag `one_way` for all.
 """
 
 from __future__ import annotations

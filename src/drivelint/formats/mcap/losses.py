@@ -1,4 +1,4 @@
-"""What was lost of an MCAP file: bytes, and the log times of the messages that may have been in them."""
+"""The losses of an MCAP file: bytes, and the log times of the messages that may have been in them."""
 
 from __future__ import annotations
 

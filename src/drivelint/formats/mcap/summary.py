@@ -1,4 +1,4 @@
-"""What the index at the end of an MCAP file says is in it, where a CRC shows that it is as it was written."""
+"""The contents of an MCAP file by the index at its end, if a CRC shows that the index is unchanged."""
 
 from __future__ import annotations
 

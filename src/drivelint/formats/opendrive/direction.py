@@ -1,4 +1,4 @@
-"""Which side of the road is driven on, and which way each lane goes."""
+"""Finds the side of the road that is driven on, and the direction of each lane."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which lanelet continues which, in the direction of travel.
+"""Links between lanelets, in the direction of travel.
 
 Every link that the file declares, from either lane, a road's end or a junction, is the same thing: two lane ends that
 touch. Directions are applied once, to the touching ends; so it does not matter which side declared a link, or if both.

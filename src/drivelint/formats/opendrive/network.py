@@ -85,7 +85,7 @@ class LaneSection:
 
 @dataclass(frozen=True)
 class RoadLink:
-    """What a road joins at one of its ends."""
+    """The road or junction at one end of a road."""
 
     is_junction: bool
     element_id: str

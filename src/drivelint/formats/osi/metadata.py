@@ -1,4 +1,4 @@
-"""What OSI has no field for, carried in a converted log beside its messages, written and read here.
+"""Data without a field in OSI: written beside the messages of a converted log, and read from there.
 
 Two MCAP metadata records. `drivelint.trace`: where the log is from, the map offset and sensor range that its mapping said, the
 projection of its coordinates, what holds in the drive, what was found when it was read. `drivelint.actors`: OSI id -> the row of

@@ -1,6 +1,6 @@
 """Cuts an OSI trace file into its messages, each of which stands behind its length; of a damaged file, those before the damage.
 
-Nothing marks the beginning of a message but the length of the one before. Where a length cannot be right, all that follows is lost:
+Nothing marks the beginning of a message but the length of the one before. If a length is impossible, everything after it is lost:
 whatever looks like another message there may be the inside of one.
 """
 

@@ -1,4 +1,4 @@
-"""Where the ego was when, of a data set that counts the messages of a stream instead of timing them.
+"""The times of the ego's positions, in a data set that counts the messages of a stream instead of timing them.
 
 The messages come with one period, and every few of them is a step. Where some were lost, a step takes longer than it says, and the ego
 seems to leap: with every fifth message of 50 Hz, a lost one makes a step of 0.1 s one of 0.12 s and the speed over it a fifth too high.

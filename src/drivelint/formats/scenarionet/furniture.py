@@ -1,4 +1,4 @@
-"""What stands beside and lies across the lanes of a scenario: its lights, stop signs and crossings."""
+"""The furniture of a scenario: its lights, stop signs and crossings."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where a SUMO net lies on the earth: its `location` element."""
+"""The place of a SUMO net on the earth: its `location` element."""
 
 from __future__ import annotations
 

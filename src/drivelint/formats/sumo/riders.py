@@ -1,7 +1,7 @@
-"""Which persons and containers of floating car data ride: SUMO writes them at the place of their vehicle.
+"""Finds the persons and containers of floating car data that ride in a vehicle: SUMO writes them at the place of their vehicle.
 
-The attribute `vehicle` names it; a log that was written without that attribute shows it by the place. Whoever has the place, the angle and
-the speed of a vehicle to the last digit is in it: two bodies are never in one place.
+The attribute `vehicle` names the vehicle. In a log without that attribute, the place shows it: a person with exactly the place, the angle
+and the speed of a vehicle is in it, because two bodies are never in one place.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Any CSV or Parquet table through a mapping: long (a row per actor and step) or wide (a column group per actor).
 
-Where the places are, the mapping says (`[reference]`): the box centre, the rear axle or the front bumper; `geometry` brings them to the box
-centre.
+The mapping states the reference point of the positions (`[reference]`): the box centre, the rear axle or the front bumper. `geometry`
+converts them to the box centre.
 """
 
 from __future__ import annotations

@@ -47,7 +47,7 @@ if TYPE_CHECKING:
 AUDIT: Final = f"{DATA}/audit"
 FILES: Final = (AUDIT_FILE, SUMMARY_FILE, RULES_FILE)
 FINDING_KEYS: Final = ("key", *SAID_OF_FINDINGS)
-"""What `evidence.json` says of a finding of an audit: its drive is known by its key."""
+"""The entry of `evidence.json` for a finding of an audit; its drive is identified by its key."""
 _OF_RUN: Final = frozenset({"reused", "n_asked", "n_absent"})
 """The facts in `summary.json` about the run that wrote it; no table has them."""
 

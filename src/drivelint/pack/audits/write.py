@@ -1,4 +1,4 @@
-"""What goes into the pack of an audit: its tables, the rules, and what gives its worst findings again."""
+"""The content of the pack of an audit: its tables, the rules, and the data that reproduce its worst findings."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How fast two road users were just before they touched: at the contact itself they may have stopped each other already."""
+"""The speeds of two road users just before they touched: at the contact itself they may have stopped each other already."""
 
 from __future__ import annotations
 

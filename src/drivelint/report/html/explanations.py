@@ -1,4 +1,4 @@
-"""What the page explains beside its verdicts: technical words, and published logs for which it differs from what their authors say."""
+"""Explanations on the page: technical words, and published logs for which the verdicts differ from those of their authors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the page says, as plain values for the template: nothing here knows about markup."""
+"""The content of the page, as plain values for the template: nothing here knows about markup."""
 
 from __future__ import annotations
 
