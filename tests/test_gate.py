@@ -232,7 +232,7 @@ def test_diff_of_two_results(results: dict[str, Path], ran: Ran) -> None:
     assert ran("diff", base, base)[0] == 0
     code, out, _ = ran("diff", new, base)
     assert code == 4
-    assert "gone but not fixed: 0 unknown now, 1 not looked at" in out, "a drive that was left out fixes nothing"
+    assert "gone but not fixed: 0 unknown now, 1 not judged now" in out, "a drive that was left out fixes nothing"
     code, out, _ = ran("diff", base, new, "--format", "json")
     assert (code, json.loads(out)["exit"]["code"]) == (1, 1)
     code, out, _ = ran("diff", base, new, "--format", "markdown")

@@ -160,7 +160,7 @@ def test_a_baseline_tells_what_is_new_and_what_is_not_fixed() -> None:
     text = told(gated([finding(), gone], [finding(), late, finding(object_id="4", finding_id="w")]))
     assert "3 findings in 1 of 1 drive: 1 new (1 critical), 1 known (1 critical), 1 waived (1 critical)." in text
     assert "Of the baseline's findings: 0 changed (0 worse), 1 unchanged, 0 fixed" in text
-    assert "gone but not fixed: 1 unknown now, 0 not looked at" in text
+    assert "gone but not fixed: 1 unknown now, 0 not judged now" in text
     assert "### New findings (1)" in text
     assert tables(text)[1][1][2] == "15.00 s"
     assert [row[-1] for row in tables(text)[2][1:]] == [

@@ -162,7 +162,7 @@ def test_of_many_drives_most_must_be_decided() -> None:
     ("now", "why"),
     [
         ([verdict("unknown", t_start_ns=None), verdict("pass", rule_id="ukhc.spare", profile=None)], "1 unknown now"),
-        ([verdict("pass", rule_id="ukhc.spare", profile=None)], "1 not looked at"),
+        ([verdict("pass", rule_id="ukhc.spare", profile=None)], "1 not judged now"),
     ],
 )
 def test_what_is_gone_but_not_fixed_is_no_pass(now: list[dict[str, Any]], why: str) -> None:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 DIFF_STATUSES: Final = ("new", "changed", "unchanged", "fixed", "elsewhere", "unknown", "lost")
 """Of NEW's findings: new, changed, unchanged. Of BASE's that NEW has not: fixed (kept there, or never applicable), elsewhere (the rule
 fails there at another step or place), unknown (NEW cannot tell), lost (NEW did not look there). None of the last three is fixed."""
-NOT_FIXED: Final = {"unknown": "unknown now", "lost": "not looked at", "elsewhere": "still failing elsewhere"}
+NOT_FIXED: Final = {"unknown": "unknown now", "lost": "not judged now", "elsewhere": "still failing elsewhere"}
 """Status of a finding that is gone but not fixed -> words."""
 GATE_VERSION: Final = 1
 """Version of the file: raised when a key changes its meaning or goes."""

@@ -186,9 +186,7 @@ class Container:
 
     def _refuse_second_file(self, view: memoryview, at: int) -> None:
         if bytes(view[at : at + len(MAGIC)]) == MAGIC:
-            raise TraceError(
-                f"{self.path}: a second MCAP file begins at byte {at}: split the two, and use each by itself"
-            )
+            raise TraceError(f"{self.path}: a second MCAP file begins at byte {at}: split the two, use each by itself")
 
     def _refuse_second_file_within(self, view: memoryview, start: int, end: int) -> None:
         """Refuse a file of which lost bytes hold the beginning of another: what comes then may be of another drive."""
@@ -363,12 +361,10 @@ class Container:
                 message = f"the index counts {told}: these are read, and missing messages are lost"
                 self.findings.append(QualityFinding("index_mismatch", "error", message))
         if self._unprotected:
-            message = f"chunks without a CRC: {self._unprotected}: flipped bits in them cannot be detected"
+            message = f"chunks without a CRC: {self._unprotected}: flipped bits in them go undetected"
             self.findings.append(QualityFinding("unprotected", "info", message, self._unprotected))
         elif self._loose and not self._data_crc:
-            message = (
-                f"messages outside of chunks, without a CRC: {self._loose}: flipped bits in them cannot be detected"
-            )
+            message = f"messages outside of chunks, without a CRC: {self._loose}: flipped bits in them go undetected"
             self.findings.append(QualityFinding("unprotected", "info", message, self._loose))
 
 
