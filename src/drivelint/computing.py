@@ -46,7 +46,7 @@ def resident_bytes(process: int | None = None) -> int:
 
 
 def _content(path: str) -> bytes:
-    """Return what a file of the system says; many times a second, a path object costs more than the file."""
+    """Return the content of a system file; many times a second, a path object costs more than the file."""
     file = os.open(path, os.O_RDONLY)
     try:
         return os.read(file, 1024)

@@ -97,7 +97,7 @@ class TraceError(DriveLintError):
 
 
 class ChangedLogError(TraceError):
-    """A log that changed while it was judged: no verdict is about what is there now."""
+    """A log that changed while it was judged: no verdict is about its present content."""
 
 
 class InternalError(DriveLintError):
@@ -116,7 +116,7 @@ _NO_MEMORY: Final = (
 
 
 def of_the_machine(error: Exception) -> tuple[str, ExitCode] | None:
-    """Return what to say of an error that is no fault of the program, and the exit code; None: it is one.
+    """Return the message and the exit code for an error that is no fault of the program; None: it is a fault.
 
     A limit of memory strikes anywhere, also where a library is loaded or a thread begins, and each library says it in its own words.
     """

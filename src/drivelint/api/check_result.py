@@ -155,7 +155,7 @@ class CheckResult(TableSet):
 
     @typed
     def timeline(self, finding: str) -> Timeline:
-        """Return what happened around a finding over time: gap, speeds, accelerations, and what its rule measured.
+        """Return a finding over time: gap, speeds, accelerations, and the measure of its rule.
 
         `finding`: its id or how it begins; or a rule, or rule@drive. `.plot()` shows it. Errors: `DriveLintError`.
         """

@@ -31,7 +31,7 @@ class Explained:
         return "\n".join(line.rstrip() for line in captured.get().splitlines())
 
     def data(self) -> dict[str, Any]:
-        """Return what `--format json` prints, as plain data: the numbers in full."""
+        """Return the output of `--format json` as plain data: the numbers in full."""
         told: dict[str, Any] = json.loads(text.to_json(self._explanation))
         return told
 

@@ -41,7 +41,7 @@ class StoreError(DriveLintError):
 
 
 class Object(NamedTuple):
-    """An object of a store: its URL, its size in bytes, and its ETag, which changes with what it holds."""
+    """An object of a store: its URL, its size in bytes, and its ETag, which changes with its content."""
 
     url: str
     size: int
@@ -189,7 +189,7 @@ def download(bucket_object: Object, folder: Path) -> Path:
 
 
 def _listed(client: Any, prefix: str) -> Iterator[Any]:
-    """Yield what a store tells of each object below a prefix, page after page; a page that was cut off is asked for again."""
+    """Yield the objects below a prefix of a store, page after page; a page that was cut off is requested again."""
     last: str | None = None
     for attempt in range(_ATTEMPTS):
         try:

@@ -59,7 +59,7 @@ class Claims:
             self._results.delete([f"claims/owners/{self._owner}.json"])
 
     def claimed_drives(self, todo: Iterable[AuditDrive]) -> Iterator[AuditDrive]:
-        """Yield the drives that this audit gets in one pass over `todo`, what is to be judged by all.
+        """Yield the drives that this audit gets in one pass over `todo`, the drives to be judged by all audits.
 
         `n_waiting` is then how many somebody else has who is alive: after a while they are done, or free. This never waits itself, as
         what is judged meanwhile is said to be done by whoever takes the drives.
@@ -92,7 +92,7 @@ class Claims:
             self._results.write(_name(drive), b'{"owner": ""}\n')
 
     def _take(self, drive: AuditDrive) -> tuple[Claim, str]:
-        """Claim a drive. Return whose it is now, and the id of its owner, '' where it is done."""
+        """Claim a drive. Return the outcome of the claim, and the id of the drive's owner, '' if the drive is done."""
         if self._results.create(_name(drive), self._claim()):
             return Claim.THIS_AUDIT, self._owner
         content = self._results.read(_name(drive))

@@ -82,7 +82,7 @@ def ready(dest: str, out: str, run: str) -> None:
 def write(
     con: duckdb.DuckDBPyConnection, results: ResultStore, home: Path, dest: str, *, run: str, digest: str | None
 ) -> DeltaChange:
-    """Make the Delta tables in `dest` have what the packed tables have, each by one commit, where they differ.
+    """Make the Delta tables in `dest` equal to the packed tables, each by one commit, where they differ.
 
     `con`: has the views of `create_views`; `home`: has their copies. `digest`: that of the audit's summary. Only one process may write
     an audit's tables at a time. Errors: `UsageError` for a table of somebody else; `OutputError`.

@@ -100,7 +100,7 @@ class Driver:
             self.busy()
 
     def _after_loss(self, task: Task, why: str) -> list[Task]:
-        """Return what is to be done again: the drives of a lost task one by one; a drive alone until it is quarantined."""
+        """Return the tasks to repeat: the drives of a lost task one by one; a drive alone until it is quarantined."""
         attempts = task.attempts + 1
         if len(task.drives) > 1:
             return [replace(task, drives=(drive,), attempts=attempts) for drive in task.drives]

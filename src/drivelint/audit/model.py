@@ -48,7 +48,7 @@ class AuditDrive:
     options_id: str = ""
 
     def with_ids(self, size: int, stamp: str, run_id: str, options_id: str) -> AuditDrive:
-        """Return the drive with what was found of its log, and its ids."""
+        """Return the drive with the data of its log, and its ids."""
         source_id = digest([run_id, options_id, self.log, size, stamp, self.tags])
         return replace(self, size=size, stamp=stamp, source_id=source_id, options_id=options_id)
 
@@ -110,7 +110,7 @@ class Receipt:
     options: str = ""
     n_in_batch: int = 1
     reused: bool = False
-    """It was there already. This is said of this run only and never stored."""
+    """The result existed before. This is only for this run and is never stored."""
     version: int = RECEIPT_VERSION
 
     def to_json(self) -> bytes:

@@ -89,7 +89,7 @@ class AuditRequest(DriveInput):
 
 
 def audit(request: AuditRequest, progress: Progress, executor: Executor | None = None) -> AuditSummary:
-    """Judge every drive of the sources that has no result yet, and return what all drives of the sources come to.
+    """Judge every drive of the sources without a result, and return the summary of all drives of the sources.
 
     Errors: `UsageError`, `RuleError`, `TraceError` for what was asked; `OutputError` where results cannot be written. Whatever ends
     it, what was judged stays, and the same command goes on with the rest.
@@ -158,7 +158,7 @@ def _audited(
 
 
 def _doubtful_tags(con: duckdb.DuckDBPyConnection) -> Iterator[str]:
-    """Yield what is said of tags that have the name of a condition, or nearly that of a column that is no tag."""
+    """Yield warnings about tags with the name of a condition, or nearly that of a column that is no tag."""
     rows = con.execute("SELECT DISTINCT unnest(map_keys(tags)) FROM _listed ORDER BY 1").fetchall()
     names = [name for (name,) in rows]
     if conditions := listed([f"column {name}" for name in names if name in CONDITION_VALUES]):
@@ -177,7 +177,7 @@ def _judge(
     id_: str,
     executor: Executor | None,
 ) -> AuditSummary:
-    """Have the listed drives judged that have no receipt; return what those come to."""
+    """Have the listed drives without a receipt judged; return their summary."""
     audit_summary, fresh = AuditSummary(), 0
     claims = Claims(results, request.lease_s) if request.claim else None
 
@@ -226,7 +226,7 @@ def _settings_of_workers(request: AuditRequest) -> JudgeSettings:
 
 
 def _compact_apart(out: str) -> None:
-    """Pack what is whole in a process of its own, so that what its libraries keep does not add up in the driver. Errors: as `compact`."""
+    """Pack the complete results in a process of its own, so that memory of its libraries does not add up in the driver. Errors: as `compact`."""
     context = multiprocessing.get_context("spawn")  # a fork would copy threads that hold locks
     with (
         suppress(BrokenProcessPool),  # what a killed process has not packed is packed the next time
@@ -277,7 +277,7 @@ def _write_delta(
     id_: str,
     audit_summary: AuditSummary,
 ) -> None:
-    """Make the Delta tables have what was packed. Of an audit without all its parts they would look like those of a whole one."""
+    """Write the packed results to the Delta tables. With some parts missing, they would look like those of a complete audit."""
     if audit_summary.missing_parts:
         progress.note(f"{dest}: the Delta tables stay as they are: parts of the audit have not ended")
         return
@@ -319,7 +319,7 @@ def _absent(con: duckdb.DuckDBPyConnection, results: ResultStore, request: Audit
 
 
 def _begin(request: AuditRequest, results: ResultStore, id_: str) -> bool:
-    """Write down what decides the results, or make sure that the audit that is there has the same.
+    """Write the settings that decide the results, or check that the existing audit has the same.
 
     Return whether that audit had ended, and its files are as they were then. Errors: `UsageError` for an audit by other rules,
     parameters or versions, and for one whose files were changed since it ended.
@@ -345,7 +345,7 @@ def _begin(request: AuditRequest, results: ResultStore, id_: str) -> bool:
 
 
 def told_of(results: ResultStore, dest: str) -> dict[str, Any] | None:
-    """Return what `audit.json` says; None: no audit is there. `dest`: where, for the error. Errors: `UsageError` for a damaged file."""
+    """Return the content of `audit.json`; None: no audit. `dest`: where, for the error. Errors: `UsageError` for a damaged file."""
     content = results.read(AUDIT_FILE)
     try:
         told = None if content is None else json.loads(content)

@@ -48,7 +48,7 @@ def unseal(results: ResultStore) -> None:
 
 
 def require_unchanged(results: ResultStore, home: Path, dest: str) -> bool:
-    """Refuse an audit whose files are not as they were when it ended; return whether it has the list of them.
+    """Refuse an audit whose files have changed since it ended; return whether it has the list of them.
 
     One without a list has not ended, or is of an older version. `home`: for copies. Errors: `UsageError`, which names the first of
     these files; `OutputError`.
@@ -101,7 +101,7 @@ def _names(results: ResultStore) -> set[str]:
 
 
 def require_rows_unchanged(results: ResultStore, dest: str, *, packed: bool) -> None:
-    """Refuse an audit in which a drive's rows are not those of its receipt. Not while anybody packs.
+    """Refuse an audit in which a drive's rows are not those of its receipt. Not while another process packs.
 
     `packed`: look at packed results, too, besides those that are not packed yet. Errors: `UsageError`, which names the first such
     log, or a file that cannot be read; `OutputError`.

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
 OPTION_COLUMNS: Final = ("log", "map", "ego", "environment", "handedness", "mapping", "topic")
-"""Columns of a manifest that are no tags: the log, its map, its ego, what holds in the drive (`weather=wet;light=night`), and options."""
+"""Columns of a manifest that are no tags: the log, its map, its ego, conditions (`weather=wet;light=night`), and options."""
 _SIDES: Final = ("auto", "lht", "rht")
 _TABLE_NEVER_HAS: Final = frozenset({"map", "environment", "handedness", "mapping"})
 """Columns of a manifest that no table of states has."""
@@ -208,7 +208,7 @@ def _of_manifest(path: Path, manifest_name: str, options: DriveInput) -> Iterato
 
 
 def _require_values(row: Mapping[str, str], options: DriveInput) -> None:
-    """Refuse what a drive could not be judged with, so that no drive is judged before somebody mends it. Errors: `UsageError`."""
+    """Refuse options that make judging impossible, before any drive is judged. Errors: `UsageError`."""
     try:
         conditions.parse((*options.env, *_parts(row.get("environment", ""))))
     except UsageError as error:
@@ -223,7 +223,7 @@ def _parts(environment: str) -> tuple[str, ...]:
 
 
 def _rows(path: Path) -> Iterator[dict[str, str]]:
-    """Yield the rows of a manifest as text, empty for what is not there."""
+    """Yield the rows of a manifest as text, empty for missing cells."""
     try:
         if path.suffix.lower() == ".parquet":
             with path.open("rb") as opened, pq.ParquetFile(opened) as file:

@@ -104,7 +104,7 @@ class AuditSummary:
         return {_NAMES_IN_FILE.get(name, name): value for name, value in vars(self).items()}
 
     def plus(self, second: AuditSummary) -> AuditSummary:
-        """Return what both come to together, but for what is only told of a whole audit."""
+        """Return the sums of both, without the counts that only a whole audit has."""
         names = (
             "n_drives",
             "n_judged",
@@ -145,7 +145,7 @@ class AuditSummary:
 
 
 def summed_receipts(con: duckdb.DuckDBPyConnection, of: str) -> AuditSummary:
-    """Return what these receipts come to; `of`: a relation with the columns of `receipts`."""
+    """Return the sums of these receipts; `of`: a relation with the columns of `receipts`."""
     (row,) = con.execute(statement("audit/summed", of=of)).to_arrow_table().to_pylist()
     return AuditSummary(**row, failed=dict(con.execute(statement("audit/failed", of=of)).fetchall()))
 
@@ -166,7 +166,7 @@ def logs_that_are(con: duckdb.DuckDBPyConnection, flag: str) -> LogList:
 
 
 def summed(con: duckdb.DuckDBPyConnection, n_reused: int) -> AuditSummary:
-    """Return what all drives that have receipts come to; `n_reused`: those that had one before."""
+    """Return the sums of all drives with receipts; `n_reused`: those that had one before."""
     create_counted_views(con)
     event = statement("fleet/event", of=COUNTED_PREFIX, least_share=str(LEAST_SHARE))
     broken, contacts, unknown_for, not_judged = (

@@ -117,7 +117,7 @@ def _copies(audit_summary: AuditSummary, out: str) -> Iterator[str]:
 
 
 def _repeated(row: dict[str, Any]) -> str:
-    """Return what a result is whose log has another one before."""
+    """Return why a result is a repetition: its log has another result before."""
     if row["log"] != row["other"]:
         return f"a copy of {row['other']}"
     if row["same_options"]:

@@ -56,7 +56,7 @@ CATEGORIES = ("clean", "violation", "boundary", "not_applicable", "unknown")
 
 
 class CaseResult(NamedTuple):
-    """One case: its name, whether what came out is what it expects, and the difference if not."""
+    """One case: its name, whether its outcome is the expected one, and the difference if not."""
 
     name: str
     ok: bool

@@ -96,7 +96,7 @@ def watch(
     say: Say,
     over: Event,
 ) -> ExitCode:
-    """Test the rules, and then, until `over` is set, each whose file or cases were changed; return what the last test came to."""
+    """Test the rules, and then, until `over` is set, each rule whose file or cases were changed; return the result of the last test."""
     code, before = test(root, only, say), _stamps(root)
     say("waiting for changes; press Ctrl-C to end")
     while not over.wait(_LOOK_S):

@@ -50,7 +50,7 @@ class MutationResult(NamedTuple):
 
     @property
     def unlisted(self) -> tuple[str, ...]:
-        """Survivors for which nobody gave a reason."""
+        """Survivors without a reason."""
         return tuple(fault for fault in self.survivors if fault not in self.listed)
 
     @property

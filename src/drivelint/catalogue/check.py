@@ -68,7 +68,7 @@ class _Text(NamedTuple):
         return f"{self.file}:{self.line + before.count(10)}"
 
     def of(self, error: duckdb.Error) -> str:
-        """Return file:line of what DuckDB complains about."""
+        """Return file:line of DuckDB's error."""
         line = re.search(r"^LINE (\d+):", str(error), re.MULTILINE)
         return f"{self.file}:{self.line + (int(line[1]) - 1 if line else 0)}"
 
@@ -89,7 +89,7 @@ def refuse(problems: Sequence[str]) -> None:
 
 
 def complaint(error: duckdb.Error) -> str:
-    """Return what DuckDB complains about in one line, with the names that it takes for meant, without the part of the SQL."""
+    """Return DuckDB's error in one line, with the names that it suggests, without the part of the SQL."""
     said = re.split(r"^LINE \d+:", str(error), maxsplit=1, flags=re.MULTILINE)[0]
     return " ".join(said.split())
 
@@ -107,7 +107,7 @@ def complained_line(error: duckdb.Error, text: str) -> int | None:
 
 @lru_cache(maxsize=2048)  # a process that judges twice reads the same rules again
 def check_query(sql: str, file: str, line: int = 1) -> Query:
-    """Check the SQL of one section, which begins at `line` of `file`, and return what it is made of.
+    """Check the SQL of one section, which begins at `line` of `file`, and return its parts.
 
     Errors: `RuleError` with file and line when it is not exactly one SELECT, or reads, calls or is built of anything that
     `allowed_sql` does not name, or has a CTE named like a table of ours or like the engine's own (`_...`).
@@ -162,7 +162,7 @@ def _parameter(sql: str, name: str) -> int | None:
 
 
 class _SyntaxFindings:
-    """Keeps what is not allowed in a syntax tree (`refusals`), the tables read (name -> file:line), the columns and the reasons."""
+    """Collects forbidden elements of a syntax tree (`refusals`), the tables read (name -> file:line), the columns and the reasons."""
 
     def __init__(self, text: _Text) -> None:
         self._text = text

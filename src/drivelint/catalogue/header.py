@@ -190,7 +190,7 @@ def _parts(name: str) -> list[str]:
 
 
 def _kind_problems(h: Header) -> Iterator[tuple[str, str]]:
-    """Yield the key and what is wrong with it: fields that do not go with the kind or the sense."""
+    """Yield keys with their problems: fields that do not go with the kind or the sense."""
     later, measured = h.kind in {"precondition", "postcondition"}, h.sense != "holds"
     if later != (h.subtype is not None):
         key = "subtype" if h.subtype else "kind"

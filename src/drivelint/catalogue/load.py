@@ -106,7 +106,7 @@ def _known_rule(file: Path, pack: str, pack_title: str, content: bytes, *, with_
 
 @cache
 def _title(folder_: Path) -> str:
-    """Return what a pack is about, as its `pack.toml` says; '' where it has none. Errors: `RuleError`."""
+    """Return the title of a pack from its `pack.toml`; '' if it has none. Errors: `RuleError`."""
     file = folder_ / "pack.toml"
     if not file.is_file():
         return ""

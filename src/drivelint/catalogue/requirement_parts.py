@@ -52,7 +52,7 @@ def parts_path(rule: Rule) -> Path:
 
 
 def read_parts(rule: Rule) -> RequirementParts | None:
-    """Return what a rule's requirement is made of; None: no file says it.
+    """Return the parts of a rule's requirement; None: no file defines them.
 
     Errors: `RuleError` for a file that cannot be understood, or that reads, binds or returns what it may not.
     """

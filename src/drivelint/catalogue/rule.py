@@ -23,7 +23,7 @@ class Rule(Header, frozen=True, forbid_unknown_fields=True, kw_only=True):
     quantities: frozenset[str]
     """What of the actors it uses (position, size, ...), as the columns that it reads declare."""
     is_named: bool = True
-    """The user named this rule. It is unknown where the log lacks a signal that it needs; a rule that nobody named does not apply there."""
+    """The user named this rule. If the log lacks a signal that it needs, it is unknown; without being named, it does not apply."""
     occasion_needs: frozenset[str]
     """Tables without whose rows it has no reference point or, if it is an invariant with @applies, no step to judge."""
 

@@ -26,7 +26,7 @@ RULE_NAME = re.compile(r"[a-z0-9][a-z0-9._-]*")
 SECTIONS = ("applies", "reference", "condition", "anchor")
 _MARK = re.compile(r"^--\s*@(\S+)\s*$")
 _HIDDEN = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]")
-"""Characters that end a line unseen, steer a terminal or turn the order of what is read."""
+"""Characters that end a line invisibly, control a terminal or reverse the reading order."""
 _KEYS = ("drive_id", "ego_id", "t_ns")
 _MEASURES = ("object_id", "ref_id", "profile", "observed", "required", "holds", "applies", "at_least", "error")
 _CONDITION = (*_KEYS, *_MEASURES, "reason_code", "reason")

@@ -88,7 +88,7 @@ class CheckReceipts:
             self._key = question_sha256({**counted, "places": places})
 
     def earlier(self) -> store.Receipt | None:
-        """Write what an earlier run of the same inputs wrote, and return its receipt; None: there is none.
+        """Write the output of an earlier run with the same inputs, and return its receipt; None: there is none.
 
         Errors: as those of any run whose folder cannot be written.
         """
@@ -115,7 +115,7 @@ class CheckReceipts:
 
     @contextmanager
     def recording(self) -> Iterator[None]:
-        """Record what is read inside the block, if the run may be kept."""
+        """Record the files that are read inside the block, if the run may be kept."""
         if self._key is None:
             yield
             return

@@ -1,4 +1,4 @@
-"""The standard streams of the command: lines on stderr, and a stdout that may be closed or full, or that nobody reads."""
+"""The standard streams of the command: lines on stderr, and a stdout that may be closed, full or without a reader."""
 
 from __future__ import annotations
 

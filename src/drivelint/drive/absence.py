@@ -65,7 +65,7 @@ class Absence(NamedTuple):
 
 
 def asked_ego(recording: Recording, ego_option: str | None) -> str | None:
-    """Return whom the user asks for as the ego, now or when the log was converted; None: whom the log names."""
+    """Return the ego that the user chose, now or when the log was converted; None: the ego that the log names."""
     if ego_option is None and any(finding.check_id == EGOS_CHOSEN for finding in recording.findings):
         return ALL_EGOS
     return ego_option
@@ -135,7 +135,7 @@ def _absence(name: str, t_ns: Times, span: tuple[int, int], ends_apart_ns: int, 
 
 
 def frames_without_states(recording: Recording, missed: Sequence[Absence]) -> Times:
-    """Return the times of frames that came while an ego was absent, and in which nobody else is (states as read)."""
+    """Return the times of frames that came while an ego was absent, and that have no other actor (states as read)."""
     if recording.frames_ns is None or not missed:
         return np.zeros(0, np.int64)
     within = np.any([each.stretch_of(recording.frames_ns) >= 0 for each in missed], axis=0)
@@ -216,7 +216,7 @@ def absence_findings(missed: Sequence[Absence], states: States) -> list[QualityF
 
 
 def without_choices(findings: Sequence[QualityFinding]) -> list[QualityFinding]:
-    """Return findings without those on whom the user chose when the log was converted."""
+    """Return findings without those about the ego that the user chose when the log was converted."""
     return [finding for finding in findings if finding.check_id not in {EGO_CHOSEN, EGOS_CHOSEN}]
 
 

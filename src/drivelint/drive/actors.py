@@ -109,7 +109,7 @@ def from_table(table: pa.Table, states: States, alias: Mapping[str, str]) -> Act
 
 
 def resolve_sizes(states: States, actors: Actors) -> list[QualityFinding]:
-    """Turn or drop the sizes of boxes that are wider than long, in place; doubt those that nobody has. `states` in order."""
+    """Exchange or drop the sizes of boxes that are wider than long, in place; doubt impossible sizes. `states` in order."""
     length, width = actors.sizes["length_m"], actors.sizes["width_m"]
     long_kind = np.array([kind in LONG_CLASSES for kind in actors.classes], np.bool_)
     wide = long_kind & (width > WIDER_SHARE * length)

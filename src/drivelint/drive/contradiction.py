@@ -1,4 +1,4 @@
-"""Makes unknown what a log says about an actor that cannot all be true.
+"""Makes values of an actor unknown that contradict each other.
 
 Positions decide over velocities and headings as long as they are a track. Where a position jumps, or stands while the velocity
 moves on, the state is unknown (no position, heading or velocity). A track that goes on elsewhere after a jump is another actor's.
@@ -73,7 +73,7 @@ LARGEST_HALF_BOX_M: Final = 6.0
 def resolve(
     states: States, step: Steps, actors: Actors, *, derived: bool, split_tracks: SplitTracks = NO_SPLIT
 ) -> list[QualityFinding]:
-    """Make what contradicts the motion unknown, in place (states in order, velocities complete).
+    """Make values unknown that contradict the motion, in place (states in order, velocities complete).
 
     `derived`: velocities come from the positions, and contradict nobody. `split_tracks`: what was not believed before.
     """
@@ -191,7 +191,7 @@ def _apart(states: States, step: Steps, usable: Mask) -> tuple[Floats, Floats]:
 
 
 def _drifts(rest: Floats, step: Steps) -> bool:
-    """Look at every half second only: whether anybody's velocities may lead away from its positions at all."""
+    """Examine only every half second: whether the velocities of any actor may lead away from its positions."""
     stride = max(1, round(WINDOW_S * 1e9 / step.period_ns)) if step.period_ns else 1
     way = np.cumsum(rest, axis=1)[:, ::stride]
     # a one-second window spans at most three strides, so one of them has at least a third of its difference
@@ -251,7 +251,7 @@ def _around(states: States, pieces: NDArray[np.integer], rows: Indices) -> tuple
 
 
 def _leads(states: States, rows: Mask) -> Mask:
-    """Keep those rows around which the positions lead on as the speed says: what trembles on the spot has no direction."""
+    """Keep the rows around which the positions advance as the speed states: an actor that trembles on the spot has no direction."""
     marked_rows = np.flatnonzero(rows)
     first, last = _around(states, states.actor, marked_rows)
     place, speed = states.place, np.hypot(*states.velocity[:, marked_rows])

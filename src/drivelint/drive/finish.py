@@ -183,7 +183,7 @@ def with_quality_finding(trace: Trace, finding: QualityFinding) -> Trace:
 
 
 def with_condition_of_map(trace: Trace, condition: str, word: str | None) -> Trace:
-    """Return the trace with what its map says of this condition, where neither the user nor the log says anything."""
+    """Return the trace with the map's value of this condition, if neither the user nor the log states it."""
     rows = trace.tables["drive_condition"]
     if word is None or condition in rows["condition"].to_pylist():
         return trace

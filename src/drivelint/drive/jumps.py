@@ -31,13 +31,13 @@ JUMP_MPS2: Final = 10.0
 """A step is a jump if it is longer than both its neighbours foretell by 3 m + 10 m/s2 dt2: no tyre does that, and a full stop
 within one sample of 0.1 s, as simulators have it, only from more than 30 m/s."""
 OUTLIER_S: Final = 2.0
-"""A piece of a track between two jumps that is shorter than this is an outlier; a longer one is somebody's track."""
+"""A piece of a track between two jumps that is shorter than this is an outlier; a longer one is the track of an actor."""
 LARGEST_CORRECTION_M: Final = 10.0
 LARGEST_SIDE_CORRECTION_M: Final = 1.5
 CORRECTION_SPEED_CHANGE_MPS: Final = 3.0
 """A jump within these distances along the lane and to the side (not to another lane), at nearly the same velocity, corrects the track."""
 MOVING_MPS: Final = 1.0
-"""Below this the direction of motion is noise, and the heading is what there is."""
+"""Below this speed the direction of motion is noise, and the heading is used."""
 MOTION_COLUMNS: Final = ("vx_mps", "vy_mps", "ax_mps2", "ay_mps2")
 SAME_PLACE_M: Final = 0.01
 """Centres nearer than this are in one place."""

@@ -182,7 +182,7 @@ def _suspicious(states: States, k: int) -> bool:
 
 
 def _acceleration(states: States, starts: Indices) -> list[QualityFinding]:
-    """Take accelerations that are zero for every actor, although velocities change, for what they are: not recorded."""
+    """Treat accelerations that are zero for every actor, although velocities change, as not recorded."""
     ax, ay = states.numbers["ax_mps2"], states.numbers["ay_mps2"]
     has_acceleration = ~(np.isnan(ax) & np.isnan(ay))
     if not has_acceleration.any() or (ax[has_acceleration] != 0.0).any() or (ay[has_acceleration] != 0.0).any():

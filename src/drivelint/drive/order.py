@@ -40,7 +40,7 @@ def sorted_states(states: States) -> States:
 
 
 def without_duplicates(states: States) -> tuple[States, list[QualityFinding]]:
-    """Keep one of several states of an actor at one time (states in order): what they do not agree on is unknown.
+    """Keep one of several states of an actor at one time (states in order): values that differ are unknown.
 
     An actor that is in two places, or has two headings or velocities, is present and has none.
     """

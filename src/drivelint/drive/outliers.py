@@ -28,7 +28,7 @@ TYRE_MPS2: Final = 12.0
 SAME_SPEED_SHARE: Final = 0.25
 """A step of the positions changes the velocity by at most this share of the apparent velocity change during the step."""
 COMMON_LEAST: Final = 4
-"""So many moving actors whose speeds dip or rise alike at one moment show an error of the recorder's clock or places, not their driving."""
+"""If this many moving actors change speed alike at one moment, the recorder's clock or places are wrong, not their driving."""
 ALIKE_SHARE: Final = 0.8
 COMMON_CHANGE: Final = 0.12
 COMMON_SPREAD: Final = 0.08
@@ -142,7 +142,7 @@ def _stepped(moves: _Moves, has_velocity: Mask, sigma: Floats, error: Floats, be
 
 
 def _can_change_velocity(velocity: Floats, later_velocity: Floats, time_s: Floats, error_mps: Floats) -> Mask:
-    """Say whether somebody can have gone from one velocity to the other in that time."""
+    """Return whether an actor can have changed from one velocity to the other in that time."""
     can: Mask = np.hypot(*(velocity - later_velocity)) <= TYRE_MPS2 * time_s + SIGMAS * error_mps
     return can
 

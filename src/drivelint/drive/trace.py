@@ -54,7 +54,7 @@ class EgoSize(NamedTuple):
 
 
 ASSUMED_MOTION = "assumed_motion"
-"""The check of a log whose mapping gives speeds and lanes that nobody measured."""
+"""The check of a log whose mapping assumes speeds and lanes."""
 ASSUMED_SIZE = "assumed_size"
 """The check, information only, of a size that the log does not record; a converted log carries it, and so does a clip."""
 TURNED_FRAME = "turned_frame"
@@ -75,7 +75,7 @@ FOUND_ANEW = frozenset({
 })  # fmt: skip
 """Checks of the states: a log that was converted as it was recorded says what they found, and whoever reads it finds that anew."""
 LOSS_CHECKS = ("dropped_row", "malformed_row")
-"""Checks that found parts of the log that could not be read, whatever their severity: what is judged is what was left.
+"""Checks for parts of the log that could not be read, whatever their severity: only the rest is judged.
 
 An error of any other check is a loss too."""
 
@@ -179,7 +179,7 @@ class Doubt(NamedTuple):
 
 @dataclass(frozen=True)
 class QualityFinding:
-    """One row of `quality`, still without its drive, and what it makes doubtful."""
+    """One row of `quality`, still without its drive, and the values that it makes doubtful."""
 
     check_id: str
     severity: Severity

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 LARGEST_ERROR_MPS: Final = 0.25
-"""Three standard errors of a velocity component that counts as known: half of what standing is (`standing_mps`)."""
+"""Three standard errors of a velocity component that counts as known: half of the speed that counts as standing (`standing_mps`)."""
 HALF_WIDTHS_S: Final = (0.25, 0.5, 1.0)
 """Half widths of the filter, after central differences; a braking of 10 m/s3 of jerk is 0.06, 0.25 and 1 m/s off in its middle."""
 LONGEST_PERIOD_NS: Final = 210_000_000

@@ -29,7 +29,7 @@ LENGTH_TOLERANCE_M: Final = 0.1
 """What a step may be longer or shorter there. UTM's metre is 0.9996 to 1.001 of one on the ground, a local projection's 1."""
 SAME_M: Final = 0.01
 FAR_M: Final = 10_000.0
-"""An offset of more than this is no mistake of somebody who drives beside the road."""
+"""An offset of more than this is not that of a driver beside the road."""
 
 
 def move_into_map_frame(trace: Trace, environment: MapTables) -> Trace:

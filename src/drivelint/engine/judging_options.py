@@ -12,7 +12,7 @@ from drivelint.evaluate.limits import DEFAULT_TIMEOUT_S
 
 @dataclass(frozen=True, kw_only=True)
 class JudgingOptions(DriveInput):
-    """By which rules and profiles drives are judged, what their findings mean for the exit code, and what it may cost."""
+    """The rules and profiles of a run, the effect of findings on the exit code, and the limits of memory and time."""
 
     rules: tuple[str, ...] = ()
     ignore: tuple[str, ...] = ()

@@ -93,7 +93,7 @@ class MapLibrary:
         return environment, with_condition_of_map(trace, "nation", environment.nation)
 
     def _in_its_frame(self, environment: MapTables, trace: Trace) -> tuple[Trace, str | None]:
-        """Return the drive in the map's frame, and what shows that it is of another place.
+        """Return the drive in the map's frame, and the evidence that it is of another place.
 
         What the references say is not taken where it leads away from the map, and the coordinates as they are do not; nor what the
         same one says of `<offset>`: a log that says no offset of its own mostly has the coordinates of the file. A log without a reference
@@ -229,7 +229,7 @@ class MapLibrary:
 
 
 def _elsewhere(environment: MapTables, lanes: shapely.STRtree, states: pa.Table) -> str | None:
-    """Return what shows that the map is of another place than the drive, or None."""
+    """Return the evidence that the map is of another place than the drive, or None."""
     drive, roads = _extent(states), _extent(environment.tables["lane_point"])
     if drive is None or roads is None:
         return None

@@ -291,7 +291,7 @@ class JudgingSession:
         self._con.execute(f"ATTACH {store.quoted(path)} AS kept")
 
     def _keep(self, tables: Iterable[str], *, again: bool = False) -> None:
-        """Copy tables to the kept database; `again`: what is the same for all parts of a drive is there already."""
+        """Copy tables to the kept database; `again`: rows that are the same for all parts of a drive are there already."""
         if not self._kept:
             return
         for table in tables:
@@ -314,7 +314,7 @@ class JudgingSession:
             self._con.execute(f"DELETE FROM kept.{table} WHERE list_contains(?, drive_id)", [list(ids)])
 
     def _forget_copies(self, ids: Sequence[str]) -> None:
-        """Delete what the database has of these drives; a kept one never had copies."""
+        """Delete the rows of these drives from the database; a kept database never had copies."""
         store.recreate_empty(self._con, self._filled("drive", "part"))
         for table in store.tables_of_lifetime("run"):
             if "drive_id" in store.column_comments()[table]:

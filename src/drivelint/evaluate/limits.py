@@ -73,7 +73,7 @@ class RuleLimits:
     ) -> None:
         self.seconds = seconds
         self.batches = 1.0
-        """How many batches what is judged makes, if it is more than one: a long drive is not cut."""
+        """The number of batches that the judged drive makes, if more than one: a long drive is not cut."""
         self.memory: Callable[[], int | None] = lambda: None
         """Bytes by which the process may grow while a rule runs alone, at present; None: any number."""
         self._task = task
@@ -84,7 +84,7 @@ class RuleLimits:
 
     @property
     def allowed_s(self) -> float | None:
-        """Seconds that a rule may compute on what is judged at present."""
+        """Seconds that a rule may compute on the present drives."""
         return None if self.seconds is None else self.seconds * max(1.0, self.batches)
 
     def excess_of(self, rule_id: str) -> Excess | None:

@@ -1,4 +1,4 @@
-"""Why one verdict is what it is: clause, SQL and numbers behind it, what would change it, and how sure it is.
+"""Explains one verdict: clause, SQL and numbers behind it, changes that would change it, and how sure it is.
 
 `explain` judges the drive again by that rule alone, from the kept database or from the log.
 """

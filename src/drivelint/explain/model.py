@@ -75,7 +75,7 @@ class Sensitivity:
 
 @dataclass(frozen=True)
 class Explanation:
-    """Why one verdict is what it is. Verdicts are those of `verdict`; the numbers are of the deciding step."""
+    """The explanation of one verdict. Verdicts are those of `verdict`; the numbers are of the deciding step."""
 
     rule: Row
     """rule_id, title, clause, hypothesis, kind, severity, legal, status, sense, unit, observes, near_margin."""

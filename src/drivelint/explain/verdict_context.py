@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 SAME_REFERENCE_NS: Final = 2_000_000_000
 """A reference point that moved by no more is the same one."""
 CROP_MARGINS_NS = (20_000_000_000, 60_000_000_000)
-"""How much of a drive around what is explained is enough, if the verdict is the same there; tried in this order."""
+"""Parts of a drive around the explained step, tried in this order until the verdict is the same."""
 _WORST: Final = ("error", "fail", "unknown", "pass", "not_applicable")
 
 

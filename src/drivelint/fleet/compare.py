@@ -62,7 +62,7 @@ def compare(
     new: str = "other_",
     tools: tuple[str | None, str | None] = (None, None),
 ) -> Comparison:
-    """Return the difference of two audits. `base`, `new`: what the names of their views begin with.
+    """Return the difference of two audits. `base`, `new`: prefixes of the names of their views.
 
     A log that is there twice counts once in the views of `drivelint.fleet.distinct_logs`.
 

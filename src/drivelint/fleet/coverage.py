@@ -80,7 +80,7 @@ class Coverage:
 
 
 def coverage(con: duckdb.DuckDBPyConnection, *, of: str = "") -> Coverage:
-    """Return what the drives covered, by the views whose names begin with `of`.
+    """Return the coverage of the drives, by the views whose names begin with `of`.
 
     Failures of one rule by situation are `rates(con, by=SITUATION)`.
     """

@@ -126,7 +126,7 @@ class FleetContent:
 
 
 def content(con: duckdb.DuckDBPyConnection, audit: Audit, base: Audit | None, by: Sequence[str]) -> FleetContent:
-    """Return what there is to say of an audit of `opened`. Errors: `UsageError` for a tag in `by` that no drive has."""
+    """Return the content of the page about an audit of `opened`. Errors: `UsageError` for a tag in `by` that no drive has."""
     share = str(LEAST_SHARE)
     create_counted_views(con)
     event = statement("fleet/event", of=COUNTED_PREFIX, least_share=share)

@@ -134,7 +134,7 @@ class AuditDifference:
 
     @property
     def is_disjoint(self) -> bool:
-        """Whether no drive is in both, so that no finding of one can be held against the other."""
+        """Whether no drive is in both, so that no finding of one can be compared with the other."""
         told = self.comparison
         return not told.drives_both and bool(told.drives_base_only and told.drives_new_only)
 

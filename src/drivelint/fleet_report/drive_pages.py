@@ -95,7 +95,7 @@ def pages(con: duckdb.DuckDBPyConnection, audit: Audit, rules: Mapping[str, Row]
 
 
 def _some(con: duckdb.DuckDBPyConnection, audit: Audit, first: int, last: int) -> Iterator[Row]:
-    """Yield what the template says of each of the drives with these numbers."""
+    """Yield the template's values for each of the drives with these numbers."""
     bound = {"first": first, "last": last}
     facts = rows(con, "page_some", bound, table="page_facts", order="no")
     findings = rows(con, "page_some", bound, table="page_finding", order="no, nth")

@@ -1,4 +1,4 @@
-"""`drivelint what-if`: which verdicts of an audit become others with another value of a parameter."""
+"""`drivelint what-if`: the verdicts of an audit that change with another value of a parameter."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class AskedWhatIf:
 
 
 def ask_what_if(dest: str, setting: str, by: str | None) -> AskedWhatIf:
-    """Return what `RULE.PARAM=VALUE` does to the verdicts of an audit, by the values of a tag.
+    """Return the effect of `RULE.PARAM=VALUE` on the verdicts of an audit, by the values of a tag.
 
     Errors: `UsageError` for an audit, rule, parameter, value or tag that is not there.
     """
@@ -98,7 +98,7 @@ def _used(con: duckdb.DuckDBPyConnection, rule_id: str, param: str) -> tuple[str
 
 
 def to_text(analysis: AskedWhatIf) -> str:
-    """Return the answer for a person: what becomes what, by the values of the tag."""
+    """Return the answer for a person: the changes of verdicts, by the values of the tag."""
     answer = analysis.answer
     lines = [f"{analysis.setting} instead of {analysis.was}, by the verdicts that {analysis.audit.dest} stores"]
     if analysis.audit.warning:
@@ -125,7 +125,7 @@ def _totals(flips: Iterable[Flip]) -> list[tuple[tuple[str, str | None], int]]:
 
 
 def _table(analysis: AskedWhatIf) -> list[str]:
-    """Return a line per value of the tag and profile, with what becomes of its verdicts."""
+    """Return a line per value of the tag and profile, with the changes of its verdicts."""
     flips_by_group: dict[tuple[str, str], list[Flip]] = {}
     for each in sorted(
         analysis.by_value,

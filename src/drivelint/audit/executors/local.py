@@ -117,7 +117,7 @@ class _Worker:
             self.pipe.send(task)
 
     def hear(self) -> Outcome | None:
-        """Return what came of the task; None: it has only begun."""
+        """Return the outcome of the task; None: it has only begun."""
         try:
             told: str | list[Receipt] | Exception = self.pipe.recv()
         except (EOFError, OSError):

@@ -1,4 +1,4 @@
-"""Doubts tracks that are no body of their own: one body in two tracks, a track that begins elsewhere, one that is held at its end.
+"""Doubts tracks that are not separate bodies: one body in two tracks, a track that begins elsewhere, or one that is held at its end.
 
 A tracker may keep a second track of a long vehicle, and a data set may have a rider and the bicycle. Two boxes that lie deep in each
 other from the first sample that both have, at the same velocity, are one body: vehicles that collide were apart before. So are two that
@@ -37,7 +37,7 @@ FARTHEST_REACH_M: Final = 100.0
 FARTHEST_CELL: Final = 10**10
 """Cells of places that cannot be are one: their number times that of the times is a whole number of 64 bits."""
 PAIRS_PER_PART: Final = 1_000_000
-"""So many pairs of boxes are held in memory at once."""
+"""Most pairs of boxes in memory at once."""
 ENTRY_SAMPLES: Final = 3
 """A track that begins somewhere else comes to its place within so many samples."""
 ENTRY_LEAST_MPS: Final = 5.0
@@ -64,7 +64,7 @@ class _Boxes(NamedTuple):
 
 BEGIN_M: Final = 0.3
 BEGIN_MPS: Final = 2.0
-"""Boxes of two that move overlap by so much from the first sample that both have: nobody saw them touch, and their places are in doubt."""
+"""Boxes of two moving actors overlap by this much from the first common sample: no touch was seen, and their places are doubted."""
 BESIDE_M: Final = 0.3
 """Places and headings of tracks tremble by so much."""
 BESIDE_SHARE: Final = 2 / 3
@@ -105,7 +105,7 @@ def same_bodies(states: States, actors: Actors, egos: Collection[str]) -> list[Q
 
 
 def false_entries(states: States, step: Steps) -> list[QualityFinding]:
-    """Return a finding on the first samples of tracks that come to their place by a step that nobody makes."""
+    """Return a finding on the first samples of tracks that reach their place by an impossible step."""
     n = len(states)
     rows = np.zeros(n, np.bool_)
     starts = track_starts(states.actor)

@@ -1,4 +1,4 @@
-"""Doubts what no road user does: a jolt there and back, a step aside and back, a turn on the spot, a pedestrian as fast as a car.
+"""Doubts motion that no road user makes: a jolt and back, a step aside and back, a turn on the spot, a pedestrian as fast as a car.
 
 What is doubted stays as it is recorded; the table `doubt` says of whom, of what and when, and no verdict rests on it. `states` are in
 order, with their velocities completed.
@@ -42,12 +42,12 @@ SPIN_WINDOW_S: Final = 1.0
 SPIN_MPS: Final = 1.0
 """A vehicle turns by no more than its way within a second divided by 3 m, which no turning circle undercuts, and a detector's noise."""
 FASTEST_MPS: Final = {"pedestrian": 12.5, "animal": 30.0, "bicycle": 30.0}
-"""Class -> the fastest that anybody of it is: a sprinter's record, a galloping horse, a descent of racers."""
+"""Class -> its highest possible speed: a sprinter's record, a galloping horse, a descent of racers."""
 LEAST_FAST_SAMPLES: Final = 3
 
 
 def implausible_motion(states: States, step: Steps, actors: Actors, *, derived: bool) -> list[QualityFinding]:
-    """Return findings, with their doubts, on what nobody does. `derived`: velocities come from the positions and do not contradict them."""
+    """Return findings and doubts on impossible motion. `derived`: velocities come from the positions and do not contradict them."""
     if len(states) < 3:
         return []
     jolt = _jolts(states, step)
@@ -162,7 +162,7 @@ def _spins(states: States, step: Steps, actors: Actors) -> Mask:
 
 
 def _too_fast(states: States, actors: Actors) -> Mask:
-    """Return all samples of the actors that are faster than anybody of their class in at least three samples."""
+    """Return all samples of the actors that are faster than possible for their class in at least three samples."""
     kinds = dict(zip(actors.ids, actors.classes, strict=True))
     limits = np.array([FASTEST_MPS.get(kinds.get(name) or "", np.inf) for name in states.ids])
     over = np.hypot(*states.velocity) > limits[states.actor]

@@ -49,7 +49,7 @@ SAME_REFERENCE_NS: Final = 2_000_000_000
 HASTY_STATES: Final = 10_000
 """So many copied states cost a quarter of what a pass over none costs, which most runs do not need."""
 _DERIVED: Final = ("clock", "step", "ego_state", "pair", "ego_condition")
-"""What the evaluation reads itself, without what it reads for verdicts that are unknown."""
+"""Tables that the evaluation reads itself, without those that it reads for unknown verdicts."""
 _HANDED_OVER: Final = frozenset({"capability", "registration"})
 
 

@@ -102,7 +102,7 @@ class Question:
         return self.n_copies > 0 and self.is_settled and self.n_stays >= LEAST_SHARE * self.n_copies
 
     def take(self, numbers: Sequence[int], margins: Mapping[int, float | None], passes: Collection[int] = ()) -> None:
-        """Learn which of these copies of a window keep the finding, with what margins; the first is the one without errors.
+        """Take the copies of a window in which the finding stays, with their margins; the first copy is the one without errors.
 
         `passes`: copies in which the rule is kept at the finding's worst step.
         """
