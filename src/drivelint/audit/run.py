@@ -226,7 +226,7 @@ def _settings_of_workers(request: AuditRequest) -> JudgeSettings:
 
 
 def _compact_apart(out: str) -> None:
-    """Pack the complete results in a process of its own, so that memory of its libraries does not add up in the driver. Errors: as `compact`."""
+    """Pack the complete results in a process of its own, so that their memory does not add up in the driver. Errors: as `compact`."""
     context = multiprocessing.get_context("spawn")  # a fork would copy threads that hold locks
     with (
         suppress(BrokenProcessPool),  # what a killed process has not packed is packed the next time

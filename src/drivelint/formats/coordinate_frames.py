@@ -57,7 +57,7 @@ class _Edge:
 
 @dataclass
 class TransformTree:
-    """The transforms of a log. `ambiguous`: frames that are said to have several parents."""
+    """The transforms of a log. `ambiguous`: frames with several parents."""
 
     edges: dict[str, _Edge] = field(default_factory=dict)
     ambiguous: set[str] = field(default_factory=set)

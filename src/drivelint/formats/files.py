@@ -88,7 +88,7 @@ def _exists(path: Path) -> bool:
 
 
 def _inside(path: Path) -> list[Path]:
-    """Return the logs of a folder, and what may hold some but cannot be looked at, which whoever reads it refuses with the reason."""
+    """Return the logs of a folder, and the paths that may contain logs but cannot be searched; reading those refuses with the reason."""
     if not path.is_dir() or why_not_here(path) is not None or is_drive_folder(path):
         return [path]
     content = tree(path, _SEARCHED_SUFFIXES)
@@ -132,7 +132,7 @@ def _is_xml_log(file: Path) -> bool:
 
 
 def _is_result(file: Path, searched: Path) -> bool:
-    """Say whether an earlier check wrote the file: the logs that somebody recorded beside its results are none.
+    """Return whether an earlier check wrote the file: recorded logs beside its results are not its files.
 
     Who names the folder of annotated logs itself, means them.
     """

@@ -95,7 +95,7 @@ def apply(waivers: Sequence[Waiver], result: Result, today: date) -> tuple[tuple
 
 
 def _matches(waiver: Waiver, row: Row, drive: Row) -> bool:
-    """Return whether a finding is what a waiver is about: all of what it says."""
+    """Return whether a finding matches all conditions of a waiver."""
     columns = {"rule": "rule_id", "ego": "ego_id", "object": "object_id", "profile": "profile"}
     patterns = ((getattr(waiver, name), row[column]) for name, column in columns.items())
     if any(pattern is not None and not fnmatchcase(text or "", pattern) for pattern, text in patterns):

@@ -26,7 +26,7 @@ _MARK = re.compile(r"^<!-- .* -->\n", re.MULTILINE)
 
 
 class Topic(NamedTuple):
-    """A guide: its name, its title and the sentence that says what it is for."""
+    """A guide: its name, its title and its first sentence."""
 
     name: str
     title: str

@@ -87,7 +87,7 @@ def text() -> str:
 
 
 def table_text(name: str) -> str:
-    """Return one table as plain text: its name, what is said of it, and a line per column with its type and meaning; or one vocabulary.
+    """Return one table as plain text: its name, its description, and a line per column with its type and meaning; or one vocabulary.
 
     Errors: `UsageError` with the nearest table or vocabulary.
     """

@@ -19,7 +19,7 @@ _MAY_GO: Final = frozenset({"kept", "excused"})
 _WASTE: Final = {"broken": 30}
 """Characters that the end of a text's last line leaves empty, where each text begins a line."""
 _ALL_ROOM: Final = 3300
-"""Characters of all parts of both parties: what one does not use, the others may."""
+"""Characters of all parts of both parties: the others may use the room that one leaves."""
 _SECOND_ROOM: Final = 110
 """Characters that fit where the table second by second has a row less than its most."""
 _JOIN: Final = 2
@@ -34,7 +34,7 @@ the hashes."""
 _LINE_PX, _TEXT_PX = 13.7, 15.7
 """Heights of a line in the tables of page 1, and of its first sentences."""
 _FIRST_PX: Final = 465
-"""Height of what page 1 tells of the finding and the parties, with which the lists of what is not recorded still fit below it."""
+"""Greatest height of the finding and the parties on page 1 with which the lists of missing records still fit below them."""
 _CHECK_LINE: Final = 125
 """Characters of the columns of page 2 that a line of the hashes takes."""
 _CELLS: Final = ("delta_v", "fastest", "lane", "lights")
@@ -111,7 +111,7 @@ def shared_reasons(parties: Sequence[dict[str, Any]]) -> dict[str, Any]:
 
 
 def fit(parties: Sequence[dict[str, Any]], seconds_left: int, used_characters: int) -> None:
-    """Cut the lists of what both parties did to what fits into two columns that share their room.
+    """Cut the lists about both parties so that they fit into two columns that share their room.
 
     Room that the lists leave goes first to the broken rules, then to the reasons, until all are printed. If other lines take more room,
     each list loses its share, the list of broken rules last.

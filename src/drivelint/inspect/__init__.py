@@ -150,7 +150,7 @@ def _judgeable(
     *,
     memory: int | None,
 ) -> tuple[list[model.Ego], list[model.Quality]]:
-    """Fill the database with the drive, derive the library tables, and read from them what is known of its egos and data."""
+    """Fill the database with the drive, derive the library tables, and read from them the facts about its egos and data."""
     known = _Knowledge()
     with store.workspace(memory) as con:
         session = JudgingSession(con, (), {}, None, observers=[known], memory=Memory(con, memory))
@@ -193,7 +193,7 @@ def _judgeable(
 
 
 class _Knowledge:
-    """Looks, while the tables are there, at what is known of each ego at some step: conditions, and the limit."""
+    """Reads, while the tables exist, which facts about each ego are known at some step: conditions, and the limit."""
 
     def __init__(self) -> None:
         self.of: dict[str, dict[str, bool]] = {}

@@ -61,7 +61,7 @@ def accepts(probe: Probe) -> bool:
 
 
 def has_obstacles(path: Path, head: bytes) -> bool:
-    """Whether the file is a scenario with somebody in it, and no map alone."""
+    """Return whether the file is a scenario with actors, not only a map."""
     return _ROOT in head and _OBSTACLE.search(path.read_bytes()) is not None
 
 
@@ -139,7 +139,7 @@ def _to_box_centres(states: States, recorded_yaw_rate: Floats, offset: Floats, t
 
 
 def _unread(root: etree._Element, obstacles: Sequence[etree._Element]) -> list[QualityFinding]:
-    """Report what is said of obstacles and is not read: areas and intervals, and obstacles that have no states."""
+    """Report the parts of obstacles that are not read: areas and intervals, and obstacles that have no states."""
     uncertain = sum(int(float(str(o.xpath(_NOT_EXACT)))) for o in obstacles)
     sets = [str(o.get("id")) for o in obstacles if o.find("occupancySet") is not None]
     still = [str(o.get("id")) for kind in ("environmentObstacle", "phantomObstacle") for o in root.findall(kind)]

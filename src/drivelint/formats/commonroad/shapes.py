@@ -102,7 +102,7 @@ def _middle(polygon: etree._Element) -> tuple[float, float]:
 
 
 def _number(parent: etree._Element, name: str) -> float:
-    """Return the number of a child element, 0 without one; NaN for what is no number."""
+    """Return the number of a child element, 0 without one; NaN if it is not a number."""
     text = parent.findtext(name)
     return 0.0 if text is None else safe_xml.number(text)
 

@@ -1,4 +1,4 @@
-"""Signs, lights and stop lines of a CommonRoad map: what they are, the lanelets that refer to them, the limits they give.
+"""Signs, lights and stop lines of a CommonRoad map: their kinds, the lanelets that refer to them, and their limits.
 
 A sign or light holds for the lanelets that refer to it, on their whole length. Codes of signs depend on the country:
 commonroad-io lists MUTCD codes for the USA, those of its traffic law for Spain, and StVO numbers for Germany and, as a
@@ -53,7 +53,7 @@ class SignElement(NamedTuple):
 
 @dataclass
 class Signs:
-    """The signs of a map by their id; what cannot be read of them is a row of `quality`.
+    """The signs of a map by their id; unreadable parts are rows of `quality`.
 
     `codes`: the list that their codes are from, as in `traffic_signal`.
     """
@@ -252,7 +252,7 @@ def _implausible(limit_mps: float) -> str | None:
 
 
 def _restricts(element: SignElement) -> bool:
-    """Tell whether an additional plate (StVO, 1000 to 1099) says when, where or for whom the sign above it holds."""
+    """Return whether an additional plate (StVO, 1000 to 1099) restricts the time, place or vehicles of the sign above it."""
     number = element.code.partition("-")[0]
     return element.kind is None and bool(re.fullmatch(r"10\d\d", number)) and number not in _PLATES
 

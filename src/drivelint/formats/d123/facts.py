@@ -78,7 +78,7 @@ def is_read(version: str) -> bool:
 
 
 def dataset(name: str) -> Dataset:
-    """Return what holds for a data set."""
+    """Return the facts about a data set."""
     return DATASETS.get(name, UNKNOWN_DATASET)
 
 

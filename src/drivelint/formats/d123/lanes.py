@@ -150,7 +150,7 @@ def _bounded(
 
 
 def _limits(name: int, limit_mps: float | None, quality: MapQuality) -> tuple[tuple[SpeedLimitSpan, ...], str]:
-    """Return the limit of a lane, if the map says one, and what says it."""
+    """Return the limit of a lane, if the map has one, and its source."""
     if limit_mps is None or math.isnan(limit_mps):
         return (), "lane"
     if 0.0 < limit_mps <= _FASTEST_MPS:

@@ -77,7 +77,7 @@ def _on_level(row: dict[str, Any], lane: BoundedLane, height_m: float) -> bool:
 
 
 def report_unread(layers: Layers, about: facts.Dataset, quality: MapQuality) -> None:
-    """Report what a map of 123D does not say, the layers that are not read, and what of the lanes the converter estimates."""
+    """Report the gaps of a map of 123D: missing facts, layers that are not read, and estimated parts of lanes."""
     message = "a map of 123D has no signs: the right of way at a junction without a light is not known"
     quality.add(SIGNS_UNMAPPED, "info", None, message)
     counts = {name: layers.count(name) for name in facts.LAYERS if name not in _READ_LAYERS}

@@ -1,4 +1,4 @@
-"""Mappings of filmed drives: which numbers of a frame are distances ahead, and what is assumed of all that is not measured.
+"""Mappings of filmed drives: the numbers of a frame that are distances ahead, and the assumptions about everything else.
 
 A film gives no positions. The drive is laid on a straight road with one lane each way: the ego moves along it at its
 assumed speed, and whoever is detected is placed at his measured distance ahead, in the middle of his lane.
@@ -73,7 +73,7 @@ class OvertakeStages(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class DetectedActor(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """Somebody who is detected: the column with its distance ahead (of a table), or the id and width of his box (of an MCAP)."""
+    """A detected actor: the column with its distance ahead (in a table), or the id and width of its box (in an MCAP)."""
 
     id: str
     lane: Literal["own", "opposing"]
@@ -144,7 +144,7 @@ def load(name: str) -> tuple[str, VideoMapping]:
 
 
 def _merge_tables(base: dict[str, Any], override: dict[str, Any]) -> dict[str, Any]:
-    """Return `base` with what `override` says otherwise; tables are merged, lists replaced."""
+    """Return `base` with the changes of `override`; tables are merged, lists replaced."""
     both = {
         key: _merge_tables(base[key], value) if isinstance(value, dict) and isinstance(base.get(key), dict) else value
         for key, value in override.items()

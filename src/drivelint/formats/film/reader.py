@@ -1,4 +1,4 @@
-"""Filmed drives: what was detected in each frame, laid on a straight road as its mapping assumes it.
+"""Filmed drives: the detections in each frame, placed on a straight road as the mapping assumes it.
 
 Distances ahead are from bumper to bumper along the road. Where somebody is not detected in a frame he is there without a
 place; before he is first detected and after the last time nothing is claimed but the range of the detector.
@@ -137,7 +137,7 @@ def _table(path: Path, name: str, film: VideoMapping, findings: list[QualityFind
 def _states(
     film: VideoMapping, frames: NDArray[np.int64], t_ns: Times, ahead: list[Floats]
 ) -> tuple[States, tuple[float, float]]:
-    """Return everybody's states, and where the ego's way begins and ends along the road (x)."""
+    """Return the states of all actors, and where the ego's path begins and ends along the road (x)."""
     own = 1.0 if film.road.driven_on == "left" else -1.0  # its lane is to the left of the centre line, or to the right
     middle = own * film.road.lane_width / 2
     ego_x = film.ego.speed.mps * (t_ns - t_ns[0]) / 1e9

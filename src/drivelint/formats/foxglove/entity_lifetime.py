@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import Severity
 
 MAX_PERSISTED: Final = 20_000_000
-"""More states than this are not made up: nobody records so many road users that stand still."""
+"""More states than this are not made up: no log has so many road users that stand still."""
 STALE_NS: Final = 500_000_000
 """An entity that moves and is not updated for so long is not placed: until then its last state speaks for it."""
 _NEVER: Final = np.iinfo(np.int64).max

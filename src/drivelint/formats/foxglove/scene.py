@@ -56,7 +56,7 @@ if TYPE_CHECKING:
     from drivelint.arrays import Codes, Mask, Times
 
 KIND_KEYS: Final = ("class", "type", "classification", "category", "label", "object_class", "object_type")
-"""Keys of the metadata that say what an entity is, where the value is a word that is known."""
+"""Keys of the metadata with the class of an entity, if the value is a known word."""
 DELETE_ALL: Final = 1
 
 
@@ -167,7 +167,7 @@ def _bytes(entities: pa.Array, name: str) -> NDArray[np.bytes_]:
 
 
 def _classes(entities: pa.Array) -> Codes:
-    """Return what the metadata say an entity is, by the first key that says it in a word that is known."""
+    """Return the class of an entity by the first key of the metadata whose value is a known word."""
     codes = np.full(len(entities), -1, np.int8)
     pairs, parent = list_items(entities, "metadata")
     if not len(pairs):

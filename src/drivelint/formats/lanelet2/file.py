@@ -23,7 +23,7 @@ _EARTH_M = 6_378_137.0
 
 
 def load(source: MapSource, request: MapOptions, quality: MapQuality) -> tuple[Any, bool]:
-    """Return the library's map, read robustly, and whether its coordinates are local: what it complains of is in `quality`.
+    """Return the library's map, read robustly, and whether its coordinates are local; its complaints are in `quality`.
 
     Errors: `MapError` where the library is not installed, the file is none of Lanelet2's, or nothing says where the
     log's frame lies on the globe.

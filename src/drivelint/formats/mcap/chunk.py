@@ -38,7 +38,7 @@ class ChunkHead(NamedTuple):
 
 
 class Work:
-    """Counts what a file asks for, and refuses one that asks for too much for its size: some kilobytes could keep a reader for hours."""
+    """Counts the work that a file causes, and refuses one that causes too much for its size: a small file could keep a reader for hours."""
 
     def __init__(self) -> None:
         self._packed = self._unpacked = self._records = 0
@@ -65,7 +65,7 @@ class Work:
 
 
 def chunk_head(body: memoryview) -> ChunkHead:
-    """Return what a chunk record declares. Errors: `ChunkError` where its lengths do not fit."""
+    """Return the declaration of a chunk record. Errors: `ChunkError` where its lengths do not fit."""
     if len(body) < _CHUNK.size:
         raise ChunkError("a chunk record without its header", framed=False)
     _, _, size, crc, name_length = _CHUNK.unpack_from(body)

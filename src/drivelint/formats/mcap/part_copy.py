@@ -210,7 +210,7 @@ class PartCopy:
         self._sink.index_chunk(index, self._original.chunk_message_index(record))
 
     def _end_loose(self) -> None:
-        """Put messages outside of chunks, and what was announced between them, into a chunk; announcements alone stay."""
+        """Put messages outside of chunks, and declarations between them, into a chunk; declarations without messages stay."""
         if not self._loose:
             return
         loose, self._loose = self._loose, []

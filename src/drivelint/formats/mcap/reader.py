@@ -44,7 +44,7 @@ _LENGTHS = {Opcode.FOOTER: 20, Opcode.DATA_END: 4, Opcode.SUMMARY_OFFSET: 17}
 """Records whose length is always the same."""
 _OPCODES = frozenset(Opcode)
 _PRIVATE = 0x80
-"""Opcodes from here on belong to applications: what they hold is no part of the log."""
+"""Opcodes from here on belong to applications: their records are no part of the log."""
 _MAGIC = re.compile(re.escape(MAGIC))
 
 
@@ -68,7 +68,7 @@ class Packet:
     offset: int
 
     def error(self, path: Path, problem: str) -> MessageError:
-        """Return the error for this message: where it is, and what is wrong with it."""
+        """Return the error for this message: its place and its problem."""
         where = f"topic {self.channel.topic!r}, log time {self.log_time_ns} ns, record at byte {self.offset}"
         return MessageError(f"{path}: {where}: {problem}: record or copy the log again")
 
@@ -189,7 +189,7 @@ class Container:
             raise TraceError(f"{self.path}: a second MCAP file begins at byte {at}: split the two, use each by itself")
 
     def _refuse_second_file_within(self, view: memoryview, start: int, end: int) -> None:
-        """Refuse a file of which lost bytes hold the beginning of another: what comes then may be of another drive."""
+        """Refuse a file whose lost bytes contain the beginning of another file: the data after it may be of another drive."""
         match = _MAGIC.search(view[: end + len(MAGIC)], start)
         if match and match.start() < len(view) - len(MAGIC):
             self._refuse_second_file(view, match.start())
@@ -292,7 +292,7 @@ class Container:
         raise self._damaged(at, "a chunk that ends within a record", end)
 
     def _index_of_damaged(self, view: memoryview, error: DamageError) -> Summary:
-        """Take what the index announces, which the lost bytes may have announced. Errors: the damage, without salvage."""
+        """Take the declarations of the index, which the lost bytes may have contained. Errors: the damage, without salvage."""
         if not self.salvage:
             raise error
         index = read_summary(view)
@@ -341,7 +341,7 @@ class Container:
             self.findings.append(QualityFinding("no_footer", "warning", message))
 
     def _check_index(self, index: Summary) -> None:
-        """Ask an index with a right CRC what is missing among the data."""
+        """Find messages that an index with a right CRC has and the data lack."""
         for offset, (length, since, until) in sorted(index.chunks.items()):
             if offset not in self._places and not self.losses.covers(offset):
                 error = self._damaged(offset, "no chunk, where the index has one,")

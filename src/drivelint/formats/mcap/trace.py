@@ -28,7 +28,7 @@ def accepts(probe: Probe) -> bool:
 
 
 def read(probe: Probe) -> Recording:
-    """Read what the log holds, OSI before the others."""
+    """Read the messages of the log, OSI before the others."""
     from drivelint.formats.mcap import bag
     from drivelint.formats.osi import reader as osi
 

@@ -34,7 +34,7 @@ class UnreadTopics:
         ]
 
     def refuse(self, path: Path, kinds: Collection[str], read_topics: Collection[str]) -> None:
-        """Refuse a log with a topic of these kinds, of road users: who is on it is not known.
+        """Refuse a log with a topic of road users of these kinds: its actors are not known.
 
         `read_topics`: topics of theirs that are read, which may be chosen. Errors: `TraceError`.
         """

@@ -192,7 +192,7 @@ class Sink:
 
 
 def free_id(used_ids: Mapping[int, object], least: int, kind: str) -> int:
-    """Return the id after the highest one, or the lowest that nobody has."""
+    """Return the id after the highest one, or the lowest unused one."""
     after = max(used_ids, default=least - 1) + 1
     if after < ID_LIMIT:
         return max(after, least)

@@ -162,7 +162,7 @@ class DrivingSideStatements:
 def _disagreements(
     statements: Sequence[DrivingSideStatement], quality: MapQuality, wrong: str, advice: str | None = None
 ) -> None:
-    """Report statements that disagree. `wrong`: what is wrong if the first one is; `advice`: what to do if no given side helps."""
+    """Report statements that disagree. `wrong`: the effect if the first one is wrong; `advice`: the remedy if no given side helps."""
     if len({w.side for w in statements}) > 1:
         first, second = statements[:2]
         # if the second statement agrees with the option, leaving out the option changes nothing

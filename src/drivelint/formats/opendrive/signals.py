@@ -46,7 +46,7 @@ def _unique(rows: Rows, key: tuple[str, ...]) -> Rows:
 
 
 class _Reader:
-    """Collects signals; what cannot be placed is a row of `quality`."""
+    """Collects signals; a signal that cannot be placed is a row of `quality`."""
 
     def __init__(self, net: Network, offset: tuple[float, float], quality: MapQuality) -> None:
         self.offset, self.quality = offset, quality

@@ -215,7 +215,7 @@ def _inner(fields: pa.DataType | None, name: str) -> pa.DataType | None:
 
 
 def _coordinate(vector: pa.Array, name: str) -> tuple[Floats, Mask]:
-    """Return a coordinate, NaN where it is not said or not finite, and where it is said."""
+    """Return a coordinate, NaN where it is missing or not finite, and where it is present."""
     values = struct_field(vector, name).cast(pa.float64())
     said = values.is_valid().to_numpy(zero_copy_only=False)
     numbers = pc.fill_null(values, float("nan")).to_numpy(zero_copy_only=False)

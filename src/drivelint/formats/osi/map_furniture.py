@@ -105,7 +105,7 @@ def _once(lanes: list[BoundedLane]) -> list[BoundedLane]:
 
 
 def _facing(base: Any, lanes: list[BoundedLane]) -> list[BoundedLane]:
-    """Return the lanes whose traffic sees the front of a sign, if there are any: its x axis points towards who reads it."""
+    """Return the lanes whose traffic sees the front of a sign, if there are any: its x axis points towards the reader."""
     if not np.isfinite([base.orientation.roll, base.orientation.pitch, base.orientation.yaw]).all():
         return lanes
     normal = rotation(base)[:2, 0]

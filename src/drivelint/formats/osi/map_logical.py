@@ -52,7 +52,7 @@ class LogicalLane:
 
 
 def read(truth: Any, quality: MapQuality) -> dict[int, LogicalLane]:
-    """Return the logical lanes that have a shape and a direction, by id; what is wrong with the others goes to `quality`."""
+    """Return the logical lanes that have a shape and a direction, by id; problems of the others go to `quality`."""
     bounds = {bound.id.value: bound for bound in truth.logical_lane_boundary}
     lanes: dict[int, LogicalLane] = {}
     for message in truth.logical_lane:
@@ -138,7 +138,7 @@ def _side(ids: Iterable[Any], bounds: Mapping[int, Any], word: str) -> Floats:
 
 
 def _sides(lane: LogicalLane, field: str) -> tuple[Any, Any]:
-    """Return what the message says on the driver's left and right."""
+    """Return the elements of the message on the driver's left and right."""
     both = getattr(lane.message, f"left_{field}"), getattr(lane.message, f"right_{field}")
     return both if lane.along > 0 else both[::-1]
 

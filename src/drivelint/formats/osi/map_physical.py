@@ -42,7 +42,7 @@ class PhysicalLane:
 
 
 def read(truth: Any, quality: MapQuality) -> dict[int, PhysicalLane]:
-    """Return the lanes that have a shape and a direction, by id; what is wrong with the others goes to `quality`.
+    """Return the lanes that have a shape and a direction, by id; problems of the others go to `quality`.
 
     Areas of intersections are not among them.
     """
@@ -64,7 +64,7 @@ def read(truth: Any, quality: MapQuality) -> dict[int, PhysicalLane]:
 
 
 def _ascending(classification: Any, *, drops: bool) -> bool:
-    """Say whether a lane is driven in the order of its points. Errors: `UnbuildableError` where nobody knows."""
+    """Return whether a lane is driven in the order of its points. Errors: `UnbuildableError` if it is not known."""
     if classification.HasField(_DIRECTION):
         return bool(classification.centerline_is_driving_direction)
     if drops:

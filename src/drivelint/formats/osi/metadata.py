@@ -108,7 +108,7 @@ def ego_independent_quality(trace: Trace) -> pa.Table:
 
 
 def apply_metadata(path: Path, metadata: Mapping[str, Mapping[str, str]], recording: Recording) -> None:
-    """Add what the metadata records say to a recording of OSI messages. Errors: `TraceError` where they do not fit it."""
+    """Add the content of the metadata records to a recording of OSI messages. Errors: `TraceError` where they do not fit it."""
     if TRACE_RECORD in metadata:
         _apply_trace(path, _read(path, TRACE_RECORD, metadata[TRACE_RECORD], _TraceFacts), recording)
     if ACTORS_RECORD in metadata:

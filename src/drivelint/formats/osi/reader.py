@@ -165,7 +165,7 @@ def _check_topics(container: Container, truths: list[str], topic: str | None) ->
 
 
 def _foreign_content(container: Container) -> str:
-    """Say what an MCAP file without OSI messages holds instead: other kinds of messages, or a topic without any."""
+    """Describe the content of an MCAP file without OSI messages: other kinds of messages, or a topic without any."""
     names = {0: "no schema", **{number: schema.name for number, schema in container.schemas.items()}}
     kinds = {f"{names[c.schema_id]} in {c.message_encoding or 'no encoding'}" for c in container.channels.values()}
     needed = f"{GROUND_TRUTH} or {SENSOR_VIEW} in protobuf is needed"

@@ -39,7 +39,7 @@ def is_osi_trace(head: bytes, size: int) -> bool:
 
 
 def message_batches(channel: Channel, content: mmap.mmap, losses: Losses) -> Iterator[list[Packet]]:
-    """Yield the messages up to the damage, some tens of megabytes at a time; then, to `losses`, add what is lost behind them.
+    """Yield the messages up to the damage, some tens of megabytes at a time; then add the loss after them to `losses`.
 
     The caller tells `losses` the times of the messages that it has read before it asks for more.
     """
@@ -91,7 +91,7 @@ def _begins(content: mmap.mmap, at: int) -> bool:
 
 
 def lost_times(path: Path, losses: Losses, t_ns: Times) -> list[LostTime]:
-    """Return what was lost in the clock of the messages that were read, whose times in the order of the file are `t_ns`.
+    """Return the losses in the clock of the messages that were read, whose times in the order of the file are `t_ns`.
 
     Where their clock goes back, messages come late: a lost one may have come as late. A clock that stands still bounds nothing.
     """

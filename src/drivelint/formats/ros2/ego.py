@@ -1,4 +1,4 @@
-"""The messages of ROS 2 about the ego and its surroundings: odometry, transforms, its lights, who drives."""
+"""The messages of ROS 2 about the ego and its surroundings: odometry, transforms, its lights, whether the system drives."""
 
 from __future__ import annotations
 
@@ -110,7 +110,7 @@ def _last(t_ns: Times, reports: tuple[Times, NDArray[Any]] | None) -> Times:
 
 
 def engagement(reports: dict[str, tuple[Times, NDArray[Any]]], ego: str) -> pa.Table | None:
-    """Return who drives as declared events `engaged` on and off, where it changes; None where nobody says.
+    """Return whether the system drives, as declared events `engaged` on and off, where it changes; None if it is not known.
 
     What the vehicle reports counts before what it was told to do. Only full automation is engaged.
     """

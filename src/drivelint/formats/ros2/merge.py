@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 FORMAT = "ros2-mcap"
 DEFAULT_EGO_ID = "ego"
-"""What the odometry's vehicle is called where nobody gives it an id."""
+"""The id of the odometry's vehicle if no message has one."""
 
 
 def merge_ego(
@@ -105,7 +105,7 @@ def _carla_ego_ids(ego_by_topic: Mapping[str, str], odometry: tuple[str, States]
 
 
 def _carla_origins(topic: str, states: States, findings: list[QualityFinding]) -> None:
-    """Say what CARLA's origins mean, and lift those of vehicles from the ground to the middle of the box."""
+    """Report the meaning of CARLA's origins, and lift those of vehicles from the ground to the middle of the box."""
     walks = states.codes["actor_class"] == ACTOR_CLASSES.index("pedestrian")
     lift = np.where(walks, 0.0, np.nan_to_num(0.5 * states.numbers["height_m"]))
     states.numbers["z_m"] = states.numbers["z_m"] + lift

@@ -147,4 +147,4 @@ MESSAGES: Final[dict[str, MessageType]] = {
     EGO_INFO: MessageType("ego", "/carla/<role name>/vehicle_info", {"id": None, "rolename": None}),
     WORLD_INFO: MessageType("map", "/carla/world_info", {"map_name": None, "opendrive": None}),
 }  # fmt: skip
-"""Message type, as `message_kind` names it, -> what is read of it."""
+"""Message type, as `message_kind` names it -> the fields that are read."""

@@ -173,7 +173,7 @@ def _other_centre(box: VehicleBox, ahead_m: float) -> list[QualityFinding]:
 
 
 def _no_road_users(log: Log) -> QualityFinding:
-    """Return the finding that nobody else is known: a detection without an id may be the one before it, or somebody else."""
+    """Return the finding that no other actor is known: a detection without an id may be the one before it, or another actor."""
     n = sum(log.detections.values())
     cause = "no topic of this log has road users"
     if n:

@@ -50,7 +50,7 @@ class GroupStates(NamedTuple):
 
 
 def group_states(table: Table, log_ns: Times, constants: Mapping[str, Mapping[str, int]]) -> GroupStates:
-    """Return what the groups of messages show, codes into `SIGNAL_STATES`, -1 where not known. `constants`: those of the definition."""
+    """Return the states of the groups of messages, codes into `SIGNAL_STATES`, -1 where not known. `constants`: those of the definition."""
     path, name = next((pair for pair in _GROUPS if pair[0] in table.children), _GROUPS[0])
     groups = table.items(path)
     state = _states(groups, _element_numbers(constants))
@@ -82,7 +82,7 @@ def _states(groups: Table, number: Mapping[str, int]) -> Codes:
 
 
 def _state(bits: int) -> int:
-    """Return the state for everybody at a light, whatever their turn; -1 where it is not one for all.
+    """Return the state of a light that applies to every turn; -1 if turns differ.
 
     The map's light does not say for which turns an arrow of it holds. So an arrow that shows another colour than the full lamp
     decides nothing: red with a green arrow is neither red, for it lets some go, nor green, for it holds the others. Of arrows alone
@@ -107,7 +107,7 @@ _STATE_OF_BITS: Final = np.array([_state(bits) for bits in range(2 * _DOUBT)], n
 def signal_states(
     batches: Sequence[GroupStates], span_ns: tuple[int, int], topic: str, *, own_times: bool
 ) -> tuple[pa.Table | None, list[QualityFinding]]:
-    """Return `signal_id`, `t_ns` and `state` of all groups, and what cannot be used.
+    """Return `signal_id`, `t_ns` and `state` of all groups, and findings on unusable messages.
 
     `span_ns`: first and last time of the drive. A row without a state ends what a group showed: where the next message does not
     list it, or none comes.

@@ -63,7 +63,7 @@ def at_axle(frames: NDArray[Any]) -> Mask:
 def vehicle_box(
     parameters: Iterable[Table], dimensions: Iterable[tuple[str, Table]]
 ) -> tuple[VehicleBox | None, list[QualityFinding]]:
-    """Return the box that the nodes' parameters and recorded dimensions agree on, None where nobody gives one, or they differ.
+    """Return the box on which the nodes' parameters and recorded dimensions agree; None if there is none, or they differ.
 
     A node that gives only some of the lengths gives no box: another node may mean another vehicle.
     """

@@ -208,7 +208,7 @@ def _nearer(lane: CentreLine, side: int, at: Mask, line: Any, *, least_m: float)
 
 
 def _of_parallel_lanes(lanes: Sequence[CentreLine], all_lanes: Sequence[CentreLine]) -> None:
-    """Take the middle between two lanes that run beside each other, whichever way, for the bound of which nobody tells.
+    """Take the middle between two lanes that run beside each other, in any direction, as their unknown bound.
 
     Lanes that fork or join run beside each other, too, but share ground.
     """
@@ -232,7 +232,7 @@ def _of_parallel_lanes(lanes: Sequence[CentreLine], all_lanes: Sequence[CentreLi
 
 
 def fill_unknown_sides(lanes: Mapping[str, CentreLine]) -> dict[str, float]:
-    """Give the sides of which nobody tells the width of what the lane joins, in place; return lane -> share of its sides that is so found.
+    """Give unknown sides the width of the lanes that the lane joins, in place; return lane -> share of its sides found in this way.
 
     At its ends a lane is as wide as those that it continues or leads to, and between it widens evenly. One side of which nothing is known
     is as far from the middle as the other.

@@ -23,7 +23,7 @@ _LEVEL_M: Final = 3.0
 
 
 def link(lanes: Mapping[str, CentreLine]) -> None:
-    """Give each lane what comes before and after it, in place: what the scenario says, else the lanes whose ends meet its own."""
+    """Give each lane its predecessors and successors, in place: those of the scenario, else the lanes whose ends meet its own."""
     after: dict[str, dict[str, None]] = defaultdict(dict)
     said = any(lane.feature.get("exit_lanes") or lane.feature.get("entry_lanes") for lane in lanes.values())
     if said:

@@ -1,4 +1,4 @@
-"""A scenario as ScenarioNet defines it (MetaDrive's `ScenarioDescription`): its parts, checked, and what is known of its data set."""
+"""A scenario as ScenarioNet defines it (MetaDrive's `ScenarioDescription`): its parts, checked, and the facts about its data set."""
 
 from __future__ import annotations
 

@@ -48,7 +48,7 @@ class Boxes(NamedTuple):
 
 
 def boxes_of(tracks: Tracks, types: Mapping[str, VehicleType], options: IngestOptions) -> Boxes:
-    """Return the boxes, by what is known of the `types` and what the user says of the ego."""
+    """Return the boxes, from the known `types` and the user's size of the ego."""
     types_with_originals = [type_of(name, types, frozenset(tracks.ids)) for name in tracks.type_names]
     vehicle_types = [kind for kind, _ in types_with_originals]
     classes = np.array(

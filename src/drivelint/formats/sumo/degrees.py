@@ -29,7 +29,7 @@ _FARTHEST: Final = np.array([180.0, 90.0])
 _LEAST_MOTION: Final = 1e-7
 """Less is no motion: a centimetre in degrees, a rounding error in metres."""
 _SLOW_PER_S: Final = 0.01
-"""Nobody drives 0.01 degrees in a second; who moves by less than 0.01 metres in a second stands."""
+"""No vehicle drives 0.01 degrees in a second; an actor that moves by less than 0.01 metres in a second stands."""
 _RATIO: Final = 1000.0
 """A speed in m/s is 38,000 (at 70 degrees of latitude) to 111,000 times the one in degrees, and 1 time the one in metres."""
 _DEGREE_M: Final = 111_195.0
@@ -89,7 +89,7 @@ def _are_degrees(path: Path, rows: Rows, xy: Floats, actor: NDArray[np.int32], n
 
 
 def _moves_in_degrees(rows: Rows, xy: Floats, actor: NDArray[np.int32]) -> bool | None:
-    """Say whether those who move do so in degrees; None: nobody moves."""
+    """Return whether moving actors move in degrees; None: no actor moves."""
     order = np.argsort(actor, kind="stable")
     same = np.diff(actor[order]) == 0
     dt = np.diff(rows.numbers("time")[order])

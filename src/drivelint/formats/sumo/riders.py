@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def riding(rows: Rows) -> Mask:
-    """Say of each row (n) whether it is of somebody who rides in a vehicle.
+    """Return for each row (n) whether its person or container rides in a vehicle.
 
     Of several in one place whose kind is not known, all but the first ride: SUMO writes a vehicle before its passengers.
     """

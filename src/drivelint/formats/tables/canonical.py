@@ -112,7 +112,7 @@ def _offset(path: Path, offset: tuple[object, object]) -> tuple[float, float]:
 
 
 def _quality(path: Path) -> list[QualityFinding]:
-    """Read what was found when the log was converted, and cannot be seen any more."""
+    """Read the findings from when the log was converted that cannot be found any more."""
     if not path.is_file():
         return []
     rows = parquet.table(path)
@@ -150,7 +150,7 @@ def _need(path: Path, table: pa.Table, names: tuple[str, ...]) -> None:
 
 
 def _states(path: Path) -> Recording:
-    """Read the states. A row with a time and nothing else is a frame in which nobody is."""
+    """Read the states. A row with a time and nothing else is a frame without actors."""
     table = parquet.table(path)
     _need(path, table, REQUIRED_COLUMNS)
     ids = _column(path, table, "actor_id", pa.string())
@@ -189,7 +189,7 @@ def _states(path: Path) -> Recording:
 
 
 def with_frames_of_nobody(states: pa.Table, trace: Trace) -> pa.Table:
-    """Return states with a row for each frame in which nobody is, such as `_states` reads."""
+    """Return states with a row for each frame without actors, as `_states` reads it."""
     n = len(trace.nobody_ns)
     if not n:
         return states

@@ -80,7 +80,7 @@ def read(probe: Probe) -> Recording:
 
 
 def _assumptions(name: str, mapping: Mapping) -> list[QualityFinding]:
-    """Return what the mapping says in place of the log: sizes, and that the log's frame is left-handed."""
+    """Return findings about facts from the mapping instead of the log: sizes, and a left-handed frame."""
     findings = []
     given = mappings.fields(mapping)
     if any(side in given and given[side].value is not None for side in ("length", "width")):
@@ -93,7 +93,7 @@ def _assumptions(name: str, mapping: Mapping) -> list[QualityFinding]:
 
 
 def _refuse_misread(path: Path, name: str, recording: Recording) -> None:
-    """Refuse a table of which the mapping cannot read most rows: it is of another kind, and what is left of it misleads.
+    """Refuse a table if the mapping cannot read most of its rows: it is of another kind, and the rest would mislead.
 
     Errors: `TraceError`.
     """
@@ -254,7 +254,7 @@ class _Body:
         return (values * factor if factor != 1.0 else values), odd
 
     def _refuse_degrees(self, column: str, values: Floats) -> None:
-        """Refuse a heading beyond two turns: nobody writes that in radians. Errors: `TraceError`."""
+        """Refuse a heading beyond two turns: it cannot be in radians. Errors: `TraceError`."""
         largest = float(np.nanmax(np.abs(values), initial=0.0))
         if largest > MAX_HEADING_RAD:
             raise TraceError(
