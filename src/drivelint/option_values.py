@@ -1,4 +1,4 @@
-"""Reads what options say that is more than a word or a number, for the command line and for Python."""
+"""Reads option values that are more than a word or a number, for the command line and for Python."""
 
 from __future__ import annotations
 

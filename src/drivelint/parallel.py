@@ -219,7 +219,7 @@ class _Worker:
         theirs.close()
 
     def interrupt(self) -> None:
-        """Ask the process to end with what it has judged."""
+        """Request the process to end with the results so far."""
         with suppress(OSError):
             self.pipe.send(None)
 
@@ -268,7 +268,7 @@ class _Worker:
 
 
 class _Teller(Progress):
-    """Tells the listener, in a worker, what is to be shown. Advances of its own stages but the first are not the run's."""
+    """Sends the listener, in a worker, the messages to show. Progress of its stages other than the first is not the run's."""
 
     def __init__(self, pipe: Connection) -> None:
         self._pipe = pipe
@@ -362,7 +362,7 @@ def _judge_part(part: _Part, teller: _Teller, interruption: Interruption) -> _En
 
 
 def _listen(pipe: Connection, interruption: Interruption) -> None:
-    """Interrupt the part when asked to, and end the process where nobody asks any more."""
+    """Interrupt the part on request, and end the process if the parent is gone."""
     while True:
         try:
             pipe.recv()

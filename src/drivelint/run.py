@@ -58,7 +58,7 @@ class CheckOptions(JudgingOptions):
     margins: bool = False
     keep_db: bool = False
     manifest_options: Mapping[Path, DriveInput] = field(default_factory=dict, hash=False)
-    """Log -> what a manifest says of it and its map, in place of these options."""
+    """Log -> the options from a manifest for it and its map, instead of these."""
     min_judged: float | None = None
     """The least share of rules that must be decided, see `result.model.decided_share`."""
     pictures: bool = True
@@ -75,7 +75,7 @@ class CheckOptions(JudgingOptions):
 
 
 class RunRules(NamedTuple):
-    """By what a run judges: the rules, the ids of those of which none may be unknown, their parameters, and the table of profiles."""
+    """The rules of a run: the rules, the ids of required rules, their parameters, and the table of profiles."""
 
     rules: Sequence[Rule]
     required: tuple[str, ...]
@@ -84,7 +84,7 @@ class RunRules(NamedTuple):
 
     @classmethod
     def of(cls, settings: CheckOptions) -> RunRules:
-        """Return what the options of a run choose. Errors: `UsageError`, `RuleError`."""
+        """Return the rules and profiles that the options of a run choose. Errors: `UsageError`, `RuleError`."""
         known = catalogue.load_rules(settings.rules_dirs)
         rules = catalogue.select_rules(known, settings.rules, settings.ignore)
         required = catalogue.required_rules(known, rules, settings.require, settings.ignore)
@@ -163,7 +163,7 @@ def judge_logs(
     interruption: Interruption | None = None,
     deaf_rules: DeafRules | None = None,
 ) -> JudgedLogs:
-    """Judge logs in one database, in their order; add to `refused_logs` what could not be judged."""
+    """Judge logs in one database, in their order; add those that could not be judged to `refused_logs`."""
     interruption = interruption or Interruption()
     rules, required, params, profiles = judged_by
     with store.workspace(settings.memory, threads=settings.threads) as con:
@@ -304,7 +304,7 @@ def _read(paths: Sequence[Path], settings: CheckOptions) -> Iterator[Drive | Ref
 
 
 def _announced(drives: Iterable[Drive | RefusedLog], n: int, progress: Progress) -> Iterator[Drive | RefusedLog]:
-    """Yield what is read, and say so before each: a batch is read before it is judged."""
+    """Yield the logs that are read, with a note before each: a batch is read before it is judged."""
     progress.doing(f"reading 1/{n}")
     for done, item in enumerate(drives, 1):
         yield item
@@ -312,7 +312,7 @@ def _announced(drives: Iterable[Drive | RefusedLog], n: int, progress: Progress)
 
 
 class LogNotes:
-    """Shows what is to be said of the logs, and keeps it for the result."""
+    """Shows the notes on the logs, and keeps them for the result."""
 
     def __init__(self, progress: Progress, n_logs: int) -> None:
         self.notes: list[LogNote] = []
@@ -375,7 +375,7 @@ def _judge(
     notes: LogNotes,
     limits: ToldLimits,
 ) -> None:
-    """Judge a batch; if it errs, drive by drive, so that one bad drive harms no other. Add what could not be judged to `refused_logs`."""
+    """Judge a batch; if it errs, drive by drive, so that a bad drive harms no other. Add those not judged to `refused_logs`."""
     n_before = len(refused_logs)
     drives: list[Drive] = []
     for item in batch:

@@ -34,7 +34,7 @@ def temporary_folder() -> Iterator[Path]:
 
 
 def keep(folder: Path) -> None:
-    """Leave a folder where it is: what is in it is somebody's."""
+    """Leave a folder where it is: its content belongs to the user."""
     _open.discard(folder)
 
 

@@ -199,7 +199,7 @@ def _channel(key: tuple[str, str, str, str], count: _Count, roles: dict[tuple[st
 
 
 def _roles(path: Path) -> dict[tuple[str, str], str]:
-    """Return what is read of a log, by schema and encoding: of one that holds several kinds, only the best is."""
+    """Return what is read of a log, by schema and encoding: if it has several kinds, only the best one is read."""
     try:
         return _ROLES[bag.message_family(path)]
     except TraceError:

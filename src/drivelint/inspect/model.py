@@ -15,7 +15,7 @@ INSPECT_SCHEMA: Final = 1
 
 
 def described(meaning: str) -> Meta:
-    """Return what a key means, as the schema says it."""
+    """Return the meaning of a key, for the schema."""
     return Meta(description=meaning)
 
 
@@ -144,7 +144,7 @@ class MissingSignal(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Ego(msgspec.Struct, frozen=True, kw_only=True):
-    """A vehicle under test, and what can be decided about it."""
+    """A vehicle under test, and the rules that can be decided for it."""
 
     actor: Actor
     km: float

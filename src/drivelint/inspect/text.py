@@ -31,7 +31,7 @@ _MAX_LISTED_NAMES: Final = 6
 _DRAFT: Final = " (draft)"
 _STYLE: Final = {"error": "bold red", "warning": "yellow", "info": "dim"}
 _READER_NOTE_PREFIX: Final = "read through"
-"""Reader notes that begin with this repeat what the content section says, and are left out."""
+"""Reader notes that begin with this repeat the content section, and are left out."""
 _SOURCES: Final = {
     "option": "as --handedness says",
     "attribute": "as the map says",
@@ -40,12 +40,12 @@ _SOURCES: Final = {
     "traces": "as the log's traffic drives",
     "default": "only by the standard's default: set it with --handedness",
 }
-"""Source of the side that is driven on -> who says so."""
+"""Source of the side that is driven on -> its words."""
 Line = tuple[str, Text]
 
 
 def render(inspection: model.Inspection, trace: str) -> Group:
-    """Return the whole inspection; `trace` is what the user called the log."""
+    """Return the whole inspection; `trace` is the user's name of the log."""
     draft = inspection.content.draft_mapping
     inspection = msgspec.convert(flat(msgspec.to_builtins(inspection)), type(inspection))
     lines = [*_content(inspection.content)]
@@ -148,7 +148,7 @@ def _sheet(sheet: model.Sheet) -> Text:
 
 
 def _cell(column: model.Column, *, per_actor: bool) -> str:
-    """Return what a column is read as; its own name too, unless it is the same or one of many groups."""
+    """Return the quantity that a column is read as; with its own name, unless it is the same or one of many groups."""
     meant = " and ".join(column.read_as)
     unit = f" in {column.unit}" if column.unit else ""
     return f"{meant}{unit}" if per_actor or meant == column.name else f"{column.name}{unit} as {meant}"

@@ -1,4 +1,4 @@
-"""Judges the drives of a result again: all of it, and what each finding rests on."""
+"""Judges the drives of a result again: all of it, and the evidence of each finding."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ def params_of(rules: Iterable[Rule], check_request: RunRequest) -> dict[str, dic
 def finding_evidence(
     result: Result, check_request: RunRequest, memory: int | None = DEFAULT_MEMORY, loaded_rules: Sequence[Rule] = ()
 ) -> Evidence:
-    """Return what gives the numbers of each finding again. `check_request`: where the logs are; `loaded_rules`: the rules, if read."""
+    """Return the data that reproduce the numbers of each finding. `check_request`: where the logs are; `loaded_rules`: if read."""
     rules = {rule.id: rule for rule in loaded_rules or rules_of(result, check_request)}
     found: Evidence = {}
     findings = result.findings.to_pylist()
@@ -134,7 +134,7 @@ def _of_drive(
 def _of_rule(
     con: duckdb.DuckDBPyConnection, rule: Rule, params: Mapping[str, object], findings: Sequence[Row]
 ) -> Evidence:
-    """Return the evidence of the findings of one rule, while the database has what it reads."""
+    """Return the evidence of the findings of one rule, while the database has the rows that it reads."""
     first = findings[0]
     try:
         references: dict[int, int] = {}

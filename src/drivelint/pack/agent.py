@@ -50,7 +50,7 @@ class AgentKey:
         return self._public
 
     def sign(self, content: bytes) -> bytes:
-        """Return the signature, 64 bytes. Errors: `UsageError` where the agent refuses, or what it gives is no signature of the key."""
+        """Return the signature, 64 bytes. Errors: `UsageError` if the agent refuses, or its answer is no signature of the key."""
         request = bytes([_SIGN]) + _string(self._blob) + _string(content) + struct.pack(">I", 0)
         try:
             (whole,) = _strings(_ask(request, _SIGN_ANSWER))
@@ -66,7 +66,7 @@ class AgentKey:
 
 
 def _ask(request: bytes, answer_type: int) -> bytes:
-    """Send a message and return what follows the type of the answer."""
+    """Send a message and return the answer without its type."""
     path = os.environ.get("SSH_AUTH_SOCK")
     if not path or not hasattr(socket, "AF_UNIX"):
         raise UsageError(

@@ -46,7 +46,7 @@ def rows_of_ego(con: duckdb.DuckDBPyConnection, table: str, drive_id: str, ego_i
 def evidence(
     rule: Rule, params: Mapping[str, object], finding: Row, ref_id: int | None, tables: Mapping[str, pa.Table]
 ) -> dict[str, bytes] | str:
-    """Return file name -> content of what gives the numbers of a finding again, or why nothing does.
+    """Return file name -> content of the files that reproduce the numbers of a finding, or why there are none.
 
     `tables`: all rows about the ego that the rule's condition reads.
     """
@@ -110,7 +110,7 @@ def _is_same(rows: list[dict[str, Any]], finding: Row) -> bool:
 
 
 def _choices(con: duckdb.DuckDBPyConnection, finding: Row, rows: pa.Table) -> list[pa.Table]:
-    """Return rows of a table from few to all: at the worst step or around the finding, of its object or of everybody."""
+    """Return rows of a table from few to all: at the worst step or around the finding, of its object or of all actors."""
     columns = rows.column_names
     step, around = (
         _at_time(columns, *times)

@@ -48,7 +48,7 @@ def sheet_files(evidence: Mapping[str, Any]) -> list[str]:
 
 
 def has_printed(evidence: Mapping[str, Any]) -> bool:
-    """Whether a pack has a PDF, which nobody can write again."""
+    """Whether a pack has a PDF, which cannot be written again."""
     return any(name.endswith(_PDF) for name in sheet_files(evidence))
 
 

@@ -137,5 +137,5 @@ def _parse_envelope(content: bytes) -> tuple[str, bytes, list[bytes]]:
 
 
 def _signed_bytes(kind: str, payload: bytes) -> bytes:
-    """Return what DSSE signs: the type and the payload with their lengths, so that neither can be taken for the other."""
+    """Return the bytes that DSSE signs: the type and the payload with their lengths, so that neither can be mistaken for the other."""
     return b"DSSEv1 %d %s %d %s" % (len(kind.encode()), kind.encode(), len(payload), payload)

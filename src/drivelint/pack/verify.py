@@ -1,4 +1,4 @@
-"""Verifies an evidence pack: its files, its signature, what it states, and the result itself where log and map are there."""
+"""Verifies an evidence pack: its files, its signature, its statements, and the result itself if log and map are available."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def verify(request: VerifyRequest) -> Verification:
 
 
 def _of_request(request: VerifyRequest) -> list[Problem]:
-    """Return in what a pack is not what was asked for, however consistent it is: nobody's, or an older one."""
+    """Return why a consistent pack does not meet the request: its signer is not known, or it is too old."""
     found = []
     if request.require_signature and request.key is None:
         what = (
@@ -100,7 +100,7 @@ def _given_key(request: VerifyRequest) -> Ed25519PublicKey | None:
 
 
 def _of_signature(folder: Path, key: Ed25519PublicKey | None) -> tuple[list[Problem], str]:
-    """Return what is wrong with the signature and the files beside it, which nobody signed, and who signed in words."""
+    """Return the problems of the signature and of the unsigned files beside it, and the signer in words."""
     if not (folder / ENVELOPE).is_file():
         wanted = key is not None or (folder / PUBLIC_KEY).is_file()
         stamped = [Problem("file added", timestamp.FILE)] if (folder / timestamp.FILE).is_file() else []
@@ -138,7 +138,7 @@ def _of_envelope(folder: Path, pack_key: Ed25519PublicKey, key: Ed25519PublicKey
 
 
 def _of_contents(request: VerifyRequest, stated: Stated) -> tuple[str, list[Problem], list[str]]:
-    """Judge again what can be; return in words what came out, what is wrong, and what was not looked at or is the pack's own."""
+    """Judge again what can be judged; return the result in words, the problems, and notes on what was not examined."""
     result, evidence = stated.result, stated.evidence
     notes = _notes(evidence, result)
     try:
@@ -164,7 +164,7 @@ def _of_contents(request: VerifyRequest, stated: Stated) -> tuple[str, list[Prob
 
 
 def _notes(evidence: dict[str, Any], result: Result) -> list[str]:
-    """Return what nobody can hold against the logs, and what is not drivelint's own."""
+    """Return notes on content that cannot be compared with the logs, and on rules that are not drivelint's own."""
     notes = []
     if (version := consistency.packed_by(evidence)) != __version__:
         notes.append(f"packed by drivelint {version}, and this is {__version__}: its reports are not written again")
@@ -182,7 +182,7 @@ def _notes(evidence: dict[str, Any], result: Result) -> list[str]:
 
 
 def _request_with_pack_paths(folder: Path, evidence: dict[str, Any]) -> RunRequest:
-    """Return the check with the paths of what is in the pack. Errors: `ValueError` for a path that leads out of it."""
+    """Return the check with the paths of the files in the pack. Errors: `ValueError` for a path that leads out of it."""
 
     inputs = evidence["inputs"]
     check_request = run_request.load(folder / RESULT)
@@ -198,7 +198,7 @@ def _request_with_pack_paths(folder: Path, evidence: dict[str, Any]) -> RunReque
 
 
 def _of_result(folder: Path, stated: Stated, check_request: RunRequest) -> tuple[str, list[Problem]]:
-    """Judge the drives again; return in words what came out, and the files that came out otherwise."""
+    """Judge the drives again; return the result in words, and the files that differ."""
     result = stated.result
     margins = (folder / RESULT / "margins.parquet").is_file()
     other_libraries = stated.evidence["packed_with"] != library_versions()
@@ -234,6 +234,6 @@ def _of_result(folder: Path, stated: Stated, check_request: RunRequest) -> tuple
 
 
 def _judged_rows(result: Result, name: str) -> Any:
-    """Return a table of a result without the drives that were not judged: nobody can judge them again."""
+    """Return a table of a result without the drives that were not judged, which cannot be judged again."""
     rows = getattr(result, name)
     return rows.filter(pc.equal(rows["status"], "judged")) if name == "drives" else rows

@@ -32,7 +32,7 @@ class ReasonText(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     advice: str = ""
 
     def __post_init__(self) -> None:
-        """Refuse what is no argument: not every text in braces is harmless to fill in."""
+        """Refuse text in braces that is no argument: filling it in may be harmful."""
         for text in (self.says, self.advice):
             if rest := re.search(r"[{}].*", _ARGUMENT.sub("", text)):
                 raise ValueError(f"{rest[0]!r}: write an argument as {{name}} or {{name:.1f}}")

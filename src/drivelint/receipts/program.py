@@ -67,7 +67,7 @@ def _installed() -> list[str]:
 
 
 def question_sha256(arguments: Mapping[str, object]) -> str:
-    """Return the hash of the program and of what it is asked: the options, in which folder, and by whom it is read."""
+    """Return the hash of the program and of the request: the options, the folder, and the reader of the output."""
     asked = {
         "arguments": arguments,
         "folder": os.getcwd(),  # noqa: PTH109 - relative paths begin there

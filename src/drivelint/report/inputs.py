@@ -40,7 +40,7 @@ class InputNote(NamedTuple):
 
 
 def input_notes(result: Result) -> list[InputNote]:
-    """Return the parts of the line: the law, where it is one nation's, map, log, what it does not have, not judged."""
+    """Return the parts of the line: the law if it is one nation's, map, log, missing signals, not judged."""
     drives = [drive for drive in result.drives.to_pylist() if drive["status"] == "judged"]
     law = [InputNote(LAW, words, is_warning=False)] if (words := law_words(result)) else []
     return [
@@ -83,7 +83,7 @@ def _egos_off_the_map(drive: Row) -> int:
 
 
 def _log(drives: Sequence[Row]) -> InputNote:
-    """Return whether the logs are complete: what was lost of them, what is assumed, the number of warnings, and copies."""
+    """Return whether the logs are complete: losses, assumptions, the number of warnings, and copies."""
     lossy = [drive["drive_id"] for drive in drives if drive["lossy"]]
     checks = [check for drive in drives for check in drive["quality"] if check["check_id"] != ASIDE_OF_LANE]
     assumed = sorted({check["message"].partition(";")[0] for check in checks if check["check_id"] == ASSUMED_MOTION})
@@ -147,7 +147,7 @@ def _by_signal(result: Result, rows: Sequence[Row]) -> str:
 
 
 def _not_judged(result: Result, drives: int) -> InputNote:
-    """Return what was not judged: drives, rules by the signal that is missing, and the number of the other verdicts."""
+    """Return the parts that were not judged: drives, rules by the missing signal, and the number of the other verdicts."""
     rows = counts.undecided(result.verdicts).select(["reason_code", "rule_id", *_EGO]).to_pylist()
     signals = [row for row in rows if row["reason_code"].startswith(MISSING_PREFIX)]
     parts = [plural(drives, "drive")] if drives else []
@@ -175,7 +175,7 @@ def rules_without_map(result: Result) -> int:
 
 
 def signal_name(reason_code: str) -> str:
-    """Return what is missing, in words, from a reason code that begins with `missing_` or `unrecorded_`."""
+    """Return the missing signal, in words, from a reason code that begins with `missing_` or `unrecorded_`."""
     return (
         reason_code.removeprefix(MISSING_PREFIX).removeprefix(UNRECORDED_PREFIX).removeprefix("mode_").replace("_", " ")
     )

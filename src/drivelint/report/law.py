@@ -42,7 +42,7 @@ def _applied(law: tuple[str, ...]) -> set[str]:
 
 
 def _law(law: tuple[str, ...], drives: list[Row]) -> str:
-    """Return whether this law was applied in the drives, and what says so."""
+    """Return whether this law was applied in the drives, and the source."""
     applied = _applied(law)
     counted: Counter[str] = Counter()
     for drive in drives:

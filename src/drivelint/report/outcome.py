@@ -84,7 +84,7 @@ class RuleCounts(NamedTuple):
 
 
 def headline(result: Result) -> Headline:
-    """Return what a run comes to. A finding is counted once: as new, or by why a gate lets it through."""
+    """Return the outcome of a run. A finding is counted once: as new, or by the reason why it does not gate."""
     rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
     rows = one_per_event(result.gate, result.findings.to_pylist())
     left = [row for row in rows if standing(result.gate, row["finding_id"]) not in LET_THROUGH]

@@ -95,7 +95,7 @@ def _remove_empty(out: Path, names: Iterable[str]) -> None:
 
 
 def _identity(path: Path) -> tuple[int, int] | None:
-    """Return what tells a file from the one that replaces it; None: there is none."""
+    """Return an identity that distinguishes a file from its replacement; None: there is none."""
     try:
         said = path.stat()
     except OSError:
@@ -221,7 +221,7 @@ def _hashes(out: Path) -> dict[str, str]:
 
 
 def hashes_in(content: bytes) -> dict[str, str]:
-    """Return name -> sha256 of what `files.json` holds; nothing for one of an older version, or a damaged one."""
+    """Return name -> sha256 from `files.json`; nothing for one of an older version, or a damaged one."""
     try:
         return {str(name): str(said) for name, said in json.loads(content)[_HASHES].items()}
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError):

@@ -203,7 +203,7 @@ def render(gate: Gate) -> bytes:
 
 
 def load(folder: Path) -> Gate | None:
-    """Return what a result folder says of its gate; None: there was none. Errors: `UsageError` for a file of another kind."""
+    """Return the gate of a result folder; None: there was none. Errors: `UsageError` for a file of another kind."""
     path = folder / GATE_FILE
     try:
         found = msgspec.json.decode(path.read_bytes(), type=_File)

@@ -110,7 +110,7 @@ def exit_status(result: Result) -> ExitStatus:
 
 
 def _outcomes(result: Result) -> Iterator[ExitStatus]:
-    """Yield what the run comes to, weightiest first."""
+    """Yield the exit codes of the run with their reasons, the weightiest first."""
     if result.interrupted:
         yield ExitStatus(ExitCode.INTERRUPTED, partial_sentence(result.drives))
     if (erring := _erring(result, beyond_limits=False)).num_rows:
@@ -131,7 +131,7 @@ def _outcomes(result: Result) -> Iterator[ExitStatus]:
 
 
 def _not_judged(result: Result) -> Iterator[ExitStatus]:
-    """Yield what was not judged that should have been."""
+    """Yield the parts that should have been judged but were not."""
     if lost := int(pc.sum(pc.equal(result.drives["status"], "not_judged")).as_py() or 0):
         yield ExitStatus(
             ExitCode.NOT_JUDGED, f"{lost} of {plural(result.drives.num_rows, 'drive')} could not be judged"
@@ -168,7 +168,7 @@ def _rules_of(rows: pa.Table) -> str:
 
 
 def _lossy(result: Result) -> Iterator[ExitStatus]:
-    """Yield what was lost of the logs that were judged."""
+    """Yield the losses of the logs that were judged."""
     if result.lossy:
         judged = [drive for drive in result.drives.to_pylist() if drive["status"] == "judged"]
         absent = [words for drive in judged for words in ego_absences(drive)]
@@ -295,7 +295,7 @@ def _severities(result: Result) -> tuple[str, ...]:
 
 
 def _stopped(result: Result) -> str:
-    """Return what makes exit code 1, in words; '' for nothing."""
+    """Return the reason for exit code 1, in words; '' for none."""
     found, bare = (
         len(one_per_event(gating_findings(result).to_pylist())),
         _severe(result, failures_without_finding(result)).num_rows,

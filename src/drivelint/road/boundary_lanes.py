@@ -151,7 +151,7 @@ def map_from_bounds(
     geo: GeoFrame | None = None,
     nation: str | None = None,
 ) -> MapTables:
-    """Return the map of lanes from `build_lanes` and of what is on and beside them: see `map_tables`."""
+    """Return the map of the lanes of `build_lanes` with their furniture: see `map_tables`."""
     by_id = {lane.lanelet_id: lane for lane in lanes}
     content: dict[str, Rows | dict[str, Any]] = {
         "lanelet": [_lanelet(lane) for lane in lanes],

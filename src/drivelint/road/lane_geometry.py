@@ -90,7 +90,7 @@ def check_bounds(left: Floats, right: Floats) -> None:
 
 
 def lane_geometry(left: Floats, right: Floats) -> LaneGeometry:
-    """Return the points of a lane. Errors: `UnbuildableError` saying what is wrong with it."""
+    """Return the points of a lane. Errors: `UnbuildableError` with its problem."""
     check_bounds(left, right)
     left, right = _paired(left, right)
     for keep_points in (_distinct, _forwards):

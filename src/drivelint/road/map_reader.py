@@ -1,4 +1,4 @@
-"""Defines what a map reader takes and returns, for all map formats."""
+"""Defines the input and the output of a map reader, for all map formats."""
 
 from __future__ import annotations
 

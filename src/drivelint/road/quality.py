@@ -17,7 +17,7 @@ _UNKNOWN_WORDS: Final = {
     "marking_color": ("info", "colors of road marks", "treated as not stated"),
     "lanes_changed": ("info", "lane changes over road marks", "treated as not stated"),
 }
-"""Vocabulary -> severity, what has the words, and what follows where one is not known."""
+"""Vocabulary -> severity, the subject of its words, and the effect of an unknown word."""
 _NETCONVERT_STAND_IN_MPS: Final = 39.44
 """The limit that SUMO's netconvert 1.28 gives to roads with `maxspeed=none`, and to motorways without one: 142 km/h, which no sign says."""
 _ORDER = {"error": 0, "warning": 1, "info": 2}

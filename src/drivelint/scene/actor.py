@@ -40,7 +40,7 @@ WITH_LIGHTS: Final = frozenset({"car", "van", "truck", "bus", "motorcycle", "veh
 BRAKING_MPS2: Final = 1.0
 """From here on the brake lights shine."""
 _SLOW_MPS: Final = 0.3
-"""Slower than this nobody turns: the heading stays that of the way."""
+"""Slower than this no actor turns: the heading stays that of the path."""
 
 
 class Motion(NamedTuple):

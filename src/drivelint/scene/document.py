@@ -91,7 +91,7 @@ class Crossing(_Part, frozen=True):
     """From the middle of the junction to where the arms begin, in metres."""
     road: RoadText = RoadText(line=[200.0], kind="town", limit="30 mph")
     things: dict[str, list[Thing]] = {}
-    """Arm -> what only it has."""
+    """Arm -> the things that only it has."""
 
 
 class Roundabout(_Part, frozen=True):
@@ -156,7 +156,7 @@ class ActorText(_Part, frozen=True):
 
     kind: str | None = "car"
     size: list[float | None] | None = None
-    """Length, width and height; none: what its kind usually has."""
+    """Length, width and height; none: those usual for its kind."""
     lane: str | None = None
     """A road and the number of a lane: `main 1`."""
     route: list[str] = []
@@ -177,7 +177,7 @@ class ActorText(_Part, frozen=True):
     facing: Literal["ahead", "back"] = "ahead"
     """back: it is turned round, and what moves goes backwards."""
     heading: Knots | None = None
-    """Degrees, anticlockwise from the east as drawn, of one whose heading does not follow from how it moves."""
+    """Degrees, anticlockwise from the east as drawn, for an actor whose heading does not follow from its motion."""
     indicator: str | list[tuple[float, str]] = "off"
     """off, left, right, hazard or unknown, as drawn: left is the side to overtake on."""
     brake: str | list[tuple[float, str]] | None = None
@@ -196,7 +196,7 @@ class SceneText(_Part, frozen=True, kw_only=True):
     summary: str = msgspec.field(name="what")
     roads: str
     traffic: Side | None = None
-    """Instead of what the layout says."""
+    """Instead of the value of the layout."""
     seconds: float = 20.0
     rate: float = 10.0
     conditions: dict[str, str] = msgspec.field(default_factory=dict, name="given")

@@ -125,7 +125,7 @@ def judge_scenes(
 
 
 def differences(scene: Scene, verdicts: Verdicts, gating: Container[str]) -> Iterator[str]:
-    """Yield what is not as the scene expects. `gating`: the rules of which every critical or major fail must be expected."""
+    """Yield the differences from the expectations of the scene. `gating`: rules whose critical and major fails must be expected."""
     expectations = {rule: expectation(text) for rule, text in scene.text.expect.items()}
     for rule, expected_verdict in expectations.items():
         key = scene.name, rule

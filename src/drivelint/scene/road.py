@@ -194,7 +194,7 @@ def _in_frame(pose: Pose, x: float, y: float) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class Way:
-    """A line that somebody follows: points every STEP_M, stations from 0, straight on beyond both ends."""
+    """A line that an actor follows: points every STEP_M, stations from 0, straight on beyond both ends."""
 
     s: Floats
     x: Floats

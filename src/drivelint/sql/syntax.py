@@ -50,7 +50,7 @@ def with_values(sql: str, literals: Mapping[str, str]) -> str:
 
 
 def syntax_tree(sql: str) -> Node:
-    """Return what DuckDB makes of a SELECT: `error`, and `error_message` or `statements`."""
+    """Return DuckDB's tree of a SELECT: `error`, and `error_message` or `statements`."""
     try:
         tree: Node = msgspec.json.decode(parser().execute("SELECT json_serialize_sql(?)", [sql]).fetchall()[0][0])
     except msgspec.DecodeError:  # DuckDB writes infinity, which JSON has not

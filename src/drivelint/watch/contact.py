@@ -56,7 +56,7 @@ class ContactLook:
         self._apart: set[tuple[str, str, str]] = set()
 
     def look(self, trace: Trace, since_ns: int | None) -> list[Row]:
-        """Return what breaks a rule at the steps after `since_ns`, None: at all; each as a row of `finding` that lasts one step.
+        """Return the breaches at the steps after `since_ns` (None: at all steps), each as a row of `finding` that lasts one step.
 
         `trace`: the newest steps and about `LOOK_NS` before them.
         """

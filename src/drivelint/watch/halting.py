@@ -52,7 +52,7 @@ class Child:
         return None
 
     def end(self) -> None:
-        """Ask the group to end, and kill what is left of it after a while."""
+        """Request the group to end, and kill the remaining processes after a while."""
         self._signal(signal.SIGTERM)
         until = time.monotonic() + GRACE_S
         while self._is_there() and time.monotonic() < until:

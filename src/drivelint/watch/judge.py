@@ -109,7 +109,7 @@ class WindowJudge:
         self._n_passes = 0
 
     def contact_look(self) -> ContactLook | None:
-        """Return what looks for contacts in frames that no window was judged with; None: no rule of contacts is asked for."""
+        """Return the finder of contacts in frames that no window was judged with; None: no rule of contacts is selected."""
         asked = tuple(rule_id for rule_id in contact.RULES if rule_id in self.rules)
         if not asked:
             return None

@@ -101,12 +101,12 @@ class LiveServer:
         return self._server.port
 
     def notes(self) -> list[str]:
-        """Return what is to be said of the address and of those who were refused, once."""
+        """Return notes on the address and on refused clients, once."""
         found, self._notes = self._notes, []
         return [*found, *self._server.notes()]
 
     def publish_scene(self, trace_window: Trace) -> None:
-        """Show the boxes of all who are there at the newest step of a window, instead of those shown before."""
+        """Show the boxes of all actors at the newest step of a window, instead of those shown before."""
         states = trace_window.tables["actor_state"]
         if not len(states):
             return

@@ -36,7 +36,7 @@ FLUSH_S: Final = 0.5
 CLOSE_S: Final = 0.5
 """So long the end waits until viewers have what was published, and until they have said that they leave."""
 MOST_BYTES: Final = 1 << 16
-"""A viewer only subscribes; what is longer is no viewer's."""
+"""A viewer only subscribes; a longer message is not from a viewer."""
 _MESSAGE: Final = struct.Struct("<BIQ")
 _MESSAGE_DATA: Final = 1
 
@@ -49,7 +49,7 @@ def _silent() -> logging.Logger:
 
 
 class _Viewer:
-    """One who is connected, and what waits for it."""
+    """A connected client, and its waiting messages."""
 
     def __init__(self, connection: ServerConnection) -> None:
         self.connection = connection
@@ -121,7 +121,7 @@ class ViewerServer:
         return sum(channel in viewer.subscriptions.values() for viewer in list(self._viewers))
 
     def notes(self) -> list[str]:
-        """Return what is to be said of those who tried to connect, once."""
+        """Return notes on clients that tried to connect, once."""
         found = list(self._notes)
         del self._notes[: len(found)]  # the thread may have added more
         return found
@@ -199,7 +199,7 @@ class ViewerServer:
                 await sending
 
     def _understand(self, viewer: _Viewer, message: str | bytes) -> None:
-        """Do what a viewer asks for; what is none of its words is passed over."""
+        """Handle a request of a viewer; unknown words are ignored."""
         with suppress(ValueError, KeyError, TypeError):
             request = json.loads(message)
             if request["op"] == "subscribe":

@@ -66,7 +66,7 @@ class Window:
         return max(0, self._latest_ns - since_ns)
 
     def advance(self, most_ns: int) -> bool:
-        """Move the window forward over what waits, by at most `most_ns`. Return whether it moved."""
+        """Move the window forward over waiting frames, by at most `most_ns`. Return whether it moved."""
         if not self._waiting:
             return False
         until_ns = most_ns + (self._waiting[0].at_ns if self._newest_ns is None else self._newest_ns)

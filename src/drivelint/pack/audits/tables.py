@@ -77,7 +77,7 @@ def names(results: ResultStore) -> list[str]:
 
 
 def facts(folder: Path, con: duckdb.DuckDBPyConnection, audit: Audit, rules: Sequence[Row]) -> dict[str, Any]:
-    """Return what follows from the tables in the pack `folder`, and must be said as it is in `evidence.json`."""
+    """Return the values of `evidence.json` that follow from the tables in the pack `folder`."""
     counted = summed(con, 0)
     fail_on = str(audit.audit_json["fail_on"])
     # of the tables, which have those of copies and both of a touch of two egos
@@ -96,7 +96,7 @@ def facts(folder: Path, con: duckdb.DuckDBPyConnection, audit: Audit, rules: Seq
 
 
 def unlike_summary(con: duckdb.DuckDBPyConnection, audit: Audit, packed_summary: dict[str, Any]) -> list[str]:
-    """Return the keys of `summary.json` that do not say what the tables say."""
+    """Return the keys of `summary.json` that contradict the tables."""
     counted = summed(con, 0).plain() | {"robust": bool(audit.settings["robustness"])}
     return sorted(
         key for key in (counted.keys() | packed_summary.keys()) - _OF_RUN if packed_summary.get(key) != counted.get(key)
@@ -104,7 +104,7 @@ def unlike_summary(con: duckdb.DuckDBPyConnection, audit: Audit, packed_summary:
 
 
 def unlike_receipts(results: ResultStore, rules: pa.Table, *, same_libraries: bool) -> Iterator[Problem]:
-    """Yield in what receipts do not say what the rows of their drives say, chunk by chunk.
+    """Yield the differences between receipts and the rows of their drives, chunk by chunk.
 
     `same_libraries`: the hash of the rows, which is one of Parquet, is compared, too.
     """
@@ -132,7 +132,7 @@ def unlike_receipts(results: ResultStore, rules: pa.Table, *, same_libraries: bo
 
 
 def _unlike(receipt: Row, due: dict[str, Any], *, same_libraries: bool) -> list[str]:
-    """Return in what a receipt does not say what follows from its rows."""
+    """Return the differences between a receipt and its rows."""
     told = {name: dict(value) if isinstance(due.get(name), dict) else value for name, value in receipt.items()}
     if told["status"] == "quarantined" and due["status"] == "refused":
         due |= {"status": "quarantined"}
@@ -181,7 +181,7 @@ def packed_drives(
 
 
 def asked_of(audit: Audit, receipt: Row | None, rules_dirs: tuple[Path, ...]) -> RunRequest:
-    """Return what a check of a drive would be asked for the same; None: of no drive."""
+    """Return the request of a check of a drive with the same result; None: of no drive."""
     options = msgspec.json.decode(
         (receipt or {}).get("options") or "{}", type=DriveInput, dec_hook=lambda kind, value: kind(value)
     )
@@ -199,7 +199,7 @@ def asked_of(audit: Audit, receipt: Row | None, rules_dirs: tuple[Path, ...]) ->
 
 
 def settings_of(audit: Audit) -> JudgeSettings:
-    """Return what decided the verdicts of an audit, with the folders of rules where they were."""
+    """Return the settings that decided the verdicts of an audit, with the folders of rules where they were."""
     return msgspec.convert(audit.settings, JudgeSettings, dec_hook=lambda kind, value: kind(value))
 
 

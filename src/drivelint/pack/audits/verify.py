@@ -1,4 +1,4 @@
-"""Verifies the pack of an audit: its tables, what it says of them, and the drives whose logs are at hand."""
+"""Verifies the pack of an audit: its tables, its statements about them, and the drives whose logs are available."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ _NOT_FACTS: Final = frozenset({
 
 @dataclass
 class _Pack:
-    """The pack of an audit that was opened, and what was done with its findings so far.
+    """The opened pack of an audit, and the progress with its findings.
 
     `rules_by_id`: the rules that judged; None: this drivelint has others. `packed_by`: the version of drivelint that wrote the pack.
     `n_judged`: drives that were judged again; `n_alone`: drives without a log, of which the SQL was run; `n_run`: their findings.
@@ -70,7 +70,7 @@ class _Pack:
 
 
 def verified(request: VerifyRequest) -> tuple[list[Problem], str, str, list[str]]:
-    """Return what is wrong, what was judged again in words, what the pack states, and what was not looked at.
+    """Return the problems, the drives judged again in words, the statements of the pack, and what was not examined.
 
     Errors: `UsageError` for logs or a map that were given and are of no drive in the pack.
     """
@@ -101,7 +101,7 @@ def verified(request: VerifyRequest) -> tuple[list[Problem], str, str, list[str]
 
 
 def _of_tables(pack: _Pack) -> Iterator[Problem]:
-    """Yield in what the tables, receipts, rules and summary of the audit do not agree."""
+    """Yield the contradictions between the tables, receipts, rules and summary of the audit."""
     place = pack.folder / tables.AUDIT
     told = pack.audit.audit_json
     said = json.loads((place / SUMMARY_FILE).read_bytes())
@@ -118,7 +118,7 @@ def _of_tables(pack: _Pack) -> Iterator[Problem]:
 
 
 def _of_evidence(pack: _Pack, findings: Sequence[Row]) -> Iterator[Problem]:
-    """Yield in what `evidence.json` does not say what the tables say, and the files that nothing names."""
+    """Yield the contradictions between `evidence.json` and the tables, and the files that nothing names."""
     folder, evidence = pack.folder, pack.evidence
     due = tables.facts(folder, pack.con, pack.audit, pack.rules.to_pylist())
     due["findings_left_out"] = due["n_findings"] - len(findings)
@@ -194,7 +194,7 @@ def _of_drive(pack: _Pack, drive: tables.PackedDrive, log: Path | None, map_: Pa
 
 
 def _request_with_pack_paths(pack: _Pack, drive: tables.PackedDrive) -> RunRequest:
-    """Return the check of a drive with the paths of what is in the pack. Errors: `ValueError` for a path that leads out of it."""
+    """Return the check of a drive with the paths of the files in the pack. Errors: `ValueError` for a path that leads out of it."""
     check_request = drive.check_request
     if drive.key in pack.evidence["mappings"]:
         check_request = replace(check_request, mapping=str(inside(pack.folder, pack.evidence["mappings"][drive.key])))
@@ -258,7 +258,7 @@ def _judging(pack: _Pack) -> str:
 
 
 def _notes(pack: _Pack) -> list[str]:
-    """Return what was not held against the logs, and what is not drivelint's own."""
+    """Return notes on results that were not compared with the logs, and on rules that are not drivelint's own."""
     notes, evidence, told = [], pack.evidence, pack.audit.audit_json["versions"]
     if pack.n_alone:
         ran = (

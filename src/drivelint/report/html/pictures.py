@@ -34,7 +34,7 @@ def pictures_by_moment(pictures: pa.Table) -> dict[Moment, list[dict[str, Any]]]
 def add_pictures(
     worst: dict[str, Any] | None, sections: Sequence[dict[str, Any]], cameras: Mapping[Moment, list[dict[str, Any]]]
 ) -> None:
-    """Give each moment of a page its pictures: the worst one first, and each once: what comes later links there."""
+    """Give each moment of a page its pictures, the worst moment first, and each picture once; later moments link to it."""
     anchors: dict[Moment, str] = {}
     if worst is not None:
         row = worst["line"].row

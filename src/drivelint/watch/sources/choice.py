@@ -55,7 +55,7 @@ def _open_source(options: WatchOptions, folder: Path) -> Source:
 
 
 def _refuse_with_command(options: WatchOptions) -> None:
-    """Refuse what a program that is started with the watch cannot be the source of. Errors: `UsageError`."""
+    """Refuse sources that a program started with the watch cannot write. Errors: `UsageError`."""
     if not options.command:
         return
     if options.source == "-":

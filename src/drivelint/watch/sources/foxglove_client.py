@@ -65,13 +65,13 @@ class FoxgloveClient:
         return None if found is None else [message for messages in found for message in messages]
 
     def notes(self) -> list[str]:
-        """Return what the server said of itself, which of its channels are not read, and that it is waited for, once."""
+        """Return notes on the server: its status, its unread channels, and that it is waited for, once."""
         found = list(self._notes)
         del self._notes[: len(found)]  # the thread may have added more
         return found
 
     def close(self) -> list[LiveMessage]:
-        """Leave the server. Return what came and nobody took. May be called twice."""
+        """Leave the server. Return the items that were not taken. May be called twice."""
         self._reader.stop()
         return [message for messages in self._reader.rest() for message in messages]
 
@@ -128,7 +128,7 @@ class FoxgloveClient:
             return ws
 
     def _understood(self, ws: ClientConnection, data: str | bytes) -> list[LiveMessage]:
-        """Do what the server's own words ask for; return a message of one of its channels, if it is one."""
+        """Handle a message of the server itself; return a message of one of its channels, if it is one."""
         if isinstance(data, bytes):
             if len(data) < _MESSAGE.size or data[0] != _MESSAGE_DATA:
                 return []

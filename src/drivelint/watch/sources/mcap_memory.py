@@ -58,7 +58,7 @@ def is_watched(schema: str) -> bool:
 
 
 def memory_for(channel: Channel, schema: str) -> Memory:
-    """Return what keeps the messages of a channel whose schema has this name."""
+    """Return the memory for the messages of a channel whose schema has this name."""
     kind = message_kind(schema)
     if kind == SCENE:
         return SceneMemory(channel.message_encoding)

@@ -35,7 +35,7 @@ class Receiver(Protocol):
         ...
 
     def notes(self) -> list[str]:
-        """Return what was lost since the last call."""
+        """Return the losses since the last call."""
         ...
 
     def close(self) -> None:

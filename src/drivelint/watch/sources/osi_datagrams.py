@@ -123,7 +123,7 @@ class Assembler:
         return self._finished(datagram.sender) if counter < 0 and self._parts else None
 
     def _is_next(self, counter: int, data: bytes) -> bool:
-        """Say whether a datagram is the one that is waited for; if not, what came of its message is left out."""
+        """Return whether a datagram is the expected one; if not, the parts of its message are left out."""
         # the first part of a message has its time in it: none of another message is the same
         if counter == 1 and [data] == self._parts:
             return False

@@ -81,7 +81,7 @@ def _copy(source: Any, target: Any, field: str) -> None:
 
 
 def _complete(bulb: Any, first: Any) -> None:
-    """Give a bulb that only says what it shows the place and the lanes that the first message gave it."""
+    """Give a bulb that has only its state the place and the lanes from the first message."""
     shown = type(bulb).FromString(bulb.SerializeToString())
     bulb.CopyFrom(first)
     for field in _LIGHT_STATE_FIELDS:

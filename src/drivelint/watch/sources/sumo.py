@@ -41,7 +41,7 @@ _LEAVES_OUT: Final = (
     "person-fcd-output", "fcd-output.filter-edges.input-file", "fcd-output.filter-shapes", "device.fcd.probability",
     "device.fcd.explicit", "device.fcd.radius", "person-device.fcd.probability", "person-device.fcd.explicit",
 )  # fmt: skip
-"""Options of a configuration after which SUMO does not write everybody."""
+"""Options of a configuration with which SUMO does not write every actor."""
 
 
 def open(name: str, folder: Path, *, span_s: float = DEFAULT_SPAN_S, until_s: float | None = None) -> SumoSimulation:  # noqa: A001
@@ -102,7 +102,7 @@ class SumoSimulation(WrittenWindows):
         return frames or None
 
     def notes(self) -> Sequence[str]:
-        """Return what the configuration leaves out of the recording, once."""
+        """Return notes on actors that the configuration leaves out of the recording, once."""
         found, self._notes = self._notes, []
         return found
 

@@ -133,7 +133,7 @@ class SumoProcess:
             return float(con.simulation.getTime()) >= self._end_s - self.step_s / 2
 
     def vehicle_type(self, name: str) -> VehicleType | None:
-        """Return what is known of a vType; None: SUMO does not know it any more."""
+        """Return the facts about a vType; None: SUMO does not know it any more."""
         # one that was changed for a single vehicle is called BASE@ID, after the one that it was
         parts = name.split("@")
         with self._guarded_connection() as con:
@@ -165,7 +165,7 @@ class SumoProcess:
         process.wait()
 
     def _begin(self, precision: int) -> None:
-        """Start SUMO and connect to it; again at another port where somebody else took the first."""
+        """Start SUMO and connect to it; again at another port if another program took the first."""
         found, home = program()
         environment = {**os.environ, **({"SUMO_HOME": home} if home else {})}
         for start in range(_STARTS):
