@@ -324,7 +324,7 @@ def test_one_vehicle_against_its_lane_is_a_doubt(tmp_path: Path) -> None:
     said = {}
     for hand in ("lht", "rht"):
         (found,) = check(settings(log, handedness=hand, ego="oncoming"), Silent()).drives["quality"].to_pylist()
-        said[hand] = [q["severity"] for q in found if "headings looked at" in q["message"]]
+        said[hand] = [q["severity"] for q in found if "headings examined" in q["message"]]
     assert said == {"lht": [], "rht": ["warning"]}
 
 

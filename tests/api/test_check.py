@@ -372,7 +372,7 @@ def test_a_query_that_fails_is_one_error(checked: drivelint.CheckResult) -> None
         ({"require": "no-such-rule"}, "no-such-rule"),
         ({"rules": []}, "rules names none"),
         ({"rules": 5}, "rules=5: give a text, or several"),
-        ({"rules": [["a"]]}, r"\['a'\] is no text"),
+        ({"rules": [["a"]]}, r"\['a'\] is neither a text"),
         ({"traces": 5}, "traces=5: give a path, or several"),
         ({"map": ["a"]}, "map=.*give a path"),
         ({"map_offset": 5}, "map_offset=5: give two numbers"),

@@ -86,7 +86,7 @@ def test_it_is_what_another_audit_says(own: Own, judged: Path, tmp_path: Path, l
 def test_the_text_counts_flips_by_release(judged: Path) -> None:
     done = ran("what-if", judged, "own.slow.limit=11", "--by", "release")
     assert done.code == 0
-    assert "12 of 12 verdicts become others: 12 pass -> fail" in done.out
+    assert "12 of 12 verdicts change: 12 pass -> fail" in done.out
     told, _, which = done.out.partition("which:\n")
     assert [line for line in told.splitlines() if line.startswith("  ")] == [
         "  v0  6 pass -> fail",
@@ -110,7 +110,7 @@ def test_a_copy_with_another_tag_counts_for_both_values_and_once_in_all(own: Own
     finally:
         manifest.write_text(listed, encoding="utf-8")
     done = ran("what-if", out, "own.slow.limit=11", "--by", "release")
-    assert "12 of 12 verdicts become others: 12 pass -> fail" in done.out
+    assert "12 of 12 verdicts change: 12 pass -> fail" in done.out
     told, _, which = done.out.partition("which:\n")
     lines = [line for line in told.splitlines() if line.startswith("  ")]
     assert lines == ["  v0  6 pass -> fail", "  v1  7 pass -> fail"]

@@ -120,7 +120,7 @@ def test_without_an_agent(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     with pytest.raises(UsageError, match="SSH_AUTH_SOCK names no agent"):
         signature.signing_key(public)
     monkeypatch.setenv("SSH_AUTH_SOCK", str(tmp_path / "nothing"))
-    with pytest.raises(UsageError, match="cannot be asked"):
+    with pytest.raises(UsageError, match="cannot be reached"):
         signature.signing_key(public)
 
 

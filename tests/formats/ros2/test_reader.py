@@ -238,5 +238,5 @@ def test_ego_size_reaches_the_log(tmp_path: Path, capsys: pytest.CaptureFixture[
 def test_ego_size_of_the_log_counts(tmp_path: Path) -> None:
     trace = seen(tmp_path, others(), ego="9", ego_size=EgoSize(4.9, 1.82))
     assert (actors(trace)["9"]["length_m"], actors(trace)["9"]["width_m"]) == (4.5, 1.8)
-    assert "length of 4.9 m, the log 4.5 m" in quality(trace)["ego_size"]["message"]
+    assert "length of 4.9 m, but the log states 4.5 m" in quality(trace)["ego_size"]["message"]
     assert "assumed_size" not in quality(trace)
