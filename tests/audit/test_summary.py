@@ -200,7 +200,7 @@ def test_a_tag_with_the_name_of_a_condition_or_nearly_of_a_column_is_said_to_be_
     audit(
         AuditRequest(sources=(str(few.manifest),), map=few.road, out=str(tmp_path / "out")), listener, InThisProcess()
     )
-    said = [note for note in notes if "tag only" in note]
+    said = [note for note in notes if "only a tag" in note]
     assert len(said) == (told is not None)
     assert all(str(told) in note for note in said)
 

@@ -61,9 +61,9 @@ def struck(hole: tuple[float, float] | None = None, start: float = 0.0) -> dict[
 
 @pytest.mark.ci
 def test_who_stood_for_3_s_was_struck() -> None:
-    assert "it was struck" in struck()["reason"]
-    assert "it was struck" in struck(start=4.9)["reason"]
-    assert "it was struck" in struck(hole=(2.0, 4.5))["reason"]
+    assert "the ego was hit" in struck()["reason"]
+    assert "the ego was hit" in struck(start=4.9)["reason"]
+    assert "the ego was hit" in struck(hole=(2.0, 4.5))["reason"]
 
 
 @pytest.mark.ci

@@ -36,7 +36,7 @@ def test_the_authors_reason_of_an_unknown_applicability(tmp_path: Path) -> None:
         ({"x_m": 1.0, "y_m": 0.0, "yaw_rad": [0, None, 0]}, "the ego has no heading: record it"),
         (
             {"x_m": 1.0, "y_m": 0.0, "lanelet_id": ["l", None, "l"]},
-            "the ego is not on a lane of the map: give a map that has its lane",
+            "the ego is not on a lane of the map: use a map that has its lane",
         ),
         (
             {"x_m": 1.0, "y_m": 0.0, "front_s_m": [5, None, 5]},

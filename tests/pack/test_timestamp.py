@@ -108,7 +108,7 @@ def stamped(packed: Packed, tmp_path_factory: pytest.TempPathFactory) -> Stamped
 def test_a_stamp_is_verified_as_openssl_does(stamped: Stamped, packed: Packed, tmp_path: Path) -> None:
     found = verify(VerifyRequest(stamped.pack, packed.public, timestamp_root=stamped.authority.root))
     assert found.problems == []
-    assert ", there since 20" in found.sentence
+    assert ", existed by 20" in found.sentence
     statement, response = stamped.pack / "statement.dsse.json", stamped.pack / timestamp.FILE
     openssl("ts", "-verify", "-data", statement, "-in", response, "-CAfile", stamped.authority.root)
     without = verify(VerifyRequest(stamped.pack, packed.public))

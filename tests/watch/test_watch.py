@@ -209,8 +209,8 @@ def test_a_program_that_ends_by_itself_is_waited_for(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("asked", "said"),
     [
-        ({"window_s": 12.0, "every_s": 8.0}, "--every 8: give at most 7 s, or a longer --window"),
-        ({"window_s": 9.0}, "--window 9: give more than 10 s"),
+        ({"window_s": 12.0, "every_s": 8.0}, "--every 8: use at most 7 s, or a longer --window"),
+        ({"window_s": 9.0}, "--window 9: use more than 10 s"),
         ({"on": ("ukhc.no-collision",)}, "write SEL=COMMAND"),
         ({"on": ("stvo.rg1=true",)}, "none of the selected rules is meant"),
         ({"command": ("true",)}, "there is no program to start"),
