@@ -104,7 +104,7 @@ Ignore = Annotated[
     Texts, option("--ignore", "SEL", "Leave these rules out. Repeatable.", autocompletion=completion.rule_ids)
 ]
 Param = Annotated[Texts, option("--param", "RULE.PARAM=V", "Set a rule's parameter. Repeatable.")]
-RulesAsInCheck = Annotated[Texts, rules("Rules to judge by, as in check. Repeatable. Default: stable rules of ukhc.")]
+RulesAsInCheck = Annotated[Texts, rules("Rules to judge by, as in check. Repeatable. Default: those of check.")]
 ProfileAsInCheck = Annotated[Texts, profile("As in check. Repeatable.")]
 Strict = Annotated[bool, option("--strict", None, "Exit code 4 if a rule is unknown.")]
 FailOnOption = Annotated[FailOn, option("--fail-on", None, "Lowest severity that causes exit code 1.")]
