@@ -72,7 +72,7 @@
 --
 -- [reasons.on_restricted_lane]
 -- says = "the ego drives on restricted ground, whose direction is not known"
--- advice = "in the map, use another lane type than restricted if vehicles may drive there"
+-- advice = "use another lane type than restricted in the map, if vehicles may drive there"
 --
 -- [reasons.with_lane]
 -- says = "{along_mps:.1f} m/s along the ego's heading, which is the direction of lane {lanelet_id}"

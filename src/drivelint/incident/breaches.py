@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from drivelint.result.text import Row
 
-ADVICE: Final = ("begin", "choose", "correct", "give", "make", "record", "see")
+ADVICE: Final = ("begin", "choose", "correct", "give", "make", "provide", "record", "see", "set", "use")
 """First words of the advice of a reason."""
 _ADVICE: Final = re.compile(rf": (?:{'|'.join(ADVICE)}) .*$")
 _MOST_STRETCHES: Final = 2
