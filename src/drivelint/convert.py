@@ -174,7 +174,7 @@ def _with_log(trace: Trace, **values: str | float) -> Trace:
 
 
 def _road(request: ConvertRequest, trace: Trace) -> tuple[MapSource | None, Trace, list[str]]:
-    """Return the map that goes along, the user's, else the log's own, the trace in its frame, and what to tell. Errors: as `convert`."""
+    """Return the map that goes along, the user's, else the log's own, the trace in its frame, and a note. Errors: as `convert`."""
     library, own = MapLibrary(request), trace.embedded_map
     if library.uses_embedded(trace) or (road := library.find_source(trace)) is None:
         if own is None:

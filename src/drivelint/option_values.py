@@ -51,9 +51,9 @@ def one_folder(argument: Path | None, option: Path | None, default: Path) -> Pat
 
 
 def robustness_for(confidence: float | None, robustness: bool | None) -> bool | None:
-    """Return which copies are judged: whoever gives a confidence needs those of all findings.
+    """Return which copies are judged: a confidence needs those of all findings.
 
-    Errors: `UsageError` for a confidence that is no share, or that nothing tells.
+    Errors: `UsageError` for a confidence that is no share, or without copies.
     """
     if confidence is not None and robustness is False:
         raise UsageError("--confidence needs the copies that --no-robustness leaves out: use one of them")

@@ -337,7 +337,7 @@ class _DeafInWorker:
 def _work(part: _Part, pipe: Connection, parent: int) -> None:
     """Judge a part in this process."""
     begin_worker(parent)
-    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # the listener ends this process when nobody listens to it
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # the listener ends this process when its parent is gone
     interruption, teller = Interruption(), _Teller(pipe)
     Thread(target=_listen, args=(pipe, interruption), daemon=True, name="listener").start()
     try:

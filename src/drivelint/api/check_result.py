@@ -63,7 +63,7 @@ class CheckResult(TableSet):
         self.notes = tuple(map(in_keywords, notes))
         self.folder = folder
         self._result = replace(result, margins_file=None)
-        self._scratch = scratch  # its folder, with the margins, goes when nobody has the result any more
+        self._scratch = scratch  # its folder, with the margins, is removed with the last reference to the result
         margins = result.margins_file if folder is None else folder / _MARGINS
         self._margins_file = margins if margins is not None and margins.is_file() else None
 
@@ -143,7 +143,7 @@ class CheckResult(TableSet):
         trace: AnyPath | None = None,
         map: AnyPath | None = None,  # noqa: A002 - the option's name
     ) -> Explained:
-        """Tell why one verdict is what it is, as `drivelint explain` does: its drive is judged again by that rule.
+        """Explain one verdict, as `drivelint explain` does: its drive is judged again by that rule.
 
         `name`: a finding's id or how it begins; or a rule, or rule@drive, or how they begin. The others choose among several
         verdicts. `trace`, `map`: where they are, if they were moved. Errors: `DriveLintError`.

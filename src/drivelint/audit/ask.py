@@ -96,7 +96,7 @@ def _open(con: duckdb.DuckDBPyConnection, dest: str, home: Path, warn: Callable[
 def _warn_of_changes(
     results: ResultStore, dest: str, home: Path, warn: Callable[[str], None], *, is_audit: bool
 ) -> None:
-    """Tell of the first file that is not as it was written; whoever asks may want to look at just that.
+    """Warn of the first file that has changed since it was written; a query may be about exactly that.
 
     Errors: `UsageError` for an audit that has ended and does not say how its files were.
     """

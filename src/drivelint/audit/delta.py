@@ -85,7 +85,7 @@ def write(
     """Make the Delta tables in `dest` equal to the packed tables, each by one commit, where they differ.
 
     `con`: has the views of `create_views`; `home`: has their copies. `digest`: that of the audit's summary. Only one process may write
-    an audit's tables at a time. Errors: `UsageError` for a table of somebody else; `OutputError`.
+    an audit's tables at a time. Errors: `UsageError` for a table of another program; `OutputError`.
     """
     ids = chunks(results)
     n_added = n_removed = 0

@@ -25,7 +25,7 @@ _NAME: Final = "lock.json"
 def locked(results: ResultStore, *, shared: bool) -> Iterator[None]:
     """Hold a place while the block runs. `shared`: with others that share it, as shards do, which pack nothing.
 
-    Errors: `UsageError` where somebody else has it.
+    Errors: `UsageError` if another process has it.
     """
     if isinstance(results, LocalFolder):
         with _locked_folder(results, shared=shared):

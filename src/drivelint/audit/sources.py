@@ -174,7 +174,7 @@ def _exists(path: Path) -> bool:
 
 
 def _first_row(path: Path) -> dict[str, Any]:
-    """Return the first row of a Parquet file; empty where there is none, or where it is damaged, which its reader tells."""
+    """Return the first row of a Parquet file; empty where there is none, or if it is damaged, which its reader reports."""
     try:
         with pq.ParquetFile(path) as file:
             batch = next(file.iter_batches(1), None)

@@ -70,7 +70,7 @@ class Standing(NamedTuple):
 def views_of_all(con: duckdb.DuckDBPyConnection, results: ResultStore, home: Path, prefix: str = "") -> Standing:
     """Create the views of `create_views` over all results, also those that are not packed. `prefix`: as there.
 
-    Errors: `UsageError` where somebody packs them meanwhile, or has taken a file away.
+    Errors: `UsageError` if they are being packed, or a file was removed.
     """
     inner = f"packed_{prefix}"
     try:

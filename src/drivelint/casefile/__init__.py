@@ -279,7 +279,7 @@ def run_merged_cases(
 ) -> tuple[str, set[str]]:
     """Judge all cases in one database; return '' or the first problem, and all reason codes.
 
-    Errors: `RuleError`. `keys`: by what they are told apart there, in turn.
+    Errors: `RuleError`. `keys`: the columns that distinguish them there, in turn.
     """
     everybody = numbered_cases(rule, cases)
     codes: set[str] = set()

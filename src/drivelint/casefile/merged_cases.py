@@ -69,7 +69,7 @@ def judge(rules: Sequence[Rule], scene: Scene, params: Mapping[str, Any]) -> dic
 def mergeable_groups(members: Sequence[NumberedCase], key: str) -> list[list[NumberedCase]]:
     """Group the cases that can share one database as different drives (or egos: `key` = ego_id).
 
-    They must agree on parameters and on the tables that the key does not tell apart.
+    They must agree on parameters and on the tables that the key does not distinguish.
     """
     groups: dict[str, list[NumberedCase]] = {}
     for member in members:
@@ -79,7 +79,7 @@ def mergeable_groups(members: Sequence[NumberedCase], key: str) -> list[list[Num
 
 
 def _is_apart(table: str, scene: Scene, key: str) -> bool:
-    """Whether the rows of two cases can stand in one table and be told apart by the key."""
+    """Whether the rows of two cases can stand in one table and be distinguished by the key."""
     names = {name for row in scene[table] for name in row}
     if key == "drive_id":
         return key in names or _of_the_map(table)

@@ -75,7 +75,7 @@ class _Text(NamedTuple):
 
 @contextmanager
 def noted(problems: list[str]) -> Iterator[None]:
-    """Add the refusal inside the block to the problems, so that an author is told of all."""
+    """Add the refusal inside the block to the problems, so that an author sees all of them."""
     try:
         yield
     except RuleError as error:

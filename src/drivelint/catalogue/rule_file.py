@@ -98,7 +98,7 @@ def checked_rule(file: Path, pack: str, pack_title: str, content: bytes, *, with
 
 
 def _quantities(header: Header, queries: dict[str, Query]) -> frozenset[str]:
-    """Return what of the actors a rule uses: what the columns that it names are made of, and that there is somebody at all."""
+    """Return the quantities of actors that a rule uses: those of the columns that it names, and existence."""
     declared = store.column_quantities()
     # a table of events that the header names hands over all its columns: those count that the other sections name
     named = {

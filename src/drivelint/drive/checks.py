@@ -29,7 +29,7 @@ YAW_CHECK_LEAST_MPS = 3.0
 """Slip angles of a car stay below about 10 degrees; below 3 m/s reversing and rounding blur the direction of motion."""
 REVERSING_MPS = 8.0
 REVERSING_RAD = np.deg2rad(150.0)
-"""Nobody reverses faster than this (29 km/h), and whoever reverses also drives forwards somewhere in the log."""
+"""No vehicle reverses faster than this (29 km/h), and a reversing vehicle also drives forwards somewhere in the log."""
 TELEPORT_M = 3.0
 TELEPORT_FACTOR = 2.0
 """A step is a jump if longer than 3 m + twice what the higher of both speeds covers: no acceleration explains that."""

@@ -42,7 +42,7 @@ DIRECTION_LEAST_M: Final = 0.4
 DIRECTION_LEAST_SHARE: Final = 0.5
 """A motion has a direction if the actor moves 0.4 m within a second around it, and half as far as its speed says."""
 REVERSING_MPS: Final = 8.0
-"""Nobody reverses faster than this (29 km/h),"""
+"""No vehicle reverses faster than this (29 km/h),"""
 FAST_REVERSING_MPS: Final = 20.0
 REVERSE_START_MPS: Final = 3.0
 """unless it is seen to stop and to set off backwards: at its first moving sample it is no faster than 3 m/s, and never than 72 km/h."""
@@ -75,7 +75,7 @@ def resolve(
 ) -> list[QualityFinding]:
     """Make values unknown that contradict the motion, in place (states in order, velocities complete).
 
-    `derived`: velocities come from the positions, and contradict nobody. `split_tracks`: what was not believed before.
+    `derived`: velocities come from the positions, and contradict nothing. `split_tracks`: samples that were doubted before.
     """
     if len(states) < 3:
         return []

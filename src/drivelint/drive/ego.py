@@ -32,7 +32,7 @@ def choose(
     """Return the ids of the egos and the findings about the choice.
 
     `ego_option` is the user's id or `all` (every motor vehicle, except in a log whose actor is itself called `all`);
-    `named_egos` are the log's or mapping's. Where nobody names one and `ego_required` is false, there is none and a finding says so.
+    `named_egos` are the log's or mapping's. If none is named and `ego_required` is false, there is none, and a finding states it.
     Errors: `TraceError` when there is no ego though needed, or no such actor.
     """
     ids = set(actors.ids)
@@ -58,7 +58,7 @@ def choose(
 
 
 def fill_sizes(actors: Actors, egos: list[str], size: EgoSize | None) -> list[QualityFinding]:
-    """Give egos without a size the user's size, in place, and keep another size that the log has; findings tell of both."""
+    """Give egos without a size the user's size, in place, and keep another size that the log has; findings report both."""
     if size is None:
         return []
     findings = []

@@ -62,7 +62,7 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
     as_read = recording.hand_over_states()
     states, restarts = unknown_at_restarts(as_read)
     states = sorted_states(states)
-    # nothing below changes an array in place; the log's own order tells where its clock begins again
+    # nothing below changes an array in place; the log's own order shows where its clock begins again
     recorded = None if not options.as_recorded else as_read if restarts else states.copy()
     del as_read
     states, repeated = without_duplicates(states)

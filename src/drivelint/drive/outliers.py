@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 TYRE_MPS2: Final = 12.0
-"""Nobody changes speed and back again by more (see `ukhc.contact-signature`); an impact changes it for good."""
+"""No vehicle changes speed and back again by more (see `ukhc.contact-signature`); an impact changes it for good."""
 SAME_SPEED_SHARE: Final = 0.25
 """A step of the positions changes the velocity by at most this share of the apparent velocity change during the step."""
 COMMON_LEAST: Final = 4
@@ -177,7 +177,7 @@ def common_jolts(states: States, step: Steps) -> Mask:
     shared = np.bincount(moment[alike], minlength=len(times)) >= ALIKE_SHARE * count
     common = (count >= COMMON_LEAST) & (abs(median - 1.0) > COMMON_CHANGE) & shared
     at = middle[common[moment] & alike]
-    # beside a dip everybody seems to rise: the median of a window does not see the dip
+    # beside a dip, all actors seem to rise: the median of a window does not see the dip
     window = np.median(speed[at[:, None] + np.arange(-width, width + 1)], axis=1)
     at = at[abs(speed[at] / window - 1.0) > COMMON_CHANGE]
     since = states.t_ns - states.t_ns.min()

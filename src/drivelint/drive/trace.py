@@ -73,7 +73,7 @@ FOUND_ANEW = frozenset({
     "same_body", "size_implausible", "teleport", "too_fast", "track_gap", "track_parted", "velocity_derived",
     "velocity_end_derived", "velocity_filtered", "velocity_jolt", "velocity_mismatch", "velocity_unknown", "yaw_mismatch",
 })  # fmt: skip
-"""Checks of the states: a log that was converted as it was recorded says what they found, and whoever reads it finds that anew."""
+"""Checks of the states: a log that was converted as it was recorded has their findings, which are found again when it is read."""
 LOSS_CHECKS = ("dropped_row", "malformed_row")
 """Checks for parts of the log that could not be read, whatever their severity: only the rest is judged.
 
@@ -84,7 +84,7 @@ An error of any other check is a loss too."""
 class IngestOptions:
     """Options of the command line about reading; None: the log or the mapping decides.
 
-    `need_ego`: a log without an ego is an error; else it is read with none, for whoever only looks at it or converts it.
+    `need_ego`: a log without an ego is an error; else it is read with none, to inspect or convert it.
     """
 
     mapping: str | None = None
@@ -98,7 +98,7 @@ class IngestOptions:
     in_sight: bool = False
     """An actor that is not recorded for a while is assumed not to be in plain view."""
     as_recorded: bool = False
-    """The states are those of the log: none that is doubted is made unknown, none is derived. Whoever reads them again doubts again."""
+    """The states are those of the log: none that is doubted is made unknown, none is derived. They are doubted again when they are read."""
     map: Path | None = None
     """The map that is given: a log in degrees needs its projection."""
 
@@ -329,7 +329,7 @@ class Recording:
     `actors` is an Arrow table with the columns of `actor` where the log has one apart from its states. `ego_ids` are
     the log's or mapping's egos, `lost` what damage took from it, `conditions` what it says of the drive (condition -> word),
     `strict_units` is set where a mapping the user can correct decided units and frame. `geo_reference` and `geo_offset` are
-    those of `Trace`. `frames_ns`: the times of the log's frames, those in which nobody is among them; None: those of the states.
+    those of `Trace`. `frames_ns`: the times of the log's frames, including those without actors; None: those of the states.
     `names_indicator`: whether a mapping names the column of the indicators.
     `ends_apart_ns`: so far apart the parts of a log may begin and end that were recorded beside each other, such as topics.
     """

@@ -50,7 +50,7 @@ def move_into_map_frame(trace: Trace, environment: MapTables) -> Trace:
         return trace
     low, high = xy[placed].min(axis=0), xy[placed].max(axis=0)
     turn, stretch = _similarity(log_frame, map_frame, low, high)
-    # what lies a metre beside a place tells by how much a heading turns there
+    # a point a metre beside a place shows by how much a heading turns there
     there, beside = np.split(
         _through(log_frame, map_frame, np.concatenate([xy[placed], xy[placed] + np.array([1.0, 0.0])])), 2
     )

@@ -24,7 +24,7 @@ class JudgingOptions(DriveInput):
     require: tuple[str, ...] = ()
     annotate: bool = True
     robustness: bool | None = None
-    """Whether copies tell how robust findings are; None: of each rule that an ego breaks, the gravest finding."""
+    """Whether copies show how robust findings are; None: of each rule that an ego breaks, the gravest finding."""
     memory: int | None = DEFAULT_MEMORY
     """Bytes that the database keeps to before it uses the disk; None: 80 % of the machine's."""
     rule_timeout: float = DEFAULT_TIMEOUT_S

@@ -70,9 +70,9 @@ class Memory:
                 store.lift_memory_limit(self._con)
 
     def most_growth(self) -> int | None:
-        """Return by how many bytes the process may grow while a rule runs; None where that tells nothing of the rule.
+        """Return by how many bytes the process may grow while a rule runs; None if that means nothing about the rule.
 
-        The system may not tell what is free, or logs are being read meanwhile.
+        The system may not report free memory, or logs are being read meanwhile.
 
         The database counts what its tables take. Functions on huge values take more than that without being counted.
         """

@@ -54,7 +54,7 @@ class JudgingSession:
     `out` is where `margins_file` and the kept database go. `observers` are called after each part while its tables are there.
     `memory` says how many, and gives way where there is too little (default: the database has no limit of ours).
     `interruption` ends a batch before it is judged.
-    `errors`: those of the copies that tell how robust findings are; None: no copies are judged.
+    `errors`: those of the copies that show how robust findings are; None: no copies are judged.
     `copies_of_all`: of all critical and major findings, else of the gravest. `judge_copies` ends their judging.
     `limits` of each rule in a batch of drives, `limits_of_copies` in one of copies (default: both as `RuleLimits` has them).
     """
@@ -111,7 +111,7 @@ class JudgingSession:
         self._kept = out / "drivelint.duckdb" if keep_db and out else None
         if self._kept:
             self._attach(self._kept)
-        store.lock(con)  # from here on rules of anybody may run in it
+        store.lock(con)  # from here on foreign rules may run in it
 
     @property
     def margins_file(self) -> Path | None:

@@ -156,7 +156,7 @@ def _asks(rule: Rule, row: Mapping[str, Any], start_ns: int) -> str | None:
 
 def _decides(target: Target, series: list[Step], now: str) -> int | None:
     """Return the step that the verdict hangs on; None: it is about no step."""
-    # somebody who is lost has no step after the last one: that is the one to show
+    # a lost actor has no step after its last one: that one is shown
     unknown = [step.t_ns for step in series if step.holds is None and now == "unknown"]
     times = [*unknown[:1], target.verdict_row["t_worst_ns"], target.verdict_row["t_start_ns"]]
     return next((t_ns for t_ns in times if t_ns is not None), None)

@@ -99,7 +99,7 @@ def sufficient_part(
 
 
 def _same_numbers(context: VerdictContext, series: list[Step]) -> bool:
-    """Tell whether the deciding step has the same numbers in a part of the drive as in all of it."""
+    """Return whether the deciding step has the same numbers in a part of the drive as in all of it."""
     row = context.target.verdict_row
     if context.rule.sense == "holds" or row["margin"] is None:
         return True

@@ -68,8 +68,8 @@ def what_if(
 ) -> WhatIf:
     """Return the verdicts of a rule with another value of a parameter, by profile and value of a tag.
 
-    Makes the temporary table `what_if`, with one row per verdict, unless a new check is needed. Findings are not told: a verdict that fails
-    may have several, whose ends depend on every step. Errors: `UsageError` for a parameter that the rule does not have.
+    Makes the temporary table `what_if`, with one row per verdict, unless a new check is needed. Findings are not predicted: a failed
+    verdict may have several, whose ends depend on every step. Errors: `UsageError` for a parameter that the rule does not have.
     """
     if why := needs_check(rule, param):
         return WhatIf(rule.id, param, value, why)

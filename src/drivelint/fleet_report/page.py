@@ -49,7 +49,7 @@ def write(
 ) -> tuple[str, Audit]:
     """Write the page of an audit into it, and with HTML those of its worst drives; return the fleet page's name and the audit.
 
-    `by`: tags by which rates are told apart. `most_drives`: that get a page of their own; None: all drives of the audit. Errors:
+    `by`: tags by which rates are divided. `most_drives`: that get a page of their own; None: all drives of the audit. Errors:
     `UsageError` for an audit or tag that is not there; `OutputError`.
     """
     with open_audits(dest, baseline) as (con, audit, base):

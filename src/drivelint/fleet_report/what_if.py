@@ -35,7 +35,7 @@ MAX_FLIPPED: Final = 10_000
 
 @dataclass(frozen=True)
 class AskedWhatIf:
-    """The answer, and the request. `was`: the value that the audit used. `by`: the tag by which verdicts are told apart.
+    """The answer, and the request. `was`: the value that the audit used. `by`: the tag by which verdicts are divided.
 
     `by_value`: the verdicts by profile and value of that tag. One of a log that is there with several values counts for each, and once
     in `answer`.
@@ -51,7 +51,7 @@ class AskedWhatIf:
 
     @property
     def exit_code(self) -> ExitCode:
-        """OK; NOT_JUDGED where only a new audit can tell, where the audit has not ended, or has no verdict of the rule."""
+        """OK; NOT_JUDGED if a new audit is needed, if the audit has not ended, or has no verdict of the rule."""
         left = self.answer.needs_check or self.answer.not_known or self.audit.warning or not self.answer.verdicts
         return ExitCode.NOT_JUDGED if left else ExitCode.OK
 

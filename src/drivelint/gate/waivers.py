@@ -147,7 +147,7 @@ def parse_date(value: object) -> date:
 
 
 def _places(text: str, n: int) -> list[tuple[int, dict[str, int]]]:
-    """Return for each waiver the line of its head, and of each of its keys; line 1 where the heads cannot be told apart."""
+    """Return for each waiver the line of its head, and of each of its keys; line 1 if the heads cannot be distinguished."""
     lines = text.splitlines()
     heads = [number for number, line in enumerate(lines, 1) if _HEAD.match(line)]
     if len(heads) != n:  # an inline array, or a head inside a text of several lines

@@ -70,7 +70,7 @@ class Fitting(NamedTuple):
 
 
 def is_crowded(page: dict[str, Any]) -> bool:
-    """Whether page 1, by what `content` tells of the finding and the parties, has no room left for what is not recorded."""
+    """Whether page 1, with the finding and the parties in `content`, has no room left for the missing records."""
     sure, rests, drive = page["sure"], page["rests"], page["drive"]
     facts = [
         8
@@ -140,7 +140,7 @@ def fit(parties: Sequence[dict[str, Any]], seconds_left: int, used_characters: i
 
 
 def _shrunk(parts: Sequence[_Part], by: int) -> list[_Part]:
-    """Take so many characters from the parts, in the order in which they give way; of the reasons of a party one is told in any case."""
+    """Take so many characters from the parts, in the order in which they give way; one reason of a party is printed in any case."""
     rooms = [room for *_, room in parts]
     for giving in ("excused", "kept", "reasons", "broken"):
         spared = {
@@ -178,7 +178,7 @@ def _length(texts: Sequence[str], part: str) -> int:
 
 
 def _fitting(texts: Sequence[str], part: str, room: int) -> Fitting:
-    """Return as many of the texts as fit; at least one, but for parts of which the number alone may be told."""
+    """Return as many of the texts as fit; at least one, except in parts of which only the number may be printed."""
     shown = list(texts[:1])
     if part in _MAY_GO and texts and room < len(texts[0]) // 2:
         return Fitting([], len(texts))

@@ -324,7 +324,7 @@ def _surest(case: Case) -> dict[str, Any]:
 
 
 def _rests_on(case: Case, motion: Motion) -> str:
-    """Return which measure tells the contact, in words, if overlapping boxes do not; '' for all other findings."""
+    """Return the measure that shows the contact, in words, if overlapping boxes do not; '' for all other findings."""
     row = case.finding.row
     if not case.finding.is_contact or row["unit"] == "m":
         return ""

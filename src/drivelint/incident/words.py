@@ -158,7 +158,7 @@ def collision_title(
 ) -> str:
     """Return a contact of A and B as a title: their directions, time, place, and closing speed.
 
-    It blames nobody. `at`: the last step before; `oncoming`: A was in the oncoming lane then.
+    It does not state who is at fault. `at`: the last step before; `oncoming`: A was in the oncoming lane then.
     """
     turn = math.nan if at is None else float(motion.turn[at])
     how = "" if math.isnan(turn) else f" {_angle(turn)}"

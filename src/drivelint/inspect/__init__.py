@@ -55,7 +55,7 @@ def inspect(request: InspectRequest) -> model.Inspection:
     """Return an inspection of a log; if it cannot be read as a drive, `problem` says why.
 
     Errors: `TraceError` for a file that is not there, `UsageError`, `RuleError`, and `MapError` for a map that cannot be
-    read; one of another place is told in the result.
+    read; a map of another place is reported in the result.
     """
     library, known = MapLibrary(request), catalogue.load_rules(request.rules_dirs)
     selection = request.rules or packs_of_nation(known, request, library)

@@ -172,7 +172,7 @@ def _channels(path: Path) -> list[Channel]:
                     for channel in part.channels.values():
                         counts.setdefault(_key(part, channel), _Count())
     except TraceError:
-        pass  # the drive cannot be read either, for the same reason, and that is told
+        pass  # the drive cannot be read either, for the same reason, which is reported
     roles = _roles(path)
     return [_channel(key, counts[key], roles) for key in sorted(counts)]
 

@@ -174,13 +174,13 @@ def compared(
         there = packed[path] if path in packed else (folder / path).read_bytes()
         if there != content:
             other_bytes = True
-            # the same libraries write the same bytes: what differs then is somebody's work
+            # the same libraries write the same bytes: a difference was then made by a person
             if not (other_libraries and path.endswith(".parquet") and same_rows(there, content)):
                 wrong.append(Problem("result not reproduced", path))
     return wrong, other_bytes
 
 
 def same_rows(a: bytes, b: bytes) -> bool:
-    """Tell whether two Parquet files have the same rows and comments, whatever wrote them."""
+    """Return whether two Parquet files have the same rows and comments, whatever wrote them."""
     one, other = (pq.read_table(io.BytesIO(content)) for content in (a, b))
     return bool(one.schema.equals(other.schema, check_metadata=True) and one.equals(other))

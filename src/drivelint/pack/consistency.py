@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from drivelint.result.request import RunRequest
 
 UNREADABLE: Final = (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError, pa.ArrowException)
-"""What reading files raises that are not as drivelint writes them. Whoever signs a pack may put anything into it."""
+"""The errors of reading files that drivelint did not write. A signer can put anything into a pack."""
 _NOT_FACTS: Final = ("evidence", "packed_with", "mapping", "rules_dirs", "inputs", "incidents", "findings", "left_out")
 _REFERENCE: Final = re.compile(r"\bref_id = (\d+);\n\Z")
 

@@ -67,7 +67,7 @@ def evidence(
 
 
 def gives(sql: str, finding: Row, tables: Mapping[str, pa.Table]) -> bool:
-    """Tell whether a DuckDB that has nothing of drivelint gives the numbers of a finding from these rows."""
+    """Return whether a DuckDB without drivelint computes the numbers of a finding from these rows."""
     with duckdb.connect(config={"threads": "1"}) as con:
         try:
             con.execute(";".join(finding_sql.macros(sql)))

@@ -45,7 +45,7 @@ class Content(NamedTuple):
 class VerifyRequest:
     """A request to `verify`: a pack, the required signer and time stamp authority, and the paths of log and map if they are not in it.
 
-    `require_signature`: without `key`, which tells whose a signature is, something is wrong. `not_before`: the earliest day of its
+    `require_signature`: a missing `key`, which identifies the signer, is a problem. `not_before`: the earliest day of its
     Bagging-Date, as 2026-11-26; None: any, or none.
     """
 

@@ -22,7 +22,8 @@ _PDF: Final = ".pdf"
 def of_result(folder: Path, result: Result, check_request: RunRequest) -> dict[str, bytes]:
     """Return path in the pack -> content of the sheets that lie in a result folder and are of its findings.
 
-    `check_request` says where the logs are. A PDF is taken where the page beside it is as it is written anew: only then both tell the same.
+    `check_request` says where the logs are. A PDF is included if the page beside it equals the page that is written again:
+    only then both have the same content.
     """
     ids = set(result.findings["finding_id"].to_pylist())
     found = {}

@@ -109,7 +109,7 @@ def payload_of(content: bytes) -> bytes:
 
 
 def is_signed_by(content: bytes, key: Ed25519PublicKey) -> bool:
-    """Tell whether an envelope has a signature of a key. Errors: `EnvelopeError`."""
+    """Return whether an envelope has a signature of a key. Errors: `EnvelopeError`."""
     kind, payload, signatures = _parse_envelope(content)
     for signature in signatures:
         try:
@@ -121,7 +121,7 @@ def is_signed_by(content: bytes, key: Ed25519PublicKey) -> bool:
 
 
 def is_as_written(content: bytes, key: Ed25519PublicKey) -> bool:
-    """Tell whether an envelope that a key signed is the one that `envelope` writes: what stands beside the payload is not signed."""
+    """Return whether an envelope that a key signed is the one that `envelope` writes: content beside the payload is not signed."""
     _, payload, signatures = _parse_envelope(content)
     return len(signatures) == 1 and content == _rendered(payload, signatures[0], key)
 

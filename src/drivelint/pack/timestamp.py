@@ -52,7 +52,7 @@ def read(path: Path, envelope: bytes) -> bytes:
 
 
 def of_pack(folder: Path, roots: Path | None) -> StampCheck:
-    """Look at the time stamp of a pack. `roots`: certificates (PEM) of the authorities that are trusted; None: nobody is asked for.
+    """Look at the time stamp of a pack. `roots`: certificates (PEM) of the authorities that are trusted; None: no authority is required.
 
     Errors: `UsageError` for certificates that cannot be read, or where they are given and rfc3161-client is not installed.
     """

@@ -63,7 +63,7 @@ def verify(request: VerifyRequest) -> Verification:
     elif any(problem.kind not in _OF_WHOM for problem in wrong):
         notes.append("not judged again, as the pack is not as it was written")
     n = sum(1 for path in request.folder.rglob("*") if path.is_file())
-    # whoever changes a pack can hash it anew: only a signature that is known says that nobody did
+    # a changed pack can be hashed again: only a known signature shows that it was not changed
     date = bag.date_of(request.folder)
     signed = ", ".join(filter(None, (signed, stamp.description, "without a date" if date is None else f"dated {date}")))
     state = "consistent" if key is None else "untouched since it was signed"

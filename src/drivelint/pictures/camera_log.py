@@ -135,7 +135,7 @@ def _index(file: Path) -> Summary:
     try:
         return read_index(file)
     except (OSError, ValueError):
-        return Summary()  # gone, or empty: whoever reads the log says so
+        return Summary()  # gone, or empty: reading the log reports it
 
 
 def _cameras(summary: Summary) -> list[str]:

@@ -76,5 +76,5 @@ def _time_of(log: CameraLog, place: Place, clock: DriveClock, ahead_ns: int) -> 
     try:
         stamp_ns = log.frame(place).stamp_ns
     except FrameError:
-        return logged_ns  # whoever shows it says what is wrong
+        return logged_ns  # showing it reports the problem
     return logged_ns if stamp_ns is None or abs(stamp_ns - logged_ns) > _SAME_CLOCK_NS else stamp_ns

@@ -74,7 +74,7 @@ def parse_reason(reason: str) -> Reason:
 def sentence(reason: str, start_ns: int = 0, rule_texts: Mapping[str, ReasonText] | None = None) -> str:
     """Return a reason in words, its advice last.
 
-    `start_ns`: when the log starts, since times are told from it; `rule_texts`: the rule's words.
+    `start_ns`: when the log starts, since times count from it; `rule_texts`: the rule's words.
     """
     code, arguments = parse_reason(reason)
     return reason if code == PLAIN_TEXT else _sentence(code, arguments, start_ns, rule_texts)

@@ -38,7 +38,7 @@ def program_folders() -> tuple[Path, ...]:
 def program_sha256() -> str:
     """Return the hash of all files of the program, of Python, and of the names and versions of what is installed beside it.
 
-    Everything counts: whoever works on drivelint changes it without changing its version.
+    Everything counts: developers change drivelint without changing its version.
     """
     whole = sha256()
     for root in program_folders():

@@ -108,7 +108,7 @@ def _log(drives: Sequence[Row]) -> InputNote:
 
 
 def _whole(drives: Sequence[Row]) -> str:
-    """Say that nothing is missing, as far as the files tell."""
+    """State that nothing is missing, as far as the files show."""
     names = [drive["file_name"].lower() for drive in drives]
     without = [end for end in _WITHOUT_END if any(name.endswith(end) for name in names)]
     return f"complete as far as {listed(without)} tells" if without else "complete"

@@ -88,7 +88,7 @@ class NotePrinter(Silent):
 
     def note(self, text: str) -> None:
         """Print the note."""
-        with suppress(OSError):  # nobody may listen any more
+        with suppress(OSError):  # the listener may be gone
             print(f"drivelint: {inert_line(text)}", file=sys.stderr, flush=True)
 
 

@@ -18,7 +18,7 @@ SAME_NS: Final = 1_000_000_000
 
 
 def same_contact(rows: Iterable[Row], rules: Mapping[str, Row]) -> dict[str, list[Row]]:
-    """Return the id of each finding that is a contact -> the findings of other rules that tell of the same one."""
+    """Return the id of each finding that is a contact -> the findings of other rules about the same contact."""
     contacts = [row for row in rows if is_contact(row, rules)]
     met = group_rows(contacts, lambda row: (row["drive_id"], frozenset((row["ego_id"], row["object_id"]))))
     return {

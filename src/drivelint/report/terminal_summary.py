@@ -192,7 +192,7 @@ def _cell(n: int, style: str) -> Text:
 def _worst(row: Row, rules: dict[str, Any], start_ns: int | None, *, several_egos: bool) -> Text:
     """Return the time, the measure and the rule: numbers first, because a narrow column cuts the end.
 
-    A contact is told by whom the ego met and how fast they came nearer just before.
+    For a contact, the other actor and the closing speed just before it are printed.
     """
     contact = is_contact(row, rules)
     who = [] if row["object_id"] is None else [f"object {row['object_id']}"]

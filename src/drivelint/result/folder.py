@@ -90,7 +90,7 @@ def _remove(out: Path, names: Sequence[str]) -> None:
 
 def _remove_empty(out: Path, names: Iterable[str]) -> None:
     for folder in {(out / name).parent for name in names} - {out}:
-        with suppress(OSError):  # somebody's file is there
+        with suppress(OSError):  # a foreign file is there
             folder.rmdir()
 
 
@@ -105,9 +105,9 @@ def _identity(path: Path) -> tuple[int, int] | None:
 
 @contextmanager
 def _locked(out: Path) -> Iterator[bool]:
-    """Hold a folder for this process alone; say whether that is so, which not every file system can tell.
+    """Hold a folder for this process alone; show whether that is so, which not every file system can.
 
-    The system ends a lock with its process. Numbers of processes would not tell: every container has a process 1.
+    The system ends a lock with its process. Numbers of processes would not show it: every container has a process 1.
     Errors: `UsageError` where another process has the folder.
     """
     try:
@@ -160,7 +160,7 @@ def replace(
         earlier,
         [*sorted(_result_files(earlier, patterns, overwrite=False)), *([MANIFEST] if written_files(earlier) else [])],
     )
-    with suppress(OSError):  # somebody's file is there, or there is none
+    with suppress(OSError):  # a foreign file is there, or there is none
         earlier.rmdir()
 
 

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 MISFITS: Final = frozenset({"ego_not_a_vehicle", "seldom_on_lane", "often_against_lane", "far_from_centre_line"})
-"""Reasons for which the signal `registration` is missing that tell of a map which does not fit."""
+"""Reasons for which the signal `registration` is missing that mean a map which does not fit."""
 BEYOND_LIMITS: Final = ("rule_timeout", "out_of_memory")
 """Reason codes of errors that are no fault of a rule's SQL: it took too much time or memory. Another machine may judge by it."""
 

@@ -92,7 +92,7 @@ def tolerance(row: Row, rule: Row) -> float | None:
 
 
 def line(row: Row, when: str) -> str:
-    """Return a verdict or finding in one line: `when`, who, what was measured (once, if the reason tells it too), why, what is doubtful."""
+    """Return a verdict or finding in one line: `when`, who, the measure (once, if the reason states it too), the reason, the doubts."""
     measured = "" if row["reason_measures"] else comparison(row)
     parts = [f"{when}: {subject(row)}", measured, row["reason"], doubt(row)]
     return "; ".join(part for part in parts if part)

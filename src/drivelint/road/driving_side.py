@@ -1,7 +1,7 @@
 """Finds the side driven on from lanes that run beside each other in opposite directions, and chooses among the sources.
 
-In right-hand traffic whoever comes towards a driver passes on the left, on a road with both directions as on two roads of one direction
-each. On a road of one direction alone nothing lies on either side, and its lanes' direction does not tell which side is driven on.
+In right-hand traffic, an oncoming vehicle passes on the left, on a road with both directions as on two roads of one direction
+each. On a road of one direction alone nothing lies on either side, and its lanes' direction does not show which side is driven on.
 """
 
 from __future__ import annotations

@@ -53,7 +53,7 @@ def map_tables(
     a guess.
 
     `kind`: its format; `side`: the side that is driven on, and what says so; `geo`: how its own coordinates lie on the earth;
-    `lanes_reversed`: the lanes run the other way than its rule says, which the traces may have told; then the id ends in a tilde.
+    `lanes_reversed`: the lanes run the other way than its rule says, which the traces may have shown; then the id ends in a tilde.
     `nation`: the country of its roads, as two letters; None: it does not say it.
     """
     x, y = (float(v) + 0.0 for v in request.offset)

@@ -174,7 +174,7 @@ class AlarmLog:
         return key_of(alarm.row) == key_of(row) and alarm.is_seen_in(row, self._gap_ns(alarm))
 
     def hold_against(self, findings: Sequence[Row], verdicts: pa.Table) -> list[Row]:
-        """Tell each alarm of which findings of the whole log it is; return the findings that no alarm is of.
+        """Assign to each alarm its findings of the whole log; return the findings without an alarm.
 
         Whether it was withdrawn does not matter here: what is a finding in the end was one.
         """

@@ -24,7 +24,7 @@ GRACE_S: Final = 5.0
 class Child:
     """A program and all that it starts, in a process group of its own. What it prints goes to stderr: stdout is for data.
 
-    It is told to end where this process dies, however that comes.
+    It is ended if this process dies, for whatever reason.
     """
 
     def __init__(self, command: Sequence[str]) -> None:
@@ -62,7 +62,7 @@ class Child:
 
     def _is_there(self) -> bool:
         """Whether any process of the group runs: the program may be a shell that has ended before what it started."""
-        self._process.poll()  # a program that nobody waited for is there
+        self._process.poll()  # a program that was not waited for is there
         return self._signal(0)
 
     def _signal(self, number: int) -> bool:

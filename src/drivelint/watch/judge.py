@@ -49,7 +49,7 @@ _LASTING_TABLES = frozenset({"profile", "environment", "map_quality"})
 class JudgedWindow:
     """What the rules say of a window: rows of `finding`, `verdict` and `course`, and from when to when it is.
 
-    `courses`: margins over time around findings and near misses; empty where nobody asks for them.
+    `courses`: margins over time around findings and near misses; empty if they are not requested.
     """
 
     t_start_ns: int
@@ -170,4 +170,4 @@ def _as_of(trace: Trace, start_ns: int | None) -> Trace:
 
 
 def _look(con: duckdb.DuckDBPyConnection, _drives: object, /, **_part: bool) -> None:
-    """Look at nothing: that somebody looks is enough."""
+    """Do nothing: the call itself is enough."""

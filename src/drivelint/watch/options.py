@@ -18,7 +18,7 @@ class WatchOptions(JudgingOptions):
 
     source: str
     command: tuple[str, ...] = ()
-    """Arguments of a program to start, which writes what is watched; empty: it is started by somebody else."""
+    """Arguments of a program to start, which writes what is watched; empty: it is started elsewhere."""
     out: Path | None = None
     window_s: float = DEFAULT_WINDOW_S
     """Seconds of log time that are judged at a time."""

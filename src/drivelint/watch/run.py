@@ -251,7 +251,7 @@ class Watch:
                 return
             rows = self._contacts.look(trace, self._looked_until_ns)
         except DriveLintError:
-            return  # too little of a log, or none: the window tells what is wrong with it
+            return  # too little of a log, or none: the window reports the problem
         except Exception as error:  # noqa: BLE001 - the windows are still judged
             self._contacts = None
             self._emit(messages.note(f"contacts are only found in windows: {error}"))

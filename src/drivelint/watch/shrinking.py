@@ -21,7 +21,7 @@ MOST_S: Final = 60.0
 
 
 class ShrinkingMargins:
-    """The near misses of a watch that were told of; each again only after its rule was kept with room to spare."""
+    """The near misses of a watch that were reported; each again only after its rule was kept with a margin."""
 
     def __init__(self) -> None:
         self._open: dict[Key, int] = {}

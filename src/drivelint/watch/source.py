@@ -85,7 +85,7 @@ class WrittenWindows(ABC):
 
     is_due = False
     window_name: str
-    """Name of the file of a window, which tells the format."""
+    """Name of the file of a window, which determines the format."""
 
     @abstractmethod
     def write_window(self, frames: Sequence[Frame], path: Path, *, latest: bool = False) -> None:

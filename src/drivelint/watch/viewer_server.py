@@ -1,7 +1,7 @@
 """A Foxglove WebSocket server: announces channels, and sends their messages to those who subscribed to them.
 
 Source: foxglove/ws-protocol, docs/spec.md; the subprotocol foxglove.sdk.v1 has the same messages. A page of another site is refused by its
-`Origin`, which Foxglove's own server does not look at; and nobody who is connected keeps the program from ending.
+`Origin`, which Foxglove's own server does not look at; and a connected client does not keep the program from ending.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ _MESSAGE_DATA: Final = 1
 
 
 def _silent() -> logging.Logger:
-    """Return a logger that says nothing: who connects and leaves is nobody's matter, and stderr has our words only."""
+    """Return a silent logger: connections are not reported, and stderr has only our words."""
     logger = logging.getLogger("drivelint.viewers")
     logger.disabled = True
     return logger
@@ -170,7 +170,7 @@ class ViewerServer:
             await asyncio.wait(left, timeout=CLOSE_S)
 
     def _refusal(self, connection: ServerConnection, request: Request) -> Response | None:
-        """Return the answer to a page of another site; None: whoever asks may connect. A program that is no page has no origin."""
+        """Return the answer to a page of another site; None: the client may connect. A program that is no page has no origin."""
         origins = request.headers.get_all("Origin")
         if all(origin.rstrip("/").casefold() in self._allowed for origin in origins):
             return None

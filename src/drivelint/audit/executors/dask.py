@@ -96,7 +96,7 @@ class DaskCluster:
         except Exception as error:
             if future.status != "error":  # the task has not failed: its result cannot be fetched
                 raise self._scheduler_error("a result could not be fetched") from error
-            return Outcome(task, error=error)  # the driver tells them apart
+            return Outcome(task, error=error)  # the driver distinguishes them
 
     def _require_workers(self) -> None:
         try:

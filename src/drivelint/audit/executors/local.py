@@ -229,7 +229,7 @@ def cores() -> int:
 
 
 def computed_s(process: int | None) -> float:
-    """Return for how many seconds a process has computed; where the system does not tell, the time of day does for it."""
+    """Return for how many seconds a process has computed; if the system does not report it, the time of day is used."""
     try:
         told = Path(f"/proc/{process}/stat").read_text(encoding="ascii", errors="replace").rpartition(")")[2].split()
         return (int(told[11]) + int(told[12])) / os.sysconf("SC_CLK_TCK")  # utime and stime, of all its threads

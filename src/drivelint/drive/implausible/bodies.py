@@ -50,7 +50,7 @@ COUPLED_MPS: Final = 5.0
 COUPLED_LEAST: Final = 10
 SUNK_M: Final = 0.3
 """In at least so many samples two boxes keep so near behind each other, in line, at more than this speed, and overlap by so much in the
-end: one body. Nobody follows so near for a second."""
+end: one body. No vehicle follows so near for a second."""
 
 
 class _Boxes(NamedTuple):
@@ -74,7 +74,7 @@ HIT_MPS: Final = 1.5
 HELD_NS: Final = 2_000_000_000
 ARRIVAL_NS: Final = 1_000_000_000
 LEAVING_MPS2: Final = 4.0
-"""Whoever stands as its track ends can have gone from there with this, and is not where another one is at once: it was not there before."""
+"""An actor that stands as its track ends can leave with this acceleration; if another actor is there sooner, it was not there before."""
 
 
 def same_bodies(states: States, actors: Actors, egos: Collection[str]) -> list[QualityFinding]:

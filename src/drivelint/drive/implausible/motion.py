@@ -91,7 +91,7 @@ def _jolts(states: States, step: Steps) -> Mask:
         for i in range(width + 1):
             whole &= step.continuous[i : len(step.continuous) - width + i]
         against = np.sum(change[:, to] * change[:, away], axis=0) < 0.0
-        # what is left of both changes is what somebody can have done meanwhile
+        # the rest of both changes is a motion that an actor can make in that time
         span_s = sum(step.dt_s[i : len(step.dt_s) - width + i] for i in range(width + 1))
         goes_on = np.hypot(*(v[:, width + 1 :] - v[:, : -width - 1])) <= TYRE_MPS2 * span_s
         first = np.flatnonzero(hard[to] & hard[away] & whole & against & goes_on)
@@ -117,7 +117,7 @@ def _displaced(states: States, step: Steps) -> Mask:
     limit = np.maximum(limit, STEP_SIGMAS * np.sqrt(2.0) * sigma[:-1])
     # a step stands alone: where the steps beside it are off alike, it is the velocity that is wrong
     alone = size > 2.0 * np.maximum(_shifted(off, size, 1), _shifted(off, size, -1))
-    # an impact moves whom it hits, and changes its velocity
+    # an impact moves the actor that it hits, and changes its velocity
     hit = np.hypot(*np.diff(states.velocity)) > TYRE_MPS2 * step.dt_s
     at = np.flatnonzero((size > limit) & alone & ~hit)
     aside[at] = aside[at + 1] = True

@@ -12,7 +12,7 @@ Of a rule that an ego breaks several times, the gravest finding is judged, and t
 large. Where the gravest is only possible, the others are judged too. On request, the copies of all findings are judged.
 
 100 copies are judged, 32 where all of these keep the finding, or 20 where their margins are far from 0, too. Fewer are enough where so
-many of them lose it that it is only possible, whatever the others would tell.
+many of them lose it that it is only possible, whatever the others would show.
 """
 
 from __future__ import annotations

@@ -128,7 +128,7 @@ class Question:
         return self.size > 0 or self.finding["t_ref_ns"] is not None or whole
 
     def _is_decided(self, numbers: Sequence[int], conclusive_copies: Collection[int], n_stays: int) -> bool:
-        """Whether copies that do not tell can be counted as lost: there are none, or the finding is only possible anyway."""
+        """Whether undecided copies can be counted as lost: there are none, or the finding is only possible anyway."""
         may_stay = self.n_stays + n_stays + len(set(numbers) - set(conclusive_copies)) + N_COPIES[-1] - numbers[-1]
         return set(conclusive_copies) >= set(numbers) or may_stay < LEAST_SHARE * N_COPIES[-1]
 

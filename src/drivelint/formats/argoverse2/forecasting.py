@@ -4,8 +4,8 @@ The track AV is the vehicle that records. The guide says that positions are box 
 scenario: where it turns, its point moves along its heading, as only the rear axle does (-0.3 m ahead of it, give or take 0.2 m; the
 middle is 1.3 m ahead), and as the egovehicle frame of the sensor logs does. It is moved to the middle of the vehicle.
 
-Nobody has a size, so gaps to the others are not known. Tracks come from the vehicle's own tracker, in fragments of ten steps and more,
-and no range is documented within which everybody has a track.
+The others have no size, so gaps to them are not known. Tracks come from the vehicle's own tracker, in fragments of ten steps and more,
+and no range is documented within which every actor has a track.
 
 Source: Argoverse user guide ("Motion Forecasting Dataset"); av2-api, `data_schema` and `scenario_serialization`.
 """

@@ -107,7 +107,7 @@ def _poses_at(path: Path, t_ns: Times) -> Poses:
 
 
 def _unplaced(steps: Times, rear_axle: Poses, n_boxes: Indices) -> list[QualityFinding]:
-    """Return the finding on time stamps without a pose: whoever is annotated there, and the ego, is present and not placed."""
+    """Return the finding on time stamps without a pose: the annotated actors and the ego are present there, but not placed."""
     missing = np.isnan(rear_axle.place[:, 0]) | np.isnan(rear_axle.turn[:, 0])
     if not missing.any():
         return []

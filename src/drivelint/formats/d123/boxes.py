@@ -150,7 +150,7 @@ def _without_untold_velocities(states: States, frame: Indices) -> list[QualityFi
         return []
     if zero[has_velocity].all():
         if not _moves(states):
-            return []  # whoever is recorded stands: zero is what it says
+            return []  # every recorded actor stands: zero is correct
         why = "velocity (0, 0, 0) of all {n} boxes, although they move, means that there is no velocity"
     elif _way_between_boxes(states, frame, has_velocity):
         why = (

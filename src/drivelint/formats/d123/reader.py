@@ -1,7 +1,7 @@
-"""Reads a log of 123D, a folder of Arrow files: the ego's states, the boxes of whoever is around it, lights, and its map.
+"""Reads a log of 123D, a folder of Arrow files: the ego's states, the boxes of the actors around it, lights, and its map.
 
 A log has a table of frames (`sync.arrow`), which says which row of each file belongs to which frame. The ego's poses may be far denser than
-the boxes; the ego's steps are the frames that have both, as nobody knows who is around it in between. Positions are those of the
+the boxes; the ego's steps are the frames that have both, because the actors around it are not known in between. Positions are those of the
 box centres; the ego's pose is its IMU's, and is moved to its box centre.
 """
 
@@ -42,7 +42,7 @@ _NO_ROAD_USERS: Final = QualityFinding(
     "warning",
     f"the log has no {BOXES}.arrow: the actors around the ego are not recorded: rules about other actors are unknown",
 )
-_ROUNDED_US: Final = 10  # in which nobody moves by a millimetre
+_ROUNDED_US: Final = 10  # in which no actor moves by a millimetre
 _MALFORMED: Final = (
     "frames whose lists of boxes differ in length or lack a track, or that point to rows that are not there"
 )

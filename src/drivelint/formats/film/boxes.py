@@ -1,6 +1,6 @@
 """This module converts two-dimensional boxes (`vision_msgs/Detection2DArray`) into distances ahead.
 
-A box of w pixels of somebody W metres wide is s = c W / w metres ahead, c being the camera's focal constant in pixels.
+A box of w pixels of an actor W metres wide is s = c W / w metres ahead, c being the camera's focal constant in pixels.
 """
 
 from __future__ import annotations

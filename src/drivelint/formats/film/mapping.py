@@ -1,7 +1,7 @@
 """Mappings of filmed drives: the numbers of a frame that are distances ahead, and the assumptions about everything else.
 
 A film gives no positions. The drive is laid on a straight road with one lane each way: the ego moves along it at its
-assumed speed, and whoever is detected is placed at his measured distance ahead, in the middle of his lane.
+assumed speed, and a detected actor is placed at its measured distance ahead, in the middle of its lane.
 """
 
 from __future__ import annotations
@@ -122,7 +122,7 @@ def is_video_mapping(name: str) -> bool:
     try:
         raw = tomllib.loads(Path(name).read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError):
-        return False  # whoever reads it as another mapping says what is wrong with it
+        return False  # reading it as another mapping reports the problem
     return "frames" in raw or raw.get("extends") in shipped_mappings()
 
 

@@ -147,7 +147,7 @@ def _states(
     front = ego_x + film.ego.length / 2
     tracks = [(t_ns, ego_x, ego_y, 0.0, film.ego.speed.mps)]
     for actor, distance in zip(film.actor, ahead, strict=True):
-        seen = np.flatnonzero(~np.isnan(distance))  # infinite: somebody is there, nobody knows where
+        seen = np.flatnonzero(~np.isnan(distance))  # infinite: an actor is there, but its place is not known
         there = slice(seen[0], seen[-1] + 1) if len(seen) else slice(0, 0)
         along = actor.lane == "own"
         x = (front + np.where(np.isfinite(distance), distance, np.nan) + actor.length / 2)[there]
@@ -157,7 +157,7 @@ def _states(
     actor_index = np.repeat(np.arange(len(tracks), dtype=np.int32), [len(track[0]) for track in tracks])
     times, x, y = (np.concatenate([track[k] for track in tracks]) for k in range(3))
     actors: list[EgoCar | DetectedActor] = [film.ego, *film.actor]
-    # where somebody has no place, nothing else is known
+    # if an actor has no place, nothing else is known
     motions = {
         "yaw_rad": [track[3] for track in tracks],
         "vx_mps": [track[4] for track in tracks],

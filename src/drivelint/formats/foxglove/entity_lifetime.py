@@ -33,7 +33,7 @@ def with_persisted(
 ) -> RecordedPoses:
     """Add the states of entities that are there without an update: where they were if they stood still, else not placed.
 
-    `deletions`: times of deletions, and the ids of whom they delete, None: of all. Who was updated at that time or later stays.
+    `deletions`: times of deletions, and the ids that they delete, None: all. An entity that was updated at that time or later stays.
     """
     unique, actor = distinct(rows.ids)
     number = {name: i for i, name in enumerate(unique)}
@@ -65,7 +65,7 @@ def _persisted(
 ) -> tuple[Indices, Times, Mask]:
     """Return the states between updates: which update each goes back to, its time, and whether the entity stood still.
 
-    `actor`: the index of each update's entity; `deletions`: times, and indices of whom they delete, -1: of all.
+    `actor`: the index of each update's entity; `deletions`: times, and indices that they delete, -1: all.
     """
     n = len(updates)
     order = np.lexsort((np.arange(n), updates.t_ns, actor))

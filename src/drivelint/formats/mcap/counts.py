@@ -46,7 +46,7 @@ class MessageCounts:
     def missing_from_chunk(self, index: memoryview) -> list[int]:
         """Return the log times of the messages that the index of a channel, behind a chunk, names and the chunk does not hold.
 
-        They count as found: whoever asks says that they are lost.
+        They count as found: the caller reports that they are lost.
         """
         channel, length = MESSAGE_INDEX_HEAD.unpack_from(index)
         found = None if self._last_chunk is None else self._last_chunk.get(channel, [])

@@ -168,7 +168,7 @@ class PartCopy:
         return self._sink.offset + at - self._from
 
     def _note(self, record: Record) -> None:
-        """Tell the index of a record that will be copied."""
+        """Add a record that will be copied to the index."""
         start, length = self._place(record.at), record.end - record.at
         head = self._original.stream(record, _HEAD_BYTES)
         if record.opcode == Opcode.CHUNK:

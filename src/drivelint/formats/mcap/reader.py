@@ -77,7 +77,7 @@ class Packet:
 class Container:
     """An MCAP file. All but its path is complete once `packets` is exhausted.
 
-    `salvage`: of a damaged file, what can be read is read, and `losses` tells what cannot; else damage is an error.
+    `salvage`: of a damaged file, the readable part is read, and `losses` has the rest; else damage is an error.
     `metadata`: name of a metadata record -> its texts; of several with one name, the first. `library`: what wrote the file.
     """
 
@@ -135,7 +135,7 @@ class Container:
                 if index is None:
                     index = self._index_of_damaged(view, error)
                 if error.resume is None and not self._messages and not index.chunks:
-                    raise  # what describes the log stands there, and nobody knows whether it is still whole
+                    raise  # the description of the log is there, and it is not known whether it is still complete
                 resume = error.resume or self._resume(view, at)
                 self._refuse_second_file_within(view, at + 1, resume)
                 self.losses.add(at, resume, str(error))

@@ -91,7 +91,7 @@ class DrivingSideStatements:
 
         `side_by_lanes`: the side that is driven on by the lanes beside each other, if the lanes with negative numbers run along the
         reference line. lht: each direction is a road of its own, and they lie the other way round than on one road, as SUMO writes its
-        left-hand nets; None: no lane has an opposing one beside it, so the lanes' direction does not tell the side that is driven on.
+        left-hand nets; None: no lane has an opposing one beside it, so the lanes' direction does not show the side that is driven on.
         """
         if len(self.rules) > 1:
             counts = ", ".join(f"{side} {n}" for side, n in sorted(self.rules.items()))

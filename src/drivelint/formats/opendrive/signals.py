@@ -168,6 +168,6 @@ def _position(road: Road, signal: etree._Element, offset: tuple[float, float]) -
 
 
 def _at(lane: Lanelet, s: float) -> bool:
-    """Tell whether the lanelet holds a road station; of two that meet there the later one does."""
+    """Return whether the lanelet contains a road station; of two that meet there the later one does."""
     end = lane.strip.end_m
     return lane.strip.start_m <= s < end or (s >= end >= lane.road.length_m - 1e-3)

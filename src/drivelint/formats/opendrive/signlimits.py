@@ -110,7 +110,7 @@ def _sign_rows(
 
 
 def _same_record(before: Rows, behind: Rows) -> bool:
-    """Tell whether a lanelet records no limit at its start, or the one that the lanelet before it records at its end."""
+    """Return whether a lanelet records no limit at its start, or the one that the lanelet before it records at its end."""
     last, first = (
         (row["limit_mps"], row["source"]) if row is not None else None
         for row in (

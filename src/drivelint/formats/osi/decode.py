@@ -176,7 +176,7 @@ def read_first_message(data: bytes, name: str) -> FirstMessage:
     """Return lanes and geo reference (a PROJ string, with x, y and yaw) of a ground truth, or of the one in a sensor view.
 
     The lanes go with their boundaries, signs, lights and road markings. Lanes without boundaries have no width, and nothing can be
-    placed on them: they are told, and make no map.
+    placed on them: they are reported, and make no map.
     """
     try:
         outer = message_class(name.removeprefix("osi3.")).FromString(data)

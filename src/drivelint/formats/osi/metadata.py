@@ -32,7 +32,7 @@ TRACE_RECORD: Final = "drivelint.trace"
 ACTORS_RECORD: Final = "drivelint.actors"
 EVENT_MESSAGE: Final = "drivelint.DeclaredEvent"
 EGO_CHECK_IDS: Final = frozenset({"no_ego", "ego_count", "no_indicator", "no_brake_light"})
-"""Findings about whoever was the ego: found anew for whoever is, and so not carried."""
+"""Findings about the ego of the original log: they are found again for the present ego, and so not carried."""
 OPTIONAL_COORDINATES: Final = ("z_m",)
 """Coordinates that OSI has no way to leave out of a vector; named in the record where no state has them."""
 

@@ -175,7 +175,7 @@ def _foreign_content(container: Container) -> str:
 
 
 def read(probe: Probe) -> Recording:
-    """Read a trace of `osi3.GroundTruth` or `osi3.SensorView` messages: which of the two, the first messages tell.
+    """Read a trace of `osi3.GroundTruth` or `osi3.SensorView` messages: the first messages show which of the two.
 
     Errors: `TraceError` with the byte where no message can be read, for messages that are neither kind, or without time stamps.
     """

@@ -41,7 +41,7 @@ def is_osi_trace(head: bytes, size: int) -> bool:
 def message_batches(channel: Channel, content: mmap.mmap, losses: Losses) -> Iterator[list[Packet]]:
     """Yield the messages up to the damage, some tens of megabytes at a time; then add the loss after them to `losses`.
 
-    The caller tells `losses` the times of the messages that it has read before it asks for more.
+    The caller adds the times of the messages that it has read to `losses` before it takes more.
     """
     waiting: list[Packet] = []
     at = size = 0

@@ -1,6 +1,6 @@
 """The lanes of a scenario as centre lines with what lies beside them: the distance to either side, if the scenario states it.
 
-A lane's outline tells both sides; where no lane has one, the lines and edges that the lane refers to do, or where no lane refers to any,
+A lane's outline shows both sides; where no lane has one, the lines and edges that the lane refers to do, or where no lane refers to any,
 those that lie beside it; else the middle between two lanes that run beside each other.
 """
 
@@ -27,7 +27,7 @@ KINDS: Final = {
     "LANE_SURFACE_STREET": "driving", "LANE_SURFACE_UNSTRUCTURE": "driving", "LANE_FREEWAY": "driving", "LANE_UNKNOWN": "driving",
     "LANE_BIKE_LANE": "biking",
 }  # fmt: skip
-"""Type of a feature -> lane type. What an unknown lane is for, nobody says: it counts as one for driving."""
+"""Type of a feature -> lane type. The purpose of an unknown lane is not known: it counts as a lane for driving."""
 _SPACING_M: Final = 4.0
 _LONGEST_M: Final = 10_000.0
 _SHAPE_M: Final = 0.02  # a centre line keeps the points without which it would be off by more
@@ -107,7 +107,7 @@ def _centre_line(name: str, feature: Mapping[str, Any], kind: str, line: Floats,
     at = np.column_stack([np.interp(s, line_stations, column) for column in line.T])
     apart = np.r_[
         True, np.hypot(*np.diff(at[:, :2], axis=0).T) > 1e-3
-    ]  # of far coordinates the digits may not tell two points
+    ]  # with far coordinates, the digits may not distinguish two points
     s, at = s[apart], at[apart]
     if len(s) < 2:
         raise PickleError("its centre line has fewer than two points")

@@ -108,7 +108,7 @@ def _beside(
 
 
 def _mutual(name: str, neighbours: Mapping[str, Neighbours]) -> Neighbours:
-    """Return the neighbours of a lane that have it or nobody on that side: a short lane is beside a long one, but not its neighbour."""
+    """Return the neighbours of a lane that have it or no lane on that side: a short lane is beside a long one, but not its neighbour."""
     mutual_neighbours = neighbours[name]
     for side, opposite in (("left", "right"), ("right", "left")):
         other = neighbours.get(getattr(mutual_neighbours, f"{side}_id") or "")

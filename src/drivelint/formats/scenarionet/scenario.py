@@ -25,10 +25,11 @@ _LONGEST_S: Final = 1e9
 
 
 class Dataset(NamedTuple):
-    """What is known of a data set; the defaults are for one of which nothing is. See datasets.toml.
+    """The facts about a data set; the defaults are for an unknown one. See datasets.toml.
 
-    `sensor_range_m`: how far the recorder sees everybody. `steps_per_keyframe`: boxes are interpolated between every so many steps (0:
-    they are not). `ego_message_s`: the ego's positions are every few messages of a stream with this period, counted and not timed.
+    `sensor_range_m`: the range in which the recorder sees every actor. `steps_per_keyframe`: boxes are interpolated between keyframes
+    this many steps apart (0: they are not). `ego_message_s`: the ego's positions are every few messages of a stream with this period,
+    counted and not timed.
     `ego_ahead_m`: the middle of the ego's box ahead of its position. `ego_box_m`: the ego's length and width. The others: whether what
     the scenarios have of it was in the data set, and is no constant of the converter.
     """

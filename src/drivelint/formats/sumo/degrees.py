@@ -1,7 +1,7 @@
 """Positions in longitude and latitude (`--fcd-output.geo`), brought back into the metres of the simulated net.
 
 SUMO transforms the positions and leaves the angles as they are: those of the net's grid, not of the true north. So the net is
-needed for both. How the data are written stands in XML alone, and not in every file. What anybody's motion shows counts more: as metres,
+needed for both. How the data are written stands in XML alone, and not in every file. The motion of any actor takes precedence: as metres,
 degrees are a drive in which all move by less than 2 mm/s, at a hundred-thousandth of the speeds that are recorded.
 Source: SUMO's documentation of "Simulation/Output/FCDOutput" and "Geo-Coordinates".
 """
@@ -80,7 +80,7 @@ def _are_degrees(path: Path, rows: Rows, xy: Floats, actor: NDArray[np.int32], n
         )
     if moves is not None or rows.geo_option is not None:
         return bool(rows.geo_option if moves is None else moves)
-    # nobody moves, and nothing says what the numbers are: the net tells
+    # no actor moves, and the unit of the numbers is not stated: the net shows it
     location = None if net is None else read_location(net)
     frame = None if location is None else location.frame()
     if location is None or frame is None or location.trouble():

@@ -24,7 +24,7 @@ _TURNS: Final = {
     "s": ("straight",), "l": ("left",), "r": ("right",), "t": ("u_turn",), "L": ("left", "straight"), "R": ("right", "straight"),
 }  # fmt: skip
 _SIGNED: Final = frozenset({"priority", "priority_stop", "allway_stop"})
-"""Types of junctions with signs on the lesser roads; at others right goes before left, or lights or nobody say who goes first."""
+"""Types of junctions with signs on the lesser roads; at others right goes before left, or lights decide, or it is not known."""
 _SIGNS: Final = {"s": "stop", "w": "stop", "m": "give_way"}
 _TURNED_ROUND: Final = "t"
 

@@ -84,7 +84,7 @@ def read(probe: Probe) -> Recording:
     if (path / "data_log.parquet").is_file():
         log = (parquet.table(path / "data_log.parquet").to_pylist() or [{}])[0]
         counted, found = log.get("n_states"), len(states) + sum(f.n for f in findings if f.check_id == "dropped_row")
-        if counted is not None and counted != found:  # nobody knows who is missing, and when
+        if counted is not None and counted != found:  # it is not known which actor is missing, and when
             raise TraceError(
                 f"{path / 'actor_state.parquet'}: {found} rows, and data_log.parquet counts {counted} states: copy or "
                 "convert the folder again"
@@ -199,7 +199,7 @@ def with_frames_of_nobody(states: pa.Table, trace: Trace) -> pa.Table:
 
 
 def _nothing_else(table: pa.Table, n: int) -> Mask:
-    """Say which rows of a table have a value in none of the columns that tell of an actor."""
+    """Return which rows of a table have no value in any column about an actor."""
     columns = set(table.schema.names) & {*STATE_COLUMNS, *SIZE_COLUMNS, *_OF_A_STATE, "is_ego"}
     empty = [table[name].is_null().to_numpy() for name in sorted(columns)]
     nothing: Mask = np.logical_and.reduce([np.ones(n, np.bool_), *empty])

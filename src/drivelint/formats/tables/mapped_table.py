@@ -121,7 +121,7 @@ def _fitting(path: Path) -> tuple[str, Mapping, Sheet]:
             sheet = open_sheet(path, mapping)
             _groups(path, name, mapping, sheet)
         except TraceError:
-            continue  # it is not this table; if none fits, the user is told
+            continue  # it is not this table; if none fits, there is an error
         fits.append((name, mapping, sheet))
     if len(fits) == 1:
         return fits[0]
@@ -195,7 +195,7 @@ class _Body:
             ego_ids=self._egos(states),
             findings=self.findings,
             lost_times=self._lost_times(t_ns, ~bad_time, lost_rows),
-            # a row of a wide table is a frame, whoever is in it
+            # a row of a wide table is a frame, whatever actors it has
             frames_ns=t_ns[~bad_time] if self.groups != [""] else None,
             embedded_map=self.sheet.metadata.get(b"xodr"),
             strict_units=True,

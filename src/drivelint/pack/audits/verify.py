@@ -227,7 +227,7 @@ def _rules_by_id(rules: pa.Table, rules_dirs: tuple[Path, ...]) -> dict[str, Rul
 
 
 def _same_rows(pack: _Pack, drive: tables.PackedDrive, fresh: Result) -> bool:
-    """Tell whether a drive that was judged again has the rows of the audit."""
+    """Return whether a drive that was judged again has the rows of the audit."""
     rows = {table: with_key(getattr(fresh, table), drive.key, None) for table in TABLES}
     if rows_sha256(rows) == drive.receipt["rows_sha256"]:
         return True

@@ -16,7 +16,7 @@ MOST_BEFORE_NS: Final = 1_000_000_000
 def before_contact(scene: Row, contact: Row, start_ns: int) -> dict[str, Any] | None:
     """Return the speeds at the last recorded point of both ways before the first step of a contact; None: there is none.
 
-    `contact`: a finding, whose own closing speed is told.
+    `contact`: a finding, whose own closing speed is used.
     """
     ways = {actor["actor_id"]: actor["path"] or [] for actor in scene["actors"]}
     if contact["object_id"] not in ways:

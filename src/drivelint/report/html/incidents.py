@@ -39,7 +39,7 @@ MAX_INCIDENTS_IN_SUMMARY: Final = 6
 class FindingLine(NamedTuple):
     """One finding (`fail`) or near miss (`near`) as the page shows it, in the table and in its incident.
 
-    `time`: of its picture, when it was worst; `when`: by what it is told, see `worst_first.when`.
+    `time`: of its picture, when it was worst; `when`: the time that is printed, see `worst_first.when`.
     """
 
     row: Row
@@ -147,7 +147,7 @@ def incidents(lines: Sequence[FindingLine], pictures: Mapping[Key, dict[str, Any
     """Return the incidents of one drive, in time order, from its findings and near misses.
 
     Each has the findings and near misses of one ego at one time, `cards` by rule, and their plan view, if there is one. `t`: hundredths
-    of a second since the drive's start; `leading`: it is among those that tell what happened, `rank` (0: the worst) of these;
+    of a second since the drive's start; `leading`: it is among the findings of the story, `rank` (0: the worst) of these;
     `on_earth`: a finding whose longitude and latitude are known, None for none; `t_utc`: the time in UTC, None: the log does not say.
     `drive`: its row. `cameras`, `pictured`: no pictures from cameras yet, see `add_pictures`.
     """

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 Moment = tuple[str, int]
 _MINUS: Final = "\u2212"
 _SAME_NS: Final = 5_000_000
-"""A frame that is nearer to the moment is of the moment: times are told in hundredths of a second."""
+"""A frame that is nearer to the moment counts as that of the moment: times are printed in hundredths of a second."""
 
 
 def pictures_by_moment(pictures: pa.Table) -> dict[Moment, list[dict[str, Any]]]:

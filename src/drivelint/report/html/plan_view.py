@@ -94,7 +94,7 @@ def plan_view(scene: Row, road: Road, concerned: Collection[str], spaces: Sequen
         "spaces": [(_kind(who, ego, concerned), polygon(np.rint(lanes.to_units(ring)))) for who, ring in rings],
         "bodies": [
             _body(a, _kind(a["actor_id"], ego, concerned), lanes, scene["t_ns"])
-            for a in sorted((*others, ego), key=_area, reverse=True)  # whoever is under a larger one is still seen
+            for a in sorted((*others, ego), key=_area, reverse=True)  # an actor under a larger one is still seen
             if a is ego or a in met or view.holds(a, _BESIDE)
         ],
         "gaps": gaps,

@@ -28,7 +28,7 @@ class SourceOptions(NamedTuple):
 
 
 class Opener(NamedTuple):
-    """A kind of source: the pattern of its names, in small letters, how they are told to a user, and what opens one."""
+    """A kind of source: the pattern of its names, in small letters, their description for a user, and the function that opens one."""
 
     pattern: str
     label: str

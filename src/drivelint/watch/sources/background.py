@@ -15,13 +15,13 @@ T = TypeVar("T")
 MOST_WAITING_BYTES: Final = 256 << 20
 """If more than this is waiting, no more is read. Then the writer waits, or drops the oldest."""
 TICK_S: Final = 0.1
-"""So often whoever waits for a socket looks whether it shall stop."""
+"""The interval at which a wait for a socket checks whether to stop."""
 
 
 class BackgroundReader(Generic[T]):
     """Runs a generator in a thread, and keeps its items until they are taken.
 
-    The generator yields something empty at least every `TICK_S`, so that it can be stopped. `size` tells how many bytes an item has.
+    The generator yields something empty at least every `TICK_S`, so that it can be stopped. `size` returns the number of bytes of an item.
     """
 
     def __init__(

@@ -25,7 +25,7 @@ MOST_BYTES: Final = 65535
 
 
 def ask_for_losses(receiver: socket.socket) -> None:
-    """Let the system keep many datagrams, and tell with each what it knows of it."""
+    """Let the system keep many datagrams, and report its facts about each."""
     receiver.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, ROOM)
     receiver.settimeout(TICK_S)
     if _LINUX:

@@ -222,7 +222,7 @@ class DatagramReceiver:
         return found
 
     def notes(self) -> list[str]:
-        """See `Receiver`. Losses are told when there are twice as many as were told, and in the end."""
+        """See `Receiver`. Losses are reported when there are twice as many as were reported, and at the end."""
         found, self._notes = [f"{self._where}: {note}" for note in self._notes], []
         losses = self._assembler.losses
         if losses.total >= max(2 * self._told, 1) or (self._ended and losses.total > self._told):

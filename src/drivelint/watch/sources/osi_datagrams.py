@@ -2,10 +2,10 @@
 
 A datagram is a header of a signed and an unsigned 32-bit integer, counter and size, and `size` bytes of the message, at most 8192.
 The datagrams of a message count 1, 2, 3, ...; the counter of the last one is negative: a message of three has 1, 2, -3, a message of
-one -1. A receiver cannot tell to which message a datagram belongs but by its place: nothing in the header names the message. Source:
+one -1. Only its place shows a receiver to which message a datagram belongs: nothing in the header names the message. Source:
 `OSIReporter::UpdateOSIGroundTruth` and `osi_udp_buf` in esmini's EnvironmentSimulator/Modules/ScenarioEngine/SourceFiles/OSIReporter.cpp,
 received by `OSIReceiver` in its scripts/udp_driver/udp_osi_common.py (https://github.com/esmini/esmini). Before that, it counted from 0
-and ended each message with -1, so that a lost datagram cannot be told: such a stream is refused.
+and ended each message with -1, so that a lost datagram cannot be detected: such a stream is refused.
 """
 
 from __future__ import annotations

@@ -137,7 +137,7 @@ class SumoSimulation(WrittenWindows):
             self._append(_beside(self.recording, "tls"), _LIGHTS_BEGIN, _lights(step), _LIGHTS_END)
         new = set(_TYPE.findall(step.xml)) - self._types.keys()
         if new:
-            # while somebody of it is there: types of single vehicles end with them
+            # while a vehicle of it is there: types of single vehicles end with them
             self._types |= {name: self._sumo.vehicle_type(unescape(name.decode())) for name in sorted(new)}
             _beside(self.recording, "vtypes").write_bytes(self._vtypes(self._types))
 

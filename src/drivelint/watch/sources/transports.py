@@ -37,7 +37,7 @@ def open_to_others(host: str) -> list[str]:
 
 
 class Patience:
-    """Tells when nothing has come for `idle_s` seconds; None: it waits for ever."""
+    """Reports when nothing has come for `idle_s` seconds; None: it waits for ever."""
 
     def __init__(self, idle_s: float | None) -> None:
         self._idle_s = idle_s
