@@ -61,8 +61,8 @@ class Claims:
     def claimed_drives(self, todo: Iterable[AuditDrive]) -> Iterator[AuditDrive]:
         """Yield the drives that this audit gets in one pass over `todo`, the drives to be judged by all audits.
 
-        `n_waiting` is then how many somebody else has who is alive: after a while they are done, or free. This never waits itself, as
-        what is judged meanwhile is said to be done by whoever takes the drives.
+        `n_waiting` is then the number of drives that other living audits have: after a while they are done, or free. This never waits
+        itself: the caller marks the drives that are judged meanwhile as done.
         """
         self.n_waiting = self.n_taken = 0
         left = iter(todo)

@@ -1,8 +1,8 @@
 """Finds the time in which a log goes on without its ego, gives the ego states without values there, and says how much is lost.
 
 The recorder sits in its own ego, which is there from the log's first frame to its last. Who names it: the host of OSI, the odometry of
-ROS, the ego flag of a table, a mapping. An ego that the user picks with --ego, among those whom others observe, comes into their view
-and leaves it: it is there from its first state to its last. Of `--ego all` each has the time of its track, holes included.
+ROS, the ego flag of a table, a mapping. An ego that the user chooses with --ego among observed vehicles comes into view and leaves it: it
+is there from its first state to its last. Of `--ego all` each has the time of its track, holes included.
 
 Without a place at a frame nothing is known of the ego there. With a state that says so every rule is judged at that frame, and unknown.
 Where no frame came, there is no state either: rules have a hole.

@@ -1,10 +1,10 @@
 """Makes values of an actor unknown that contradict each other.
 
-Positions decide over velocities and headings as long as they are a track. Where a position jumps, or stands while the velocity
-moves on, the state is unknown (no position, heading or velocity). A track that goes on elsewhere after a jump is another actor's.
-Where over half a second both lead on and differ, the position is believed and the velocity is unknown.
-A heading that turns round from one sample to the next while the motion goes on is turned back; one across the motion is unknown.
-A place that is not believed and lies upon another actor is said: whoever bounds how near the two came must know.
+Positions decide over velocities and headings as long as they are a track. Where a position jumps, or stands while the velocity moves on,
+the state is unknown (no position, heading or velocity). A track that goes on elsewhere after a jump is another actor's. Where over half a
+second both lead on and differ, the position is believed and the velocity is unknown. A heading that turns round from one sample to the
+next while the motion goes on is turned back; one across the motion is unknown. A place that is not believed and lies upon another actor
+is said: code that limits how near the two came needs this.
 """
 
 from __future__ import annotations

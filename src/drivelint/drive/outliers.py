@@ -1,8 +1,8 @@
 """Finds single samples beside their track, and small steps of a track, that no motion explains.
 
-`contradiction` knows jumps of metres by their length. A back-step of half a metre in one sample is as wrong: from it a velocity of its own
-would be derived. It is told by what the samples around it do without it, and by the noise of the track's positions. A jolt that most actors
-have at one moment is the log's.
+`contradiction` knows jumps of metres by their length. A back-step of half a metre in one sample is as wrong: from it a velocity of its
+own would be derived. It is recognised by the samples around it, and by the noise of the track's positions. A jolt that most actors have
+at one moment is the log's.
 """
 
 from __future__ import annotations

@@ -147,12 +147,11 @@ class Trace:
     """One drive as tables of `schemas/model.sql` (data_log, actor, actor_state, signal_state, declared_event,
     drive_condition, quality).
 
-    `data_log` has one row, its `environment_id` NULL. Rows are totally ordered: `actor_state` by actor_id and t_ns.
-    `embedded_map` is OpenDRIVE found in the log; `map_offset` (metres) is added to the map's coordinates. `frame_times`:
-    see `FrameTimes`; None where the log has one clock only. `geo_reference`: the projection of its coordinates, a PROJ string,
-    of which they are after a turn and a shift, `geo_offset`: x and y in metres, the turn in radians. `nobody_ns`: times of frames in
-    which nobody is, as far as the ego should be there. `in_log_order`: the states are as the log has them (`IngestOptions.as_recorded`)
-    and in its order, as its clock begins again.
+    `data_log` has one row, its `environment_id` NULL. Rows are totally ordered: `actor_state` by actor_id and t_ns. `embedded_map` is
+    OpenDRIVE found in the log; `map_offset` (metres) is added to the map's coordinates. `frame_times`: see `FrameTimes`; None where the
+    log has one clock only. `geo_reference`: the projection of its coordinates, a PROJ string, of which they are after a turn and a shift,
+    `geo_offset`: x and y in metres, the turn in radians. `nobody_ns`: times of frames without actors, in which the ego should be there.
+    `in_log_order`: the states are as the log has them (`IngestOptions.as_recorded`) and in its order, as its clock begins again.
     """
 
     drive_id: str

@@ -1,7 +1,7 @@
 """Records the inputs of a run: every file that Python opens, every folder that it lists, and other searched paths.
 
-The state of each is taken before its first reading, and again at the end of the run. Where both differ, nobody knows of which one the
-verdicts are. What the importer reads is code, and the package's own files are those of its version: the key of a receipt has both.
+The state of each is taken before its first reading, and again at the end of the run. If both differ, it is not known which of them was
+judged. What the importer reads is code, and the package's own files are those of its version: the key of a receipt has both.
 """
 
 from __future__ import annotations

@@ -101,8 +101,8 @@ def exit_status(result: Result) -> ExitStatus:
     """Return the exit code of DESIGN.md, by its precedence 130 > 2 > 1 > 4 > 3 > 0, and why.
 
     Only stable rules gate: a draft's failure or unknown is shown, never an exit code. A rule that erred is always 2, and one that went
-    beyond its limits has not judged: 4. What failed does not hide what was not judged or was lost: whoever mends the one would meet the
-    other in the next run.
+    beyond its limits has not judged: 4. What failed does not hide what was not judged or was lost: after mending the one, the user would
+    meet the other in the next run.
     """
     status = next(_outcomes(result))
     hidden = next(chain(_not_judged(result), _lossy(result)), None) if status.code is ExitCode.FAILED else None

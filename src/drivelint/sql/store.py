@@ -200,9 +200,9 @@ def release_memory(con: duckdb.DuckDBPyConnection) -> None:
 def open_as_is(path: Path | None = None, *, read_only: bool = False) -> duckdb.DuckDBPyConnection:
     """Open a database without creating tables (None: an empty one in memory), with spatial loaded from its wheel.
 
-    Whether the extension is signed is not asked: that is a hash over its 80 MB each time, and the file was installed by
-    whoever installed duckdb itself, which nobody asks either. Any other must be signed from then on.
-    Errors: `DriveLintError` when the pinned extension cannot be loaded.
+    Whether the extension is signed is not asked: that is a hash over its 80 MB each time, and the file was installed together with duckdb
+    itself, which is not verified either. Any other must be signed from then on. Errors: `DriveLintError` when the pinned extension cannot
+    be loaded.
     """
     con = duckdb.connect(
         str(path) if path else ":memory:", read_only=read_only, config={"allow_unsigned_extensions": True}

@@ -1,7 +1,7 @@
 """Doubts motion that no road user makes: a jolt and back, a step aside and back, a turn on the spot, a pedestrian as fast as a car.
 
-What is doubted stays as it is recorded; the table `doubt` says of whom, of what and when, and no verdict rests on it. `states` are in
-order, with their velocities completed.
+What is doubted stays as it is recorded; the table `doubt` has the actor, the quantity and the time, and no verdict depends on it.
+`states` are in order, with their velocities completed.
 """
 
 from __future__ import annotations

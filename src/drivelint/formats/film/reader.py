@@ -1,7 +1,7 @@
 """Filmed drives: the detections in each frame, placed on a straight road as the mapping assumes it.
 
-Distances ahead are from bumper to bumper along the road. Where somebody is not detected in a frame he is there without a
-place; before he is first detected and after the last time nothing is claimed but the range of the detector.
+Distances ahead are from bumper to bumper along the road. An actor that is not detected in a frame is there without a place; before he is
+first detected and after the last time nothing is claimed but the range of the detector.
 
 Places are box centres: half a length behind the front bumper.
 """

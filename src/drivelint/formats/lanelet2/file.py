@@ -62,8 +62,8 @@ def load(source: MapSource, request: MapOptions, quality: MapQuality) -> tuple[A
 def _place_locally(root: etree._Element, quality: MapQuality) -> None:
     """Give every node a latitude and longitude that say where its local coordinates are.
 
-    In maps of Autoware these are empty or of another frame, and the library tells by them which bound of a lane is the
-    left one and which way it runs. A node without local coordinates has no place.
+    In maps of Autoware these are empty or of another frame, and the library uses them to decide which bound of a lane is the left one and
+    which way it runs. A node without local coordinates has no place.
     """
     n_lost = 0
     first: tuple[float, float] | None = None

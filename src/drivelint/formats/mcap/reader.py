@@ -102,8 +102,8 @@ class Container:
     def packets(self) -> Iterator[Packet]:
         """Yield every message in the order of the file.
 
-        Errors: `DamageError` naming what is damaged, at which byte; with `salvage` only where nothing is left, or where what
-        is left cannot be told from what is not. `TraceError` for what is no single MCAP file, or asks for too much memory.
+        Errors: `DamageError` naming what is damaged, at which byte; with `salvage` only where nothing is left, or if the remaining part
+        cannot be distinguished from the lost one. `TraceError` for what is no single MCAP file, or asks for too much memory.
         """
         with self.path.open("rb") as file:
             if not self.path.stat().st_size:

@@ -84,9 +84,9 @@ def _states(groups: Table, number: Mapping[str, int]) -> Codes:
 def _state(bits: int) -> int:
     """Return the state of a light that applies to every turn; -1 if turns differ.
 
-    The map's light does not say for which turns an arrow of it holds. So an arrow that shows another colour than the full lamp
-    decides nothing: red with a green arrow is neither red, for it lets some go, nor green, for it holds the others. Of arrows alone
-    nobody else knows whether they may go.
+    The map's light does not say for which turns an arrow of it holds. So an arrow that shows another colour than the full lamp decides
+    nothing: red with a green arrow is neither red, for it lets some go, nor green, for it holds the others. Arrows alone do not show
+    whether other turns may go.
     """
     full, dark, arrows = bits & _ALL_COLOURS, bits // _DARK & _ALL_COLOURS, bits // _ARROW & _ALL_COLOURS
     word = None
