@@ -1,7 +1,7 @@
 """drivelint checks recorded drives against the rules of the road.
 
-From Python: `drivelint.check`, `drivelint.open`, `drivelint.diff` and `drivelint.read_trace`; see `drivelint docs python`. What type
-checkers see of this module stands in `__init__.pyi`.
+From Python: `drivelint.check`, `drivelint.open`, `drivelint.diff` and `drivelint.read_trace`; see `drivelint docs python`. `__init__.pyi`
+has the types of this module for type checkers.
 """
 
 from importlib import import_module

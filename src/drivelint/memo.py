@@ -1,7 +1,7 @@
 """Facts that follow from content alone, and take long to find, kept in the user's cache folder.
 
-A fact is kept for the code, the versions and the declarations that it was found with: any other finds it anew. The same happens without a
-writable cache folder. `DRIVELINT_CACHE_DIR` names another folder; empty, nothing is kept.
+A fact is kept for the code, the versions and the declarations that it was found with: any other version computes it again. The same
+happens without a writable cache folder. `DRIVELINT_CACHE_DIR` names another folder; empty, nothing is kept.
 """
 
 from __future__ import annotations

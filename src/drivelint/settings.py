@@ -1,4 +1,4 @@
-"""Reads `drivelint.toml`, which holds options of `check`.
+"""Reads `drivelint.toml`, which has options of `check`.
 
     map = "road.xodr"
     profile = ["nominal", "aggressive"]

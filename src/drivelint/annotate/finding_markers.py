@@ -1,6 +1,6 @@
 """Markers of findings and near misses: the boxes of ego and object and a label, at every step of interest.
 
-Each message is complete: it takes away what was drawn before, so that a viewer that jumps to a time shows what holds there.
+Each message is complete: it removes earlier drawings, so that a viewer that jumps to a time shows the right state.
 """
 
 from __future__ import annotations

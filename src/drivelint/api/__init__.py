@@ -1,4 +1,4 @@
-"""The Python interface: what the command line does, as functions that return and raise and never exit."""
+"""The Python interface: the commands of the command line as functions, which return or raise and never exit."""
 
 from __future__ import annotations
 

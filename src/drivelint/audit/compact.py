@@ -1,7 +1,7 @@
 """Packs the many small files of an audit into few: chunks of some thousand drives, each a file per table and its receipts.
 
-A chunk is there once its receipts are: they are written last. What a chunk holds is removed from the small files only then, so
-that an audit that is killed at any moment neither loses a drive nor has it twice.
+A chunk is there once its receipts are: they are written last. Only then are its drives removed from the small files, so that an audit
+that is killed at any moment neither loses a drive nor has it twice.
 """
 
 from __future__ import annotations

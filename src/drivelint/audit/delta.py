@@ -1,8 +1,8 @@
 """Keeps Delta tables of an audit's packed tables, for Spark, Databricks, Trino and others that read them.
 
-A Delta table is a folder of Parquet files and a log that names the files of each version. Its files are copies of the packed files,
-named by the hash of what they hold. One commit adds the files that are new and takes out those that the audit has no more, so that
-a reader sees the former version or the next one, also where the writer is killed.
+A Delta table is a folder of Parquet files and a log that names the files of each version. Its files are copies of the packed files, named
+by the hash of their content. One commit adds the files that are new and takes out those that the audit has no more, so that a reader sees
+the former version or the next one, also where the writer is killed.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """`<rule>.cases.yml`, the regression cases beside every rule, and their harness.
 
-A list of cases; each fills tables with a tiny scene, judges the rule, and says what must come out:
+A list of cases; each fills tables with a tiny scene, judges the rule, and states the expected verdicts:
 
     - name: faster than the limit            # shows: violation, if the name does not say it
       given:

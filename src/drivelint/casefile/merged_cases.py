@@ -1,7 +1,7 @@
 """Cases judged together: as drives of one database, or as egos of one drive.
 
-A drive checked alone has the same rows as one among others: a rule whose join leaves out `drive_id` or `ego_id` mixes the
-cases up, and that shows. And many variants of a rule can be judged at once on tables that are filled once.
+A drive checked alone has the same rows as one among others: a rule whose join leaves out `drive_id` or `ego_id` mixes the cases up, and
+fails. And many variants of a rule can be judged at once on tables that are filled once.
 """
 
 from __future__ import annotations

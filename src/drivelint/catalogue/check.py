@@ -1,7 +1,7 @@
 """Mechanical checks of a rule's SQL: one SELECT, known tables and functions only, bound parameters, named columns.
 
-The content of DuckDB's syntax tree is compared with the lists in `allowed_sql`: that DuckDB can parse or serialise a statement
-says nothing (it does so with two statements, DESCRIBE, `query('...')` and `FROM '/etc/passwd'`).
+The content of DuckDB's syntax tree is compared with the lists in `allowed_sql`: DuckDB can parse and serialise statements that are not
+allowed (such as two statements, DESCRIBE, `query('...')` and `FROM '/etc/passwd'`).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""`<rule>.parts.toml`, beside a rule that has one: what its requirement is made of, for readers of one verdict.
+"""`<rule>.parts.toml`, beside a rule that has one: the parts of its requirement, for readers of one verdict.
 
     sql = "SELECT drive_id, ego_id, t_ns, thinking_m, braking_m FROM ..."
 

@@ -1,6 +1,6 @@
 """Selects rules and sets their parameters from options of the command line.
 
-A selector is what a rule must be, or several of that joined by commas, all of which it must be:
+A selector is a property of a rule, or several properties joined by commas, all of which the rule must have:
 
     ukhc.r162.safe-distance-ahead       a rule
     ukhc.r162.*                         a glob over ids

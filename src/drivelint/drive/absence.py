@@ -1,11 +1,11 @@
-"""Finds the time in which a log goes on without its ego, gives the ego states without values there, and says how much is lost.
+"""Finds the time in which a log continues without its ego, adds ego states without values there, and reports how much is lost.
 
 The recorder sits in its own ego, which is there from the log's first frame to its last. Who names it: the host of OSI, the odometry of
 ROS, the ego flag of a table, a mapping. An ego that the user chooses with --ego among observed vehicles comes into view and leaves it: it
 is there from its first state to its last. Of `--ego all` each has the time of its track, holes included.
 
-Without a place at a frame nothing is known of the ego there. With a state that says so every rule is judged at that frame, and unknown.
-Where no frame came, there is no state either: rules have a hole.
+Without a place at a frame nothing is known of the ego there. With such a state, every rule is judged at that frame, and is unknown. Where
+no frame came, there is no state either: rules have a hole.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Names the conditions that may restrict a rule, the values of each, and which values include which.
 
-Their words are vocabularies of `schemas/words.toml`, for the rules' `[applies]`, for `--env` and for what a log may say of itself;
-the columns are those of `ego_condition`.
+Their words are vocabularies of `schemas/words.toml`, for the rules' `[applies]`, for `--env` and for conditions in a log; the columns are
+those of `ego_condition`.
 """
 
 from __future__ import annotations

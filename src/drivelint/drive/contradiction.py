@@ -1,10 +1,10 @@
 """Makes values of an actor unknown that contradict each other.
 
-Positions decide over velocities and headings as long as they are a track. Where a position jumps, or stands while the velocity moves on,
-the state is unknown (no position, heading or velocity). A track that goes on elsewhere after a jump is another actor's. Where over half a
-second both lead on and differ, the position is believed and the velocity is unknown. A heading that turns round from one sample to the
-next while the motion goes on is turned back; one across the motion is unknown. A place that is not believed and lies upon another actor
-is said: code that limits how near the two came needs this.
+Positions decide over velocities and headings as long as they are a track. If a position jumps, or stands still although the velocity is
+not 0, the state is unknown (no position, heading or velocity). If a track continues at another place after a jump, it is another actor's
+from there on. If position and velocity both advance over half a second but differ, the position is used and the velocity is unknown. If a
+heading turns round from one sample to the next while the motion continues, it is turned back; a heading across the motion is unknown. A
+doubted place that lies on another actor is reported, because code that limits how near the two came needs it.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Holds each rule to an amount of computing time and of memory.
 
-The time is that of the processor, so that verdicts do not depend on what else the machine does. A statement beyond its limit is
+The time is that of the processor, so that verdicts do not depend on other programs of the machine. A statement beyond its limit is
 interrupted. DuckDB heeds an interrupt between two vectors of rows, not inside one: a function that works on one huge value, or many of
-them, goes on. The maker of the limits decides what to do about such a rule (`DeafRules`).
+them, continues. The maker of the limits decides what to do about such a rule (`DeafRules`).
 """
 
 from __future__ import annotations

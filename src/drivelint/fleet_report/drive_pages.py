@@ -1,4 +1,4 @@
-"""Pages about single drives of an audit, one file each beside the fleet page: facts, findings, what is unknown and why.
+"""Pages about single drives of an audit, one file each beside the fleet page: facts, findings, unknown verdicts and their reasons.
 
 The rows of all chosen drives are put into tables by one statement per table of the audit, and read from there some drives at a time:
 neither the number of scans nor the memory of this process grows with the drives.

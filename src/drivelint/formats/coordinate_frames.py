@@ -1,7 +1,7 @@
 """Coordinate frames: poses brought from the frame they are given in to the fixed one, along the chain of transforms.
 
-A transform that moves is interpolated between its neighbours in time, never carried on beyond them: what cannot be placed
-is not placed.
+A transform that moves is interpolated between its neighbours in time, never carried on beyond them: a pose that cannot be transformed has
+no place.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Limits the time and memory of reading a file. A small file can describe a huge drive or map, which would take all time or memory.
 
-Computing and growth of memory are limited, by the size of the file. Where reading goes beyond, it is interrupted between two
-steps of Python; a single call into a library goes on to its end.
+Computing and growth of memory are limited, by the size of the file. Where reading goes beyond, it is interrupted between two steps of
+Python; a single call into a library continues to its end.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""This module defines what a trace reader provides, and the probe by which it recognises a trace."""
+"""This module defines the interface of a trace reader, and the probe by which it recognises a trace."""
 
 from __future__ import annotations
 

@@ -1,8 +1,7 @@
 """Searches a folder for logs, and lists the paths that it could not search: there may be logs in them, which are not judged.
 
 A link to a folder is not followed, as it may lead in a circle or anywhere else, unless its target is looked through anyway. A dead link,
-such as git-annex has for what is not fetched, and a pointer of DVC beside which its target is missing, stand for a log or a folder that
-is not here.
+such as git-annex has for a file that is not fetched, and a pointer of DVC without its target, mean a log or a folder that is not here.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """The gate decides which findings fail a run: those that neither the baseline has nor a waiver covers.
 
-Both only change what a finding leads to: verdicts and findings stay as they are, and no clock is in them.
+Both only change the effect of a finding: verdicts and findings stay as they are, and no clock is in them.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The data dictionary: every table of `schemas/*.sql` with its columns, the words that these may hold, and what is derived from what.
+"""The data dictionary: every table of `schemas/*.sql` with its columns, their words, and the tables that it is derived from.
 
 Beside it, as made from the sources too: every reason code with its words, and every macro that SQL can call.
 """

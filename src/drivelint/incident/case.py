@@ -1,4 +1,4 @@
-"""Everything that stands behind an incident sheet."""
+"""The data behind an incident sheet."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The time stamp of a pack (RFC 3161): an authority says that the signed statement was there at a time.
+"""The time stamp of a pack (RFC 3161): an authority states that the signed statement existed at a time.
 
 The token is made elsewhere. No signature of the pack covers it: it was made after that.
 """

@@ -1,7 +1,7 @@
 """The catalogue as one Markdown page: a table per pack, for the Highway Code a table by clause, and the words of logs and maps.
 
-`queries/README.md` is this page for the shipped packs; a test holds it to be current. A pack that has a `clauses.toml`
-beside its rules gets the table by clause: what covers each clause, what is a draft, and what cannot be decided and why.
+`queries/README.md` is this page for the shipped packs; a test checks that it is current. A pack that has a `clauses.toml` beside its
+rules gets the table by clause: the rules that cover each clause, the drafts, and the clauses that cannot be decided, with the reason.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Reads a file of scenes: YAML with roads by name, and scenes that name one of them.
 
-The whole vocabulary stands here; `drivelint docs scenes` explains it. Scenes are drawn as if the right were driven on, with x to
-the east and y to the north; where the left is driven on, the drawing is mirrored.
+The whole vocabulary is here; `drivelint docs scenes` explains it. Scenes are drawn as if the right were driven on, with x to the east and
+y to the north; where the left is driven on, the drawing is mirrored.
 """
 
 from __future__ import annotations

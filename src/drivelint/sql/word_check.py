@@ -1,7 +1,7 @@
 """Finds words in SQL that a column can never have: `is_class(actor_class, 'cyclist')` is never true, and the rule never applies.
 
-DuckDB does not: even a column of an ENUM may be compared with a text that is none of its words. So the syntax tree is walked, and for each
-expression it is worked out what words it may be: by the tables' columns, through CTEs, joins, functions and macros. What cannot be worked
+DuckDB does not: even a column of an ENUM may be compared with a text that is none of its words. So the syntax tree is walked, and the
+possible words of each expression are computed: by the tables' columns, through CTEs, joins, functions and macros. What cannot be worked
 out may be anything.
 """
 

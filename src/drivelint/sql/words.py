@@ -1,7 +1,7 @@
 """The vocabularies of `schemas/words.toml`: which words the columns of the tables may hold, and the refusal of any other.
 
-A column's comment in `schemas/*.sql` names its vocabulary in brackets, with what it may hold besides: `[control + none]`; for a field of a
-STRUCT `[fit: light_fit]`.
+A column's comment in `schemas/*.sql` names its vocabulary in brackets, with further words: `[control + none]`; for a field of a STRUCT
+`[fit: light_fit]`.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A Foxglove WebSocket server: announces channels, and sends their messages to those who subscribed to them.
+"""A Foxglove WebSocket server: announces channels, and sends their messages to the subscribers.
 
 Source: foxglove/ws-protocol, docs/spec.md; the subprotocol foxglove.sdk.v1 has the same messages. A page of another site is refused by its
 `Origin`, which Foxglove's own server does not look at; and a connected client does not keep the program from ending.

@@ -1,6 +1,6 @@
 """Motion forecasting scenarios of Argoverse 2: one Parquet table of tracks at ten steps a second, and the map beside it.
 
-The track AV is the vehicle that records. The guide says that positions are box centres. Those of AV are not, as measured on a published
+The track AV is the vehicle that records. The guide states that positions are box centres. Those of AV are not, as measured on a published
 scenario: where it turns, its point moves along its heading, as only the rear axle does (-0.3 m ahead of it, give or take 0.2 m; the
 middle is 1.3 m ahead), and as the egovehicle frame of the sensor logs does. It is moved to the middle of the vehicle.
 

@@ -1,9 +1,9 @@
 """Sensor logs of Argoverse 2: a folder with the annotated boxes, the poses of the recording vehicle, and its map.
 
 Boxes are given in the frame of the recording vehicle at exactly their time stamp (quaternion w first, centre of the box); the poses bring
-them into the frame of the city. The steps of the ego are the time stamps of the annotations, ten a second: only then is it known who was
-around it. Its poses are ten times denser, irregular, and in part repeated one nanosecond later, as each sensor's time has one; those
-between the annotations are not read.
+them into the frame of the city. The steps of the ego are the time stamps of the annotations, ten a second: only then are the actors
+around it known. Its poses are ten times denser, irregular, and in part repeated one nanosecond later, as each sensor's time has one;
+those between the annotations are not read.
 
 Time stamps are nanoseconds on a clock whose zero is not documented: by 1970 these drives of 2020 would be of January 1980. There is no
 date, no velocity, no indicator and no state of a traffic light in a log.

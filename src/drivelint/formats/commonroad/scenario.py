@@ -1,7 +1,7 @@
 """CommonRoad scenarios (XML, 2018b and 2020a): their obstacles and lights as a drive, the file itself as its map.
 
-A scenario has no ego but the start of a planning problem: say who it is with --ego. The place of a state is that of the shape's origin,
-which need not be the centre of the box (see `shapes`). What a state gives as an area or an interval is not known. Environment obstacles
+A scenario has no ego but the start of a planning problem: name it with --ego. The place of a state is that of the shape's origin, which
+need not be the centre of the box (see `shapes`). What a state gives as an area or an interval is not known. Environment obstacles
 (buildings, pillars) and phantom obstacles have no states: they are not read.
 """
 

@@ -1,8 +1,7 @@
 """Signs, lights and stop lines of a CommonRoad map: their kinds, the lanelets that refer to them, and their limits.
 
-A sign or light holds for the lanelets that refer to it, on their whole length. Codes of signs depend on the country:
-commonroad-io lists MUTCD codes for the USA, those of its traffic law for Spain, and StVO numbers for Germany and, as a
-stand-in, for every other country.
+A sign or light applies to the lanelets that refer to it, on their whole length. Codes of signs depend on the country: commonroad-io lists
+MUTCD codes for the USA, those of its traffic law for Spain, and StVO numbers for Germany and, as a stand-in, for every other country.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Reads a log of 123D, a folder of Arrow files: the ego's states, the boxes of the actors around it, lights, and its map.
 
-A log has a table of frames (`sync.arrow`), which says which row of each file belongs to which frame. The ego's poses may be far denser than
-the boxes; the ego's steps are the frames that have both, because the actors around it are not known in between. Positions are those of the
+A log has a table of frames (`sync.arrow`), which links the rows of each file to the frames. The ego's poses may be far denser than the
+boxes; the ego's steps are the frames that have both, because the actors around it are not known in between. Positions are those of the
 box centres; the ego's pose is its IMU's, and is moved to its box centre.
 """
 

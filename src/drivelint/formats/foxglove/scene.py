@@ -1,4 +1,4 @@
-"""This module reads Foxglove scenes in MCAP; the first cube of an entity is the road user's box. No velocities, no ego: both are said
+"""This module reads Foxglove scenes in MCAP; the first cube of an entity is the road user's box. No velocities, no ego: both come from
 elsewhere.
 
 The pose of a cube is the centre of its box, in the entity's frame.

@@ -1,8 +1,8 @@
 """This module copies the data of one MCAP file behind those of others, and adds the indexes that it lacks.
 
-Chunks are copied as they are. Two things are added where a log lacks them, because readers seek by them: message indexes
-behind a chunk, and a chunk around messages that stand outside of any. Where a part of a split log gives a number to another channel
-or schema than the parts before it, its records get new numbers; what a message says stays the same bytes.
+Chunks are copied as they are. Two things are added where a log lacks them, because readers seek by them: message indexes behind a chunk,
+and a chunk around messages that stand outside of any. Where a part of a split log gives a number to another channel or schema than the
+parts before it, its records get new numbers; the bytes of a message stay the same.
 """
 
 from __future__ import annotations

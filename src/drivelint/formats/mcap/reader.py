@@ -1,7 +1,7 @@
-"""The MCAP container, read from front to back with every CRC checked and every length bounded before it is believed.
+"""The MCAP container, read from front to back with every CRC checked and every length bounded before it is used.
 
-What counts is the data: the index at the end of the file is only asked what is missing. Each record's byte offset is known, so that
-damage is named by its place. A reader that asks for it gets what is left of a damaged file, and what was lost.
+What counts is the data: the index at the end of the file only shows what is missing. Each record's byte offset is known, so that damage
+is named by its place. On request, a reader gets the readable part of a damaged file, and the losses.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """MCAP, a file or a folder of rosbag2: ASAM OSI ground truth, ROS 2 messages or Foxglove scenes.
 
-Each of their readers says where its places are: all hand over box centres.
+Each of their readers states its reference point: all hand over box centres.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Signs, lights and painted signals: one row for every lanelet that each holds for."""
+"""Signs, lights and painted signals: one row for every lanelet that each applies to."""
 
 from __future__ import annotations
 

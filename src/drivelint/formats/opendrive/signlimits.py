@@ -1,12 +1,12 @@
 """Speed limits of lanelets: those of signs before those that the lane or the road records.
 
-OpenDRIVE calls the speed of a road type the default, lets that of a lane go before it, and says that limits derived from signals have
-preference over both. A sign holds from where it stands, along its lane, to the next sign or junction. On roads that follow, it holds
-while they record nothing, or what the road of the sign records: another record is a new default. Beyond a junction nothing is known:
-nations differ in whether the limit goes on there.
+In OpenDRIVE, the speed of a road type is the default, that of a lane takes precedence over it, and limits from signals take precedence
+over both. A sign applies from its position, along its lane, to the next sign or junction. On roads that follow, it holds while they
+record nothing, or what the road of the sign records: another record is a new default. Beyond a junction nothing is known: nations differ
+in whether the limit continues there.
 
-A sign that cannot be read (no number or unit, or one that changes) makes the default of the road type unknown. What the lane itself records
-is then the limit: it says what the sign may say.
+A sign that cannot be read (no number or unit, or one that changes) makes the default of the road type unknown. What the lane itself
+records is then the limit: it has the limit that the sign may have.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Logical lanes of an OSI trace (OSI 3.5 and later): lanes by their two bounds along a reference line.
 
-OSI says left, right, begin and end along the reference line; here all is turned into the direction of travel.
+In OSI, left, right, begin and end are along the reference line; here all is turned into the direction of travel.
 """
 
 from __future__ import annotations

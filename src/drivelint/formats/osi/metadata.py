@@ -1,9 +1,9 @@
 """Data without a field in OSI: written beside the messages of a converted log, and read from there.
 
-Two MCAP metadata records. `drivelint.trace`: where the log is from, the map offset and sensor range that its mapping said, the
-projection of its coordinates, what holds in the drive, what was found when it was read. `drivelint.actors`: OSI id -> the row of
-`actor` in JSON, since OSI's ids are numbers and its classes and hosts are fewer than ours. One channel of JSON messages,
-`drivelint.DeclaredEvent`, for declared events.
+Two MCAP metadata records. `drivelint.trace`: the source of the log, the map offset and sensor range of its mapping, the projection of its
+coordinates, the conditions of the drive, the findings from reading it. `drivelint.actors`: OSI id -> the row of `actor` in JSON, since
+OSI's ids are numbers and its classes and hosts are fewer than ours. One channel of JSON messages, `drivelint.DeclaredEvent`, for declared
+events.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Cuts an OSI trace file into its messages, each of which stands behind its length; of a damaged file, those before the damage.
+"""Cuts an OSI trace file into its messages, each of which follows its length; of a damaged file, those before the damage.
 
 Nothing marks the beginning of a message but the length of the one before. If a length is impossible, everything after it is lost:
 whatever looks like another message there may be the inside of one.

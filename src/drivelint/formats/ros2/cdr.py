@@ -1,9 +1,9 @@
 """CDR messages (ROS 2) to columns: a batch of messages is read in step, each by a cursor of its own.
 
-A message definition is compiled into a few steps; numpy takes every step for all messages at once, and within a sequence
-for its first items, then its second ones, and so on. So strings and sequences may be of any length, and no message is
-read by itself. The steps only find where everything stands; what is kept is then read for all items at once. Rules of
-alignment: CDR of the OMG (XCDR1), positions counted behind the four bytes of the header.
+A message definition is compiled into a few steps; numpy takes every step for all messages at once, and within a sequence for its first
+items, then its second ones, and so on. So strings and sequences may be of any length, and no message is read by itself. The steps only
+find the place of each value; the kept values are then read for all items at once. Rules of alignment: CDR of the OMG (XCDR1), positions
+counted behind the four bytes of the header.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""The messages of ROS 2 that are read: what each is read as, on which topic it usually is, and which fields are read of it.
+"""The messages of ROS 2 that are read: their roles, usual topics and fields that are read.
 
-The guide to traces lists them; a test holds its table against this one.
+The guide to traces lists them; a test compares its table with this one.
 """
 
 from __future__ import annotations

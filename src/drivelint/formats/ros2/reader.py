@@ -1,8 +1,8 @@
 """ROS 2 logs in MCAP: road users, odometry, transforms and the rest, each found by its schema's name, never by its topic.
 
 Places are the centres of the boxes: of Autoware's tracks and of vision's detections by their definition, of the CARLA bridge's objects by
-assumption (see `merge`). The odometry's place is that of its child frame, from where `--ego-size` says how far ahead the centre of the
-ego's box lies, as from the rear axle. Shapes have their origin in that place.
+assumption (see `merge`). The odometry's place is that of its child frame, `--ego-size` states how far ahead of it the centre of the ego's
+box lies, as from the rear axle. Shapes have their origin in that place.
 """
 
 from __future__ import annotations

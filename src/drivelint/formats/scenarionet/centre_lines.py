@@ -1,4 +1,4 @@
-"""The lanes of a scenario as centre lines with what lies beside them: the distance to either side, if the scenario states it.
+"""The lanes of a scenario as centre lines with their sides: the distance to either side, if the scenario states it.
 
 A lane's outline shows both sides; where no lane has one, the lines and edges that the lane refers to do, or where no lane refers to any,
 those that lie beside it; else the middle between two lanes that run beside each other.

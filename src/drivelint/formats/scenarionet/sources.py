@@ -1,8 +1,8 @@
 """Values of motion in data sets that are no measurements, recognised by the numbers themselves wherever possible.
 
-Velocities that are differences of the positions, one step apart, are those of half a step before or after, and one of them is 0
-at an end of the track. Boxes that were annotated now and then and interpolated have no acceleration. A box whose length and width are
-in each other's place moves along its short side.
+Velocities that are differences of the positions, one step apart, are those of half a step before or after, and one of them is 0 at an end
+of the track. Boxes that were annotated now and then and interpolated have no acceleration. A box whose length and width are exchanged
+moves along its short side.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Classes, sizes and box centres of SUMO's road users: a position is the middle of the front bumper, the centre half a length behind it.
 
-One track has one reference point. Without a length the centre is not known: who has none in the whole log stays at its bumper, and a
-finding says so; who has none in a part of it, or another, has no place there.
+One track has one reference point. Without a length the centre is not known: an actor without a length in the whole log stays at its
+bumper, and a finding reports it; an actor without a length in a part of it, or with another length, has no place there.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """Positions in longitude and latitude (`--fcd-output.geo`), brought back into the metres of the simulated net.
 
-SUMO transforms the positions and leaves the angles as they are: those of the net's grid, not of the true north. So the net is
-needed for both. How the data are written stands in XML alone, and not in every file. The motion of any actor takes precedence: as metres,
-degrees are a drive in which all move by less than 2 mm/s, at a hundred-thousandth of the speeds that are recorded.
-Source: SUMO's documentation of "Simulation/Output/FCDOutput" and "Geo-Coordinates".
+SUMO transforms the positions and leaves the angles as they are: those of the net's grid, not of the true north. So the net is needed for
+both. Only XML states how the data are written, and not in every file. The motion of any actor takes precedence: as metres, degrees are a
+drive in which all move by less than 2 mm/s, at a hundred-thousandth of the speeds that are recorded. Source: SUMO's documentation of
+"Simulation/Output/FCDOutput" and "Geo-Coordinates".
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
 """This module reads the right of way in a SUMO network: lights by connection, signs by junction.
 
-A connection's `state` says which of two that meet goes first: M (major) or m (minor), also of those who turn across oncoming traffic on
-a major road. Only an edge none of whose ways on is major is a lesser road, with signs.
-Source: SUMO's documentation of "SUMO Road Networks".
+A connection's `state` states the right of way: M (major) or m (minor), also of those who turn across oncoming traffic on a major road.
+Only an edge none of whose ways on is major is a lesser road, with signs. Source: SUMO's documentation of "SUMO Road Networks".
 """
 
 from __future__ import annotations

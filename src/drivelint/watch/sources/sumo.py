@@ -1,6 +1,7 @@
 """A simulation in SUMO, stepped from here: it waits while a window is judged.
 
-The recording is SUMO's floating car data, with what its reader looks for beside it: the sizes of the vehicles, and the states of lights.
+The recording is SUMO's floating car data, with the files that its reader needs beside it: the sizes of the vehicles, and the states of
+lights.
 """
 
 from __future__ import annotations
