@@ -10,6 +10,9 @@ from contextlib import ExitStack
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
+import msgspec
+import pyarrow.compute as pc
+
 from drivelint import catalogue
 from drivelint.engine.memory import DEFAULT_MEMORY
 from drivelint.engine.profiles import load_profiles, profile_table
@@ -30,6 +33,8 @@ from drivelint.result.load import load_result
 if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
+
+    import pyarrow as pa
 
     from drivelint.catalogue import Rule
     from drivelint.explain.model import Change, Row, Step
@@ -66,7 +71,7 @@ def explain(request: ExplainRequest) -> Explanation:
     result = load_result(request.folder)
     target = find_verdict(result, request.name, request.verdict_filter)
     run_options = run_request.load(request.folder).of_drive(target.verdict_row["drive_id"])
-    case = _case(run_options, target, request.memory)
+    case = _case(run_options, target, result.rules, request.memory)
     row = target.verdict_row
     of_drive = next(each for each in result.drives.to_pylist() if each["drive_id"] == row["drive_id"])
     drive, source = open_drive(
@@ -129,12 +134,14 @@ def explain(request: ExplainRequest) -> Explanation:
     )
 
 
-def _case(run_options: RunRequest, target: Target, memory: int | None) -> VerdictContext:
-    """Return the rule of a verdict, as it was set in that run."""
+def _case(run_options: RunRequest, target: Target, rules: pa.Table, memory: int | None) -> VerdictContext:
+    """Return the rule of a verdict, as it was set in that run, whose table of rules is `rules`."""
     rule_id = target.verdict_row["rule_id"]
     rule = catalogue.load_rule(rule_id, run_options.rules_dirs)
     if rule is None:
         raise UsageError(f"rule {rule_id} is not in the catalogue any more: check the drives again")
+    (row,) = rules.filter(pc.equal(rules["rule_id"], rule_id)).to_pylist()
+    rule = msgspec.structs.replace(rule, is_named=row["is_named"])
     mine = [
         setting for setting in run_options.params if setting.partition("=")[0].strip().rpartition(".")[0] == rule_id
     ]

@@ -80,13 +80,19 @@ def _read(run_options: RunRequest, path: Path, map_: Path | None, drive_id: str,
     return drive_with_map(read, MapLibrary(run_options))
 
 
+def with_ego(drive: Drive, ego_id: str) -> Drive:
+    """Return the drive with this actor as its ego."""
+    actors = drive.trace.tables["actor"]
+    is_ego = [name == ego_id for name in actors["actor_id"].to_pylist()]
+    tables = {**drive.trace.tables, "actor": with_columns(actors, {"is_ego": is_ego})}
+    return replace(drive, trace=replace(drive.trace, tables=tables))
+
+
 def _from_database(file: Path, drive_id: str, ego_id: str) -> Drive:
     with store.open_as_is(file, read_only=True) as con:
         tables = {name: _rows(con, name, "drive_id", drive_id) for name in TRACE_TABLES}
         if not tables["data_log"].num_rows:
             raise DriveLintError(f"{file}: the drive {drive_id} is not in it: check the drives again")
-        is_ego = [name == ego_id for name in tables["actor"]["actor_id"].to_pylist()]
-        tables["actor"] = with_columns(tables["actor"], {"is_ego": is_ego})
         place = tables["data_log"]["environment_id"][0].as_py()
         environment = None
         if place is not None:
@@ -95,7 +101,7 @@ def _from_database(file: Path, drive_id: str, ego_id: str) -> Drive:
             road = {name: _rows(con, name, "environment_id", place) for name in known}
             hand = road["environment"].to_pylist()[0]
             environment = MapTables(place, hand["handedness"], hand["handedness_source"], road)
-    return Drive(Trace(drive_id, file, tables, None, None, []), environment)
+    return with_ego(Drive(Trace(drive_id, file, tables, None, None, []), environment), ego_id)
 
 
 def _rows(con: duckdb.DuckDBPyConnection, table: str, key: str, value: str) -> pa.Table:
