@@ -36,6 +36,6 @@ def test_a_signal_that_the_log_has_not(selector: str, verdict: str, tmp_path: Pa
     assert verified.problems == []
     assert "judged again: the same bytes" in verified.sentence
 
-    told = explain(ExplainRequest(tmp_path / "result", HORN))
+    told = explain(ExplainRequest(HORN, tmp_path / "result"))
     assert told.verdict["judged_anew"] == verdict
     assert not [note for note in told.notes if "Judged anew" in note]
