@@ -65,7 +65,7 @@ def section(text: str, name: str) -> str:
         ),
         (
             result([verdict("unknown", reason_code="missing_registration")], drives=[drive(exposure=EGO, not_judged=[OFF])]),
-            f"map: road.xodr fits 0 of 1 drive (27 of 181 steps on a lane) | log: {WHOLE} | not judged: registration (1 rule)",
+            f"map: road.xodr fits 0 of 1 drive (27 of 181 steps on a lane) | log: {WHOLE} | not judged: 1 rule without registration",
         ),
         (
             result(
