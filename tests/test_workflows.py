@@ -20,11 +20,11 @@ WORKFLOWS = sorted((ROOT / ".github" / "workflows").iterdir())
 ACTION = ROOT / ".github" / "action" / "action.yml"
 SHOWN = {
     f"{page.stem}-{block.argument}": block.body
-    for page in (ROOT / "README.md", FOLDER / "ci.md", FOLDER / "ready-made.md")
+    for page in (FOLDER / "ci.md", FOLDER / "ready-made.md")
     for block in blocks(page)
     if block.word == "workflow" and block.body.startswith("name:")
 }
-"""The workflows that README and guides show."""
+"""The workflows that guides show."""
 
 
 def faults(kind: str, *files: Path) -> str:
