@@ -178,7 +178,7 @@ def installed(package: Path, home: Path) -> Path:
     (place / "dependencies.pth").write_text(
         "\n".join(path for path in sys.path if path.endswith("site-packages")), encoding="utf-8"
     )
-    words = ["install", "-q", "--no-index", "--no-deps", "--no-build-isolation", "--ignore-installed", package]
+    words = ["install", "-q", "--no-index", "--no-deps", "--no-build-isolation", "--ignore-installed", str(package)]
     done = subprocess.run(
         [*pip(), "--python", python, *words],
         cwd=home, env={**os.environ, "PYTHONPATH": ""}, capture_output=True, text=True, check=False,
