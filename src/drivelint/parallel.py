@@ -21,12 +21,14 @@ import pyarrow.compute as pc
 
 from drivelint import run, temporary
 from drivelint.audit.executors.local import begin_worker, cores, deaf_to_ctrl_c
+from drivelint.engine.default_rules import with_chosen_rules
 from drivelint.engine.interruption import Interruption
 from drivelint.engine.memory import LEAST_MEMORY
 from drivelint.errors import DriveLintError, ExitCode, InternalError
 from drivelint.formats.files import file_states
 from drivelint.phrases import plural
 from drivelint.receipts import recorder
+from drivelint.report.log_notes import LogNotes, same_log
 from drivelint.report.progress import Progress
 from drivelint.result.names import PICTURES, TABLE_OF_FILE
 
@@ -36,8 +38,9 @@ if TYPE_CHECKING:
 
     from drivelint.evaluate.limits import DeafRules, Excess
     from drivelint.receipts.inputs import Inputs, IsOutput
+    from drivelint.report.log_notes import LogNote
     from drivelint.result.model import Result
-    from drivelint.run import CheckOptions, JudgedLogs, LogNote
+    from drivelint.run import CheckOptions, JudgedLogs
 
 _LOOK_S: Final = 0.2
 _PATIENCE_S: Final = 5.0
@@ -99,6 +102,7 @@ def check(
     Errors: as those of `run.check`; `WorkerLostError`.
     """
     if jobs > 1 and not settings.margins and not settings.keep_db:
+        settings = with_chosen_rules(settings)
         run.RunRules.of(settings)  # what cannot be judged by is refused once, here
         paths, _ = run.named_logs(settings)
         if len(parts := _cut(paths, jobs)) > 1:
@@ -180,7 +184,7 @@ def _without(part: JudgedLogs, drives: Sequence[str]) -> JudgedLogs:
         for name, table in tables.items()
         if "drive_id" in table.column_names
     }
-    told = [run.same_log(Path(paths[drive]), drive) for drive in drives if drive in paths]
+    told = [same_log(Path(paths[drive]), drive) for drive in drives if drive in paths]
     kept = [note for note in part.notes if note.path not in {each.path for each in told}]
     return replace(part, result=replace(result, **others), notes=(*kept, *told))
 
@@ -190,7 +194,7 @@ class _Listener:
 
     def __init__(self, progress: Progress, n_logs: int) -> None:
         self.progress = progress
-        self._notes = run.LogNotes(progress, n_logs)
+        self._notes = LogNotes(progress, n_logs)
 
     def hear(self, call: _ProgressCall) -> None:
         """Show one call of a worker."""
@@ -299,7 +303,7 @@ class _Teller(Progress):
         self.send(_ProgressCall("note", (text,)))
 
 
-class _SentNotes(run.LogNotes):
+class _SentNotes(LogNotes):
     """Sends the notes on logs, which are shown once for all workers."""
 
     def __init__(self, teller: _Teller, n_logs: int) -> None:

@@ -16,6 +16,7 @@ from drivelint.drive.trace import NOT_IN_FOLDER
 from drivelint.engine.apart import judge_apart
 from drivelint.engine.barrier import RefusedLog
 from drivelint.engine.batch import Drive, cut_batches, read_drives, sorted_logs
+from drivelint.engine.default_rules import with_chosen_rules
 from drivelint.engine.interruption import InterruptedRunError, Interruption, NothingJudgedError
 from drivelint.engine.judging_options import JudgingOptions
 from drivelint.engine.map_library import MapLibrary
@@ -27,6 +28,7 @@ from drivelint.errors import TraceError, UsageError
 from drivelint.evaluate.limits import RuleLimits
 from drivelint.formats import expand_traces
 from drivelint.pictures import Camerawork, chosen_rows, planned_shots
+from drivelint.report.log_notes import LogNote, LogNotes, same_log, told_once
 from drivelint.report.rule_progress import ToldLimits
 from drivelint.result import collect, evidence
 from drivelint.result.counts import SEVERITIES, group_rows
@@ -95,19 +97,6 @@ class RunRules(NamedTuple):
         return cls(rules, required, params, profiles)
 
 
-class LogNote(NamedTuple):
-    """What is to be said of a log. `once`: of all logs with this text only the first is told, by name."""
-
-    path: Path
-    text: str
-    once: bool = False
-
-    @property
-    def full_text(self) -> str:
-        """The note as a person reads it."""
-        return f"{self.path.name}: {self.text}" if self.once else self.text
-
-
 @dataclass(frozen=True)
 class JudgedLogs:
     """What became of some logs of a run, in their order: a result whose notes are these."""
@@ -136,6 +125,8 @@ def check(
     Errors: `UsageError`, `RuleError` for what was asked; `MapError`, `TraceError` if no drive at all could be judged. A drive that
     cannot be judged beside others that can is a row of the table `drive`.
     """
+    library = MapLibrary(settings)
+    settings = with_chosen_rules(settings, library)
     judged_by = RunRules.of(settings)
     paths, refused_logs = named_logs(settings)
     progress.stage(CHECKING, len(paths))
@@ -148,6 +139,7 @@ def check(
         notes=LogNotes(progress, len(paths)),
         interruption=interruption,
         deaf_rules=deaf_rules,
+        library=library,
     )
     return conclude(paths, [judged], keep)
 
@@ -162,8 +154,12 @@ def judge_logs(
     notes: LogNotes,
     interruption: Interruption | None = None,
     deaf_rules: DeafRules | None = None,
+    library: MapLibrary | None = None,
 ) -> JudgedLogs:
-    """Judge logs in one database, in their order; add to `refused_logs` what could not be judged."""
+    """Judge logs in one database, in their order; add to `refused_logs` what could not be judged.
+
+    `library`: the maps of these options, as far as they are read already.
+    """
     interruption = interruption or Interruption()
     rules, required, params, profiles = judged_by
     with store.workspace(settings.memory, threads=settings.threads) as con:
@@ -209,7 +205,7 @@ def judge_logs(
             limits_of_copies=RuleLimits(settings.rule_timeout, task="copies", deaf_rules=deaf_rules),
         )
         ids: dict[Path, str] = {}
-        read = _announced(_read(paths, settings), len(paths), progress)
+        read = _announced(_read(paths, settings, library), len(paths), progress)
         read = takewhile(lambda _item: not interruption.requested, read)
         try:
             with suppress(InterruptedRunError):
@@ -297,10 +293,11 @@ def named_logs(settings: CheckOptions) -> tuple[list[Path], list[RefusedLog]]:
     return paths, []
 
 
-def _read(paths: Sequence[Path], settings: CheckOptions) -> Iterator[Drive | RefusedLog]:
+def _read(paths: Sequence[Path], settings: CheckOptions, library: MapLibrary | None) -> Iterator[Drive | RefusedLog]:
     """Yield every log, read as the options say that hold for it; those with the same options together."""
     for options, mine in group_rows(paths, lambda path: settings.manifest_options.get(path, settings)).items():
-        yield from read_drives(mine, options.ingest_options(), MapLibrary(options))
+        maps = library if library is not None and options is settings else MapLibrary(options)
+        yield from read_drives(mine, options.ingest_options(), maps)
 
 
 def _announced(drives: Iterable[Drive | RefusedLog], n: int, progress: Progress) -> Iterator[Drive | RefusedLog]:
@@ -309,44 +306,6 @@ def _announced(drives: Iterable[Drive | RefusedLog], n: int, progress: Progress)
     for done, item in enumerate(drives, 1):
         yield item
         progress.doing(f"reading {min(done + 1, n)}/{n}")
-
-
-class LogNotes:
-    """Shows what is to be said of the logs, and keeps it for the result."""
-
-    def __init__(self, progress: Progress, n_logs: int) -> None:
-        self.notes: list[LogNote] = []
-        self._n_logs = n_logs
-        self._progress = progress
-        self._said: set[str] = set()
-
-    def add(self, note: LogNote) -> None:
-        """Keep a note, and show it unless it was shown of an earlier log: not a thousand times for a thousand logs."""
-        self.notes.append(note)
-        if not (note.once and note.text in self._said):
-            self._progress.note(note.full_text)
-        if note.once:
-            self._said.add(note.text)
-
-    def add_refused(self, refused_logs: Iterable[RefusedLog]) -> None:
-        """Add why logs are not judged; that of a single one is the error of the whole run."""
-        for each in refused_logs if self._n_logs > 1 else ():
-            self.add(LogNote(each.path, f"not judged: {each.error}"))
-
-
-def same_log(path: Path, drive_id: str) -> LogNote:
-    """Return the note on a log that is there twice."""
-    return LogNote(path, f"{path}: the same log as one before ({drive_id}), judged once")
-
-
-def told_once(notes: Iterable[LogNote]) -> Iterator[LogNote]:
-    """Yield the notes, of those that are told once the first."""
-    told: set[str] = set()
-    for note in notes:
-        if not (note.once and note.text in told):
-            yield note
-        if note.once:
-            told.add(note.text)
 
 
 def _without_map(drive: Drive) -> list[str]:

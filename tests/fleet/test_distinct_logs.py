@@ -23,6 +23,8 @@ from tests.fleet import audits
 from tests.fleet.audits import ego_drive, found, said
 from tests.report.synthetic import rule
 
+pytestmark = pytest.mark.ci
+
 RULE = rule(profiles=[])
 
 

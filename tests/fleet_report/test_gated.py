@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
     from tests.fleet_report.conftest import Audited
 
+pytestmark = pytest.mark.ci
+
 WAIVER = '[[waiver]]\nrule = "ukhc.no-collision"\nreason = "a prop"\nowner = "jo@example.org"\nexpires = {}\n'
 
 

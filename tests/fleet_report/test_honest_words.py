@@ -20,6 +20,8 @@ from tests.fleet.audits import ego_drive, found, said
 from tests.fleet_report.told import Told, touched, words
 from tests.report.synthetic import rule
 
+pytestmark = pytest.mark.ci
+
 
 def test_findings_where_not_all_was_judged_do_not_look_like_none() -> None:
     """One site has two contacts, in a drive that has unknowns too; the other has none."""

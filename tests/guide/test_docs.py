@@ -138,7 +138,7 @@ def test_the_guide_of_columns_has_every_column_of_every_file() -> None:
     text = guide.text("columns")
     for stem, table in {**TABLE_OF_FILE, "margins": "margin"}.items():
         section = text.partition(f"### {stem}.parquet\n")[2].partition("\n### ")[0]
-        columns = [*column_comments()[table], *(["geom"] if table in SHAPES else [])]
+        columns = [*column_comments()[table], *SHAPES.get(table, ())]
         assert re.findall(r"^\| `(\w+)` \|", section, re.MULTILINE) == columns, stem
         assert f"`{stem}.parquet`" in text.partition("## The columns")[0]
 

@@ -29,6 +29,7 @@ from drivelint.audit.summary import AuditSummary, summed, summed_receipts
 from drivelint.audit.unpacked import SUMMARY_FILE
 from drivelint.drive.conditions import CONDITION_VALUES
 from drivelint.drive.trace import DriveInput
+from drivelint.engine.default_rules import chosen_selectors
 from drivelint.engine.memory import DEFAULT_MEMORY, LEAST_MEMORY
 from drivelint.errors import UsageError
 from drivelint.phrases import listed, plural
@@ -94,6 +95,8 @@ def audit(request: AuditRequest, progress: Progress, executor: Executor | None =
     Errors: `UsageError`, `RuleError`, `TraceError` for what was asked; `OutputError` where results cannot be written. Whatever ends
     it, what was judged stays, and the same command goes on with the rest.
     """
+    rules = chosen_selectors(request.settings.rules, request.settings.rules_dirs, request)
+    request = replace(request, settings=replace(request.settings, rules=rules))
     id_ = run_id(request.settings)
     results = open_store(request.out)
     alone = request.shard is None and not request.claim

@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Final
 
 import msgspec
 
+from drivelint.drive import conditions
 from drivelint.errors import UsageError
 from drivelint.phrases import hint, listed
 
@@ -32,8 +33,12 @@ if TYPE_CHECKING:
     from drivelint.catalogue.rule import Rule
 
 
+DEFAULT_PACK: Final = "ukhc"
+"""Its stable rules are judged by everywhere, if nobody says else; those of one nation's law apply there alone."""
+
+
 def select_rules(
-    rules: Mapping[str, Rule], include: Sequence[str], ignore: Sequence[str], *, default_pack: str = "ukhc"
+    rules: Mapping[str, Rule], include: Sequence[str], ignore: Sequence[str], *, default_pack: str = DEFAULT_PACK
 ) -> list[Rule]:
     """Return the selected rules, sorted by id.
 
@@ -53,6 +58,16 @@ def select_rules(
         raise UsageError("no rule is left to check: see `drivelint rules list` and choose with --rules")
     named = {part.strip() for selector in include for part in selector.split(",")}
     return [msgspec.structs.replace(chosen[name], is_named=name in named) for name in sorted(chosen)]
+
+
+def default_packs(rules: Mapping[str, Rule], nation: str | None) -> tuple[str, ...]:
+    """Return the packs by whose stable rules is judged in a nation, if nobody says else: that of everywhere, and those of its law."""
+    of_its_law = {
+        rule.pack
+        for rule in rules.values()
+        if rule.status == "stable" and rule.law and nation in conditions.all_values(rule.law)
+    }
+    return (DEFAULT_PACK, *sorted(of_its_law - {DEFAULT_PACK}))
 
 
 def required_rules(

@@ -39,7 +39,10 @@ def check(
     ] = None,
     overwrite: options.Overwrite = False,
     rules: Annotated[
-        Texts, options.rules("Rules to judge by, see above. Repeatable. Default: stable rules of ukhc.")
+        Texts,
+        options.rules(
+            "Rules to judge by, see above. Repeatable. Default: stable rules of ukhc, in Germany (--env, --map) of stvo too."
+        ),
     ] = None,
     ignore: options.Ignore = None,
     profile: Annotated[

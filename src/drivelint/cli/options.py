@@ -100,7 +100,7 @@ Ignore = Annotated[
     Texts, option("--ignore", "SEL", "Leave these rules out. Repeatable.", autocompletion=completion.rule_ids)
 ]
 Param = Annotated[Texts, option("--param", "RULE.PARAM=V", "Set a rule's parameter. Repeatable.")]
-RulesAsInCheck = Annotated[Texts, rules("Rules to judge by, as in check. Repeatable. Default: stable rules of ukhc.")]
+RulesAsInCheck = Annotated[Texts, rules("Rules to judge by, as in check. Repeatable. Default: those of check.")]
 ProfileAsInCheck = Annotated[Texts, profile("As in check. Repeatable.")]
 Strict = Annotated[bool, option("--strict", None, "No rule may be unknown: exit code 4.")]
 FailOnOption = Annotated[FailOn, option("--fail-on", None, "Least severity that makes exit code 1.")]

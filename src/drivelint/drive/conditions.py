@@ -54,6 +54,11 @@ def broader_values(values: tuple[str, ...]) -> list[str]:
     return sorted(wide for wide, parts in _NARROWER.items() if wide not in inside and set(parts) & set(inside))
 
 
+def all_values(values: tuple[str, ...]) -> set[str]:
+    """Return these words, those that they include, and those that leave it open whether one of them is meant."""
+    return {*with_narrower_values(values), *broader_values(values)}
+
+
 def parse(settings: Iterable[str]) -> tuple[tuple[str, str], ...]:
     """Read `KEY=VALUE` settings of `--env`, in any case, into (condition, word), in order of the conditions.
 

@@ -70,6 +70,10 @@ class MapLibrary:
         if self._given is not None:
             self._load(self._given, None, None)
 
+    def given_nation(self) -> str | None:
+        """Return the nation of the map of `--map`; None: it says none. Errors: `MapError`, `UsageError`."""
+        return None if self._given is None else self._load(self._given, None, None).nation
+
     def find(self, trace: Trace) -> tuple[MapTables | None, Trace]:
         """Return the environment for one drive, and the drive in its frame; the user's `--map-offset` goes before the drive's own.
 

@@ -172,9 +172,8 @@ def _columns(name: str, *, in_file: bool = False) -> str:
     lines = ["| column | type | meaning |", "|---|---|---|"]
     for column, comment in column_comments()[name].items():
         lines.append(f"| `{column}` | {cell(escaped(_types()[name, column]))} | {cell(escaped(comment))} |")
-    if in_file and name in geometry.SHAPES:
-        shape = geometry.SHAPES[name]
-        lines.append(f"| `{geometry.COLUMN}` | GEOMETRY | {cell(escaped(f'{shape.kind}: {shape.comment}'))} |")
+    for column, shape in geometry.SHAPES.get(name, {}).items() if in_file else ():
+        lines.append(f"| `{column}` | GEOMETRY | {cell(escaped(f'{shape.kind}: {shape.comment}'))} |")
     return "\n".join(lines) + "\n"
 
 

@@ -12,6 +12,7 @@ from drivelint.drive import conditions
 from drivelint.drive.trace import OWN_MAP_UNUSABLE, DriveInput
 from drivelint.engine.batch import Drive as Judgeable
 from drivelint.engine.batch import drive_with_map
+from drivelint.engine.default_rules import packs_of_nation
 from drivelint.engine.map_library import MapLibrary
 from drivelint.engine.memory import DEFAULT_MEMORY, Memory
 from drivelint.engine.session import JudgingSession
@@ -36,7 +37,6 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import IngestOptions, Trace
     from drivelint.road.map_reader import MapTables
 
-DEFAULT_RULES: Final = ("ukhc",)
 _SEVERITIES: Final = ("error", "warning", "info")
 
 
@@ -57,15 +57,15 @@ def inspect(request: InspectRequest) -> model.Inspection:
     Errors: `TraceError` for a file that is not there, `UsageError`, `RuleError`, and `MapError` for a map that cannot be
     read; one of another place is told in the result.
     """
-    selection = request.rules or DEFAULT_RULES
-    rules = catalogue.select_rules(catalogue.load_rules(request.rules_dirs), selection, ())
+    library, known = MapLibrary(request), catalogue.load_rules(request.rules_dirs)
+    selection = request.rules or packs_of_nation(known, request, library)
+    rules = catalogue.select_rules(known, selection, ())
     paths = expand_traces([request.trace])
     if len(paths) != 1:
         raise UsageError(
             f"{request.trace}: {len(paths)} logs ({listed([path.name for path in paths])}): inspect looks at one at a time"
         )
     (path,) = paths
-    library = MapLibrary(request)
     options = request.ingest_options(need_ego=False)
     name, size = path.resolve().name, 0 if why_not_here(path) else size_bytes(path)
     try:
