@@ -37,7 +37,9 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
     from drivelint.catalogue import Rule
-    from drivelint.explain.model import Change, Row, Step
+    from drivelint.engine.batch import Drive
+    from drivelint.explain.model import Change, Row, Sensitivity, Step
+    from drivelint.explain.sandbox import Sandbox
     from drivelint.explain.target import Target
     from drivelint.result.request import RunRequest
 
@@ -98,13 +100,9 @@ def explain(request: ExplainRequest) -> Explanation:
         changes: list[Change] = []
         sensitivity = None
         if not lacks_signal(row):
-            part, span, sandbox = sufficient_part(case, drive, sandbox, now, exit_stack)
-            if case.rule.version == row["rule_version"] and now == row["verdict"]:
-                sensitivity = sensitivity_of_check(target.worst, request.errors)
-            errors = for_verdict(request.errors, row["verdict"])
-            if errors.samples and sensitivity is None:
-                sensitivity = verdict_sensitivity(case, part, errors, span)
-            changes = verdict_changes(case, sandbox, now)
+            changes, sensitivity = _what_would_change_it(
+                case, drive, sandbox, now, errors=request.errors, exit_stack=exit_stack
+            )
     rule = case.rule
     about = {name: of_drive[name] for name in _DRIVE}
     return Explanation(
@@ -132,6 +130,24 @@ def explain(request: ExplainRequest) -> Explanation:
         source=source,
         notes=[*_notes(case, now), *_left_out(of_drive, row["reason_code"])],
     )
+
+
+def _what_would_change_it(
+    case: VerdictContext, drive: Drive, whole: Sandbox, now: str, *, errors: MeasurementErrors, exit_stack: ExitStack
+) -> tuple[list[Change], Sensitivity | None]:
+    """Return the least changes of the rule's numbers that change a verdict, and how often it stays with measuring errors.
+
+    `whole`: the drive as it was judged anew, with the verdict `now`. None: no copies were asked for.
+    """
+    row = case.target.verdict_row
+    part, span, sandbox = sufficient_part(case, drive, whole, now, exit_stack)
+    sensitivity = None
+    if case.rule.version == row["rule_version"] and now == row["verdict"]:
+        sensitivity = sensitivity_of_check(case.target.worst, errors)
+    of_verdict = for_verdict(errors, row["verdict"])
+    if of_verdict.samples and sensitivity is None:
+        sensitivity = verdict_sensitivity(case, part, of_verdict, span)
+    return verdict_changes(case, sandbox, now), sensitivity
 
 
 def _case(run_options: RunRequest, target: Target, rules: pa.Table, memory: int | None) -> VerdictContext:

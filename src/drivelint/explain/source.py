@@ -48,6 +48,18 @@ def open_drive(
             return _from_database(kept, drive_id, ego_id), f"the kept database {kept.name}"
         except duckdb.Error as error:
             raise UsageError(f"{kept}: {str(error).splitlines()[0]}: check the drives again with --keep-db") from error
+    return _from_log(run_options, drive_id, ego_id, trace=trace, map_=map_, map_sha256=map_sha256)
+
+
+def _from_log(
+    run_options: RunRequest,
+    drive_id: str,
+    ego_id: str,
+    *,
+    trace: Path | None,
+    map_: Path | None,
+    map_sha256: str | None,
+) -> tuple[Drive, str]:
     path = trace or Path(run_options.traces.get(drive_id, ""))
     if not path.exists() or not (trace or drive_id in run_options.traces):
         raise UsageError(
