@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 
 _LOOK_S: Final = 0.2
 _PATIENCE_S: Final = 5.0
-"""How long a process may take to end by itself."""
+"""The time that a process has to end by itself."""
 
 
 class WorkerLostError(DriveLintError):
@@ -67,7 +67,7 @@ class _Part(NamedTuple):
 
 
 class _Ended(NamedTuple):
-    """What a part came to, and what was read for it."""
+    """The result of a part, and the inputs that were read for it."""
 
     judged_logs: JudgedLogs
     inputs: Inputs | None
@@ -190,7 +190,7 @@ def _without(part: JudgedLogs, drives: Sequence[str]) -> JudgedLogs:
 
 
 class _Listener:
-    """Shows what the workers tell, each text once."""
+    """Shows the messages of the workers, each text once."""
 
     def __init__(self, progress: Progress, n_logs: int) -> None:
         self.progress = progress
@@ -223,7 +223,7 @@ class _Worker:
         theirs.close()
 
     def interrupt(self) -> None:
-        """Ask the process to end with what it has judged."""
+        """Request the process to end with the results so far."""
         with suppress(OSError):
             self.pipe.send(None)
 
@@ -272,7 +272,7 @@ class _Worker:
 
 
 class _Teller(Progress):
-    """Tells the listener, in a worker, what is to be shown. Advances of its own stages but the first are not the run's."""
+    """Sends the listener, in a worker, the messages to show. Progress of its stages other than the first is not the run's."""
 
     def __init__(self, pipe: Connection) -> None:
         self._pipe = pipe
@@ -337,7 +337,7 @@ class _DeafInWorker:
 def _work(part: _Part, pipe: Connection, parent: int) -> None:
     """Judge a part in this process."""
     begin_worker(parent)
-    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # the listener ends this process when nobody listens to it
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # the listener ends this process when its parent is gone
     interruption, teller = Interruption(), _Teller(pipe)
     Thread(target=_listen, args=(pipe, interruption), daemon=True, name="listener").start()
     try:
@@ -366,7 +366,7 @@ def _judge_part(part: _Part, teller: _Teller, interruption: Interruption) -> _En
 
 
 def _listen(pipe: Connection, interruption: Interruption) -> None:
-    """Interrupt the part when asked to, and end the process where nobody asks any more."""
+    """Interrupt the part on request, and end the process if the parent is gone."""
     while True:
         try:
             pipe.recv()

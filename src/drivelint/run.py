@@ -62,7 +62,7 @@ class CheckOptions(JudgingOptions):
     named_rules: tuple[str, ...] | None = None
     """Ids of the rules that the user named; None: those whose ids are among the selectors."""
     manifest_options: Mapping[Path, DriveInput] = field(default_factory=dict, hash=False)
-    """Log -> what a manifest says of it and its map, in place of these options."""
+    """Log -> the options from a manifest for it and its map, instead of these."""
     min_judged: float | None = None
     """The least share of rules that must be decided, see `result.model.decided_share`."""
     pictures: bool = True
@@ -79,7 +79,7 @@ class CheckOptions(JudgingOptions):
 
 
 class RunRules(NamedTuple):
-    """By what a run judges: the rules, the ids of those of which none may be unknown, their parameters, and the table of profiles."""
+    """The rules of a run: the rules, the ids of required rules, their parameters, and the table of profiles."""
 
     rules: Sequence[Rule]
     required: tuple[str, ...]
@@ -88,20 +88,20 @@ class RunRules(NamedTuple):
 
     @classmethod
     def of(cls, settings: CheckOptions) -> RunRules:
-        """Return what the options of a run choose. Errors: `UsageError`, `RuleError`."""
+        """Return the rules and profiles that the options of a run choose. Errors: `UsageError`, `RuleError`."""
         known = catalogue.load_rules(settings.rules_dirs)
         rules = catalogue.select_rules(known, settings.rules, settings.ignore, named=settings.named_rules)
         required = catalogue.required_rules(known, rules, settings.require, settings.ignore)
         params = catalogue.parse_params(rules, settings.params)
         profiles = profile_table(load_profiles(settings.rules_dirs), settings.profiles)
         if (settings.margins or settings.keep_db) and settings.out is None:
-            raise UsageError("--margins and --keep-db write files: say where with --out DIR")
+            raise UsageError("--margins and --keep-db write files: name their folder with --out DIR")
         return cls(rules, required, params, profiles)
 
 
 @dataclass(frozen=True)
 class JudgedLogs:
-    """What became of some logs of a run, in their order: a result whose notes are these."""
+    """The outcome of some logs of a run, in their order: a result with their notes."""
 
     result: Result
     notes: tuple[LogNote, ...]
@@ -158,7 +158,7 @@ def judge_logs(
     deaf_rules: DeafRules | None = None,
     library: MapLibrary | None = None,
 ) -> JudgedLogs:
-    """Judge logs in one database, in their order; add to `refused_logs` what could not be judged.
+    """Judge logs in one database, in their order; add those that could not be judged to `refused_logs`.
 
     `library`: the maps of these options, as far as they are read already.
     """
@@ -303,7 +303,7 @@ def _read(paths: Sequence[Path], settings: CheckOptions, library: MapLibrary | N
 
 
 def _announced(drives: Iterable[Drive | RefusedLog], n: int, progress: Progress) -> Iterator[Drive | RefusedLog]:
-    """Yield what is read, and say so before each: a batch is read before it is judged."""
+    """Yield the logs that are read, with a note before each: a batch is read before it is judged."""
     progress.doing(f"reading 1/{n}")
     for done, item in enumerate(drives, 1):
         yield item
@@ -336,7 +336,7 @@ def _judge(
     notes: LogNotes,
     limits: ToldLimits,
 ) -> None:
-    """Judge a batch; if it errs, drive by drive, so that one bad drive harms no other. Add what could not be judged to `refused_logs`."""
+    """Judge a batch; if it errs, drive by drive, so that a bad drive harms no other. Add those not judged to `refused_logs`."""
     n_before = len(refused_logs)
     drives: list[Drive] = []
     for item in batch:

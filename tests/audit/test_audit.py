@@ -208,7 +208,7 @@ def test_a_drive_over_which_workers_die_is_quarantined_and_the_others_are_judged
     assert executor.lost[1:] == [1] * (MOST_ATTEMPTS - 1)
     (row,) = asked(tmp_path / "out", "SELECT status, status_reason FROM drives WHERE status <> 'judged'")
     assert row["status"] == "not_judged"
-    assert "3 workers were lost over it: the worker died" in str(row["status_reason"])
+    assert "3 workers died on this drive: the worker died" in str(row["status_reason"])
     assert counted.exit_code("never", strict=False) == ExitCode.NOT_JUDGED
 
 
@@ -392,12 +392,12 @@ def test_what_takes_results_out_is_refused_with_shards(drives: fleet.Fleet, tmp_
 def test_two_audits_do_not_pack_one_place_at_once(drives: fleet.Fleet, tmp_path: Path) -> None:
     with (
         locked(LocalFolder(tmp_path / "out"), shared=False),
-        pytest.raises(UsageError, match="another audit is at work"),
+        pytest.raises(UsageError, match="another audit is running"),
     ):
         judged(drives, tmp_path / "out")
     with locked(LocalFolder(tmp_path / "out"), shared=True):
         judged(drives, tmp_path / "out", shard=(1, 2))
-        with pytest.raises(UsageError, match="another audit is at work"):
+        with pytest.raises(UsageError, match="another audit is running"):
             merge(str(tmp_path / "out"), Silent())
 
 
@@ -409,9 +409,7 @@ def test_the_summary_names_contacts_broken_rules_and_what_was_not_judged(tmp_pat
     text = summary_text(judged(few, tmp_path / "out"), "out", ExitCode.FAILED)
     n = len(few.planted - {log.name})
     assert n > 1
-    assert (
-        f"findings: {n} critical, 0 major, 0 minor; CONTACT in {n} drives; how sure they are was not examined" in text
-    )
+    assert f"findings: {n} critical, 0 major, 0 minor; CONTACT in {n} drives; certainty: not examined" in text
     assert f"critical {fleet.RULE}: {n} finding" in text
     assert "not judged: 1 drive" in text
     assert "refused: " in text

@@ -220,10 +220,10 @@ def test_the_reference_of_rules_has_every_key_condition_and_signal() -> None:
         return [name for cell in rows for name in re.findall(r"`\[?(\w+)[^`]*`", cell)]
 
     assert first_cells("All keys of the header") == list(Header.__struct_fields__)
-    assert first_cells("The conditions under which it holds") == list(Conditions.__struct_fields__)
+    assert first_cells("The conditions under which it applies") == list(Conditions.__struct_fields__)
     assert sorted(first_cells("The signals of requires")) == sorted(SIGNALS)
     for name, words in CONDITION_VALUES.items():
-        row = re.search(rf"^\| `{name}` \| (.*) \|$", sections["The conditions under which it holds"], re.MULTILINE)
+        row = re.search(rf"^\| `{name}` \| (.*) \|$", sections["The conditions under which it applies"], re.MULTILINE)
         assert row
         named = set(re.findall(r"`([\w-]+)`", row[1]))
         assert named <= set(words), name

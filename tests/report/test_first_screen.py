@@ -35,7 +35,7 @@ SIZES = {
     **ASSUMED,
     "check_id": "assumed_size",
     "severity": "info",
-    "message": "size as the mapping 'm' says, not recorded",
+    "message": "size from the mapping 'm', not recorded",
 }
 ASIDE = {**ASSUMED, "check_id": "aside_of_lane", "actor_id": "1", "message": "ego 1 keeps 1.10 m beside the middle"}
 TWO_ASIDE = "2 egos keep far beside the middle of their lanes: is the map moved? --map-offset puts it right"
@@ -76,7 +76,7 @@ def section(text: str, name: str) -> str:
         ),
         (
             result([verdict("pass")], drives=[drive(quality=[SIZES]), drive("d2", quality=[SIZES])]),
-            f"map: road.xodr fits 2 of 2 drives | log: {WHOLE}; size as the mapping 'm' says, not recorded | not judged: nothing",
+            f"map: road.xodr fits 2 of 2 drives | log: {WHOLE}; size from the mapping 'm', not recorded | not judged: nothing",
         ),
         (
             result([verdict("pass")], drives=[drive(exposure=[*EGO, EGO[0] | {"ego_id": "2"}], not_judged=[OFF])]),

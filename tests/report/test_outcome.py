@@ -162,7 +162,7 @@ def test_of_many_drives_most_must_be_decided() -> None:
     ("now", "why"),
     [
         ([verdict("unknown", t_start_ns=None), verdict("pass", rule_id="ukhc.spare", profile=None)], "1 unknown now"),
-        ([verdict("pass", rule_id="ukhc.spare", profile=None)], "1 not looked at"),
+        ([verdict("pass", rule_id="ukhc.spare", profile=None)], "1 not judged now"),
     ],
 )
 def test_what_is_gone_but_not_fixed_is_no_pass(now: list[dict[str, Any]], why: str) -> None:
@@ -263,7 +263,7 @@ def test_a_rule_that_did_not_apply_somewhere_is_not_said_to_be_judged_nowhere() 
 
 def test_a_run_in_which_no_rule_applied_says_so() -> None:
     of = result([verdict("not_applicable"), verdict("not_applicable", ego_id="2")])
-    words = "not applicable no findings, as no rule applied: what they are about did not happen"
+    words = "not applicable no findings, because no rule applied: the situations that they are about did not happen"
     assert heads(of) == [words] * 3
     assert exit_status(of).code == ExitCode.OK
     assert any(re.match(r"d1 +no rule applied ", line) for line in screen(of))

@@ -97,7 +97,7 @@ def test_the_country_of_the_signals_of_an_opendrive_map(countries: list[str], na
             [[], [("de", "map")]],
             (
                 "of gb assumed, as the nation is not known in 1 drive; not applied: nation de by the map in 1 drive; "
-                "of de not asked for: --rules stvo"
+                "of de not requested: --rules stvo"
             ),
         ),
     ],

@@ -1,4 +1,4 @@
-"""Tables for whoever works with them in Python: held in Arrow, handed over as Arrow, polars or pandas, queried with SQL."""
+"""Tables for Python: kept in Arrow, returned as Arrow, polars or pandas, queried with SQL."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Table:
         return tuple(self._rows.column_names)
 
     def describe(self) -> Table:
-        """Return what each column is: `column`, `type`, and `meaning` with the unit, empty for what a query made."""
+        """Return a row per column: `column`, `type`, and `meaning` with the unit, empty for the columns of a query."""
         import pyarrow as pa
 
         meanings = store.column_comments().get(self._schema_table, {})

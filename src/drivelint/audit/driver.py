@@ -1,4 +1,4 @@
-"""The driver: cuts drives into tasks, keeps the workers busy, tries again what was lost, and quarantines what kills workers."""
+"""The driver: divides drives into tasks, keeps the workers busy, repeats lost tasks, and quarantines drives that kill workers."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ TASK_BYTES: Final = 8_000_000
 TASK_DRIVES: Final = 64
 """A task ends with the drive with which its logs have so many bytes or so many are in it: short drives are judged together."""
 LEAST_TASK_DRIVES: Final = 8
-"""Where there are few drives, tasks have so many, so that results come soon and all workers have something to do."""
+"""The number of drives in a task if there are few drives, so that results come soon and all workers have work."""
 MOST_ATTEMPTS: Final = 3
 """A drive over which so many workers were lost is quarantined; from the second on it is judged alone."""
 
@@ -100,13 +100,13 @@ class Driver:
             self.busy()
 
     def _after_loss(self, task: Task, why: str) -> list[Task]:
-        """Return what is to be done again: the drives of a lost task one by one; a drive alone until it is quarantined."""
+        """Return the tasks to repeat: the drives of a lost task one by one; a drive alone until it is quarantined."""
         attempts = task.attempts + 1
         if len(task.drives) > 1:
             return [replace(task, drives=(drive,), attempts=attempts) for drive in task.drives]
         if attempts < MOST_ATTEMPTS:
             return [replace(task, attempts=attempts)]
-        for receipt in self._quarantine(task.drives[0], f"{attempts} workers were lost over it: {why}"):
+        for receipt in self._quarantine(task.drives[0], f"{attempts} workers died on this drive: {why}"):
             self.tell(receipt)
         self.mark_done(task.drives)
         return []

@@ -1,6 +1,6 @@
 """Judges each mutant of a rule by the rule's cases, and counts the mutants that some case notices.
 
-A mutant that no case notices asks for a case. Where none can be written (it is the same rule in other words), the
+A mutant that no case notices shows that a case is missing. Where none can be written (it is the same rule in other words), the
 pack's `survivors.toml` says so: `[[survivor]]` with `rule` (its id), `mutant` (the fault as printed) and `reason`.
 """
 
@@ -45,12 +45,12 @@ class MutationResult(NamedTuple):
 
     @property
     def noticed(self) -> int:
-        """How many mutants some case noticed; 0 if the mutants could not be judged."""
+        """The number of mutants that some case noticed; 0 if the mutants could not be judged."""
         return 0 if self.problem else self.n - len(self.survivors)
 
     @property
     def unlisted(self) -> tuple[str, ...]:
-        """Survivors for which nobody gave a reason."""
+        """Survivors without a reason."""
         return tuple(fault for fault in self.survivors if fault not in self.listed)
 
     @property

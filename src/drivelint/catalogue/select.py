@@ -1,6 +1,6 @@
 """Selects rules and sets their parameters from options of the command line.
 
-A selector is what a rule must be, or several of that joined by commas, all of which it must be:
+A selector is a property of a rule, or several properties joined by commas, all of which the rule must have:
 
     ukhc.r162.safe-distance-ahead       a rule
     ukhc.r162.*                         a glob over ids
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 
 DEFAULT_PACK: Final = "ukhc"
-"""Its stable rules are judged by everywhere, if nobody says else; those of one nation's law apply there alone."""
+"""Without `--rules`, drives everywhere are judged by its stable rules; rules of one nation's law apply only there."""
 
 
 def select_rules(
@@ -67,7 +67,7 @@ def select_rules(
 
 
 def default_packs(rules: Mapping[str, Rule], nation: str | None) -> tuple[str, ...]:
-    """Return the packs by whose stable rules is judged in a nation, if nobody says else: that of everywhere, and those of its law."""
+    """Return the packs whose stable rules judge in a nation without `--rules`: the pack for everywhere, and those of its law."""
     of_its_law = {
         rule.pack
         for rule in rules.values()
@@ -91,11 +91,11 @@ def required_rules(
     for selector in required:
         stable = {rule.id for rule in _matching(rules, selector) if rule.status == "stable"}
         if not stable:
-            raise UsageError(f"--require {selector!r}: is no stable rule, and others do not gate")
+            raise UsageError(f"--require {selector!r}: is not a stable rule, and other rules cannot fail a run")
         # a selector of many rules is about those of the run: a severity has rules of every pack
         lacking = sorted(stable - chosen - (left_out - {selector}))
         if not stable & chosen and not lacking:
-            raise UsageError(f"--require {selector!r}: --ignore leaves out all of it")
+            raise UsageError(f"--require {selector!r}: --ignore excludes all of its rules")
         if lacking and (selector in rules or not stable & chosen):
             raise UsageError(f"--require {selector!r}: not selected by --rules: {listed(lacking, 3)}")
         found |= stable & chosen

@@ -1,4 +1,4 @@
-"""Chooses the rules of a run that names none: those of the nation whose law holds, as the user or the given map says it."""
+"""Chooses the rules of a run without `--rules`: those of the nation whose law applies, from the user or the given map."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def with_chosen_rules(options: Options, library: MapLibrary | None = None) -> Op
 def packs_of_nation(
     rules: Mapping[str, Rule], options: DriveInput, library: MapLibrary | None = None
 ) -> tuple[str, ...]:
-    """Return the packs by which is judged if nobody says else, in the nation of `--env` or of the map of `--map`.
+    """Return the packs of a run without `--rules`, in the nation of `--env` or of the map of `--map`.
 
     These hold for all logs of a run. Of a log that alone says its nation, the report's first line names the packs of its law. `library`:
     keeps the map once it is read. Errors: `UsageError` for a condition that does not exist.
@@ -51,7 +51,7 @@ def packs_of_nation(
 
 
 def _nation_of_map(options: DriveInput, library: MapLibrary | None) -> str | None:
-    """Return the nation of the given map; None: it says none, or cannot be read, which is an error where a drive asks for it."""
+    """Return the nation of the given map; None: it states none, or cannot be read, which is an error when a drive needs it."""
     with suppress(DriveLintError):
         return (library or MapLibrary(options)).given_nation() if options.map else None
     return None

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 DEFAULT_PROFILES = ("nominal", "observed")
-"""What an overtake is judged by if nobody says else: how it is planned, and how it was driven."""
+"""The default profiles of an overtake: as it is planned, and as it was driven."""
 
 
 class Profile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -1,4 +1,4 @@
-"""Why one verdict is what it is: clause, SQL and numbers behind it, what would change it, and how sure it is.
+"""Explains one verdict: clause, SQL and numbers behind it, changes that would change it, and how sure it is.
 
 `explain` judges the drive again by that rule alone, from the kept database or from the log.
 """
@@ -53,7 +53,7 @@ _DRIVE: Final = ["drive_id", "file_name", "format", "t_start_ns", "duration_s", 
 
 @dataclass(frozen=True)
 class ExplainRequest:
-    """What `explain` is asked: a finding or rule, the result folder, and where log and map are if they were moved."""
+    """A request to `explain`: a finding or rule, the result folder, and where log and map are if they were moved."""
 
     name: str
     folder: Path
@@ -169,7 +169,7 @@ def _case(run_options: RunRequest, target: Target, rules: pa.Table, memory: int 
 
 
 def _asks(rule: Rule, row: Mapping[str, Any], start_ns: int) -> str | None:
-    """Return what the reason of a verdict asks to record or to provide, with its subject; None: nothing."""
+    """Return what to record or to provide, by the reason of a verdict, with its subject; None: nothing."""
     if row["cause_code"] is not None:
         return reason_text.advice_sentence(
             row["cause_code"], json.loads(row["cause_args"] or "{}"), start_ns, rule.reasons
@@ -179,7 +179,7 @@ def _asks(rule: Rule, row: Mapping[str, Any], start_ns: int) -> str | None:
 
 def _decides(target: Target, series: list[Step], now: str) -> int | None:
     """Return the step that the verdict hangs on; None: it is about no step."""
-    # somebody who is lost has no step after the last one: that is the one to show
+    # a lost actor has no step after its last one: that one is shown
     unknown = [step.t_ns for step in series if step.holds is None and now == "unknown"]
     times = [*unknown[:1], target.verdict_row["t_worst_ns"], target.verdict_row["t_start_ns"]]
     return next((t_ns for t_ns in times if t_ns is not None), None)
@@ -191,10 +191,10 @@ def _notes(case: VerdictContext, now: str) -> list[str]:
     if case.rule.version != version:
         notes.append(
             f"The rule has changed since (version {version[:8]} then, {case.rule.version[:8]} now): "
-            "the SQL and what follows from it are today's."
+            "the SQL and everything computed from it are those of the present version."
         )
     if now != before:
-        notes.append(f"Judged anew it is {now}, not {before} as in the result: the tool or the rule has changed.")
+        notes.append(f"Judged again it is {now}, not {before} as in the result: the tool or the rule has changed.")
     return notes
 
 

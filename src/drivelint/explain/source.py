@@ -64,13 +64,13 @@ def _from_log(
     if not path.exists() or not (trace or drive_id in run_options.traces):
         raise UsageError(
             f"the log of {drive_id} is not at {path} any more and the result has no database (check --keep-db): "
-            "say where it is with --trace FILE"
+            "name its new path with --trace FILE"
         )
     drive = _read(run_options, path, map_, drive_id, ego_id)
     if drive.environment and map_sha256 not in {None, *drive.environment.tables["environment"]["sha256"].to_pylist()}:
         name = drive.environment.tables["environment"]["name"][0].as_py()
         raise UsageError(
-            f"map {name} is not as it was when {drive_id} was judged: give that one with --map, or check again"
+            f"map {name} has changed since {drive_id} was judged: name the old map with --map, or check again"
         )
     return drive, f"the log {path.name}, read again"
 
@@ -78,14 +78,14 @@ def _from_log(
 def _read(run_options: RunRequest, path: Path, map_: Path | None, drive_id: str, ego_id: str) -> Drive:
     map_path = map_ or run_options.map
     if map_path is not None and not map_path.exists():
-        raise UsageError(f"the map {map_path} is not there any more: say where it is with --map FILE")
+        raise UsageError(f"the map {map_path} is not there any more: name its new path with --map FILE")
     run_options = replace(
         run_options, ego=ego_id, map=map_path, map_dir=None if map_path is not None else run_options.map_dir
     )
     read = read_trace(path, run_options.ingest_options())
     if read.drive_id.rpartition("-")[2] != drive_id.rpartition("-")[2]:
         raise UsageError(
-            f"{path} is not the log that was judged ({drive_id}) but {read.drive_id}: give that one with --trace"
+            f"{path} is not the log that was judged ({drive_id}) but {read.drive_id}: name the right log with --trace"
         )
     if read.drive_id != drive_id:  # the same bytes under another name
         read = renamed(read, drive_id)

@@ -30,11 +30,11 @@ REFERENCE_PAGES: Final = {
     "macros": ("Macros", "What the SQL of a rule can call."),
     "commands": ("The command line", "Every command with its arguments and options."),
 }
-"""Page -> its title and what it has."""
+"""Page -> its title and content."""
 
 
 class Command(NamedTuple):
-    """One command: how it is called, what it does, and (name, meaning) of its arguments and options."""
+    """One command: its usage, its description, and (name, meaning) of its arguments and options."""
 
     usage: str
     about: str

@@ -45,7 +45,7 @@ _NO_VEHICLES: Final = frozenset({"pedestrian", "animal", "object"})
 
 @dataclass(frozen=True)
 class IncidentRequest:
-    """What `report --incident` is asked: a finding, as `explain` takes it, and where log and map are if they were moved."""
+    """A request to `report --incident`: a finding, as `explain` takes it, and where log and map are if they were moved."""
 
     name: str
     folder: Path
@@ -90,7 +90,7 @@ def render(case: Case) -> bytes:
 
 
 def open_case(request: IncidentRequest, run_options: RunRequest | None = None) -> Case:
-    """Find the finding and judge both parties again; what the result says of the other party counts, where it was an ego there.
+    """Find the finding and judge both parties again; if the other party was an ego of the result, the result is used.
 
     `run_options`: the run with the paths at which its files are now; None: they are where `run.json` says.
     Errors: `UsageError` for a finding, log or map that is not there.
@@ -118,7 +118,7 @@ def open_case(request: IncidentRequest, run_options: RunRequest | None = None) -
 def _other_party(
     request: IncidentRequest, run_options: RunRequest, result: Result, finding: NamedFinding, judge: Judge
 ) -> EgoRows | str | None:
-    """Return what is judged of the other party as ego, or why it is not."""
+    """Return the judged result of the other party as ego, or why it was not judged."""
     other, drive_id = finding.row["object_id"], finding.row["drive_id"]
     if other is None:
         return None

@@ -103,7 +103,7 @@ def _gives_finding(path: Path, run_options: RunRequest, finding: NamedFinding, j
 
 
 def _clip_sentence(finding: NamedFinding, clip: Clip, before_s: float | None, after_s: float | None) -> str:
-    """Return what the clip covers, in one sentence."""
+    """Return the span of the clip in one sentence."""
     from_s, to_s = ((t_ns - finding.start_ns) / _S for t_ns in (clip.from_ns, clip.to_ns))
     row = finding.row
     if before_s is None:

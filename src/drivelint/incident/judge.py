@@ -62,7 +62,7 @@ class Judge:
     def judge(
         self, drive: Drive, ego_id: str, object_id: str | None, errors: MeasurementErrors | None = None
     ) -> EgoRows:
-        """Judge a drive of one ego. `errors`: of the copies that tell how sure findings are; None: no copies are judged."""
+        """Judge a drive of one ego. `errors`: of the copies that show how sure findings are; None: no copies are judged."""
         steps: list[pa.Table] = []
 
         def look(con: duckdb.DuckDBPyConnection, _drives: Sequence[Drive], /, **_part: bool) -> None:

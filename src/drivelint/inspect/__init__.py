@@ -42,7 +42,7 @@ _SEVERITIES: Final = ("error", "warning", "info")
 
 @dataclass(frozen=True)
 class InspectRequest(DriveInput):
-    """What `inspect` is asked to do; the names are those of its options."""
+    """A request to `inspect`; the names are those of its options."""
 
     trace: str
     rules: tuple[str, ...] = ()
@@ -55,7 +55,7 @@ def inspect(request: InspectRequest) -> model.Inspection:
     """Return an inspection of a log; if it cannot be read as a drive, `problem` says why.
 
     Errors: `TraceError` for a file that is not there, `UsageError`, `RuleError`, and `MapError` for a map that cannot be
-    read; one of another place is told in the result.
+    read; a map of another place is reported in the result.
     """
     library, known = MapLibrary(request), catalogue.load_rules(request.rules_dirs)
     selection = request.rules or packs_of_nation(known, request, library)
@@ -98,7 +98,7 @@ def exit_code(inspection: model.Inspection) -> ExitCode:
 def _content_of_unread(path: Path, options: IngestOptions) -> model.Content:
     try:
         return content(path, None, [], has_reader=not may_be_mapped_table(path, options))
-    except (TraceError, OSError):  # the problem that the reader has told already
+    except (TraceError, OSError):  # the problem that the reader has reported already
         return model.Content()
 
 
@@ -150,7 +150,7 @@ def _judgeable(
     *,
     memory: int | None,
 ) -> tuple[list[model.Ego], list[model.Quality]]:
-    """Fill the database with the drive, derive the library tables, and read from them what is known of its egos and data."""
+    """Fill the database with the drive, derive the library tables, and read from them the facts about its egos and data."""
     known = _Knowledge()
     with store.workspace(memory) as con:
         session = JudgingSession(con, (), {}, None, observers=[known], memory=Memory(con, memory))
@@ -193,7 +193,7 @@ def _judgeable(
 
 
 class _Knowledge:
-    """Looks, while the tables are there, at what is known of each ego at some step: conditions, and the limit."""
+    """Reads, while the tables exist, which facts about each ego are known at some step: conditions, and the limit."""
 
     def __init__(self) -> None:
         self.of: dict[str, dict[str, bool]] = {}

@@ -1,7 +1,7 @@
 """The catalogue as one Markdown page: a table per pack, for the Highway Code a table by clause, and the words of logs and maps.
 
-`queries/README.md` is this page for the shipped packs; a test holds it to be current. A pack that has a `clauses.toml`
-beside its rules gets the table by clause: what covers each clause, what is a draft, and what cannot be decided and why.
+`queries/README.md` is this page for the shipped packs; a test checks that it is current. A pack that has a `clauses.toml` beside its
+rules gets the table by clause: the rules that cover each clause, the drafts, and the clauses that cannot be decided, with the reason.
 """
 
 from __future__ import annotations
@@ -97,7 +97,7 @@ def clause_coverage(rules: Iterable[Rule], table: Sequence[Clause]) -> list[Clau
         covered = tuple(sorted(i for i, rule in mine.items() if rule.status == "stable"))
         drafted = tuple(sorted(i for i, rule in mine.items() if rule.status == "draft"))
         if not mine and not clause.why:
-            raise RuleError(f"clauses.toml: {clause.of}: no rule covers it, and it does not say why")
+            raise RuleError(f"clauses.toml: {clause.of}: no rule covers it, and it has no reason")
         rows.append(ClauseCoverage(clause, covered, drafted))
     return rows
 

@@ -1,4 +1,4 @@
-"""What a run was given, in one line: whether the map fits, whether logs are whole and none is there twice, what was not judged."""
+"""The inputs of a run in one line: whether the map fits, whether logs are complete and none is there twice, what was not judged."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class InputNote(NamedTuple):
 
 
 def input_notes(result: Result) -> list[InputNote]:
-    """Return the parts of the line: the law, where it is one nation's, map, log, what it does not have, not judged."""
+    """Return the parts of the line: the law if it is one nation's, map, log, missing signals, not judged."""
     drives = [drive for drive in result.drives.to_pylist() if drive["status"] == "judged"]
     law = [InputNote(LAW, words, is_warning=False)] if (words := law_words(result)) else []
     return [
@@ -83,7 +83,7 @@ def _egos_off_the_map(drive: Row) -> int:
 
 
 def _log(drives: Sequence[Row]) -> InputNote:
-    """Return whether the logs are complete: what was lost of them, what is assumed, the number of warnings, and copies."""
+    """Return whether the logs are complete: losses, assumptions, the number of warnings, and copies."""
     lossy = [drive["drive_id"] for drive in drives if drive["lossy"]]
     checks = [check for drive in drives for check in drive["quality"] if check["check_id"] != ASIDE_OF_LANE]
     assumed = sorted({check["message"].partition(";")[0] for check in checks if check["check_id"] == ASSUMED_MOTION})
@@ -108,7 +108,7 @@ def _log(drives: Sequence[Row]) -> InputNote:
 
 
 def _whole(drives: Sequence[Row]) -> str:
-    """Say that nothing is missing, as far as the files tell."""
+    """State that nothing is missing, as far as the files show."""
     names = [drive["file_name"].lower() for drive in drives]
     without = [end for end in _WITHOUT_END if any(name.endswith(end) for name in names)]
     return f"complete as far as {listed(without)} tells" if without else "complete"
@@ -151,7 +151,7 @@ def _by_signal(result: Result, rows: Sequence[Row]) -> list[tuple[str, int, str]
 
 
 def _not_judged(result: Result, drives: int) -> InputNote:
-    """Return what was not judged: drives, rules by the signal that is missing, and the number of the other verdicts."""
+    """Return the parts that were not judged: drives, rules by the missing signal, and the number of the other verdicts."""
     rows = counts.undecided(result.verdicts).select(["reason_code", "rule_id", *_EGO]).to_pylist()
     signals = [row for row in rows if row["reason_code"].startswith(MISSING_PREFIX)]
     parts = [plural(drives, "drive")] if drives else []
@@ -183,7 +183,7 @@ def rules_without_map(result: Result) -> int:
 
 
 def signal_name(reason_code: str) -> str:
-    """Return what is missing, in words, from a reason code that begins with `missing_` or `unrecorded_`."""
+    """Return the missing signal, in words, from a reason code that begins with `missing_` or `unrecorded_`."""
     return (
         reason_code.removeprefix(MISSING_PREFIX).removeprefix(UNRECORDED_PREFIX).removeprefix("mode_").replace("_", " ")
     )

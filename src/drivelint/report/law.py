@@ -33,11 +33,11 @@ def _left_out(laws: list[tuple[str, ...]], drives: list[Row]) -> Iterator[str]:
         rules = load_rules().values()
         packs = {rule.pack for rule in rules if rule.status == "stable" and rule.law and nation in all_values(rule.law)}
         if packs:
-            yield f"of {nation} not asked for: --rules {' --rules '.join(sorted(packs))}"
+            yield f"of {nation} not requested: --rules {' --rules '.join(sorted(packs))}"
 
 
 def _law(law: tuple[str, ...], drives: list[Row]) -> str:
-    """Return whether this law was applied in the drives, and what says so."""
+    """Return whether this law was applied in the drives, and the source."""
     applied = all_values(law)
     counted: Counter[str] = Counter()
     for drive in drives:

@@ -1,4 +1,4 @@
-"""What is to be said of the logs of a run: shown while it goes on, and kept for the result."""
+"""The notes on the logs of a run: shown during the run, and kept for the result."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class LogNote(NamedTuple):
-    """What is to be said of a log. `once`: of all logs with this text only the first is told, by name."""
+    """A note on a log. `once`: for all logs with this text, only the first is named."""
 
     path: Path
     text: str
@@ -26,7 +26,7 @@ class LogNote(NamedTuple):
 
 
 class LogNotes:
-    """Shows what is to be said of the logs, and keeps it for the result."""
+    """Shows the notes on the logs, and keeps them for the result."""
 
     def __init__(self, progress: Progress, n_logs: int) -> None:
         self.notes: list[LogNote] = []
@@ -54,7 +54,7 @@ def same_log(path: Path, drive_id: str) -> LogNote:
 
 
 def told_once(notes: Iterable[LogNote]) -> Iterator[LogNote]:
-    """Yield the notes, of those that are told once the first."""
+    """Yield the notes; of those with `once`, the first."""
     told: set[str] = set()
     for note in notes:
         if not (note.once and note.text in told):

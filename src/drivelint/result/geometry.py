@@ -1,4 +1,4 @@
-"""Gives result files their geometries, columns of GeoParquet that are made of the columns that hold coordinates.
+"""Adds geometries to result files: columns of GeoParquet that are made of the columns with coordinates.
 
 `geom` is in the map's metres: x to the east, y to the north, without a coordinate reference system, since a map need not have one and
 a result may be of several maps. `geom_lonlat` is in degrees of longitude and latitude (WGS 84), where map or log give them.
@@ -28,7 +28,7 @@ _RING_POINTS: Final = 4  # the last is the first again
 
 
 class Shape(NamedTuple):
-    """A geometry of a table: its type in GeoParquet, what it shows, and what makes it of the rows (None where there is none)."""
+    """A geometry of a table: its type in GeoParquet, its meaning, and the function that makes it from the rows (None if there is none)."""
 
     kind: str
     comment: str
@@ -36,7 +36,7 @@ class Shape(NamedTuple):
 
 
 def with_geometry(rows: pa.Table, table: str) -> pa.Table:
-    """Return the rows of a schema table with its geometries as WKB and what GeoParquet 1.1 says of them in the schema's metadata.
+    """Return the rows of a schema table with its geometries as WKB and with the metadata of GeoParquet 1.1 in the schema.
 
     Tables that have none come back as they are.
     """
@@ -181,4 +181,4 @@ SHAPES: Final[Mapping[str, Mapping[str, Shape]]] = {
     "track": {COLUMN: Shape("LineString", "the way", _tracks)},
     "course": {COLUMN: Shape("MultiPoint", "the ego at the judged steps", _moments)},
 }
-"""Table of the schema -> its geometries in the file, by column; the first is that which a viewer shows."""
+"""Table of the schema -> its geometries in the file, by column; a viewer shows the first."""

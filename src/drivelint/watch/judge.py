@@ -49,7 +49,7 @@ _LASTING_TABLES = frozenset({"profile", "environment", "map_quality"})
 class JudgedWindow:
     """What the rules say of a window: rows of `finding`, `verdict` and `course`, and from when to when it is.
 
-    `courses`: margins over time around findings and near misses; empty where nobody asks for them.
+    `courses`: margins over time around findings and near misses; empty if they are not requested.
     """
 
     t_start_ns: int
@@ -111,7 +111,7 @@ class WindowJudge:
         self._n_passes = 0
 
     def contact_look(self) -> ContactLook | None:
-        """Return what looks for contacts in frames that no window was judged with; None: no rule of contacts is asked for."""
+        """Return the finder of contacts in frames that no window was judged with; None: no rule of contacts is selected."""
         asked = tuple(rule_id for rule_id in contact.RULES if rule_id in self.rules)
         if not asked:
             return None
@@ -170,4 +170,4 @@ def _as_of(trace: Trace, start_ns: int | None) -> Trace:
 
 
 def _look(con: duckdb.DuckDBPyConnection, _drives: object, /, **_part: bool) -> None:
-    """Look at nothing: that somebody looks is enough."""
+    """Do nothing: the call itself is enough."""
