@@ -48,6 +48,7 @@ CREATE TABLE rule (
     severity VARCHAR NOT NULL,        -- [rule_severity]
     legal VARCHAR NOT NULL,           -- must, should
     status VARCHAR NOT NULL,          -- draft, stable, deprecated; only stable rules gate
+    is_named BOOLEAN NOT NULL,        -- the user named it by its id: it is unknown where a log has none of a signal that few logs have, else it does not apply there
     sense VARCHAR NOT NULL,           -- relation that must hold between observed and required
     unit VARCHAR,                     -- of observed, required and margin
     observes VARCHAR,                 -- the name of observed, as a noun phrase; NULL: nothing is measured, or the title names it

@@ -59,6 +59,8 @@ class CheckOptions(JudgingOptions):
     out: Path | None = None
     margins: bool = False
     keep_db: bool = False
+    named_rules: tuple[str, ...] | None = None
+    """Ids of the rules that the user named; None: those whose ids are among the selectors."""
     manifest_options: Mapping[Path, DriveInput] = field(default_factory=dict, hash=False)
     """Log -> the options from a manifest for it and its map, instead of these."""
     min_judged: float | None = None
@@ -88,7 +90,7 @@ class RunRules(NamedTuple):
     def of(cls, settings: CheckOptions) -> RunRules:
         """Return the rules and profiles that the options of a run choose. Errors: `UsageError`, `RuleError`."""
         known = catalogue.load_rules(settings.rules_dirs)
-        rules = catalogue.select_rules(known, settings.rules, settings.ignore)
+        rules = catalogue.select_rules(known, settings.rules, settings.ignore, named=settings.named_rules)
         required = catalogue.required_rules(known, rules, settings.require, settings.ignore)
         params = catalogue.parse_params(rules, settings.params)
         profiles = profile_table(load_profiles(settings.rules_dirs), settings.profiles)

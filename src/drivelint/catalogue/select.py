@@ -28,7 +28,7 @@ from drivelint.errors import UsageError
 from drivelint.phrases import hint, listed
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 
     from drivelint.catalogue.rule import Rule
 
@@ -38,11 +38,16 @@ DEFAULT_PACK: Final = "ukhc"
 
 
 def select_rules(
-    rules: Mapping[str, Rule], include: Sequence[str], ignore: Sequence[str], *, default_pack: str = DEFAULT_PACK
+    rules: Mapping[str, Rule],
+    include: Sequence[str],
+    ignore: Sequence[str],
+    *,
+    default_pack: str = DEFAULT_PACK,
+    named: Collection[str] | None = None,
 ) -> list[Rule]:
     """Return the selected rules, sorted by id.
 
-    A rule is `is_named` where a selector is or contains its id.
+    A rule is `is_named` where its id is in `named`; None: where a selector is or contains its id.
 
     Selectors: see the module. None given: the stable rules of `default_pack`. A deprecated rule is chosen only by its full
     id or as `status:deprecated`. Errors: `UsageError` for a selector that matches nothing, or when nothing is left.
@@ -56,7 +61,8 @@ def select_rules(
             chosen.pop(rule.id, None)
     if not chosen:
         raise UsageError("no rule is left to check: see `drivelint rules list` and choose with --rules")
-    named = {part.strip() for selector in include for part in selector.split(",")}
+    if named is None:
+        named = {part.strip() for selector in include for part in selector.split(",")}
     return [msgspec.structs.replace(chosen[name], is_named=name in named) for name in sorted(chosen)]
 
 

@@ -1,21 +1,18 @@
-"""`drivelint report`, `diff` and `explain`: the commands that read the folders of `check --out`."""
+"""`drivelint report`, `diff` and `explain`. What `check --out` wrote goes to `checks`, what `audit --out` wrote to `fleets`."""
 
 from __future__ import annotations
 
 from pathlib import Path  # noqa: TC003 - Typer looks the annotations up
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from drivelint import option_values
-from drivelint.cli import completion, fleets, options
+from drivelint.cli import checks, completion, fleets, options
 from drivelint.cli.console import print_rich, run_interruptible
 from drivelint.cli.options import argument, option
 from drivelint.errors import UsageError
-from drivelint.phrases import inert, inert_json, inert_line, listed
-
-if TYPE_CHECKING:
-    from drivelint.result.model import Result
+from drivelint.phrases import inert_json
 
 
 def report(
@@ -84,39 +81,24 @@ def report(
     """
     from drivelint.fleet_report.audit_views import destination, is_audit
 
+    of_the_sheet = pdf or trace is not None or map_ is not None
+    of_an_audit = bool(by) or baseline is not None or drive_pages is not None
     if is_audit(dest := destination(folder)):
-        if incident is not None or pdf or trace is not None or map_ is not None or base_url is not None:
+        if incident is not None or of_the_sheet or base_url is not None:
             raise UsageError(f"{dest} is an audit: --incident, --pdf, --trace, --map and --base-url are of a check")
         fleets.report_audit(dest, to, by or (), baseline, drive_pages)
-        return
-    if by or baseline is not None or drive_pages is not None:
+    elif of_an_audit:
         raise UsageError(
             f"--by, --baseline and --drive-pages are of an audit, and {dest} is none: name the folder of audit --out"
         )
-    if incident is not None:
-        from drivelint.incident import IncidentRequest, other_drives, write_incident
+    elif incident is not None:
+        from drivelint.incident import IncidentRequest
 
-        asked = IncidentRequest(incident, folder, pdf, trace, map_)
-        for path in run_interruptible(lambda: write_incident(asked)):
-            typer.echo(inert_line(str(path)))
-        if others := other_drives(asked):
-            told = f"{incident} is a finding in {listed(others)}, too: the sheet is about the worst; name another by {incident}@DRIVE"
-            typer.echo(f"drivelint: {inert_line(told)}", err=True)
-        return
-    if pdf or trace is not None or map_ is not None:
+        checks.write_incident_sheet(IncidentRequest(incident, folder, pdf, trace, map_))
+    elif of_the_sheet:
         raise UsageError("--pdf, --trace and --map are about an incident sheet: name its finding with --incident")
-    from drivelint.report import markdown
-    from drivelint.report.outputs import REPORT_FORMATS
-    from drivelint.result.folder import add
-    from drivelint.result.load import load_result
-
-    if base_url is not None and to != "markdown":
-        raise UsageError("--base-url is for --to markdown: other reports have no links to the report")
-    name, render = REPORT_FORMATS[to]
-    result = load_result(folder)
-    _warn_of_partial(folder, result)
-    add(folder, name, render(result) if base_url is None else markdown.render(result, base_url))
-    typer.echo(inert_line(str(folder / name)))
+    else:
+        checks.report_check(folder, to, base_url)
 
 
 def diff(
@@ -145,31 +127,13 @@ def diff(
     without --fail-on: 1 if the rate of such a rule is higher than chance explains, 0 if none is, 4 if no rule has a rate in both.
     """
     from drivelint.fleet_report.audit_views import destination, is_audit
-    from drivelint.gate import compare_results, descriptions
-    from drivelint.result.load import load_result
-    from drivelint.result.one_line import on_one_line
 
     if is_audit(destination(base)) or is_audit(destination(new)):
         fleets.diff_audits(destination(base), destination(new), format_, fail_on, rows)
-        return
-    if rows is not None:
+    elif rows is not None:
         raise UsageError("--rows is of two audits: of two checks, --format json has all findings")
-    earlier, later = load_result(base), load_result(new)
-    if format_ == "text":
-        earlier, later = on_one_line(earlier), on_one_line(later)
-    _warn_of_partial(base, earlier)
-    _warn_of_partial(new, later)
-    least = later.fail_on if fail_on is None else fail_on
-    found, failing = compare_results(earlier, later, (base.resolve().name, new.resolve().name), least)
-    if format_ == "json":
-        typer.echo(inert_json(descriptions.to_json(found, failing, least)))
-    elif format_ == "markdown":
-        from drivelint.report import markdown
-
-        typer.echo(markdown.difference(found, failing, least, later.gate))
     else:
-        typer.echo(inert(descriptions.difference_text(found, failing, least, later.gate)))
-    raise typer.Exit(int(descriptions.exit_code(found, failing, least)))
+        checks.diff_checks(base, new, format_, fail_on)
 
 
 def explain(
@@ -231,17 +195,9 @@ def explain(
         MeasurementErrors(position, time, of_map, samples, seed),
         option_values.parse_memory(memory),
     )
-    _warn_of_partial(folder, load_result(folder))
+    checks.warn_of_partial(folder, load_result(folder))
     found = run_interruptible(lambda: explained(request))
     if format_ == "json":
         typer.echo(inert_json(to_json(found)))
     else:
         print_rich(lambda width: render(found, width))
-
-
-def _warn_of_partial(folder: Path, result: Result) -> None:
-    """Print on stderr that a result is of an interrupted run."""
-    if result.interrupted:
-        from drivelint.result.model import partial_sentence
-
-        typer.echo(f"drivelint: {inert_line(str(folder))}: {partial_sentence(result.drives)}", err=True)

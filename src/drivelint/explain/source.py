@@ -48,6 +48,18 @@ def open_drive(
             return _from_database(kept, drive_id, ego_id), f"the kept database {kept.name}"
         except duckdb.Error as error:
             raise UsageError(f"{kept}: {str(error).splitlines()[0]}: check the drives again with --keep-db") from error
+    return _from_log(run_options, drive_id, ego_id, trace=trace, map_=map_, map_sha256=map_sha256)
+
+
+def _from_log(
+    run_options: RunRequest,
+    drive_id: str,
+    ego_id: str,
+    *,
+    trace: Path | None,
+    map_: Path | None,
+    map_sha256: str | None,
+) -> tuple[Drive, str]:
     path = trace or Path(run_options.traces.get(drive_id, ""))
     if not path.exists() or not (trace or drive_id in run_options.traces):
         raise UsageError(
@@ -80,13 +92,19 @@ def _read(run_options: RunRequest, path: Path, map_: Path | None, drive_id: str,
     return drive_with_map(read, MapLibrary(run_options))
 
 
+def with_ego(drive: Drive, ego_id: str) -> Drive:
+    """Return the drive with this actor as its ego."""
+    actors = drive.trace.tables["actor"]
+    is_ego = [name == ego_id for name in actors["actor_id"].to_pylist()]
+    tables = {**drive.trace.tables, "actor": with_columns(actors, {"is_ego": is_ego})}
+    return replace(drive, trace=replace(drive.trace, tables=tables))
+
+
 def _from_database(file: Path, drive_id: str, ego_id: str) -> Drive:
     with store.open_as_is(file, read_only=True) as con:
         tables = {name: _rows(con, name, "drive_id", drive_id) for name in TRACE_TABLES}
         if not tables["data_log"].num_rows:
             raise DriveLintError(f"{file}: the drive {drive_id} is not in it: check the drives again")
-        is_ego = [name == ego_id for name in tables["actor"]["actor_id"].to_pylist()]
-        tables["actor"] = with_columns(tables["actor"], {"is_ego": is_ego})
         place = tables["data_log"]["environment_id"][0].as_py()
         environment = None
         if place is not None:
@@ -95,7 +113,7 @@ def _from_database(file: Path, drive_id: str, ego_id: str) -> Drive:
             road = {name: _rows(con, name, "environment_id", place) for name in known}
             hand = road["environment"].to_pylist()[0]
             environment = MapTables(place, hand["handedness"], hand["handedness_source"], road)
-    return Drive(Trace(drive_id, file, tables, None, None, []), environment)
+    return with_ego(Drive(Trace(drive_id, file, tables, None, None, []), environment), ego_id)
 
 
 def _rows(con: duckdb.DuckDBPyConnection, table: str, key: str, value: str) -> pa.Table:

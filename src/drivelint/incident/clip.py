@@ -7,6 +7,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final
 
+import pyarrow.compute as pc
+
 from drivelint.convert import Clip, convert
 from drivelint.drive.trace import DriveInput
 from drivelint.engine.batch import drive_with_map
@@ -44,7 +46,8 @@ def write_clip(request: ConvertRequest, name: str, folder: Path, memory: int | N
     finding = named_finding(result, name)
     run_options = run_request.load(folder).of_drive(finding.row["drive_id"])
     request = _with_run_options(request, run_options, finding)
-    judge = Judge.of_run(run_options, [finding.row["rule_id"]], memory)
+    rule = result.rules.filter(pc.equal(result.rules["rule_id"], finding.row["rule_id"]))
+    judge = Judge.of_run(run_options, rule, memory)
     for before_s, after_s, clip in _clips(finding):
         with TemporaryDirectory(prefix="drivelint-") as place:
             tried = convert(replace(request, out=Path(place) / "clip", clip=clip))

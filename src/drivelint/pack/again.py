@@ -6,6 +6,7 @@ import io
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import msgspec
 import pyarrow.parquet as pq
 
 from drivelint import catalogue
@@ -54,7 +55,7 @@ def rules_of_table(rules: pa.Table, rules_dirs: Sequence[Path]) -> list[Rule]:
         if rule is None or rule.version != row["rule_version"]:
             what = "is not in the catalogue any more" if rule is None else "was changed since"
             raise UsageError(f"rule {row['rule_id']} {what}: check the drives again")
-        found.append(rule)
+        found.append(msgspec.structs.replace(rule, is_named=row["is_named"]))
     return found
 
 
@@ -70,6 +71,7 @@ def check_again(result: Result, check_request: RunRequest, work: Path | None, *,
     given |= {
         "traces": tuple(check_request.traces[name] for name in sorted(check_request.traces)),
         "rules": tuple(rule.id for rule in rules),
+        "named_rules": tuple(rule.id for rule in rules if rule.is_named),
         "fail_on": result.fail_on,
         "strict": result.strict,
         "require": result.required,

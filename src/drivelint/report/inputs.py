@@ -127,7 +127,11 @@ def _copies(drives: Sequence[Row]) -> list[str]:
 def _unrecorded(result: Result) -> list[InputNote]:
     """Return the rules that ask nothing of these logs, as they have nothing of a signal that few logs have."""
     rows = counts.unrecorded(result.verdicts).select(["reason_code", "rule_id", *_EGO]).to_pylist()
-    return [InputNote("not in the log", _by_signal(result, rows), is_warning=True)] if rows else []
+    needed = [
+        f"{name} (needed by {plural(n, 'rule')}{', ' if where else ''}{where})"
+        for name, n, where in _by_signal(result, rows)
+    ]
+    return [InputNote("not recorded", listed(needed), is_warning=True)] if rows else []
 
 
 def _parked(result: Result) -> list[InputNote]:
@@ -138,12 +142,12 @@ def _parked(result: Result) -> list[InputNote]:
     return [InputNote("parked", words, is_warning=False)] if n else []
 
 
-def _by_signal(result: Result, rows: Sequence[Row]) -> str:
-    """Return the signals that verdicts lack, each with its number of rules, the most first."""
+def _by_signal(result: Result, rows: Sequence[Row]) -> list[tuple[str, int, str]]:
+    """Return the signals that verdicts lack, the one of most rules first: its name, the number of rules, and for which egos."""
     missing = counts.group_rows(rows, lambda row: signal_name(row["reason_code"]))
     order = sorted(missing.items(), key=lambda item: (-_n_rules(item[1]), -len(item[1]), item[0]))
     egos = {(row["drive_id"], row["ego_id"]) for row in counts.distinct_rows(result.verdicts, _EGO)}
-    return listed([f"{name} ({plural(_n_rules(found), 'rule')}{_for_egos(found, egos)})" for name, found in order])
+    return [(name, _n_rules(verdicts), _for_egos(verdicts, egos)) for name, verdicts in order]
 
 
 def _not_judged(result: Result, drives: int) -> InputNote:
@@ -152,7 +156,11 @@ def _not_judged(result: Result, drives: int) -> InputNote:
     signals = [row for row in rows if row["reason_code"].startswith(MISSING_PREFIX)]
     parts = [plural(drives, "drive")] if drives else []
     if signals:
-        parts.append(_by_signal(result, signals))
+        without = [
+            f"{plural(n, 'rule')} without {name}{f' ({where})' if where else ''}"
+            for name, n, where in _by_signal(result, signals)
+        ]
+        parts.append(listed(without))
     if others := len(rows) - len(signals):
         parts.append(f"{others} {'other ' if signals else ''}{'verdict' if others == 1 else 'verdicts'}")
     return InputNote("not judged", "; ".join(parts) or "nothing", is_warning=bool(parts))
@@ -162,7 +170,7 @@ def _for_egos(rows: Iterable[Row], egos: AbstractSet[tuple[str, str]]) -> str:
     """Return for how many of the egos these verdicts are, or of the drives where each has one; '' where they are for all."""
     n = len({(row["drive_id"], row["ego_id"]) for row in rows})
     noun = "ego" if len(egos) > len({drive_id for drive_id, _ in egos}) else "drive"
-    return "" if n == len(egos) else f", {n} of {plural(len(egos), noun)}"
+    return "" if n == len(egos) else f"for {n} of {plural(len(egos), noun)}"
 
 
 def rules_without_map(result: Result) -> int:

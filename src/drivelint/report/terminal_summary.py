@@ -261,7 +261,7 @@ def _lines(result: Result) -> list[Text]:
         first += f"    near misses: {near}"
     if given := {f"{c['condition']}={c['value']}" for cs in result.drives["conditions"].to_pylist() for c in cs or ()}:
         first += f"    judged in: {', '.join(sorted(given))}"
-    return [Text(first), *_profiles(result), *_unknown(result), _inputs(result)]
+    return [Text(first), *_profiles(result), *_unknown(result), *_inputs(result)]
 
 
 def _profiles(result: Result) -> list[Text]:
@@ -295,13 +295,13 @@ def _unknown(result: Result) -> list[Text]:
     return lines
 
 
-def _inputs(result: Result) -> Text:
-    """Return the map of the drives, how many it fits, whether the logs are complete, and what was not judged."""
-    line = Text()
-    for note in (note for note in input_notes(result) if note.label != LAW):
-        line.append(f"{' | ' if line else ''}{note.label}: ", "default")
-        line.append(note.words, "yellow" if note.is_warning else "default")
-    return line
+def _inputs(result: Result) -> list[Text]:
+    """Return which map the drives were judged on, how many it fits, whether the logs are whole, and what was not judged: a line each."""
+    return [
+        Text.assemble(f"{note.label}: ", (note.words, "yellow" if note.is_warning else "default"))
+        for note in input_notes(result)
+        if note.label != LAW
+    ]
 
 
 def _end(result: Result, findings: list[Row], out: str | None) -> list[Text]:
