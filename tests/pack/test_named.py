@@ -38,4 +38,4 @@ def test_a_signal_that_the_log_has_not(selector: str, verdict: str, tmp_path: Pa
 
     told = explain(ExplainRequest(HORN, tmp_path / "result"))
     assert told.verdict["judged_anew"] == verdict
-    assert not [note for note in told.notes if "Judged anew" in note]
+    assert not [note for note in told.notes if "Judged again" in note]
