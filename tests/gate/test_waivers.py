@@ -161,7 +161,7 @@ def test_an_expired_waiver_waives_nothing_and_is_told() -> None:
     assert exit_status(run).code is ExitCode.FAILED
     assert run.gate is not None
     assert list(descriptions.waiver_warnings(run.gate)) == [
-        "w:1: expired 2026-11-19 (jo): it waives nothing; 1 finding like that",
+        "w:1: expired 2026-11-19 (jo): it has no effect; 1 finding like that",
         "w:1: no finding matches none.* (jo); correct or remove it",
     ]
 
@@ -211,7 +211,7 @@ def test_the_terminal_shows_what_is_let_through_and_what_to_look_at() -> None:
     text = console.export_text()
     assert "Known or waived findings: they do not gate (1)" in text
     assert "FINDINGS  1 finding in 1 of 1 drive: 1 waived" in text
-    assert "no finding is like that: none.*" in text
+    assert "no finding matches none.*" in text
     assert "exit 0: nothing failed at or above severity critical (of that severity 1 waived)" in text
 
 

@@ -80,7 +80,8 @@ class Driver:
     mark_done: Callable[[tuple[AuditDrive, ...]], None] = lambda _drives: None
 
     def run(self, todo: Iterable[Task]) -> None:
-        """Run all tasks. Errors: those of a task that are no drive's fault, such as `OutputError`; any other is that of its drives."""
+        """Run all tasks. Errors: those that are not caused by a drive, such as `OutputError`; any other error belongs to the drives of
+        its task."""
         waiting = iter(todo)
         again: deque[Task] = deque()
         n_running = 0
