@@ -51,7 +51,10 @@ def checked(words: Sequence[str | Path], out: Path) -> Checked:
     """Check a drive in a process of its own, and take its result away from `out`."""
     command = [sys.executable, "-m", "drivelint", "check", *words, "--out", out, "--no-cache", "--quiet"]
     begin = time.monotonic()
-    with tempfile.TemporaryFile("w+", encoding="utf-8") as said, tempfile.TemporaryFile("w+", encoding="utf-8") as notes:
+    with (
+        tempfile.TemporaryFile("w+", encoding="utf-8") as said,
+        tempfile.TemporaryFile("w+", encoding="utf-8") as notes,
+    ):
         running = subprocess.Popen(command, stdout=said, stderr=notes, cwd=out.parent)
         _, status, used = os.wait4(running.pid, 0)
         running.returncode = os.waitstatus_to_exitcode(status)

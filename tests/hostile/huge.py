@@ -78,9 +78,7 @@ def osi_mcap(folder: Path, n: int = ACTORS) -> list[str]:
         truth = osi_log.frame(frame * 100_000_000)
         for i in range(frame * n, frame * n + n):
             osi_log.moving(truth, int(rows["id"][i]), rows["x"][i], rows["y"][i], v=(10.0, 0.0))
-        messages.append(
-            osi_log.Out("osi3.GroundTruth", "ground_truth", frame * 100_000_000, truth.SerializeToString())
-        )
+        messages.append(osi_log.Out("osi3.GroundTruth", "ground_truth", frame * 100_000_000, truth.SerializeToString()))
     return [str(osi_log.write(folder / "crowd.mcap", messages))]
 
 

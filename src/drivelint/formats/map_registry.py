@@ -14,6 +14,7 @@ from drivelint.formats.probe import wrapping
 from drivelint.formats.search import is_pipe_or_device
 from drivelint.phrases import escape_invisible
 from drivelint.road.map_reader import MapOptions, MapSource, MapTables
+from drivelint.road.tree_parts import CrowdedPlaceError
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -94,7 +95,13 @@ def load_map(
     request = MapOptions((float(offset[0]), float(offset[1])), side, voted_handedness, origin)
 
     def read() -> MapTables:
-        tables: MapTables = import_module(f"drivelint.formats.{_reader(source)}").read(source, request)
+        tables: MapTables
+        try:
+            tables = import_module(f"drivelint.formats.{_reader(source)}").read(source, request)
+        except CrowdedPlaceError as error:
+            raise MapError(
+                f"map {source.name}: {error}, more than any road network has: give a map without copies"
+            ) from None
         return tables
 
     return bounded(read, f"map {source.name}", len(source.content), MapError)
