@@ -163,8 +163,12 @@ def held_tracks(states: States, actors: Actors) -> list[QualityFinding]:
 
 
 def _begin_upon(states: States, actors: Actors) -> Iterator[tuple[int, int]]:
-    """Yield pairs of tracks of which one has its first sample deep in the other's box, or close before or behind it."""
+    """Yield pairs of tracks of which one has its first sample deep in the other's box, or close before or behind it.
+
+    Who are only close behind each other may be coupled, for which both need more samples than many tracks of a crowd have.
+    """
     starts, half = track_starts(states.actor), _half_sizes(states, actors)
+    may_be_coupled = np.bincount(states.actor, minlength=len(states.ids)) >= COUPLED_LEAST
     number = np.full(len(states), -1)
     number[starts] = np.arange(len(starts))
     for first, second in _neighbours(states, actors, starts):
@@ -172,7 +176,8 @@ def _begin_upon(states: States, actors: Actors) -> Iterator[tuple[int, int]]:
         once = (states.actor[first] != states.actor[second]) & ((number[second] < 0) | (number[second] > number[first]))
         first, second = first[once], second[once]  # noqa: PLW2901  the rest is of no use
         mine, theirs = _boxes(states, half, first), _boxes(states, half, second)
-        near = _deep(mine, theirs) | _in_line(mine, theirs) | (_overlap(mine, theirs)[0] >= BEGIN_M).all(axis=0)
+        coupled = may_be_coupled[states.actor[first]] & may_be_coupled[states.actor[second]] & _in_line(mine, theirs)
+        near = _deep(mine, theirs) | coupled | (_overlap(mine, theirs)[0] >= BEGIN_M).all(axis=0)
         yield from zip(states.actor[first[near]].tolist(), states.actor[second[near]].tolist(), strict=True)
 
 
