@@ -85,7 +85,7 @@ def main(arguments: Sequence[str]) -> int:
         home = Path(folder)
         (home / "ring.xodr").write_text(traffic.ring(), encoding="utf-8")
         log = traffic.write_folder(home / "drive", traffic.REFERENCE._replace(seconds=minutes * 60))
-        words = [log, "--map", home / "ring.xodr", *options]
+        words: list[str | Path] = [log, "--map", home / "ring.xodr", *options]
         runs = {}
         for name, n in (("quiet", 0), ("busy", SPINNING)):
             with spinning(n):
