@@ -181,7 +181,7 @@ def sumo(roads: int = ROADS, lanes: int = LANES, *, apart: bool = True) -> str:
     return "\n".join([*found, "</net>"])
 
 
-LOGS: Final[dict[str, Callable[[Path], list[str]]]] = {
+LOGS: Final[dict[str, Callable[..., list[str]]]] = {
     "csv": csv_log,
     "parquet": parquet_log,
     "osi": osi_mcap,
