@@ -14,7 +14,7 @@ CREATE TABLE ego_condition (
     weather VARCHAR,                  -- [weather] NULL: not given
     light VARCHAR,                    -- [light] NULL: not given
     vehicle_class VARCHAR,            -- [vehicle_class] of the ego, as given or by its class; a car that draws a trailer (see ego_part) is car_towing; NULL: not known, or another that draws one
-    limit_mps DOUBLE,                 -- speed limit of the map where the ego is; NULL: the map does not say
+    limit_mps DOUBLE,                 -- speed limit of the map where the ego is; NULL: the map does not state it
     engaged BOOLEAN                   -- the automated driver drives: by its mode flag, or as given; true where neither is there; NULL: there are flags, and none is known here
 );
 
@@ -124,7 +124,7 @@ CREATE TABLE neighbour (
 CREATE TABLE follower (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    t_ns BIGINT NOT NULL,             -- the step; no row: cannot be told
+    t_ns BIGINT NOT NULL,             -- the step; no row: not known
     lane VARCHAR NOT NULL,            -- [lane_of_follower] one row each {position}
     object_id VARCHAR,                -- nearest vehicle behind in it, within 200 m, that heads as the ego does; NULL: nobody there
     gap_m DOUBLE,                     -- its front to the ego's rear along the corridor; negative: alongside {position, heading, size}
@@ -246,7 +246,7 @@ CREATE TABLE line_step (
     t_ns BIGINT NOT NULL,             -- a step with a corner of the ego more than 0.05 m over a boundary of its running lane; none inside a junction, and none where its box is not placed (ego_state.front_s_m is NULL)
     side VARCHAR NOT NULL,            -- [side] that boundary; one row each {position}
     out_m DOUBLE NOT NULL,            -- how far the furthest corner is over it {position, heading, size}
-    marking VARCHAR,                  -- [marking] see lane_boundary: as seen from the running lane, at the ego's centre; NULL: the map does not say
+    marking VARCHAR,                  -- [marking] see lane_boundary: as seen from the running lane, at the ego's centre; NULL: the map does not state it
     forbidden BOOLEAN,                -- from this lane it must not be crossed: solid, or double with the nearer one solid; NULL: marking not known
     beyond VARCHAR,                   -- [lane_type + same + opposing] what lies beyond it (see lane_beside): same or opposing (a drivable lane, by its direction), else its lane_type; NULL: nothing in the map {position}
     middle BOOLEAN,                   -- it is the middle of the road: traffic beyond it comes the other way; NULL: it may be, as on the overtaking side the map has nothing beyond it (and the road is no motorway), or a gap of more than 1 m or a strip that it calls a median, which may be a central reservation
@@ -269,8 +269,8 @@ CREATE TABLE overtake_place (
     occurrence INTEGER NOT NULL,      -- see overtake
     junction_m DOUBLE,                -- ego's front at t0 to the next junction on its way, along the corridor; infinite: none within the corridor; negative: inside one {position}
     crossing_m DOUBLE,                -- the same to the next pedestrian crossing {position}
-    marking_out VARCHAR,              -- [marking] of the boundary crossed at t0, seen from the running lane; NULL: the map does not say {position}
-    marking_back VARCHAR,             -- [marking] of the boundary crossed back at t3, seen from the overtaking lane; NULL: the map does not say, or never back {position}
+    marking_out VARCHAR,              -- [marking] of the boundary crossed at t0, seen from the running lane; NULL: the map does not state it {position}
+    marking_back VARCHAR,             -- [marking] of the boundary crossed back at t3, seen from the overtaking lane; NULL: the map does not state it, or never back {position}
     no_overtaking BOOLEAN,            -- a no-overtaking sign holds at t0, or where the ego's front draws level with the rear of a vehicle that it passes, until its end is said or the next junction; NULL: the map has no such signs at all, or neither a sign nor a junction on the way behind: one may stand further back, or where the map begins {position}
     rear_id VARCHAR,                  -- vehicle behind or beside, in the overtaking lane or moving into it, at t0; NULL: nobody {position, heading, size}
     rear_gap_m DOUBLE,                -- its front to the ego's rear; negative: alongside {position, heading, size}
@@ -285,7 +285,7 @@ CREATE TABLE following (
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- every step
     object_id VARCHAR,                -- of those ahead the nearest that it follows, else the lead; NULL: nobody ahead, or cannot be told
-    follows BOOLEAN,                  -- the ego is behind it and goes its way: in its lane, no overtake or lane change (of up to 10 s astride the line) under way, and the other neither oncoming nor beside: what stands is in the way of the ego's box now and when the ego is there, what moves is in its way too, or has its centre in the lane and is more than 3 s from being passed; NULL: cannot be told {position}
+    follows BOOLEAN,                  -- the ego is behind it and goes its way: in its lane, no overtake or lane change (of up to 10 s astride the line) under way, and the other neither oncoming nor beside: what stands is in the way of the ego's box now and when the ego is there, what moves is in its way too, or has its centre in the lane and is more than 3 s from being passed; NULL: not known {position}
     gap_m DOUBLE,                     -- see lead {position, heading, size}
     ego_speed_mps DOUBLE,             -- ego's speed {velocity}
     speed_mps DOUBLE,                 -- its speed {velocity}

@@ -386,7 +386,7 @@ CREATE TABLE ego_state (
     with_direction BOOLEAN,           -- see ego_lane {heading}
     with_traffic BOOLEAN,             -- see ego_lane {position}
     in_junction BOOLEAN,              -- on a junction's lanelet; NULL: on none {position}
-    road_type VARCHAR,                -- [road_type] of the lanelet; NULL: the map does not say
+    road_type VARCHAR,                -- [road_type] of the lanelet; NULL: the map does not state it
     limit_mps DOUBLE,                 -- speed limit where it is; NULL: see limit_source
     limit_source VARCHAR,             -- [limit_source + none] none: the map says that there is no limit; NULL: it does not say
     chain_id INTEGER,                 -- its running chain at this step; NULL: none
@@ -528,7 +528,7 @@ CREATE TABLE lead (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
-    object_id VARCHAR,                -- nearest vehicle ahead in the running lane (without a map: in the strip that the ego's box sweeps on its own way), not one beside which that way passes (passed_by), nor one that moves across it by its own way through a junction, nor one of the next lane that reaches over the line beside the ego's way and does not come nearer to it, nor one beside the ego's box; NULL: nobody there; no row: cannot be told; to know that nobody is within N m, use vehicle_ahead.free_m
+    object_id VARCHAR,                -- nearest vehicle ahead in the running lane (without a map: in the strip that the ego's box sweeps on its own way), not one beside which that way passes (passed_by), nor one that moves across it by its own way through a junction, nor one of the next lane that reaches over the line beside the ego's way and does not come nearer to it, nor one beside the ego's box; NULL: nobody there; no row: not known; to know that nobody is within N m, use vehicle_ahead.free_m
     actor_class VARCHAR,              -- [actor_class] see road_user {class}
     gap_m DOUBLE,                     -- bumper to bumper along the corridor; negative: the two boxes overlap {position, heading, size}
     speed_mps DOUBLE,                 -- its speed along the lane, whichever way {velocity}

@@ -1,5 +1,5 @@
--- What a picture of a finding needs: who was where around its worst step, and the lanes there. Written beside the verdicts, so that
--- reports can be made from the result folder alone.
+-- The data for a picture of a finding: the actors and their places around its worst step, and the lanes there. Written beside the verdicts,
+-- so that reports can be made from the result folder alone.
 
 -- lifetime: run
 CREATE TABLE scene (
@@ -7,7 +7,7 @@ CREATE TABLE scene (
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the moment: t_worst_ns of findings and near misses, one row for all that share it
     environment_id VARCHAR,           -- the map, for table lane_shape; NULL: no map
-    reach_m DOUBLE NOT NULL,          -- how far around the ego actors and lanes were kept
+    reach_m DOUBLE NOT NULL,          -- range around the ego in which actors and lanes were kept
     lanelets VARCHAR[] NOT NULL,      -- lanelets within reach
     actors STRUCT(actor_id VARCHAR, actor_class VARCHAR, length_m DOUBLE, width_m DOUBLE, x_m DOUBLE, y_m DOUBLE, yaw_rad DOUBLE, speed_mps DOUBLE, path STRUCT(t_ns BIGINT, x_m DOUBLE, y_m DOUBLE, yaw_rad DOUBLE, speed_mps DOUBLE, accel_mps2 DOUBLE, d_m DOUBLE)[])[] NOT NULL -- the ego first, then everybody within reach and placed: box centre at the moment, and the way 5 s before and after it, at most 5 points a second and the moment itself; d_m: offset from the centre line of the ego's running lane, left positive
 );
@@ -17,8 +17,8 @@ CREATE TABLE picture (
     drive_id VARCHAR NOT NULL,        -- the drive
     t_ns BIGINT NOT NULL,             -- the moment: t_worst_ns of findings and near misses
     camera VARCHAR NOT NULL,          -- topic of the camera in the log
-    camera_no INTEGER NOT NULL,       -- 0.. in the order in which cameras are shown: those that look ahead first
-    shot VARCHAR NOT NULL,            -- [shot] of the three around the moment
+    camera_no INTEGER NOT NULL,       -- 0.. in the order in which cameras are shown: those that look ahead come first
+    shot VARCHAR NOT NULL,            -- [shot] which of the three pictures of the moment
     t_frame_ns BIGINT NOT NULL,       -- time of the frame: the nearest one that the camera has
     width_px INTEGER NOT NULL,        -- of the downscaled picture
     height_px INTEGER NOT NULL,       -- of the downscaled picture
@@ -32,8 +32,8 @@ CREATE TABLE lane_shape (
     lane_type VARCHAR NOT NULL,       -- [lane_type] see lanelet
     drivable BOOLEAN NOT NULL,        -- see lanelet
     in_junction BOOLEAN NOT NULL,     -- a connecting lane of a junction
-    left_marking VARCHAR,             -- [marking] of most of the left bound; NULL: the map does not say
-    right_marking VARCHAR,            -- [marking] of most of the right bound; NULL: the map does not say
+    left_marking VARCHAR,             -- [marking] of most of the left bound; NULL: the map does not state it
+    right_marking VARCHAR,            -- [marking] of most of the right bound; NULL: the map does not state it
     left_x_m DOUBLE[] NOT NULL,       -- left bound in the direction of travel, true to 10 cm
     left_y_m DOUBLE[] NOT NULL,       -- left bound
     right_x_m DOUBLE[] NOT NULL,      -- right bound in the direction of travel
@@ -45,9 +45,9 @@ CREATE TABLE danger_space (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- a moment, or a step of the ego's way around it; only in overtakes
-    actor_id VARCHAR NOT NULL,        -- whose danger space: the ego's or the oncoming vehicle's
+    actor_id VARCHAR NOT NULL,        -- the actor of the danger space: the ego or the oncoming vehicle
     length_m DOUBLE NOT NULL,         -- its stopping distance
-    x_m DOUBLE[] NOT NULL,            -- the space swept along the corridor, as the assertions have it: a closed ring, true to 10 cm
+    x_m DOUBLE[] NOT NULL,            -- the space swept along the corridor, as in the assertions: a closed ring, true to 10 cm
     y_m DOUBLE[] NOT NULL             -- the same
 );
 
@@ -59,10 +59,10 @@ CREATE TABLE course (
     rule_id VARCHAR NOT NULL,         -- the rule
     profile VARCHAR,                  -- the profile; NULL: the rule has none
     object_id VARCHAR,                -- the other road user
-    occurrence INTEGER NOT NULL,      -- as in finding; of a near miss as in verdict
+    occurrence INTEGER NOT NULL,      -- as in finding; for a near miss as in verdict
     t_ns BIGINT[] NOT NULL,           -- judged steps around it: of the same rule, profile, object and reference point
     observed DOUBLE[] NOT NULL,       -- value at each; NULL: not known, or nothing is measured
-    required DOUBLE[] NOT NULL,       -- what it was held against
+    required DOUBLE[] NOT NULL,       -- the value that observed was compared with
     margin DOUBLE[] NOT NULL,         -- signed, positive = kept
     holds BOOLEAN[] NOT NULL,         -- kept there; NULL: unknown
     x_m DOUBLE[] NOT NULL,            -- the ego at each; NULL: not known

@@ -177,7 +177,7 @@ CREATE TABLE junction_passage (
     straightest_rad DOUBLE,           -- that change on the straightest of all ways out of the road that the ego came by; NULL: that road is not known {heading}
     across BOOLEAN,                   -- the turn crosses the oncoming traffic (right where the left is driven on; any u_turn); NULL: handedness or turn not known {position, heading, velocity}
     branches INTEGER NOT NULL,        -- roads that meet in the junction: 2 is no junction for a driver
-    control VARCHAR,                  -- [control + none] what governs the ego's way in, see way_mark; NULL: cannot be told, as the map has none of these anywhere, or begins less than 50 m before the junction
+    control VARCHAR,                  -- [control + none] what governs the ego's way in, see way_mark; NULL: not known, as the map has none of these anywhere, or begins less than 50 m before the junction
     minor BOOLEAN                     -- by control stop or give_way the ego's road is the lesser one; NULL: control not known {position}
 );
 
@@ -189,8 +189,8 @@ CREATE TABLE passage_conflict (
     relation VARCHAR NOT NULL,        -- [relation] oncoming (from the road ahead, also where it leads off at an angle and no other is as straight; such a one is from_left or from_right as well), from_left, from_right, ahead_going (a cyclist, animal or vehicle along the ego's own road that goes on while the ego turns), by their heading 2 s before against the ego's on its way in; pedestrian (on foot, in the junction or within 12 m before or past it: over the roads that the ego turns out of and into); who has no class may be either {position}
     object_id VARCHAR,                -- of those before whom the ego went (or into whom: on foot still there as it came, driven not yet past its front), the one with the least PET; NULL: nobody
     actor_class VARCHAR,              -- [actor_class] see road_user; what it is decides whether a low PET breaks a rule {class}
-    pet_s DOUBLE,                     -- its PET, also where reason says that another one may be lower; infinite: nobody within 10 s, or until the log ends, 4 s later at least; NULL: cannot be told {position, velocity}
-    decel_mps2 DOUBLE,                -- see conflict; 0 where nobody; NULL: cannot be told {velocity}
+    pet_s DOUBLE,                     -- its PET, also where reason says that another one may be lower; infinite: nobody within 10 s, or until the log ends, 4 s later at least; NULL: not known {position, velocity}
+    decel_mps2 DOUBLE,                -- see conflict; 0 where nobody; NULL: not known {velocity}
     braked_id VARCHAR,                -- somebody of this relation (by its heading as it began) who braked where its way led onto the ego's, whether it came or not, see forced_braking: of several one without another cause, then the hardest; NULL: nobody {position, velocity}
     braked_pet_s DOUBLE,              -- PET that there would have been at its speed {position, velocity}
     braked_mps2 DOUBLE,               -- how hard it braked {velocity}
@@ -236,7 +236,7 @@ CREATE TABLE crossing_passage (
     ego_id VARCHAR NOT NULL,          -- the ego
     occurrence INTEGER NOT NULL,      -- 0.. in time order; the ego goes over a pedestrian crossing, forwards or reversing onto it
     crossing_id VARCHAR NOT NULL,     -- the crossing
-    kind VARCHAR,                     -- [crossing_kind] as the map says, or signalled where a light governs it; NULL: the map does not say
+    kind VARCHAR,                     -- [crossing_kind] as the map says, or signalled where a light governs it; NULL: the map does not state it
     t_in_ns BIGINT,                   -- first step with its front on it, reversing with its rear; NULL: the log, or a hole, begins with the ego on it {position}
     t_out_ns BIGINT,                  -- first step with its rear past it, or its front back before it if it came reversing; NULL: the log, or a hole, ends with the ego on it {position}
     on_id VARCHAR,                    -- somebody on foot on the ego's half at any time from t_in to t_out, or on the other one if its middle was over that as well, the first of them; NULL: nobody {position}

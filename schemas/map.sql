@@ -32,7 +32,7 @@ CREATE TABLE lanelet (
     bidirectional BOOLEAN NOT NULL,   -- driven in both directions; its points then run as the road's right-hand side would
     along_road INTEGER NOT NULL,      -- 1: direction of travel is that of the reference line, -1: against it
     junction_id VARCHAR,              -- the junction it is a connecting lane of; NULL: none
-    road_type VARCHAR,                -- [road_type] NULL: the map does not say
+    road_type VARCHAR,                -- [road_type] NULL: the map does not state it
     length_m DOUBLE NOT NULL,         -- along the centre line
     width_m DOUBLE NOT NULL,          -- mean width
     area_m2 DOUBLE NOT NULL,          -- area between the bounds
@@ -77,8 +77,8 @@ CREATE TABLE lane_boundary (
     side VARCHAR NOT NULL,            -- [side]
     s_start_m DOUBLE NOT NULL,        -- from here, along the lanelet's centre line
     s_end_m DOUBLE NOT NULL,          -- to here
-    marking VARCHAR,                  -- [marking] NULL: the map does not say, or not in a word that is known
-    color VARCHAR,                    -- [marking_color] NULL: the map does not say
+    marking VARCHAR,                  -- [marking] NULL: the map does not state it, or not in a word that is known
+    color VARCHAR,                    -- [marking_color] NULL: the map does not state it
     lane_change VARCHAR               -- [lanes_changed] as the map says; NULL: it does not
 );
 
@@ -103,7 +103,7 @@ CREATE TABLE traffic_signal (
     value DOUBLE,                     -- the number on it, in the map's own unit
     unit VARCHAR,                     -- that unit
     dynamic BOOLEAN NOT NULL,         -- changes its state
-    turns VARCHAR[],                  -- [turn] of a traffic light: the turns it holds for: those of its arrow, or all four for a full light; NULL: the map does not say
+    turns VARCHAR[],                  -- [turn] of a traffic light: the turns it holds for: those of its arrow, or all four for a full light; NULL: the map does not state it
     road_id VARCHAR NOT NULL,         -- road it is listed on
     road_s_m DOUBLE NOT NULL,         -- station on that road
     lanelet_id VARCHAR NOT NULL,      -- a lanelet it holds for; one row each
@@ -145,7 +145,7 @@ CREATE TABLE crossing (
     lanelet_id VARCHAR NOT NULL,      -- a drivable lanelet it lies across; one row each
     s_start_m DOUBLE NOT NULL,        -- from here, along that lanelet
     s_end_m DOUBLE NOT NULL,          -- to here
-    kind VARCHAR,                     -- [crossing_kind] NULL: the map does not say
+    kind VARCHAR,                     -- [crossing_kind] NULL: the map does not state it
     geom GEOMETRY                     -- its part of that lanelet: a polygon
 );
 

@@ -1,4 +1,4 @@
--- What is written beside verdicts.parquet and findings.parquet: drives.parquet and rules.parquet.
+-- The files beside verdicts.parquet and findings.parquet: drives.parquet and rules.parquet.
 
 -- lifetime: run
 CREATE TABLE drive (
@@ -11,24 +11,24 @@ CREATE TABLE drive (
     map_sha256 VARCHAR,               -- hash of that map's bytes
     handedness VARCHAR,               -- [handedness] NULL: no map
     handedness_source VARCHAR,        -- [handedness_source] NULL: no map
-    utc_start_ns BIGINT,              -- UTC of the first time stamp; NULL: the log does not say
+    utc_start_ns BIGINT,              -- UTC of the first time stamp; NULL: the log does not state it
     t_start_ns BIGINT,                -- first time stamp of any actor, on the log's own clock
     duration_s DOUBLE,                -- from the first to the last time stamp; NULL: no states
-    lon DOUBLE,                       -- longitude in degrees (WGS 84) of the first position of the ego, of several of that whose id is first; NULL: not known, or neither map nor log has a geo reference that gives positions on the earth
+    lon DOUBLE,                       -- longitude in degrees (WGS 84) of the first position of the ego (if there are several, of the one whose id comes first); NULL: not known, or neither map nor log has a geo reference with positions on the earth
     lat DOUBLE,                       -- latitude in degrees (WGS 84) of the same; NULL: as lon
-    km DOUBLE NOT NULL,               -- way made, all egos together
+    km DOUBLE NOT NULL,               -- distance driven, all egos together
     n_states BIGINT NOT NULL,         -- actor states read
     n_steps BIGINT NOT NULL,          -- ego steps, all egos together
     n_egos BIGINT NOT NULL,           -- egos judged
     status VARCHAR NOT NULL,          -- judged, not_judged
     status_reason VARCHAR,            -- why it was not judged; NULL: it was
-    lossy BOOLEAN NOT NULL,           -- parts of the log were lost or salvaged: the verdicts stand on what was left
-    conditions STRUCT("condition" VARCHAR, "value" VARCHAR, source VARCHAR)[] NOT NULL, -- what was given for the drive (env), or the log (trace) or its map (map) says: weather, nation, ...
-    exposure STRUCT(ego_id VARCHAR, km DOUBLE, hours DOUBLE, engaged_km DOUBLE, engaged_hours DOUBLE, n_steps BIGINT)[] NOT NULL, -- per ego: way, time without holes, both with the automated driver, steps
-    occasions STRUCT(rule_id VARCHAR, profile VARCHAR, n BIGINT, n_judged BIGINT)[] NOT NULL, -- per rule and profile: how often it applied or may have (verdict rows but not_applicable), and how often of these it passed or failed
+    lossy BOOLEAN NOT NULL,           -- parts of the log were lost or salvaged: the verdicts are about the rest
+    conditions STRUCT("condition" VARCHAR, "value" VARCHAR, source VARCHAR)[] NOT NULL, -- conditions of the drive: set by the user (env), from the log (trace) or from its map (map): weather, nation, ...
+    exposure STRUCT(ego_id VARCHAR, km DOUBLE, hours DOUBLE, engaged_km DOUBLE, engaged_hours DOUBLE, n_steps BIGINT)[] NOT NULL, -- per ego: distance, time without holes, both with the automated driver, and steps
+    occasions STRUCT(rule_id VARCHAR, profile VARCHAR, n BIGINT, n_judged BIGINT)[] NOT NULL, -- per rule and profile: how often it applied or may have applied (verdict rows except not_applicable), and how many of these passed or failed
     quality STRUCT(check_id VARCHAR, severity VARCHAR, actor_id VARCHAR, n BIGINT, t_first_ns BIGINT, message VARCHAR)[] NOT NULL, -- data-quality findings of the log and its map
-    not_judged STRUCT(ego_id VARCHAR, signal VARCHAR, reason_code VARCHAR, reason VARCHAR)[] NOT NULL, -- signals that the log and map do not give: rules that require them are unknown
-    recorded STRUCT(actor_id VARCHAR, t_from_ns BIGINT, t_to_ns BIGINT)[] NOT NULL -- per actor of the log, in time order: the stretches in which its place is known, without a hole and without a lost time; what lies outside was not looked at
+    not_judged STRUCT(ego_id VARCHAR, signal VARCHAR, reason_code VARCHAR, reason VARCHAR)[] NOT NULL, -- signals that the log and map lack: rules that require them are unknown
+    recorded STRUCT(actor_id VARCHAR, t_from_ns BIGINT, t_to_ns BIGINT)[] NOT NULL -- per actor of the log, in time order: the stretches in which its place is known, without a hole and without lost time; other times were not examined
 );
 
 -- lifetime: run
@@ -36,9 +36,9 @@ CREATE TABLE rule (
     rule_id VARCHAR NOT NULL,         -- pack and file name of the rule
     rule_version VARCHAR NOT NULL,    -- hash of the rule's file
     pack VARCHAR NOT NULL,            -- ukhc, rss, comfort, ...
-    pack_title VARCHAR NOT NULL,      -- what the pack is about; empty: it does not say
-    title VARCHAR NOT NULL,           -- what it asks for, in a few words
-    breach VARCHAR,                   -- what happened where it is not kept, in a few words; NULL: it is told as "Not kept" and the title
+    pack_title VARCHAR NOT NULL,      -- the subject of the pack; empty: not stated
+    title VARCHAR NOT NULL,           -- what it demands, in a few words
+    breach VARCHAR,                   -- what happened when it is broken, in a few words; NULL: its findings are called "Not kept" and the title
     clause VARCHAR NOT NULL,          -- the clause it comes from
     hypothesis VARCHAR NOT NULL,      -- the same as a question
     kind VARCHAR NOT NULL,            -- [rule_kind]
@@ -48,13 +48,14 @@ CREATE TABLE rule (
     severity VARCHAR NOT NULL,        -- [rule_severity]
     legal VARCHAR NOT NULL,           -- must, should
     status VARCHAR NOT NULL,          -- draft, stable, deprecated; only stable rules gate
+    is_named BOOLEAN NOT NULL,        -- the user named it by its id: it is unknown where a log has none of a signal that few logs have, else it does not apply there
     sense VARCHAR NOT NULL,           -- relation that must hold between observed and required
     unit VARCHAR,                     -- of observed, required and margin
-    observes VARCHAR,                 -- what observed is, as a noun phrase; NULL: nothing is measured, or the title says it
-    near_margin DOUBLE,               -- a pass with less is a near miss; NULL: none
-    law VARCHAR[] NOT NULL,           -- [nation] whose law it is: not applicable where the nation is known to be another; empty: no nation's own
-    tags VARCHAR[] NOT NULL,          -- [rule_tag] what reports know it by
+    observes VARCHAR,                 -- the name of observed, as a noun phrase; NULL: nothing is measured, or the title names it
+    near_margin DOUBLE,               -- a pass with a smaller margin is a near miss; NULL: none
+    law VARCHAR[] NOT NULL,           -- [nation] the nations whose law it is: not applicable if the nation is known to be another; empty: not the law of one nation
+    tags VARCHAR[] NOT NULL,          -- [rule_tag] tags by which reports recognise it
     requires VARCHAR[] NOT NULL,      -- signals without which it is unknown
-    profiles VARCHAR[] NOT NULL,      -- profiles it was judged against; empty: it has none
+    profiles VARCHAR[] NOT NULL,      -- profiles that it was judged against; empty: it has none
     params STRUCT("name" VARCHAR, "value" VARCHAR, unit VARCHAR, overridden BOOLEAN)[] NOT NULL -- parameters as used, their values as text
 );

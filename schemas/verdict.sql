@@ -1,4 +1,4 @@
--- What evaluation writes.
+-- The results of the evaluation: verdicts, findings and margins.
 
 -- lifetime: run
 CREATE TABLE verdict (
@@ -19,23 +19,23 @@ CREATE TABLE verdict (
     verdict VARCHAR NOT NULL,         -- [verdict]
     reason_code VARCHAR NOT NULL,     -- machine-readable reason
     reason VARCHAR NOT NULL,          -- the same for a person
-    cause_code VARCHAR,               -- why it is so, as a code: what the rule says, or what is missing; text: in words of the rule's own; NULL: reason_code says all
+    cause_code VARCHAR,               -- the cause, as a code: from the rule, or for what is missing; text: in words of the rule's own; NULL: reason_code is enough
     cause_args VARCHAR,               -- the arguments of cause_code, as a JSON object named with units: t_ns is a time, object_id an actor
-    reason_measures BOOLEAN NOT NULL, -- the reason tells observed and required
+    reason_measures BOOLEAN NOT NULL, -- the reason states observed and required
     observed DOUBLE,                  -- value at the worst step
-    required DOUBLE,                  -- what it was held against
+    required DOUBLE,                  -- the value that observed was compared with
     margin DOUBLE,                    -- signed distance to the threshold, positive = kept; NULL for sense = holds
     unit VARCHAR,                     -- of observed, required and margin
     near_miss BOOLEAN NOT NULL,       -- passed with less than near_margin
     n_expected BIGINT NOT NULL,       -- steps that had to be judged
-    n_judged BIGINT NOT NULL,         -- steps that were
+    n_judged BIGINT NOT NULL,         -- steps that were judged
     x_m DOUBLE,                       -- ego at the worst step
     y_m DOUBLE,                       -- ego at the worst step
     lanelet_id VARCHAR,               -- ego's lanelet at the worst step
-    assumes VARCHAR,                  -- what it rests on; line_of_sight: by the end of the judged interval somebody was lost, or somebody came later, who is taken not to be in plain view while not recorded (check --visibility); NULL: nothing
-    t_start_s DOUBLE,                 -- t_start_ns in seconds since the drive's first time stamp, as reasons tell times
+    assumes VARCHAR,                  -- the assumption that it depends on; line_of_sight: by the end of the judged interval an actor was lost, or came later, which is assumed not to be in plain view while not recorded (check --visibility); NULL: none
+    t_start_s DOUBLE,                 -- t_start_ns in seconds since the drive's first time stamp, as reasons print times
     t_worst_s DOUBLE,                 -- t_worst_ns in the same way
-    finding_ids VARCHAR[] NOT NULL    -- the findings that it is made of, in time order: those with a failing step of it; a finding may be of several verdicts; empty: it did not fail, or failed without any step that did
+    finding_ids VARCHAR[] NOT NULL    -- its findings, in time order: those with a failing step of it; a finding may belong to several verdicts; empty: it did not fail, or failed without a failing step
 );
 
 -- lifetime: run
@@ -55,24 +55,24 @@ CREATE TABLE finding (
     t_end_ns BIGINT NOT NULL,         -- last failing step
     t_worst_ns BIGINT NOT NULL,       -- earliest step with the least margin
     reason VARCHAR NOT NULL,          -- for a person
-    cause_code VARCHAR,               -- what the rule says of it, as a code; text: in words of its own; NULL: nothing
+    cause_code VARCHAR,               -- the cause from the rule, as a code; text: in words of its own; NULL: none
     cause_args VARCHAR,               -- the arguments of cause_code, as a JSON object
-    reason_measures BOOLEAN NOT NULL, -- the reason tells observed and required
+    reason_measures BOOLEAN NOT NULL, -- the reason states observed and required
     observed DOUBLE,                  -- value at the worst step
-    required DOUBLE,                  -- what it was held against
+    required DOUBLE,                  -- the value that observed was compared with
     margin DOUBLE,                    -- negative; NULL for sense = holds
     unit VARCHAR,                     -- of observed, required and margin
     x_m DOUBLE,                       -- ego at the worst step
     y_m DOUBLE,                       -- ego at the worst step
-    lon DOUBLE,                       -- longitude of x_m, y_m in degrees (WGS 84); NULL: neither map nor log has a geo reference that gives positions on the earth
+    lon DOUBLE,                       -- longitude of x_m, y_m in degrees (WGS 84); NULL: neither map nor log has a geo reference with positions on the earth
     lat DOUBLE,                       -- latitude of x_m, y_m in degrees (WGS 84); NULL: as lon
     lanelet_id VARCHAR,               -- ego's lanelet at the worst step
-    n_copies INTEGER,                 -- copies with errors like the recording's that were judged, of the part of the drive around it: 100, fewer where these tell enough; the errors are normal, with standard deviations of 0.1 m in the position of each actor, 0.05 s in its clock and 0.1 m in the place of the map; NULL: none were, because the finding is minor, it is not the gravest of its rule (check --robustness judges all), check --no-robustness was given, that part alone does not give the finding, or the run was interrupted while they were judged
-    n_stays INTEGER,                  -- in how many of them it is a finding too; NULL: as n_copies
-    t_start_s DOUBLE NOT NULL,        -- t_start_ns in seconds since the drive's first time stamp, as reasons tell times
+    n_copies INTEGER,                 -- copies with errors like the recording's that were judged, of the part of the drive around it: 100, fewer if these are enough; the errors are normal, with standard deviations of 0.1 m in the position of each actor, 0.05 s in its clock and 0.1 m in the place of the map; NULL: none were, because the finding is minor, it is not the gravest of its rule (check --robustness judges all), check --no-robustness was given, that part alone does not give the finding, or the run was interrupted while they were judged
+    n_stays INTEGER,                  -- number of these copies in which it is a finding too; NULL: as n_copies
+    t_start_s DOUBLE NOT NULL,        -- t_start_ns in seconds since the drive's first time stamp, as reasons print times
     t_worst_s DOUBLE NOT NULL,        -- t_worst_ns in the same way
     t_end_s DOUBLE NOT NULL,          -- t_end_ns in the same way
-    closing_mps DOUBLE                -- how fast ego and object come nearer: their relative velocity along the line between their box centres. Of a rule tagged contact: at the last step before the first failing one at which the velocities of both are known, at most 1 s before it. Of another rule: at the worst step, or, where they touch at it, at the last step before they did. Negative: they draw apart; NULL: no object, no such step, or the place or velocity of one is not known
+    closing_mps DOUBLE                -- closing speed of ego and object: their relative velocity along the line between their box centres. Of a rule tagged contact: at the last step before the first failing one at which the velocities of both are known, at most 1 s before it. Of another rule: at the worst step, or, where they touch at it, at the last step before they did. Negative: they move apart; NULL: no object, no such step, or the place or velocity of one is not known
 );
 
 -- lifetime: drive
@@ -85,10 +85,10 @@ CREATE TABLE margin (
     ref_id INTEGER,                   -- the assertion reference point; NULL: invariant
     t_ns BIGINT NOT NULL,             -- the judged step
     observed DOUBLE,                  -- value at that step
-    required DOUBLE,                  -- what it was held against
+    required DOUBLE,                  -- the value that observed was compared with
     margin DOUBLE,                    -- signed, positive = kept; NULL for sense = holds
     holds BOOLEAN,                    -- kept at this step; NULL: unknown
     unit VARCHAR,                     -- of observed, required and margin
-    t_s DOUBLE NOT NULL,              -- t_ns in seconds since the drive's first time stamp, as reasons tell times
+    t_s DOUBLE NOT NULL,              -- t_ns in seconds since the drive's first time stamp, as reasons print times
     finding_id VARCHAR                -- the finding of which it is a failing step; NULL: it is of none
 );

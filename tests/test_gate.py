@@ -193,7 +193,7 @@ def test_waivers_in_the_settings_and_in_a_file_until_their_day(ran: Ran) -> None
     code, out, _ = ran(*check, "--today", "2027-01-01", "--waivers", "more.toml", "--format", "json")
     told = json.loads(out)["gate"]
     assert (code, told["waived_findings"], told["waivers"]) == (0, 1, {"active": 1, "expired": 0, "unmatched": 1})
-    assert told["notes"] == ["more.toml:2: no finding is like that: ukhc.r126.* (jo); correct or drop it"]
+    assert told["notes"] == ["more.toml:2: no finding matches ukhc.r126.* (jo); correct or remove it"]
     assert ran("inspect", COLLISION, *ON_ROAD[:-2])[0] == 0, "waivers are no option of other commands"
 
 
@@ -232,7 +232,7 @@ def test_diff_of_two_results(results: dict[str, Path], ran: Ran) -> None:
     assert ran("diff", base, base)[0] == 0
     code, out, _ = ran("diff", new, base)
     assert code == 4
-    assert "gone but not fixed: 0 unknown now, 1 not looked at" in out, "a drive that was left out fixes nothing"
+    assert "gone but not fixed: 0 unknown now, 1 not judged now" in out, "a drive that was left out fixes nothing"
     code, out, _ = ran("diff", base, new, "--format", "json")
     assert (code, json.loads(out)["exit"]["code"]) == (1, 1)
     code, out, _ = ran("diff", base, new, "--format", "markdown")

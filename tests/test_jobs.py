@@ -17,6 +17,7 @@ from drivelint.cli.receipts import Outputs
 from drivelint.engine.interruption import Interruption, NothingJudgedError
 from drivelint.errors import DriveLintError, MemoryShortError, TraceError
 from drivelint.receipts.recorder import recording
+from drivelint.report.log_notes import LogNote
 from drivelint.report.outputs import working_folder, write
 from drivelint.report.progress import Progress
 from drivelint.result.joining import join
@@ -111,7 +112,7 @@ def test_a_log_that_two_parts_have_is_judged_once(alone: Alone) -> None:
     judged = alone.result
     assert judged.run_options is not None
     drives = sorted(judged.run_options.traces)
-    notes = tuple(run.LogNote(Path(judged.run_options.traces[drive]), "said", once=True) for drive in drives)
+    notes = tuple(LogNote(Path(judged.run_options.traces[drive]), "said", once=True) for drive in drives)
     one = run.JudgedLogs(replace(judged, **_of(judged, drives[:2], inside=True)), notes[:2], (), {})
     first, second = parallel._without_copies([one, run.JudgedLogs(judged, notes, (), {})])
     assert first is one

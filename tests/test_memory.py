@@ -180,7 +180,7 @@ def test_memory_that_does_not_do_is_no_error(
         assert notes.said == [], "the limit is lifted only where nothing else helps"
     else:
         assert re.fullmatch(
-            r"1\.2 GB of memory do not do \(--memory\): the database may take up to .* GiB", notes.said[0]
+            r"1\.2 GB of memory are not enough \(--memory\): the database may use up to .* GiB", notes.said[0]
         )
         assert len(notes.said) == 1
 
@@ -241,7 +241,7 @@ def test_a_rule_for_which_no_memory_does_is_an_error_in_the_same_words(
     mine = [row for row in rows if row["rule_id"] == FEW[0]]
     assert {row["ego_id"] for row in mine} == {row["ego_id"] for row in rows}
     assert {(row["verdict"], row["reason_code"], row["reason"]) for row in mine} == {
-        ("error", "out_of_memory", f"rule {FEW[0]}: needs more memory than there is")
+        ("error", "out_of_memory", f"rule {FEW[0]}: needs more memory than is available")
     }
     assert "error" not in {row["verdict"] for row in rows if row["rule_id"] != FEW[0]}
 

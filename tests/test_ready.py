@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import email
 import io
 import os
 import re
@@ -13,11 +14,12 @@ import tarfile
 import venv
 import zipfile
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import pytest
 import yaml
 
+from drivelint import __version__
 from drivelint import demo as demo_files
 from drivelint.guide import FOLDER
 from tests.guide.blocks import blocks
@@ -26,6 +28,7 @@ from tests.shared_data import ROOT
 MOST_IMAGE_BYTES = 600_000_000
 BASE_BYTES = 45_000_000
 """What a registry keeps of python:3.12-slim."""
+JUNK = re.compile(r"(?:^|/)(?:__pycache__|\.venv|\.\w+_cache|\.git|out|dist|build)/|\.(?:pyc|log|tmp|orig|whl)$|~$")
 NO_NETWORK = """
 import socket
 
@@ -71,17 +74,29 @@ def built(source: Path, out: Path, kind: str) -> Path:
     return made
 
 
-@pytest.mark.ci
-def test_wheel_and_sdist_install_and_run_offline_from_their_own_files(tmp_path: Path) -> None:
-    pytest.importorskip("hatchling", reason="hatchling is not installed: pip install hatchling")
-    wheel, sdist = (built(ROOT, tmp_path / kind, kind) for kind in ("wheel", "sdist"))
-    with tarfile.open(sdist) as packed:
-        packed.extractall(tmp_path / "tree", filter="data")
-    (tree,) = (tmp_path / "tree").iterdir()
-    again = built(tree, tmp_path / "again", "wheel")
-    assert contents(again) == contents(wheel), "the sdist lacks nothing that the wheel has"
+class Packages(NamedTuple):
+    """What this tree is built into, and the wheel that is built from the sdist."""
 
-    python = installed(again, tmp_path / "venv")
+    wheel: Path
+    sdist: Path
+    wheel_of_sdist: Path
+
+
+@pytest.fixture(scope="module")
+def packages(tmp_path_factory: pytest.TempPathFactory) -> Packages:
+    pytest.importorskip("hatchling", reason="hatchling is not installed: pip install hatchling")
+    home = tmp_path_factory.mktemp("packages")
+    wheel, sdist = (built(ROOT, home / kind, kind) for kind in ("wheel", "sdist"))
+    with tarfile.open(sdist) as packed:
+        packed.extractall(home / "tree", filter="data")
+    (tree,) = (home / "tree").iterdir()
+    return Packages(wheel, sdist, built(tree, home / "again", "wheel"))
+
+
+@pytest.mark.ci
+@pytest.mark.parametrize("kind", ["wheel", "sdist"])
+def test_wheel_and_sdist_install_and_run_the_demo_offline(kind: str, packages: Packages, tmp_path: Path) -> None:
+    python = installed(getattr(packages, kind), tmp_path / "venv")
     env = {
         "PATH": f"{python.parent}{os.pathsep}{os.environ['PATH']}",
         "DRIVELINT_CACHE_DIR": str(tmp_path / "cache"),
@@ -89,11 +104,53 @@ def test_wheel_and_sdist_install_and_run_offline_from_their_own_files(tmp_path: 
     }
     there = run("python -c 'import drivelint; print(drivelint.__file__)'", tmp_path, **env)
     assert Path(there.stdout.strip()).is_relative_to(tmp_path)
-    line = "drivelint demo && drivelint check demo/near-miss.mcap --map demo/road.xodr --out results --no-robustness"
+    assert run("drivelint --version", tmp_path, **env).stdout.split()[-1] == __version__
+    # the demo as README has it, without the copies, which take most of its time
+    line = "drivelint demo && drivelint check demo/*.mcap --map demo/road.xodr --out results --no-robustness"
     done = run(line, tmp_path, **env)
     assert done.returncode == 1, done.stderr
+    assert "in 6 of 6 drives; CONTACT in 2 drives" in done.stdout
     assert (tmp_path / "results" / "report.html").is_file()
     assert run("drivelint docs ci && drivelint rules list", tmp_path, **env).returncode == 0
+
+
+@pytest.mark.ci
+def test_the_wheel_of_the_sdist_is_the_wheel_of_the_tree(packages: Packages) -> None:
+    assert contents(packages.wheel_of_sdist) == contents(packages.wheel)
+    names = contents(packages.wheel)
+    assert {"drivelint/py.typed", "drivelint/NOTICE", "drivelint/guide/search.js"} <= names.keys()
+    assert {name.partition("/")[0] for name in names} == {"drivelint", f"drivelint-{__version__}.dist-info"}
+    assert [name for name in names if JUNK.search(name)] == []
+
+
+@pytest.mark.ci
+def test_the_sdist_has_what_git_has(packages: Packages) -> None:
+    """So it has no junk, and its tests find all that they read."""
+    words = ["git", "ls-files", "--cached", "--others", "--exclude-standard"]
+    told = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=False)
+    if told.returncode:
+        pytest.skip("this is no git checkout")
+    with tarfile.open(packages.sdist) as packed:
+        names = {name.partition("/")[2] for name in packed.getnames()}
+    assert names - {"PKG-INFO"} == {name for name in told.stdout.splitlines() if (ROOT / name).exists()}
+    assert [name for name in names if JUNK.search(name)] == []
+
+
+@pytest.mark.ci
+def test_an_index_can_show_what_the_packages_say_of_themselves(packages: Packages) -> None:
+    with zipfile.ZipFile(packages.wheel) as files:
+        about = f"drivelint-{__version__}.dist-info"
+        metadata = files.read(f"{about}/METADATA")
+        assert {f"{about}/licenses/LICENSE", f"{about}/licenses/src/drivelint/NOTICE"} <= set(files.namelist())
+    with tarfile.open(packages.sdist) as packed:
+        info = packed.extractfile(f"drivelint-{__version__}/PKG-INFO")
+        assert info is not None
+        assert info.read() == metadata
+    told = email.message_from_bytes(metadata)
+    assert (told["Name"], told["Version"], told["Requires-Python"]) == ("drivelint", __version__, ">=3.11")
+    assert (told["License-Expression"], told["Description-Content-Type"]) == ("Apache-2.0", "text/markdown")
+    assert metadata.decode().partition("\n\n")[2] == (ROOT / "README.md").read_text(encoding="utf-8")
+    assert told["Project-URL"] is None, "drivelint has no address of its own yet"
 
 
 def contents(wheel: Path) -> dict[str, int]:
@@ -102,22 +159,31 @@ def contents(wheel: Path) -> dict[str, int]:
         return {each.filename: each.CRC for each in files.infolist() if not each.filename.endswith("RECORD")}
 
 
-def installed(wheel: Path, home: Path) -> Path:
-    """Install a wheel into an environment that has our dependencies and no network; return its interpreter."""
+def pip() -> list[str]:
+    """Return the words that call the pip of a python3 on the path: the environment of the tests has none."""
+    for folder in dict.fromkeys(f"{os.environ['PATH']}{os.pathsep}{os.defpath}".split(os.pathsep)):
+        if python := shutil.which("python3", path=folder):
+            words = [python, "-m", "pip"]
+            if subprocess.run([*words, "--version"], check=False, capture_output=True).returncode == 0:
+                return words
+    pytest.skip("no python3 on the path has pip")
+
+
+def installed(package: Path, home: Path) -> Path:
+    """Install a wheel or an sdist into an environment that has our dependencies and no network; return its interpreter."""
     venv.create(home, with_pip=False)
     python = home / "bin" / "python"
     place = Path(sysconfig.get_path("purelib", vars={"base": str(home), "platbase": str(home)}))
-    pip = shutil.which("python3", path=os.defpath + os.pathsep + os.environ["PATH"])
-    done = subprocess.run(
-        [str(pip), "-m", "pip", "--python", python, "install", "-q", "--no-index", "--no-deps", wheel],
-        capture_output=True, text=True, check=False,
-    )  # fmt: skip
-    if done.returncode:
-        pytest.skip(f"pip cannot install here: {done.stderr.strip()[-200:]}")
     # ours come first: a path file adds folders behind, and does not follow the path files in them, such as that of this checkout
     (place / "dependencies.pth").write_text(
         "\n".join(path for path in sys.path if path.endswith("site-packages")), encoding="utf-8"
     )
+    words = ["install", "-q", "--no-index", "--no-deps", "--no-build-isolation", "--ignore-installed", str(package)]
+    done = subprocess.run(
+        [*pip(), "--python", python, *words],
+        cwd=home, env={**os.environ, "PYTHONPATH": ""}, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
     (place / "sitecustomize.py").write_text(NO_NETWORK, encoding="utf-8")
     return python
 

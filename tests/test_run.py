@@ -214,7 +214,7 @@ def test_none_judged_is_an_error_of_its_own(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("offset", "told"), [((5000.0, 0.0), "its lanes lie in"), ((0.0, 30.0), "none is on anything")]
+    ("offset", "told"), [((5000.0, 0.0), "its lanes lie in"), ((0.0, 30.0), "is on a lane or other area")]
 )
 def test_a_map_of_another_place_is_refused(offset: tuple[float, float], told: str) -> None:
     with pytest.raises(MapError, match=r"of another place than safe\.csv: .*" + told):
@@ -324,7 +324,7 @@ def test_one_vehicle_against_its_lane_is_a_doubt(tmp_path: Path) -> None:
     said = {}
     for hand in ("lht", "rht"):
         (found,) = check(settings(log, handedness=hand, ego="oncoming"), Silent()).drives["quality"].to_pylist()
-        said[hand] = [q["severity"] for q in found if "headings looked at" in q["message"]]
+        said[hand] = [q["severity"] for q in found if "headings examined" in q["message"]]
     assert said == {"lht": [], "rht": ["warning"]}
 
 

@@ -1,4 +1,4 @@
--- How many drives have a finding of a rule about contacts that is sure, or of which nobody looked; how many only possible ones.
+-- Number of drives with a finding of a contact that is sure or was not examined, and of drives with only possible ones.
 SELECT count(*) FILTER (NOT only_possible) AS contacts, count(*) FILTER (only_possible) AS contacts_possible
 FROM (
     SELECT f.key, bool_and(f.is_possible) AS only_possible

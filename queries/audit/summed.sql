@@ -1,4 +1,4 @@
--- What all drives that have a receipt come to, each for itself. Which count once is told of a whole audit: see `fleet/totals.sql`.
+-- The sums over all drives that have a receipt, each counted by itself. Which count once is told of a whole audit: see `fleet/totals.sql`.
 SELECT
     count(*) AS n_drives,
     count(*) FILTER (status = 'judged') AS n_judged,

@@ -1,4 +1,4 @@
--- The inputs ("signals") that rules may require: whether each log and its map give them. A rule is not run, and its verdict is unknown, if
+-- The inputs ("signals") that rules may require: whether each log and its map have them. A rule is not run, and its verdict is unknown, if
 -- it requires an input that has no row here with available = true.
 WITH ego_log AS (
     SELECT
@@ -13,7 +13,7 @@ WITH ego_log AS (
         EXISTS (FROM signal_state l WHERE l.drive_id = c.drive_id AND l.state IS NOT NULL) AS has_signals,
         EXISTS (FROM drive_condition x WHERE x.drive_id = c.drive_id AND x.condition = 'road_type') AS is_road_type_given,
         EXISTS (FROM drive_condition x WHERE x.drive_id = c.drive_id AND x.condition = 'engaged') AS is_engaged_given,
-        -- A log has whoever was around the ego, if its format does not tell that they were not recorded.
+        -- A log has the actors around the ego, unless its format shows that they were not recorded.
         NOT EXISTS (FROM quality q WHERE q.drive_id = c.drive_id AND q.check_id = 'no_road_users') AS has_road_users,
         EXISTS (FROM actor o WHERE o.drive_id = c.drive_id AND o.actor_id <> c.ego_id) AS has_others,
         EXISTS (FROM actor o WHERE o.drive_id = c.drive_id AND o.actor_id <> c.ego_id AND o.actor_class <> 'vehicle') AS has_classes
@@ -41,7 +41,7 @@ map_content AS (
         EXISTS (FROM exit_lane x WHERE x.environment_id = e.environment_id) AS has_exits
     FROM environment e
 ),
--- Per signal: whether the map must give it, whether it is available, and the reason to state if it is available and if it is missing.
+-- Per signal: whether the map must have it, whether it is available, and the reason to state if it is available and if it is missing.
 ego_input AS (
     SELECT s.drive_id, s.ego_id, s.environment_id, s.no_map_reason, unnest([
         {'signal': 'map', 'is_of_map': true, 'available': m.environment_id IS NOT NULL, 'reason_available': why('has_map', {'environment_id': m.environment_id}), 'reason_missing': NULL},

@@ -173,7 +173,7 @@ moving_encounter AS MATERIALIZED (
         AND s.t_ns >= e.t_object_in_ns AND s.t_ns <= e.t_object_out_ns AND coalesce(s.speed_mps > standing_mps(), true)
     SEMI JOIN state_dynamics o ON o.drive_id = e.drive_id AND o.actor_id = e.ego_id
         AND o.t_ns >= e.t_ego_in_ns AND o.t_ns <= e.t_ego_out_ns AND coalesce(o.speed_mps > standing_mps(), true)
-    -- An actor over or under the ego's road does not meet the ego. off_level also holds where that is only possible: pair then gives the
+    -- An actor over or under the ego's road does not meet the ego. off_level is also true where that is only possible: pair then gives the
     -- actor no position.
     ANTI JOIN (FROM pair WHERE off_level) p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.object_id = e.object_id
         AND p.t_ns >= e.t_object_in_ns AND p.t_ns <= e.t_object_out_ns

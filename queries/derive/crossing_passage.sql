@@ -145,7 +145,7 @@ waiting_person AS (
     )
     GROUP BY drive_id, ego_id, mark_id, t_ns
 ),
--- ---- whether somebody else can have been there
+-- ---- whether another actor can have been there
 unplaced_person AS (
     SELECT v.drive_id, v.ego_id, v.mark_id, v.t_ns, o.object_id, v.x_m, v.y_m, v.t_watch_from_ns, v.t_watch_to_ns,
         CASE WHEN o.actor_class IS NULL THEN 30.0 ELSE 3.0 END * count(*) * any_value(c.period_ns) / 1e9 AS reach_m

@@ -48,7 +48,7 @@ sample AS (
     LEFT JOIN chosen o ON o.drive_id = st.drive_id
     JOIN state_dynamics s ON s.drive_id = st.drive_id AND s.actor_id = st.ego_id AND s.t_ns = st.t_ns
     LEFT JOIN (SELECT DISTINCT drive_id, actor_id FROM quality WHERE check_id = 'velocity_filtered') q ON q.drive_id = st.drive_id AND q.actor_id = st.ego_id
-    -- Who hardly moves has no course.
+    -- An ego that hardly moves has no course.
     CROSS JOIN LATERAL (SELECT CASE WHEN s.speed_mps > 2.0 THEN atan2(s.vy_mps, s.vx_mps) END AS rad) course
     WINDOW w AS (PARTITION BY st.drive_id, st.ego_id, st.seg ORDER BY st.t_ns)
 ),

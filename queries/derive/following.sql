@@ -3,7 +3,7 @@
 WITH manoeuvre_step AS (
     SELECT drive_id, ego_id, t_ns, bool_or(is_sure) AS is_sure
     FROM (
-        -- An ego that stays astride of the line for longer than a lane change takes, and passes nobody, is in its lane and in the next one.
+        -- An ego that stays astride of the line for longer than a lane change takes, and passes no actor, is in its lane and in the next one.
         SELECT *, t_astride_ns IS NULL OR t_ns - t_astride_ns <= longest_change_ns() OR passing_id IS NOT NULL OR overtaking AS is_sure
         FROM line_step
         WHERE manoeuvre

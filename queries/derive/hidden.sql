@@ -133,7 +133,7 @@ distance_bound AS (
         coalesce(CASE WHEN t_before_ns IS NOT NULL THEN last_place.direction = 1 ELSE true END AND CASE WHEN t_after_ns IS NOT NULL THEN next_place.direction = 1 ELSE true END AND coalesce(t_before_ns, t_after_ns) IS NOT NULL, false) AS along
     FROM station_range
 ),
--- While everything around the ego is in plain view, nobody drives past the ego unseen. An object that is ahead (or behind) at the beginning
+-- While everything around the ego is in plain view, no vehicle drives past the ego unseen. An object that is ahead (or behind) at the beginning
 -- of such a time stays so until its end, and an object that is ahead (or behind) at its end was so from its beginning.
 view_step AS (
     SELECT

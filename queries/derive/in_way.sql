@@ -24,7 +24,7 @@ in_way_check AS (
     SELECT
         *,
         across_m < way_beside_m() OR in_lane OR across_m <= enters_s() * least(towards_mps, least_towards_mps) AND towards_before_mps IS NOT NULL AS in_way,
-        -- Somebody on foot beside the way may step into it. So may an actor of unknown class or velocity.
+        -- A pedestrian beside the path may step into it. So may an actor of unknown class or velocity.
         across_m < way_beside_m() + unknown_half_m OR across_m <= enters_s() * towards_mps OR across_m < may_step_m() AND (actor_class IS NULL OR NOT may_be_vehicle(actor_class) OR towards_mps IS NULL) AS may_be_in_way,
         need_mps2(gap_m, ego_speed_mps, along_mps) AS need_mps2
     FROM (

@@ -108,7 +108,7 @@ branch_count AS (
     LEFT JOIN road_half h USING (environment_id, road_id)
     GROUP BY environment_id, junction_id
 ),
--- A map with lights alone does not tell that no sign stands where there is no light.
+-- A map that has only lights does not show that there is no sign where there is no light.
 map_with_signals AS (
     SELECT DISTINCT t.environment_id
     FROM traffic_signal t

@@ -55,7 +55,7 @@ object_ahead AS (
 on_course AS (
     SELECT
         p.drive_id, p.ego_id, p.t_ns, p.object_id, f.dx - e.length_m / 2 - box_half_across_m(p.width_m, p.length_m, f.turn_rad) AS gap_m, along_lane_mps(p.speed_mps, f.turn_rad) AS speed_mps,
-        -- Straight on counts as well: who comes out of a bend straightens.
+        -- Straight on counts as well: an ego that comes out of a bend straightens.
         bool_or(
             abs(arc_offset_m(f.dx, f.dy, s.bend_per_m)) < e.width_m / 2 + box_half_across_m(p.length_m, p.width_m, f.turn_rad - s.bend_per_m * f.dx)
             AND abs(f.dy) < e.width_m / 2 + box_half_across_m(p.length_m, p.width_m, f.turn_rad)

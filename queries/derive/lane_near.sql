@@ -1,4 +1,4 @@
--- The drivable lanelets that follow a drivable lanelet within three links. They tell whether two positions can belong to one path.
+-- The drivable lanelets that follow a drivable lanelet within three links. They show whether two positions can belong to one path.
 WITH link AS (
     SELECT l.environment_id, l.from_id, l.to_id
     FROM lane_link l

@@ -83,7 +83,7 @@ line_contact AS (
     WHERE line_contact
     GROUP BY ALL
 ),
--- Stretches in which the ego overtakes somebody astride of the line.
+-- Stretches in which the ego overtakes a vehicle that is astride of the line.
 overtaking AS (
     SELECT s.drive_id, s.ego_id, s.seg, s.line_no, s.run_no, bool_or(NOT may_be_passed_over_solid_line(a.actor_class, a.length_m, o.v_vbp_mps)) AS is_moving
     FROM line_stretch s

@@ -33,7 +33,7 @@ CREATE OR REPLACE TEMP MACRO lack(off_level, x_m, y_m, yaw_rad, length_m, width_
     WHEN x_m IS NULL OR y_m IS NULL THEN 'no_position' WHEN yaw_rad IS NULL THEN 'no_heading'
     WHEN length_m IS NULL OR width_m IS NULL THEN 'no_size' END;
 
--- Why the nearest object that has no place hides what the rule asks for.
+-- Why the nearest object without a place hides what the rule needs.
 CREATE OR REPLACE TEMP MACRO hidden_reason(nearest) AS why(CASE nearest.code WHEN 'lost' THEN 'object_lost'
         WHEN 'lost_behind' THEN 'object_lost_behind' WHEN 'appeared' THEN 'object_appeared' ELSE 'object_hidden' END,
     {'object_id': nearest.id, 'lack': nearest.code,

@@ -26,7 +26,7 @@ WITH _window_extent AS (
     FROM (SELECT j.*, r.eventually, r.sense FROM _judged j JOIN _rule r ON r.rule_no = j.rule_no AND r.kind <> 'invariant')
     GROUP BY rule_no, ref_id, drive_id, ego_id, object_id, profile
 ), _seen AS (
-    -- the reference points of a condition about objects at which somebody is there
+    -- the reference points of a condition about objects at which an object is there
     SELECT DISTINCT p.rule_no, p.ref_id FROM _reference_step p
     SEMI JOIN (SELECT DISTINCT rule_no FROM _occasion WHERE crowd) o ON o.rule_no = p.rule_no
     SEMI JOIN pair q ON q.drive_id = p.drive_id AND q.ego_id = p.ego_id AND q.t_ns = p.t_ns

@@ -1,7 +1,7 @@
 -- Made after `finding`: a failed verdict names its findings.
 INSERT INTO verdict BY NAME
 WITH _track_end_times AS (
-    -- the first time at which the log loses somebody, and the last at which somebody comes into it
+    -- the first time at which the log loses an actor, and the last at which an actor comes into it
     SELECT drive_id, ego_id, min(t_ns) FILTER (lost) AS gone_ns, max(t_ns) FILTER (NOT lost) AS to_come_ns
     FROM track_end GROUP BY ALL
 ), _numbered AS MATERIALIZED (

@@ -85,10 +85,10 @@ CREATE OR REPLACE MACRO ego_lacks(x_m, yaw_rad, lanelet_id, front_s_m) AS CASE
     WHEN lanelet_id IS NULL THEN why('ego_off_lanes')
     WHEN front_s_m IS NULL THEN why('ego_beyond_lanes') END;
 
--- The reason if it cannot be told whether two boxes touch.
+-- The reason if it is not known whether two boxes touch.
 CREATE OR REPLACE MACRO graze_doubt(object_id) AS why('grazes', {'object_id': object_id});
 
--- The reason if it cannot be told whether the ego overtook this vehicle.
+-- The reason if it is not known whether the ego overtook this vehicle.
 CREATE OR REPLACE MACRO overtake_doubt(vbp_id) AS CASE WHEN vbp_id IS NOT NULL THEN why('overtake_unsure', {'object_id': vbp_id}) END;
 
 -- It is not sure that the ego overtakes: it may have only looked past the vehicle ahead, or changed lane behind it.
@@ -141,11 +141,11 @@ CREATE OR REPLACE MACRO brake_release_ns() AS 2_000_000_000;
 CREATE OR REPLACE MACRO coming_for_ns() AS 300_000_000;
 
 -- Whether an actor in the way, which asks for a deceleration of `need_mps2`, is a reason to brake harder than `abrupt_mps2`. `known`: no
--- other actor may be in the way. Result NULL: cannot be told.
+-- other actor may be in the way. Result NULL: not known.
 CREATE OR REPLACE MACRO asks_to_brake(need_mps2, known, abrupt_mps2) AS need_mps2 >= abrupt_mps2 OR CASE WHEN known THEN false END;
 
 -- Whether the ego stands because of an actor in its way: a vehicle within `queue_m` that is no faster than `slow_mps`, or a pedestrian, an
--- animal or an object within `hazard_m`. `known`: no other actor may be in the way. Result NULL: cannot be told.
+-- animal or an object within `hazard_m`. `known`: no other actor may be in the way. Result NULL: not known.
 CREATE OR REPLACE MACRO stands_because_of(object_id, actor_class, gap_m, along_mps, known, queue_m, hazard_m, slow_mps) AS
     CASE WHEN object_id IS NOT NULL AND NOT may_be_vehicle(actor_class) AND gap_m <= hazard_m THEN true
         WHEN object_id IS NOT NULL AND gap_m <= queue_m AND along_mps <= slow_mps THEN true
@@ -170,7 +170,7 @@ CREATE OR REPLACE MACRO no_return_ns() AS 500_000_000;
 -- the map may be moved against the log. (In the logs of the case study it is 0.04 to 0.26 m.)
 CREATE OR REPLACE MACRO aside_of_lane_m() AS 0.7;
 
--- Our default: who is against a one-way road for longer than this drives there, and does not turn round.
+-- Our default: an ego that is against a one-way road for longer than this drives there, and does not turn round.
 CREATE OR REPLACE MACRO one_way_ns() AS 5_000_000_000;
 
 -- Our default: an overtake on the opposing side takes no longer than this (those of the case study take 6 s at 5 m/s). An ego that has been

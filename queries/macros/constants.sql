@@ -5,7 +5,7 @@ CREATE OR REPLACE MACRO over_boundary_m() AS 0.05;
 -- A corner that is over a boundary by less than this may not have left the lane: boundaries without a marking are not surveyed, and boxes
 -- are estimates.
 CREATE OR REPLACE MACRO surely_out_m() AS 0.3;
--- Half a metre on either side: who has it passes a standing vehicle without leaving the lane.
+-- Half a metre on either side: an ego with this room passes a standing vehicle without leaving the lane.
 CREATE OR REPLACE MACRO room_beside_standing_m() AS 1.0;
 -- Half width of the strip in which the corridor gives positions, and how far the strip reaches ahead of and behind the ego's way.
 CREATE OR REPLACE MACRO strip_m() AS 15.0;
@@ -15,7 +15,7 @@ CREATE OR REPLACE MACRO corridor_behind_m() AS 200.0;
 CREATE OR REPLACE MACRO exact_clearance_m() AS 30.0;
 -- An object whose track ends this close to the ego has not simply driven away.
 CREATE OR REPLACE MACRO lost_near_m() AS 50.0;
--- The range of a recorder; this default holds if nobody gives it.
+-- The range of a recorder; this default applies if it is not set.
 CREATE OR REPLACE MACRO sight_m(sensor_range_m) AS coalesce(sensor_range_m, lost_near_m());
 -- An actor that is no faster than this stands: the positions of parked vehicles jitter.
 CREATE OR REPLACE MACRO standing_mps() AS 0.5;

@@ -172,5 +172,5 @@ CREATE OR REPLACE MACRO late_s() AS 2.0;
 -- change of lane 1 m/s2 beside that of the bend. One that drives with more than 2.5 m/s2 across its way swerves, however little it needed.
 CREATE OR REPLACE MACRO changes_lane_mps2() AS 1.0;
 CREATE OR REPLACE MACRO swerves_from_mps2() AS 2.5;
--- Nobody gets off a course in less time: what is nearer, and not hit, was passed by.
+-- No vehicle leaves a course in less time: an actor that is nearer, and not hit, was passed.
 CREATE OR REPLACE MACRO steering_s() AS 0.5;

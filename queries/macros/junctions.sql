@@ -53,7 +53,7 @@ CREATE OR REPLACE MACRO near_mark_m() AS 10.0;
 CREATE OR REPLACE MACRO merging_s() AS 1.0;
 -- The least time that rules require between the ego and another vehicle at a junction.
 CREATE OR REPLACE MACRO least_junction_s() AS 2.0;
--- To say that nobody came, the log must go on for at least this long after the ego has left (twice what rules ask for).
+-- To say that nobody came, the log must go on for at least this long after the ego has left (twice what rules require).
 CREATE OR REPLACE MACRO watched_ns() AS 4_000_000_000;
 -- An actor that is not seen for a while may have been where ways meet if it was this near to that place, or could have come this near.
 CREATE OR REPLACE MACRO meeting_near_m() AS 30.0;
@@ -65,10 +65,10 @@ CREATE OR REPLACE MACRO piece_distance_m(x, y, x0, y0, tx, ty, a, b) AS
 -- An impact: two boxes are this near, and one of the two loses or gains speed faster than dry tyres can. As in the rule contact-signature.
 CREATE OR REPLACE MACRO impact_within_m() AS 0.5;
 CREATE OR REPLACE MACRO tyre_mps2() AS 12.0;
--- The jolt of a pair. Who may be on foot only loses speed: recorded speeds of pedestrians jump.
+-- The jolt of a pair. For an actor that may be on foot, only a loss of speed counts: recorded speeds of pedestrians jump.
 CREATE OR REPLACE MACRO jolt_mps2(actor_class, accel_mps2, ego_accel_mps2) AS
     greatest(-accel_mps2, CASE WHEN NOT may_walk(actor_class) THEN accel_mps2 END, abs(ego_accel_mps2));
--- A deceleration that is more than letting off the accelerator: the least that any rule asks about.
+-- A deceleration that is more than letting off the accelerator: the lowest that any rule uses.
 CREATE OR REPLACE MACRO least_braking_mps2() AS 1.5;
 -- Our default: a deceleration that is not noise. A driver who sees from far away that they must wait lets the vehicle roll out.
 CREATE OR REPLACE MACRO gentle_mps2() AS 0.3;

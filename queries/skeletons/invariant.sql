@@ -1,5 +1,5 @@
 -- title = "Not too fast while it moves"
--- clause = "none yet: name the rule and its paragraph first, then say in your own words what it asks"
+-- clause = "none yet: name the rule and its paragraph first, then state in your own words what it demands"
 -- hypothesis = "While the ego moved, was it no faster than it should be?"
 -- kind = "invariant"            # judged at every step
 -- derivation = "direct"         # or "model", where the rule judges by a model (of braking, for example), not by a recorded value alone
@@ -11,12 +11,12 @@
 -- near_margin = 1.0             # kept by less than this: a near miss
 -- observes = "speed"
 -- reads = ["ego_state"]         # the tables of the SQL below
--- requires = []                 # what the log must be able to give: see drivelint inspect
+-- requires = []                 # the signals that the log must have: see drivelint inspect
 --
 -- [params.most_mps]             # every number of the rule is one of these, bound as $name
 -- default = 20.0
 -- unit = "m/s"
--- why = "an example: say where the number is from, or that it is your own"
+-- why = "an example: state the source of the number, or that it is your own"
 -- source = ""
 
 -- @applies

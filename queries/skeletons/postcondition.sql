@@ -1,9 +1,9 @@
 -- title = "Slow enough after it left its lane"
--- clause = "none yet: name the rule and its paragraph first, then say in your own words what it asks"
+-- clause = "none yet: name the rule and its paragraph first, then state in your own words what it demands"
 -- hypothesis = "Throughout the seconds after the ego crossed the boundary of its lane, was it no faster than it should be?"
 -- kind = "postcondition"        # judged after each reference point
--- subtype = "temporal"          # in a window of time; "physical": at places or times that a section @anchor gives
--- window_s = "window_s"         # a number of seconds, or the parameter that holds it
+-- subtype = "temporal"          # in a window of time; "physical": at places or times from a section @anchor
+-- window_s = "window_s"         # a number of seconds, or the parameter with it
 -- quantifier = "always"         # or "eventually": once in the window is enough
 -- derivation = "direct"         # or "model", where the rule judges by a model (of braking, for example), not by a recorded value alone
 -- severity = "minor"            # critical | major | minor
@@ -14,18 +14,18 @@
 -- near_margin = 1.0             # kept by less than this: a near miss
 -- observes = "speed"
 -- reads = ["ego_state", "lane_departure"]   # the tables of the SQL below
--- requires = ["map", "registration"]        # what the log must be able to give: see drivelint inspect
+-- requires = ["map", "registration"]        # the signals that the log must have: see drivelint inspect
 --
 -- [params.window_s]             # every number of the rule is one of these, bound as $name
 -- default = 2.0
 -- unit = "s"
--- why = "an example: say where the number is from, or that it is your own"
+-- why = "an example: state the source of the number, or that it is your own"
 -- source = ""
 --
 -- [params.most_mps]
 -- default = 20.0
 -- unit = "m/s"
--- why = "an example: say where the number is from, or that it is your own"
+-- why = "an example: state the source of the number, or that it is your own"
 -- source = ""
 
 -- @reference

@@ -1,7 +1,7 @@
 """drivelint checks recorded drives against the rules of the road.
 
-From Python: `drivelint.check`, `drivelint.open`, `drivelint.diff` and `drivelint.read_trace`; see `drivelint docs python`. What type
-checkers see of this module stands in `__init__.pyi`.
+From Python: `drivelint.check`, `drivelint.open`, `drivelint.diff` and `drivelint.read_trace`; see `drivelint docs python`. `__init__.pyi`
+has the types of this module for type checkers.
 """
 
 from importlib import import_module
@@ -27,7 +27,7 @@ _OF_API = frozenset(__all__) - {"DriveLintError"}
 
 
 def __getattr__(name: str) -> object:
-    """Import the Python interface when it is asked for: `import drivelint` itself loads nothing heavy."""
+    """Import the Python interface on first use: `import drivelint` itself loads nothing heavy."""
     if name not in _OF_API:
         raise AttributeError(f"module 'drivelint' has no attribute {name!r}")
     return getattr(import_module("drivelint.api"), name)

@@ -1,4 +1,4 @@
-"""What work takes: seconds of the processor, which do not depend on what else the machine does, and memory."""
+"""The costs of work: seconds of the processor, which do not depend on other programs of the machine, and memory."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Work:
         return self._seconds
 
     def _cpu_s_of_other_threads(self) -> dict[int, float]:
-        """Return how long each other Python thread has computed; nothing where the system does not tell."""
+        """Return how long each other Python thread has computed; nothing if the system does not report it."""
         found: dict[int, float] = {}
         for thread in threading.enumerate():
             if (number := thread.native_id) is not None and number != self._thread:
@@ -38,7 +38,7 @@ class Work:
 
 
 def resident_bytes(process: int | None = None) -> int:
-    """Return the memory that a process (None: this one) has at present; 0 where the system does not tell."""
+    """Return the memory that a process (None: this one) has at present; 0 if the system does not report it."""
     try:
         return int(_content(f"/proc/{process or 'self'}/statm").split()[1]) * os.sysconf("SC_PAGE_SIZE")
     except (OSError, ValueError, IndexError):  # a process that ends meanwhile may leave the file empty
@@ -46,7 +46,7 @@ def resident_bytes(process: int | None = None) -> int:
 
 
 def _content(path: str) -> bytes:
-    """Return what a file of the system says; many times a second, a path object costs more than the file."""
+    """Return the content of a system file; many times a second, a path object costs more than the file."""
     file = os.open(path, os.O_RDONLY)
     try:
         return os.read(file, 1024)

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 TABLES: Final = ("actor", "actor_state", "data_log", "declared_event", "quality", "signal_state")
 MAP_FILE: Final = "map.xodr"
 CLIP: Final = "clip"
-"""Check of the data quality, information only, that says what log a clip was cut from."""
+"""Check of the data quality, information only, with the log that a clip was cut from."""
 _MARK: Final = "drivelint.converted"
 """Key in the metadata of every Parquet file that is written."""
 _HEAD_BYTES: Final = 64
@@ -41,7 +41,7 @@ _HEAD_BYTES: Final = 64
 
 
 class Clip(NamedTuple):
-    """A part of a log, by the log's own clock, and what it is called."""
+    """A part of a log, by the log's own clock, and its name."""
 
     name: str
     from_ns: int
@@ -50,7 +50,7 @@ class Clip(NamedTuple):
 
 @dataclass(frozen=True)
 class ConvertRequest(DriveInput):
-    """What `convert` is asked to do; the names are those of its options."""
+    """A request to `convert`; the names are those of its options."""
 
     trace: str
     to: Literal["mcap", "parquet"]
@@ -71,7 +71,7 @@ class ConvertedTrace:
     has_ego: bool
     notes: tuple[str, ...]
     check_options: tuple[str, ...] = ()
-    """Options of a check that judges it as the log was judged; none: as anybody would."""
+    """Options of a check that judges it as the log was judged; none: the defaults."""
 
 
 def convert(request: ConvertRequest) -> ConvertedTrace:
@@ -127,7 +127,7 @@ def convert(request: ConvertRequest) -> ConvertedTrace:
 
 
 def _cut_from(trace: Trace, clip: Clip) -> str:
-    """Return what log a clip is cut from, and when of it, in one sentence."""
+    """Return the log and the time range that a clip is cut from, in one sentence."""
     (log,) = trace.tables["data_log"].to_pylist()
     from_s, to_s = ((t_ns - (log["t_start_ns"] or 0)) / 1e9 for t_ns in (clip.from_ns, clip.to_ns))
     whole = clip.from_ns <= (log["t_start_ns"] or 0) and clip.to_ns >= (log["t_end_ns"] or 0)
@@ -174,7 +174,7 @@ def _with_log(trace: Trace, **values: str | float) -> Trace:
 
 
 def _road(request: ConvertRequest, trace: Trace) -> tuple[MapSource | None, Trace, list[str]]:
-    """Return the map that goes along, the user's, else the log's own, the trace in its frame, and what to tell. Errors: as `convert`."""
+    """Return the map that goes along, the user's, else the log's own, the trace in its frame, and a note. Errors: as `convert`."""
     library, own = MapLibrary(request), trace.embedded_map
     if library.uses_embedded(trace) or (road := library.find_source(trace)) is None:
         if own is None:
@@ -182,12 +182,12 @@ def _road(request: ConvertRequest, trace: Trace) -> tuple[MapSource | None, Trac
         return _own_road(request, trace, MapSource(MAP_FILE, own))
     if request.to == "mcap" and (why := _unfit_for_mcap(road)):
         raise UsageError(why)
-    # a wrong map is refused now, not by whoever checks the converted log
+    # a wrong map is refused now, not when the converted log is checked
     return road, library.find(trace)[1], []
 
 
 def _own_road(request: ConvertRequest, trace: Trace, road: MapSource) -> tuple[MapSource | None, Trace, list[str]]:
-    """Return the log's own map as it is, whether it can be used or not: who converts a log loses nothing by it."""
+    """Return the log's own map as it is, whether it can be used or not: converting loses nothing."""
     notes = []
     library = MapLibrary(DriveInput())
     try:
@@ -243,7 +243,7 @@ def _parquet(target: Path, trace: Trace, road: MapSource | None, *, as_recorded:
 
 
 def summary_text(trace: ConvertedTrace) -> str:
-    """Return what was written, and the command that checks it."""
+    """Return the written files, and the command that checks them."""
     size = sum(trace.files.values())
     amount = f"{size / 1e6:.1f} MB" if size >= 1e6 else f"{max(size / 1e3, 0.1):.1f} kB"
     files = f"{len(trace.files)} files, " if len(trace.files) > 1 else ""

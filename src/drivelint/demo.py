@@ -1,4 +1,4 @@
-"""What `drivelint demo` writes: the paper's overtakes and their road, and the command that checks them.
+"""The files of `drivelint demo`: the paper's overtakes and their road, and the command that checks them.
 
 The files are those of `fixtures/scenes`, made by the scenes of `tests/demo`.
 """
@@ -34,7 +34,7 @@ def contents() -> dict[str, bytes]:
 def write(out: Path) -> list[Path]:
     """Write the files into the folder `out`, over those of an earlier demo if there are any.
 
-    Errors: `UsageError` when a file of such a name is somebody else's (nothing is written then); `OutputError` when the
+    Errors: `UsageError` when a file of such a name is not from a demo (nothing is written then); `OutputError` when the
     folder cannot be written.
     """
     files = contents()

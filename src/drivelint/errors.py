@@ -22,7 +22,7 @@ class ExitCode(IntEnum):
 
 LEAST_BYTES: Final = 2_000_000_000
 """With fewer addresses (`ulimit -v`) libraries end the process while they are loaded, in words and with exit codes of their own."""
-_LIMITED: Final = "the limit of memory (ulimit -v) is too low: raise it, and give the same command again"
+_LIMITED: Final = "the limit of memory (ulimit -v) is too low: raise it, and run the same command again"
 LONGEST_LINE: Final = 2000
 """Characters of an error that are shown: a damaged file may hold a name of a megabyte."""
 
@@ -97,7 +97,7 @@ class TraceError(DriveLintError):
 
 
 class ChangedLogError(TraceError):
-    """A log that changed while it was judged: no verdict is about what is there now."""
+    """A log that changed while it was judged: no verdict is about its present content."""
 
 
 class InternalError(DriveLintError):
@@ -116,20 +116,20 @@ _NO_MEMORY: Final = (
 
 
 def of_the_machine(error: Exception) -> tuple[str, ExitCode] | None:
-    """Return what to say of an error that is no fault of the program, and the exit code; None: it is one.
+    """Return the message and the exit code for an error that is no fault of the program; None: it is a fault.
 
     A limit of memory strikes anywhere, also where a library is loaded or a thread begins, and each library says it in its own words.
     """
     if isinstance(error, MemoryError) or any(words in str(error).casefold() for words in _NO_MEMORY):
         limited = least_limit_bytes() is not None
-        return _LIMITED if limited else "there is too little memory: give the same command again", ExitCode.TEMPFAIL
+        return _LIMITED if limited else "there is too little memory: run the same command again", ExitCode.TEMPFAIL
     if isinstance(error, OSError) and error.errno == errno.ENAMETOOLONG:
         return f"{error.filename}: the name is too long for this system: choose a shorter one", ExitCode.USAGE
     return None
 
 
 def least_limit_bytes() -> int | None:
-    """Return the least limit of this process's memory that its user has set; None: there is none, or the system does not tell."""
+    """Return the least limit of this process's memory that its user has set; None: there is none, or the system does not report it."""
     try:
         import resource
     except ImportError:  # Windows

@@ -1,4 +1,4 @@
-"""Reads the files of facts, TOML beside the modules that use them; what they say is kept, as Python reads TOML slowly."""
+"""Reads the files of facts, TOML beside the modules that use them; their content is kept, because Python reads TOML slowly."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ _TOML: Final = Memo[dict[str, Any]]("toml", dict[str, Any])
 
 @cache
 def toml_beside(module_file: str, name: str) -> dict[str, Any]:
-    """Return what the TOML file `name` beside a module or file (its `__file__`) says."""
+    """Return the content of the TOML file `name` beside a module or file (its `__file__`)."""
     return toml_facts(Path(module_file).parent / name)
 
 
 def toml_facts(file: Path) -> dict[str, Any]:
-    """Return what a TOML file of ours says."""
+    """Return the content of a TOML file of ours."""
 
     def read() -> dict[str, Any]:
         import tomllib

@@ -1,7 +1,7 @@
 """Facts that follow from content alone, and take long to find, kept in the user's cache folder.
 
-A fact is kept for the code, the versions and the declarations that it was found with: any other finds it anew. So does whoever has
-no cache folder to write to. `DRIVELINT_CACHE_DIR` names another folder; empty, nothing is kept.
+A fact is kept for the code, the versions and the declarations that it was found with: any other version computes it again. The same
+happens without a writable cache folder. `DRIVELINT_CACHE_DIR` names another folder; empty, nothing is kept.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ MOST_VERSIONS: Final = 5
 
 @cache
 def cache_folder() -> Path | None:
-    """Return the folder for what can be found again; None: nothing is kept."""
+    """Return the cache folder; None: nothing is kept."""
     from platformdirs import user_cache_path
 
     given = os.environ.get("DRIVELINT_CACHE_DIR")
@@ -48,7 +48,7 @@ def cache_folder() -> Path | None:
 
 @cache
 def foundation(code: tuple[str, ...]) -> str:
-    """Return the hash of what facts depend on: versions, these files of the package, declarations and macros."""
+    """Return the hash of the inputs of facts: versions, these files of the package, declarations and macros."""
     versions = [version(name) for name in ("duckdb", "jinja2", "msgspec")]
     said = sha256(" ".join([sys.version, *versions]).encode())
     package = Path(__file__).parent

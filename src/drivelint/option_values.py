@@ -1,4 +1,4 @@
-"""Reads what options say that is more than a word or a number, for the command line and for Python."""
+"""Reads option values that are more than a word or a number, for the command line and for Python."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def parse_today(text: str | None) -> date:
-    """Read the day that waivers are held against; the system's if none is given. Errors: `UsageError`."""
+    """Read the date that decides whether a waiver has expired; by default the system's. Errors: `UsageError`."""
     if text is None:
         return datetime.now().astimezone().date()
     try:
@@ -46,19 +46,19 @@ def parse_memory(text: str | None) -> int | None:
 def one_folder(argument: Path | None, option: Path | None, default: Path) -> Path:
     """Return the folder that an argument or `--out` names. Errors: `UsageError` where they name two."""
     if argument is not None and option not in {None, argument}:
-        raise UsageError(f"{argument} and --out {option}: give one folder")
+        raise UsageError(f"{argument} and --out {option}: name one folder")
     return argument or option or default
 
 
 def robustness_for(confidence: float | None, robustness: bool | None) -> bool | None:
-    """Return which copies are judged: whoever gives a confidence needs those of all findings.
+    """Return which copies are judged: a confidence needs those of all findings.
 
-    Errors: `UsageError` for a confidence that is no share, or that nothing tells.
+    Errors: `UsageError` for a confidence that is no share, or without copies.
     """
     if confidence is not None and robustness is False:
-        raise UsageError("--confidence needs what --no-robustness leaves out: give one of them")
+        raise UsageError("--confidence needs the copies that --no-robustness leaves out: use one of them")
     if confidence is not None and not 0 <= confidence <= 1:
-        raise UsageError(f"--confidence {confidence}: give a share from 0 to 1, such as 0.95")
+        raise UsageError(f"--confidence {confidence}: write a share from 0 to 1, such as 0.95")
     return robustness if confidence is None else True
 
 
@@ -130,13 +130,13 @@ def asked_pack(
     """
     if evidence is None:
         if sign is not None:
-            raise UsageError("--sign is of an evidence pack: say where that goes with --evidence PACK")
+            raise UsageError("--sign is for an evidence pack: name its folder with --evidence PACK")
         return None
     if result is None:
-        raise UsageError("--evidence packs what --out writes: give --out, too")
+        raise UsageError("--evidence packs what --out writes: use --out, too")
     if not whole:
         raise UsageError(
-            "--evidence packs a whole audit: give drivelint merge and then drivelint pack, when all parts have ended"
+            "--evidence packs a whole audit: when all parts have ended, run drivelint merge and then drivelint pack"
         )
     from drivelint.pack import PackRequest, ready
 

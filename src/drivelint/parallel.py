@@ -21,12 +21,14 @@ import pyarrow.compute as pc
 
 from drivelint import run, temporary
 from drivelint.audit.executors.local import begin_worker, cores, deaf_to_ctrl_c
+from drivelint.engine.default_rules import with_chosen_rules
 from drivelint.engine.interruption import Interruption
 from drivelint.engine.memory import LEAST_MEMORY
 from drivelint.errors import DriveLintError, ExitCode, InternalError
 from drivelint.formats.files import file_states
 from drivelint.phrases import plural
 from drivelint.receipts import recorder
+from drivelint.report.log_notes import LogNotes, same_log
 from drivelint.report.progress import Progress
 from drivelint.result.names import PICTURES, TABLE_OF_FILE
 
@@ -36,12 +38,13 @@ if TYPE_CHECKING:
 
     from drivelint.evaluate.limits import DeafRules, Excess
     from drivelint.receipts.inputs import Inputs, IsOutput
+    from drivelint.report.log_notes import LogNote
     from drivelint.result.model import Result
-    from drivelint.run import CheckOptions, JudgedLogs, LogNote
+    from drivelint.run import CheckOptions, JudgedLogs
 
 _LOOK_S: Final = 0.2
 _PATIENCE_S: Final = 5.0
-"""How long a process may take to end by itself."""
+"""The time that a process has to end by itself."""
 
 
 class WorkerLostError(DriveLintError):
@@ -64,7 +67,7 @@ class _Part(NamedTuple):
 
 
 class _Ended(NamedTuple):
-    """What a part came to, and what was read for it."""
+    """The result of a part, and the inputs that were read for it."""
 
     judged_logs: JudgedLogs
     inputs: Inputs | None
@@ -99,6 +102,7 @@ def check(
     Errors: as those of `run.check`; `WorkerLostError`.
     """
     if jobs > 1 and not settings.margins and not settings.keep_db:
+        settings = with_chosen_rules(settings)
         run.RunRules.of(settings)  # what cannot be judged by is refused once, here
         paths, _ = run.named_logs(settings)
         if len(parts := _cut(paths, jobs)) > 1:
@@ -180,17 +184,17 @@ def _without(part: JudgedLogs, drives: Sequence[str]) -> JudgedLogs:
         for name, table in tables.items()
         if "drive_id" in table.column_names
     }
-    told = [run.same_log(Path(paths[drive]), drive) for drive in drives if drive in paths]
+    told = [same_log(Path(paths[drive]), drive) for drive in drives if drive in paths]
     kept = [note for note in part.notes if note.path not in {each.path for each in told}]
     return replace(part, result=replace(result, **others), notes=(*kept, *told))
 
 
 class _Listener:
-    """Shows what the workers tell, each text once."""
+    """Shows the messages of the workers, each text once."""
 
     def __init__(self, progress: Progress, n_logs: int) -> None:
         self.progress = progress
-        self._notes = run.LogNotes(progress, n_logs)
+        self._notes = LogNotes(progress, n_logs)
 
     def hear(self, call: _ProgressCall) -> None:
         """Show one call of a worker."""
@@ -219,7 +223,7 @@ class _Worker:
         theirs.close()
 
     def interrupt(self) -> None:
-        """Ask the process to end with what it has judged."""
+        """Request the process to end with the results so far."""
         with suppress(OSError):
             self.pipe.send(None)
 
@@ -268,7 +272,7 @@ class _Worker:
 
 
 class _Teller(Progress):
-    """Tells the listener, in a worker, what is to be shown. Advances of its own stages but the first are not the run's."""
+    """Sends the listener, in a worker, the messages to show. Progress of its stages other than the first is not the run's."""
 
     def __init__(self, pipe: Connection) -> None:
         self._pipe = pipe
@@ -299,7 +303,7 @@ class _Teller(Progress):
         self.send(_ProgressCall("note", (text,)))
 
 
-class _SentNotes(run.LogNotes):
+class _SentNotes(LogNotes):
     """Sends the notes on logs, which are shown once for all workers."""
 
     def __init__(self, teller: _Teller, n_logs: int) -> None:
@@ -333,7 +337,7 @@ class _DeafInWorker:
 def _work(part: _Part, pipe: Connection, parent: int) -> None:
     """Judge a part in this process."""
     begin_worker(parent)
-    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # the listener ends this process when nobody listens to it
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # the listener ends this process when its parent is gone
     interruption, teller = Interruption(), _Teller(pipe)
     Thread(target=_listen, args=(pipe, interruption), daemon=True, name="listener").start()
     try:
@@ -362,7 +366,7 @@ def _judge_part(part: _Part, teller: _Teller, interruption: Interruption) -> _En
 
 
 def _listen(pipe: Connection, interruption: Interruption) -> None:
-    """Interrupt the part when asked to, and end the process where nobody asks any more."""
+    """Interrupt the part on request, and end the process if the parent is gone."""
     while True:
         try:
             pipe.recv()

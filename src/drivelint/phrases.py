@@ -13,7 +13,7 @@ _INVISIBLE = re.compile(
     r"[\x00-\x09\x0b-\x1f\x7f-\x9f\u061c\u200b-\u200f"
     r"\u2028-\u202e\u2060-\u2069\ufeff\ud800-\udfff]"
 )
-"""Characters that steer a terminal, or turn the order of what is read; a line's end is none."""
+"""Characters that control a terminal, or reverse the reading order; a line's end is not one of them."""
 _COMMAND: Final = re.compile(r"^(\s*):(?=:)|#(?=#\w*\[)", re.MULTILINE)
 """What a build server may take for a command when it stands in a job's output (`::error::`, `##[error]`, `##vso[task.x]`)."""
 _IN_JSON: Final = re.compile(rf"{_INVISIBLE.pattern}|#(?=#\w*\[)")

@@ -16,6 +16,7 @@ from drivelint.drive.trace import NOT_IN_FOLDER
 from drivelint.engine.apart import judge_apart
 from drivelint.engine.barrier import RefusedLog
 from drivelint.engine.batch import Drive, cut_batches, read_drives, sorted_logs
+from drivelint.engine.default_rules import with_chosen_rules
 from drivelint.engine.interruption import InterruptedRunError, Interruption, NothingJudgedError
 from drivelint.engine.judging_options import JudgingOptions
 from drivelint.engine.map_library import MapLibrary
@@ -27,6 +28,7 @@ from drivelint.errors import TraceError, UsageError
 from drivelint.evaluate.limits import RuleLimits
 from drivelint.formats import expand_traces
 from drivelint.pictures import Camerawork, chosen_rows, planned_shots
+from drivelint.report.log_notes import LogNote, LogNotes, same_log, told_once
 from drivelint.report.rule_progress import ToldLimits
 from drivelint.result import collect, evidence
 from drivelint.result.counts import SEVERITIES, group_rows
@@ -57,8 +59,10 @@ class CheckOptions(JudgingOptions):
     out: Path | None = None
     margins: bool = False
     keep_db: bool = False
+    named_rules: tuple[str, ...] | None = None
+    """Ids of the rules that the user named; None: those whose ids are among the selectors."""
     manifest_options: Mapping[Path, DriveInput] = field(default_factory=dict, hash=False)
-    """Log -> what a manifest says of it and its map, in place of these options."""
+    """Log -> the options from a manifest for it and its map, instead of these."""
     min_judged: float | None = None
     """The least share of rules that must be decided, see `result.model.decided_share`."""
     pictures: bool = True
@@ -75,7 +79,7 @@ class CheckOptions(JudgingOptions):
 
 
 class RunRules(NamedTuple):
-    """By what a run judges: the rules, the ids of those of which none may be unknown, their parameters, and the table of profiles."""
+    """The rules of a run: the rules, the ids of required rules, their parameters, and the table of profiles."""
 
     rules: Sequence[Rule]
     required: tuple[str, ...]
@@ -84,33 +88,20 @@ class RunRules(NamedTuple):
 
     @classmethod
     def of(cls, settings: CheckOptions) -> RunRules:
-        """Return what the options of a run choose. Errors: `UsageError`, `RuleError`."""
+        """Return the rules and profiles that the options of a run choose. Errors: `UsageError`, `RuleError`."""
         known = catalogue.load_rules(settings.rules_dirs)
-        rules = catalogue.select_rules(known, settings.rules, settings.ignore)
+        rules = catalogue.select_rules(known, settings.rules, settings.ignore, named=settings.named_rules)
         required = catalogue.required_rules(known, rules, settings.require, settings.ignore)
         params = catalogue.parse_params(rules, settings.params)
         profiles = profile_table(load_profiles(settings.rules_dirs), settings.profiles)
         if (settings.margins or settings.keep_db) and settings.out is None:
-            raise UsageError("--margins and --keep-db write files: say where with --out DIR")
+            raise UsageError("--margins and --keep-db write files: name their folder with --out DIR")
         return cls(rules, required, params, profiles)
-
-
-class LogNote(NamedTuple):
-    """What is to be said of a log. `once`: of all logs with this text only the first is told, by name."""
-
-    path: Path
-    text: str
-    once: bool = False
-
-    @property
-    def full_text(self) -> str:
-        """The note as a person reads it."""
-        return f"{self.path.name}: {self.text}" if self.once else self.text
 
 
 @dataclass(frozen=True)
 class JudgedLogs:
-    """What became of some logs of a run, in their order: a result whose notes are these."""
+    """The outcome of some logs of a run, in their order: a result with their notes."""
 
     result: Result
     notes: tuple[LogNote, ...]
@@ -136,6 +127,8 @@ def check(
     Errors: `UsageError`, `RuleError` for what was asked; `MapError`, `TraceError` if no drive at all could be judged. A drive that
     cannot be judged beside others that can is a row of the table `drive`.
     """
+    library = MapLibrary(settings)
+    settings = with_chosen_rules(settings, library)
     judged_by = RunRules.of(settings)
     paths, refused_logs = named_logs(settings)
     progress.stage(CHECKING, len(paths))
@@ -148,6 +141,7 @@ def check(
         notes=LogNotes(progress, len(paths)),
         interruption=interruption,
         deaf_rules=deaf_rules,
+        library=library,
     )
     return conclude(paths, [judged], keep)
 
@@ -162,8 +156,12 @@ def judge_logs(
     notes: LogNotes,
     interruption: Interruption | None = None,
     deaf_rules: DeafRules | None = None,
+    library: MapLibrary | None = None,
 ) -> JudgedLogs:
-    """Judge logs in one database, in their order; add to `refused_logs` what could not be judged."""
+    """Judge logs in one database, in their order; add those that could not be judged to `refused_logs`.
+
+    `library`: the maps of these options, as far as they are read already.
+    """
     interruption = interruption or Interruption()
     rules, required, params, profiles = judged_by
     with store.workspace(settings.memory, threads=settings.threads) as con:
@@ -209,7 +207,7 @@ def judge_logs(
             limits_of_copies=RuleLimits(settings.rule_timeout, task="copies", deaf_rules=deaf_rules),
         )
         ids: dict[Path, str] = {}
-        read = _announced(_read(paths, settings), len(paths), progress)
+        read = _announced(_read(paths, settings, library), len(paths), progress)
         read = takewhile(lambda _item: not interruption.requested, read)
         try:
             with suppress(InterruptedRunError):
@@ -297,56 +295,19 @@ def named_logs(settings: CheckOptions) -> tuple[list[Path], list[RefusedLog]]:
     return paths, []
 
 
-def _read(paths: Sequence[Path], settings: CheckOptions) -> Iterator[Drive | RefusedLog]:
+def _read(paths: Sequence[Path], settings: CheckOptions, library: MapLibrary | None) -> Iterator[Drive | RefusedLog]:
     """Yield every log, read as the options say that hold for it; those with the same options together."""
     for options, mine in group_rows(paths, lambda path: settings.manifest_options.get(path, settings)).items():
-        yield from read_drives(mine, options.ingest_options(), MapLibrary(options))
+        maps = library if library is not None and options is settings else MapLibrary(options)
+        yield from read_drives(mine, options.ingest_options(), maps)
 
 
 def _announced(drives: Iterable[Drive | RefusedLog], n: int, progress: Progress) -> Iterator[Drive | RefusedLog]:
-    """Yield what is read, and say so before each: a batch is read before it is judged."""
+    """Yield the logs that are read, with a note before each: a batch is read before it is judged."""
     progress.doing(f"reading 1/{n}")
     for done, item in enumerate(drives, 1):
         yield item
         progress.doing(f"reading {min(done + 1, n)}/{n}")
-
-
-class LogNotes:
-    """Shows what is to be said of the logs, and keeps it for the result."""
-
-    def __init__(self, progress: Progress, n_logs: int) -> None:
-        self.notes: list[LogNote] = []
-        self._n_logs = n_logs
-        self._progress = progress
-        self._said: set[str] = set()
-
-    def add(self, note: LogNote) -> None:
-        """Keep a note, and show it unless it was shown of an earlier log: not a thousand times for a thousand logs."""
-        self.notes.append(note)
-        if not (note.once and note.text in self._said):
-            self._progress.note(note.full_text)
-        if note.once:
-            self._said.add(note.text)
-
-    def add_refused(self, refused_logs: Iterable[RefusedLog]) -> None:
-        """Add why logs are not judged; that of a single one is the error of the whole run."""
-        for each in refused_logs if self._n_logs > 1 else ():
-            self.add(LogNote(each.path, f"not judged: {each.error}"))
-
-
-def same_log(path: Path, drive_id: str) -> LogNote:
-    """Return the note on a log that is there twice."""
-    return LogNote(path, f"{path}: the same log as one before ({drive_id}), judged once")
-
-
-def told_once(notes: Iterable[LogNote]) -> Iterator[LogNote]:
-    """Yield the notes, of those that are told once the first."""
-    told: set[str] = set()
-    for note in notes:
-        if not (note.once and note.text in told):
-            yield note
-        if note.once:
-            told.add(note.text)
 
 
 def _without_map(drive: Drive) -> list[str]:
@@ -375,7 +336,7 @@ def _judge(
     notes: LogNotes,
     limits: ToldLimits,
 ) -> None:
-    """Judge a batch; if it errs, drive by drive, so that one bad drive harms no other. Add what could not be judged to `refused_logs`."""
+    """Judge a batch; if it errs, drive by drive, so that a bad drive harms no other. Add those not judged to `refused_logs`."""
     n_before = len(refused_logs)
     drives: list[Drive] = []
     for item in batch:

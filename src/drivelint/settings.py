@@ -1,4 +1,4 @@
-"""Reads `drivelint.toml`, which holds options of `check`.
+"""Reads `drivelint.toml`, which has options of `check`.
 
     map = "road.xodr"
     profile = ["nominal", "aggressive"]
@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.errors import UsageError
 from drivelint.phrases import hint
+from drivelint.toml_text import parse_toml
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
@@ -50,14 +51,14 @@ def _mentions_us(file: Path) -> bool:
 
 
 def settings_table(file: Path) -> dict[str, Any]:
-    """Return what a settings file holds, of `pyproject.toml` the table [tool.drivelint]; nothing if there is none.
+    """Return the content of a settings file, for `pyproject.toml` the table [tool.drivelint]; nothing if there is none.
 
     Errors: `UsageError` for bad TOML.
     """
     import tomllib
 
     try:
-        content = tomllib.loads(file.read_text(encoding="utf-8"))
+        content = parse_toml(file.read_text(encoding="utf-8"))
     except FileNotFoundError:
         return {}
     except OSError as error:
@@ -96,7 +97,7 @@ def read_settings(
 
 
 def _from(folder: Path, value: Any, *, is_path: bool) -> Any:
-    """Return paths from a folder on; of what may be something else (not `is_path`), what is a file there."""
+    """Return paths relative to a folder; a value that may be something else (not `is_path`) only if it is a file there."""
     if isinstance(value, list):
         return [_from(folder, each, is_path=is_path) for each in value]
     if folder == Path() or not isinstance(value, str) or not (is_path or (folder / value).is_file()):

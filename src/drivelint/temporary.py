@@ -1,6 +1,6 @@
 """Temporary folders that go with this process, however it ends.
 
-A process that is left while a thread of it computes closes nothing: whoever ends it so, or replaces it, calls `remove_all`.
+A process that is left while a thread of it computes closes nothing: code that ends it in this way, or replaces it, calls `remove_all`.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ def temporary_folder() -> Iterator[Path]:
 
 
 def keep(folder: Path) -> None:
-    """Leave a folder where it is: what is in it is somebody's."""
+    """Leave a folder where it is: its content belongs to the user."""
     _open.discard(folder)
 
 

@@ -1,7 +1,7 @@
 """Keeps pandas out of processes that are drivelint's own.
 
-DuckDB and pyarrow import it wherever it is installed, to look whether a value is one of its own: half a second, and no value ever is.
-Where it is not installed, DuckDB searches for it anew for each bound value.
+DuckDB and pyarrow import it wherever it is installed, to look whether a value is one of its own: half a second, and no value ever is. If
+it is not installed, DuckDB searches for it again for each bound value.
 """
 
 from __future__ import annotations

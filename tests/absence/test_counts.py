@@ -96,7 +96,7 @@ def test_a_message_is_missing(tmp_path: Path, write: Callable[[Path], bytes], cr
     code, found, _ = checked(path, ego="0")
     assert code == 3
     assert f"counts {drives.N} messages of topic " in found["index_mismatch"]
-    assert f"the file has {drives.N - 1}: these are read, and what is missing is lost" in found["index_mismatch"]
+    assert f"the file has {drives.N - 1}: these are read, and missing messages are lost" in found["index_mismatch"]
 
 
 def test_an_index_that_contradicts_itself_is_no_witness(tmp_path: Path) -> None:

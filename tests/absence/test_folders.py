@@ -121,9 +121,9 @@ def test_an_unreadable_folder(logs: Path, monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setattr(os, "scandir", look)
     code, status, reasons = checked(logs)
     assert (code, status) == (4, {"sound.mcap": "judged", "barred": "not_judged"})
-    assert "barred: a folder that cannot be looked through (Permission denied)" in reasons
+    assert "barred: a folder that cannot be searched (Permission denied)" in reasons
     found = inspect(InspectRequest(str(logs / "sub")))
-    assert "barred: a folder that cannot be looked through (Permission denied)" in (found.problem or "")
+    assert "barred: a folder that cannot be searched (Permission denied)" in (found.problem or "")
     assert exit_code(found) == 4
 
 

@@ -158,7 +158,7 @@ def test_lanes_lie_under_everybody_and_are_there_from_the_start(out: Path) -> No
 def test_a_finding_shows_the_pair_concerned_and_says_what_is_wrong(out: Path) -> None:
     path = the(out / "annotated", "near_miss")
     entities = shown(path, "markers", T0)
-    pair, label = entities["ego and oncoming"], entities["what is said of ego"]
+    pair, label = entities["ego and oncoming"], entities["notes on ego"]
     boxes = shown(path, "scene", T0)
     ends = [boxes[name].cubes[0].pose.position for name in (EGO, ONCOMING)]
     assert len(pair.lines) == 3

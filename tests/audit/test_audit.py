@@ -15,11 +15,13 @@ from drivelint.audit import AuditRequest, JudgeSettings, audit, identity, merge,
 from drivelint.audit import run as audit_run
 from drivelint.audit.ask import ask
 from drivelint.audit.compact import compact
-from drivelint.audit.driver import MOST_ATTEMPTS
+from drivelint.audit.driver import MOST_ATTEMPTS, tasks
 from drivelint.audit.executors import Outcome
 from drivelint.audit.lock import locked
+from drivelint.audit.model import AuditDrive
 from drivelint.audit.store import LocalFolder
 from drivelint.audit.text import summary_text
+from drivelint.drive.trace import DriveInput
 from drivelint.engine.memory import Memory
 from drivelint.errors import ExitCode, UsageError
 from drivelint.fleet_report import gated
@@ -197,6 +199,12 @@ def test_a_batch_that_another_audit_takes_for_a_rest_is_written_again(
     assert (counted.n_drives, counted.digest) == (N_DRIVES, undisturbed[1].digest)
 
 
+def test_the_first_tasks_are_small_so_that_an_early_interrupt_keeps_something() -> None:
+    drives = [AuditDrive(f"{n:03}.mcap", DriveInput()) for n in range(100)]
+    cut = [len(task.drives) for task in tasks(drives, "", "run", SETTINGS, ahead=100, max_drives=30, n_small=2)]
+    assert cut == [8, 8, 30, 30, 24]
+
+
 @pytest.mark.slow
 def test_a_drive_over_which_workers_die_is_quarantined_and_the_others_are_judged(
     drives: fleet.Fleet, tmp_path: Path
@@ -208,7 +216,7 @@ def test_a_drive_over_which_workers_die_is_quarantined_and_the_others_are_judged
     assert executor.lost[1:] == [1] * (MOST_ATTEMPTS - 1)
     (row,) = asked(tmp_path / "out", "SELECT status, status_reason FROM drives WHERE status <> 'judged'")
     assert row["status"] == "not_judged"
-    assert "3 workers were lost over it: the worker died" in str(row["status_reason"])
+    assert "3 workers died on this drive: the worker died" in str(row["status_reason"])
     assert counted.exit_code("never", strict=False) == ExitCode.NOT_JUDGED
 
 
@@ -392,12 +400,12 @@ def test_what_takes_results_out_is_refused_with_shards(drives: fleet.Fleet, tmp_
 def test_two_audits_do_not_pack_one_place_at_once(drives: fleet.Fleet, tmp_path: Path) -> None:
     with (
         locked(LocalFolder(tmp_path / "out"), shared=False),
-        pytest.raises(UsageError, match="another audit is at work"),
+        pytest.raises(UsageError, match="another audit is running"),
     ):
         judged(drives, tmp_path / "out")
     with locked(LocalFolder(tmp_path / "out"), shared=True):
         judged(drives, tmp_path / "out", shard=(1, 2))
-        with pytest.raises(UsageError, match="another audit is at work"):
+        with pytest.raises(UsageError, match="another audit is running"):
             merge(str(tmp_path / "out"), Silent())
 
 
@@ -409,9 +417,7 @@ def test_the_summary_names_contacts_broken_rules_and_what_was_not_judged(tmp_pat
     text = summary_text(judged(few, tmp_path / "out"), "out", ExitCode.FAILED)
     n = len(few.planted - {log.name})
     assert n > 1
-    assert (
-        f"findings: {n} critical, 0 major, 0 minor; CONTACT in {n} drives; how sure they are was not examined" in text
-    )
+    assert f"findings: {n} critical, 0 major, 0 minor; CONTACT in {n} drives; certainty: not examined" in text
     assert f"critical {fleet.RULE}: {n} finding" in text
     assert "not judged: 1 drive" in text
     assert "refused: " in text

@@ -119,7 +119,7 @@ def test_without_a_worker_the_audit_ends(sleepers: tuple[DaskProcesses, Any]) ->
     # a scheduler that has not missed the second one hands it the next task
     _until(lambda: not executor._client.nthreads(), "the scheduler counts no worker")
     executor.submit(60.0)
-    with pytest.raises(ClusterError, match="no worker for 1 s: start some and give the same command"):
+    with pytest.raises(ClusterError, match="no worker for 1 s: start some and run the same command again"):
         executor.wait()
 
 

@@ -249,7 +249,7 @@ def test_what_others_did_to_the_rows_is_undone(out: Path, tmp_path: Path) -> Non
 def test_of_an_unfinished_audit_nothing_is_written(drives: fleet.Fleet, tmp_path: Path) -> None:
     out, lake, heard = tmp_path / "out", tmp_path / "lake", Heard()
     for option in ({"shard": (1, 2)}, {"claim": True}):
-        with pytest.raises(UsageError, match="give drivelint merge --delta, when all parts have ended"):
+        with pytest.raises(UsageError, match="when all parts have ended, run drivelint merge --delta"):
             judged(drives, out, delta=str(lake), **option)
     assert not out.exists()
     judged(drives, out, shard=(1, 2))
@@ -315,7 +315,7 @@ def test_an_answer_that_was_cut_off_is_asked_for_again_and_errors_have_no_colour
     assert len(asked) == 3
     asked.clear()
     with pytest.raises(
-        OutputError, match=r"^lake: the Delta table failed: Generic S3 error ↳ cut off: give the same command again$"
+        OutputError, match=r"^lake: the Delta table failed: Generic S3 error ↳ cut off: run the same command again$"
     ):
         delta._persistent("lake", partial(cut, 99))
 
@@ -323,6 +323,6 @@ def test_an_answer_that_was_cut_off_is_asked_for_again_and_errors_have_no_colour
 def test_a_place_that_cannot_be_written_makes_exit_code_75(out: Path, tmp_path: Path) -> None:
     (tmp_path / "lake").mkdir()
     (tmp_path / "lake" / "findings").write_text("no folder", encoding="ascii")
-    with pytest.raises(OutputError, match=r"findings: the Delta table failed: .+: give the same command again") as told:
+    with pytest.raises(OutputError, match=r"findings: the Delta table failed: .+: run the same command again") as told:
         merge(str(out), Silent(), str(tmp_path / "lake"))
     assert told.value.exit_code == ExitCode.TEMPFAIL

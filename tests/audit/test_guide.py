@@ -23,7 +23,7 @@ N_DRIVES = 9
 
 
 def _block(name: str) -> str:
-    text = Path(guide).with_name("fleets.md").read_text(encoding="utf-8")
+    text = Path(guide).with_name("fleet-machines.md").read_text(encoding="utf-8")
     found = re.search(rf"<!-- shards: {name} -->\n```\w+\n(.*?)```", text, re.DOTALL)
     assert found is not None
     return found[1]

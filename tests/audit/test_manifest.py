@@ -159,7 +159,7 @@ def test_check_reads_each_log_of_a_manifest_by_its_own_options(two: fleet.Fleet,
     ("rows", "why"),
     [
         (("logs/drive-00000.parquet,,,weather=foggy,",), "row 1 .*weather.*nothing was judged yet"),
-        (("logs/drive-00000.parquet,,,,", "logs/drive-00000.parquet,,1,,"), "twice, with other options"),
+        (("logs/drive-00000.parquet,,,,", "logs/drive-00000.parquet,,1,,"), "twice, with different options"),
         (("logs,,1,,",), "not one log"),
     ],
 )

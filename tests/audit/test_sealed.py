@@ -88,7 +88,7 @@ def test_a_changed_file_is_named(ended: Path, copy: Path, change: Callable[[Path
     name = change(copy)
     for sides in ((ended, copy), (copy, ended)):
         with (
-            pytest.raises(UsageError, match=f"{name}: is not as drivelint audit wrote it"),
+            pytest.raises(UsageError, match=f"{name}: was changed since drivelint audit wrote it"),
             opened_both(*map(str, sides)),
         ):
             pass
@@ -103,7 +103,7 @@ def test_sql_answers_from_a_changed_file_and_says_so(ended: Path, copy: Path, ch
     assert warned == []
     name = change(copy)
     json.loads(ask(str(copy), query, "json", warned.append))
-    assert [f"{name}: is not as drivelint audit wrote it" in each for each in warned] == [True]
+    assert [f"{name}: was changed since drivelint audit wrote it" in each for each in warned] == [True]
 
 
 def test_a_missing_file_is_not_taken_for_another_run(copy: Path) -> None:
@@ -119,7 +119,7 @@ def test_no_run_goes_on_from_a_changed_file(few: fleet.Fleet, copy: Path, change
     """Else its end would list the changed file as whole."""
     name = change(copy)
     for shard in (None, (1, 2)):
-        with pytest.raises(UsageError, match=f"{name}: is not as drivelint audit wrote it.*into another --out"):
+        with pytest.raises(UsageError, match=f"{name}: was changed since drivelint audit wrote it.*into another --out"):
             judged(few, copy, shard=shard)
     with pytest.raises(UsageError, match=name):
         merge(str(copy), Silent())
@@ -155,7 +155,7 @@ def test_no_run_goes_on_from_changed_rows_without_the_list(
     (copy / MANIFEST).unlink()
     change(only_file(copy, "verdicts"))
     for again in (partial(judged, few, copy), partial(merge, str(copy), Silent())):
-        with pytest.raises(UsageError, match=r"as drivelint audit wrote|did not write.*into another --out"):
+        with pytest.raises(UsageError, match=r"since drivelint audit wrote|did not write.*into another --out"):
             again()
     assert not (copy / MANIFEST).exists()
 
@@ -169,7 +169,7 @@ def test_no_run_goes_on_from_changed_rows_that_are_not_packed(
     judged(few, out, shard=(1, 1))
     change(next((out / "batches" / "verdicts").iterdir()))
     for again in (partial(judged, few, out), partial(merge, str(out), Silent())):
-        with pytest.raises(UsageError, match="as drivelint audit wrote"):
+        with pytest.raises(UsageError, match="since drivelint audit wrote"):
             again()
 
 
@@ -249,10 +249,10 @@ def test_readers_hold_rows_of_an_unfinished_audit_against_its_receipts(open_copi
             assert audit.warning
         verdicts = next(each for each in out.rglob("*.parquet") if each.parent.name == "verdicts")
         passed(verdicts)
-        with pytest.raises(UsageError, match="as drivelint audit wrote"), open_audits(str(out)):
+        with pytest.raises(UsageError, match="since drivelint audit wrote"), open_audits(str(out)):
             pass
         assert ask(str(out), "FROM verdicts", "json", warned.append)
-        assert "as drivelint audit wrote" in warned[0]
+        assert "since drivelint audit wrote" in warned[0]
 
 
 def test_a_file_that_was_cut_is_an_error_with_a_sentence(

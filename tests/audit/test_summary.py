@@ -74,14 +74,14 @@ def test_a_contact_that_is_only_possible_is_not_printed_as_one(audited: tuple[Pa
     line, _ = told(out)
     assert line == (
         f"findings: {n} critical, 0 major, 0 minor; CONTACT in {n - 1} drive{'s' * (n > 2)}; possible contact in 1 drive; "
-        "how sure they are was examined: 1 only possible"
+        "certainty: examined: 1 only possible"
     )
 
 
 def test_where_nobody_looked_the_line_says_how_to(audited: tuple[Path, int]) -> None:
     out, n = audited
     line, _ = told(out, robust=False)
-    assert line.endswith(f"CONTACT in {n} drives; how sure they are was not examined: --robustness")
+    assert line.endswith(f"CONTACT in {n} drives; certainty: not examined: --robustness")
 
 
 def test_a_touch_of_two_egos_is_one(audited: tuple[Path, int]) -> None:
@@ -186,7 +186,7 @@ def test_a_log_that_was_refused_is_named_and_the_others_are_counted() -> None:
 @pytest.mark.sample(1, ci=99)
 @pytest.mark.parametrize(
     ("tag", "told"),
-    [("weather", "column weather is a tag only"), ("Handednes", "did you mean handedness?"), ("lap", None)],
+    [("weather", "column weather is only a tag"), ("Handednes", "did you mean handedness?"), ("lap", None)],
 )
 def test_a_tag_with_the_name_of_a_condition_or_nearly_of_a_column_is_said_to_be_none(
     tag: str, told: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -200,7 +200,7 @@ def test_a_tag_with_the_name_of_a_condition_or_nearly_of_a_column_is_said_to_be_
     audit(
         AuditRequest(sources=(str(few.manifest),), map=few.road, out=str(tmp_path / "out")), listener, InThisProcess()
     )
-    said = [note for note in notes if "tag only" in note]
+    said = [note for note in notes if "only a tag" in note]
     assert len(said) == (told is not None)
     assert all(str(told) in note for note in said)
 

@@ -45,7 +45,7 @@ def test_a_drive_that_exhausts_its_worker_is_quarantined_and_the_others_are_as_w
         Silent(),
     )
     assert (counted.n_judged, counted.quarantined) == (5, 1)
-    assert "MB of memory, and may take 600 MB" in counted.not_judged[0]["reason"]
+    assert "MB of memory, but the limit is 600 MB" in counted.not_judged[0]["reason"]
     alone = judged(drives, tmp_path / "out", prune=True)
     assert (alone.reused, alone.digest) == (5, undisturbed.digest)
 

@@ -42,7 +42,7 @@ def test_one_rule_is_tested_by_its_file_or_that_of_its_cases(tmp_path: Path, mon
     assert workshop.mutation_test(sql, (), said) is ExitCode.OK, "an entry of another rule is none of its business"
     other = tmp_path / "mine" / "notes.txt"
     other.write_text("no rule", encoding="utf-8")
-    with pytest.raises(UsageError, match=r"notes\.txt: no rule, nor the cases of one"):
+    with pytest.raises(UsageError, match=r"notes\.txt: neither a rule nor the cases of a rule"):
         said_of(other)
 
 
@@ -157,7 +157,7 @@ def test_a_rule_is_tested_again_when_it_is_saved(tmp_path: Path, monkeypatch: py
             next(edits)()
 
     assert workshop.watch(workshop.case_test, tmp_path, (), say, over) is ExitCode.USAGE
-    assert [line.split(":")[0] for line in said[2:4]] == ["waiting for changes; Ctrl-C ends", "FAIL pack.rule"]
+    assert [line.split(":")[0] for line in said[2:4]] == ["waiting for changes; press Ctrl-C to end", "FAIL pack.rule"]
     assert [line.split(" ")[0] for line in said[4:]] == ["REFUSED"]
 
 
@@ -169,7 +169,7 @@ def test_a_rule_is_tested_again_when_it_is_saved(tmp_path: Path, monkeypatch: py
         (None, 1, "has no cases"),
         ("- name: [", 1, "not YAML"),
         ("a: 1", 1, "cases are a list"),
-        ("\n- name: clean\n  given: {}\n  expect: pass\n- 7", 5, "a case is 'key: value' pairs"),
+        ("\n- name: clean\n  given: {}\n  expect: pass\n- 7", 5, "a case consists of 'key: value' pairs"),
         ("\n\n- name: clean\n  given: {}\n  expct: pass", 3, "unknown field `expct`"),
         (CASES + "\n- name: clean\n  given: {}\n  expect: pass", 15, "has the name of the case in line 2"),
         (CASES.replace("name: boundary", "name: boundary\n  params: {limitt: 1}"), 5, "has no parameter 'limitt'"),

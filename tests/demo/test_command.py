@@ -80,7 +80,7 @@ def test_the_folder_is_an_argument_or_an_option(tmp_path: Path) -> None:
         assert done.stdout.rstrip().endswith(f"--out {written.name}/results")
     refused = invoke(["demo", "one", "--out", "two"])
     assert isinstance(refused.exception, UsageError)
-    assert str(refused.exception) == "one and --out two: give one folder"
+    assert str(refused.exception) == "one and --out two: name one folder"
 
 
 def test_an_earlier_demo_is_written_over(tmp_path: Path) -> None:

@@ -107,7 +107,7 @@ def said() -> dict[str, list[Row]]:
     return found
 
 
-@pytest.mark.sample(2, ci=4)
+@pytest.mark.sample(0, ci=6)
 @EACH
 @pytest.mark.parametrize("variant", ["both", "log"])
 def test_with_heights_the_other_level_changes_no_verdict(said: dict[str, list[Row]], name: str, variant: str) -> None:

@@ -270,7 +270,7 @@ def test_somebody_without_a_position_may_be_the_one() -> None:
             assert (row["pet_s"], row["reason"]) == (math.inf, None)
         else:
             assert (row["pet_s"], row["decel_mps2"]) == (None, None)
-            assert row["reason"] == "actor o has no position (or no fresh one)"
+            assert row["reason"] == "actor o has no position, or only an outdated one"
     t = times(24)
     on_foot = walker(R + 3.0, -5 + 1.4 * (t - 9), t)
     found = answers(going(ways["wn"]), on_foot.lost(t > 8), way=ways["we"])
@@ -352,9 +352,9 @@ def test_the_log_must_go_on_for_a_while() -> None:
     row = answers(going(ways["wn"], end=15.0), way=ways["we"])["oncoming"]
     assert (row["pet_s"], row["reason"]) == (None, "the log ends too soon after the junction")
     row = answers(going(ways["wn"], end=10.0), way=ways["we"])["oncoming"]
-    assert (row["pet_s"], row["reason"]) == (None, "the log, or a hole in it, ends in the junction")
+    assert (row["pet_s"], row["reason"]) == (None, "the log, or its part before a hole, ends in the junction")
     row = answers(going(ways["wn"], s0=190.0), way=ways["we"])["oncoming"]
-    assert (row["pet_s"], row["reason"]) == (None, "the log, or a hole in it, begins in the junction")
+    assert (row["pet_s"], row["reason"]) == (None, "the log, or its part after a hole, begins in the junction")
     ego = going(ways["wn"])
     row = answers(ego.keep((ego.t_s < 12.5) | (ego.t_s > 13.5)), way=ways["we"])["oncoming"]
     assert (row["pet_s"], row["reason"]) == (None, "there is a hole in the log soon after the junction")

@@ -94,7 +94,7 @@ def test_who_comes_and_may_be_on_foot_or_a_vehicle_is_unplaced(hand: str, kind: 
     other = moving("x", way, t, 300 - 3 * t, way.other, kind=kind, length=1.8, width=0.6)
     found = rows(derived(drive([ego, other], way.environment), tables=["oncoming"]), "FROM oncoming")
     assert {(row["object_id"], row["n_unplaced"]) for row in found} == {(None, 1)}
-    assert {sentence(row["unplaced_reason"]) for row in found} == {"actor x comes, and its class is not known"}
+    assert {sentence(row["unplaced_reason"]) for row in found} == {"actor x comes, but its class is not known"}
 
 
 def test_the_nearest_counts() -> None:

@@ -161,7 +161,9 @@ def test_one_lost_before_its_eyes_is_not_nobody(rule: str) -> None:
     assert unknown
     assert {r["assumes"] for r in unknown} == {None}
     # the reason says who it is
-    assert any("; where object x is at that time is not known: its track ends at " in r["reason"] for r in unknown)
+    assert any(
+        "; the position of object x at that time is not known: its track ends at " in r["reason"] for r in unknown
+    )
     con = derived(follows_nobody(in_sight=True, gap=8.0), tables=["vehicle_ahead"])
     ahead = {round(r["t_ns"] / 1e8): r for r in rows(con, "FROM vehicle_ahead ORDER BY t_ns")}
     assert all(k not in ahead or (not ahead[k]["known"] and ahead[k]["free_m"] < 15) for k in range(31, 56))

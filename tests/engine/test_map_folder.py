@@ -124,5 +124,5 @@ def test_a_folder_without_maps(tmp_path: Path) -> None:
 
 def test_one_map_or_many(tmp_path: Path) -> None:
     put(tmp_path, "a.xml")
-    with pytest.raises(UsageError, match="give one of them"):
+    with pytest.raises(UsageError, match="exclude each other"):
         MapLibrary(DriveInput(map=tmp_path / "a.xml", map_dir=tmp_path))

@@ -100,6 +100,7 @@ def test_the_other_drives_of_a_batch_change_nothing(logs: Path, judged: tuple[Pa
     assert alone == [row for row in judged[1] if row["drive_id"].startswith("collision")]
 
 
+@pytest.mark.ci
 def test_no_copy_stays_in_the_database(judged: tuple[Path, list[Row]]) -> None:
     with duckdb.connect(str(judged[0] / "drivelint.duckdb"), read_only=True) as con:
         with_drives = con.execute("SELECT table_name FROM duckdb_columns() WHERE column_name = 'drive_id'").fetchall()

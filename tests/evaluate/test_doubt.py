@@ -51,7 +51,7 @@ def drive(speed: Any = 12, gap: Any = 3) -> dict[str, Any]:
 def test_a_doubted_step_is_neither_kept_nor_broken(tmp_path: Path, speed: Any) -> None:
     (row,) = verdicts(speed_rule(tmp_path), drive(speed) | doubt("e", "velocity"))
     assert (row["verdict"], row["reason_code"], row["cause_code"]) == ("unknown", "doubted", "doubted")
-    assert "the velocity of the ego is not believed then (velocity_jolt)" in row["reason"]
+    assert "the recorded velocity of the ego is not credible at that time (velocity_jolt)" in row["reason"]
 
 
 @pytest.mark.parametrize("speed", [12, {"else": 12, "1": 9}])

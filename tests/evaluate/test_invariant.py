@@ -287,7 +287,9 @@ def test_lost_objects_are_unknown_from_there_on(tmp_path: Path) -> None:
         0,
     )
     assert rows[2]["t_worst_ns"] == 199_999_999  # the last step at which it is there, in a real log
-    assert rows[2]["reason"] == "object 2 is recorded until 0.200 s only, the ego until 0.500 s: record it for as long"
+    assert (
+        rows[2]["reason"] == "object 2 is recorded only until 0.200 s, but the ego until 0.500 s: record it for as long"
+    )
 
 
 def test_own_grid_labels_episodes(tmp_path: Path) -> None:

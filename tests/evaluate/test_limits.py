@@ -66,7 +66,7 @@ def test_a_rule_without_end_is_an_error_and_the_others_are_as_without_it(tmp_pat
     found = check(options(write_pack(tmp_path / "bad", names[:3]), "safe", seconds=1.0), Silent()).verdicts
     alone = check(options(write_pack(tmp_path / "good", ()), "safe"), Silent()).verdicts
     assert kept(found) == kept(alone)
-    late = "took more than 1.0 s of computing: make its SQL cheaper, or give it longer with --rule-timeout"
+    late = "took more than 1.0 s of computing: make its SQL cheaper, or allow it more time with --rule-timeout"
     long = "Invalid Input Error: it returned a text of more than 10,000 bytes"
     assert reasons(found) == {
         ("cross_join", "safe"): ("error", "rule_timeout", f"rule bomb.cross_join: {late}"),
@@ -82,7 +82,7 @@ def test_a_rule_loses_its_turn_after_three_times(tmp_path: Path) -> None:
     found = check(options(write_pack(tmp_path / "bad", ("rows",)), *drives, seconds=2.0), Silent()).verdicts
     alone = check(options(write_pack(tmp_path / "good", ()), *drives), Silent()).verdicts
     assert kept(found) == kept(alone)
-    tried = [("before in this run" not in reason) for _, _, reason in reasons(found).values()]
+    tried = [("earlier in this run" not in reason) for _, _, reason in reasons(found).values()]
     assert tried == [True, True, False]
     assert {(verdict, code) for verdict, code, _ in reasons(found).values()} == {("error", "rule_timeout")}
 
@@ -175,7 +175,7 @@ def test_a_rule_that_takes_too_long_is_not_judged_and_no_mistake_of_the_user(tmp
     found = check(options(write_pack(tmp_path, ("rows",)), "safe", seconds=0.3), Silent())
     status = exit_status(found)
     assert status.code is ExitCode.NOT_JUDGED
-    assert status.why == "1 verdict in error: went beyond its limits: bomb.rows"
+    assert status.why == "1 verdict in error: exceeded its limits: bomb.rows"
 
 
 def test_only_the_work_of_a_rule_counts(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -32,15 +32,15 @@ def test_the_authors_reason_of_an_unknown_applicability(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("state", "because"),
     [
-        ({"x_m": [1, None, 3], "y_m": 0.0}, "the ego has no position (or no fresh one): record it"),
+        ({"x_m": [1, None, 3], "y_m": 0.0}, "the ego has no position, or only an outdated one: record it"),
         ({"x_m": 1.0, "y_m": 0.0, "yaw_rad": [0, None, 0]}, "the ego has no heading: record it"),
         (
             {"x_m": 1.0, "y_m": 0.0, "lanelet_id": ["l", None, "l"]},
-            "the ego is not on a lane of the map: give a map that has its lane",
+            "the ego is not on a lane of the map: use a map that has its lane",
         ),
         (
             {"x_m": 1.0, "y_m": 0.0, "front_s_m": [5, None, 5]},
-            "the ego's box reaches beyond the ends of the map's lanes: give a map whose lanes go on there, before it or behind it",
+            "the ego's box reaches beyond the ends of the map's lanes: use a map whose lanes extend further, ahead of the ego or behind it",
         ),
         ({"x_m": 1.0, "y_m": 0.0, "speed_mps": [12, None, 12]}, "the speed of the ego is not known: record it"),
         (
@@ -61,14 +61,14 @@ def test_an_ego_without_a_place(tmp_path: Path, state: dict[str, Any], because: 
 @pytest.mark.parametrize(
     ("lacks", "because"),
     [
-        ({"x_m": [1, None]}, "object o has no position (or no fresh one): record it"),
+        ({"x_m": [1, None]}, "object o has no position, or only an outdated one: record it"),
         ({"yaw_rad": [0, None]}, "object o has no heading: record it"),
         ({"length_m": [4, None]}, "object o has no size: record it"),
         (
             {"off_level": [False, True]},
             (
-                "object o may be over or under the road: record the heights of both, or correct them, or leave z out of the "
-                "mapping, if the road has one level"
+                "object o may be over or under the road: record or correct the heights of both; if the road has only one level, "
+                "leave z out of the mapping"
             ),
         ),
         ({"speed_mps": [4, None]}, "the speed of object o is not known: record it"),
@@ -95,7 +95,8 @@ def test_the_heights_of_an_object_that_may_be_on_another_level_are_told(tmp_path
     object_ = {"t_s": [0.0, 0.1], "actor_id": "o", "x_m": 1.0, "y_m": 0.0, "z_m": [7.0, 7.21]}
     (row,) = verdicts(rule, {"ego_state": ego, "pair": pair, "state_dynamics": object_})
     assert (
-        "may be over or under the road (its height is 7.2 m then, the ego's 0.6 m): record the heights" in row["reason"]
+        "may be over or under the road (its height is 7.2 m at that time, the ego's 0.6 m): record or correct the heights"
+        in row["reason"]
     )
 
 

@@ -106,8 +106,8 @@ def test_it_is_counted_and_named_and_no_pass() -> None:
     assert (rule_counts(both).judged_somewhere, rule_counts(both).unrecorded, rule_counts(both).idle) == (1, 1, 0)
     assert "no findings, as far as it could be judged" in headline(both).sentence
     notes: dict[str, Any] = {note.label: note for note in input_notes(both)}
-    assert notes["not in the log"].words == "indicator (1 rule)"
-    assert notes["not in the log"].is_warning
+    assert notes["not recorded"].words == "indicator (needed by 1 rule)"
+    assert notes["not recorded"].is_warning
     assert exit_status(both).code == ExitCode.OK
     assert exit_status(replace(both, strict=True)).code == ExitCode.NOT_JUDGED
     assert exit_status(replace(both, required=("ukhc.b",))).code == ExitCode.NOT_JUDGED

@@ -182,7 +182,7 @@ def test_a_passing_verdict(folder: Path) -> None:
 def test_an_unknown_verdict_for_want_of_a_signal(folder: Path) -> None:
     found = of(folder, "r112.horn@safe", errors=MeasurementErrors(samples=5))
     text = flat(said(found))
-    assert "UNKNOWN: it cannot be told whether the rule was kept: that is no pass" in text
+    assert "UNKNOWN: it is not known whether the rule was kept: this is not a pass" in text
     assert "no number changes that" in text
     assert found.sensitivity is None
     assert found.changes == []
@@ -236,7 +236,9 @@ def test_an_unknown_step_is_the_one_that_decides(tmp_path: Path) -> None:
     assert pair.rows[0]["clearance_m"] is None
     text = said(found)
     assert re.search(r"clearance_m\s+NULL", text)
-    words = "Object oncoming has no position (or no fresh one): record it. This is for the first of 6 unknown steps"
+    words = (
+        "Object oncoming has no position, or only an outdated one: record it. This is for the first of 6 unknown steps"
+    )
     assert words in flat(text)
     assert "?" in text[text.index("Margin over time") :]
 
@@ -377,7 +379,7 @@ def test_a_rule_that_was_changed_is_said(tmp_path: Path) -> None:
     assert found.verdict["verdict"] == "pass"
     assert found.verdict["judged_anew"] == "fail"
     assert "The rule has changed since" in flat(said(found))
-    assert "Judged anew it is fail, not pass" in flat(said(found))
+    assert "Judged again it is fail, not pass" in flat(said(found))
 
 
 @pytest.mark.slow

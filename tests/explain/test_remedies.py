@@ -20,7 +20,7 @@ from drivelint.reasons.signals import REMEDIES, remedy
         ("limit_unknown", "a map with speed limits"),
         ("road_type_unknown", "a map with road types"),
         ("engaged_unknown", "whether the automated driver drives: --env engaged=yes or no"),
-        ("light_unknown", "whether it is dark: --env light=day"),
+        ("light_unknown", "daylight or darkness: --env light=day"),
         ("a_code_of_a_rule_of_somebody_else", "what is NULL, or has no row, in the rows"),
     ],
 )

@@ -53,14 +53,14 @@ def place(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
 @pytest.mark.timeout(60)
 def test_it_is_no_log_no_map_no_mapping_and_no_file_of_waivers(place: Path) -> None:
     for read in (lambda: read_trace(place, IngestOptions()), lambda: identify(place)):
-        with pytest.raises(TraceError, match="a pipe or a device, and a log is read more than once"):
+        with pytest.raises(TraceError, match="a pipe or a device, but a log is read more than once"):
             read()
     with pytest.raises(MapError, match="a pipe or a device"):
         read_source(place)
     with pytest.raises(UsageError, match="a pipe or a device"):
         mapping.load(str(place))
     assert not film_mapping.is_video_mapping(str(place))
-    with pytest.raises(UsageError, match="waivers stand in a file"):
+    with pytest.raises(UsageError, match="waivers must be in a file"):
         waivers.read(place)
     with pytest.raises(TraceError, match="a pipe, a device or a folder"):
         GrowingFile(place, idle_s=None).read(1.0)

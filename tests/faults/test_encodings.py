@@ -102,7 +102,7 @@ def test_a_topic_of_road_users_refuses_the_log(name: str, tmp_path: Path, good: 
     code, found, _ = checked([log, good], name)
     assert code == 4
     assert "(40 messages of " in found["bad.mcap"]["status_reason"]
-    assert "is in 'xcdr', which is not read: who is on it is unknown" in found["bad.mcap"]["status_reason"]
+    assert "is in 'xcdr', which is not read: its actors are unknown" in found["bad.mcap"]["status_reason"]
     assert found["bad.mcap"]["status_reason"].endswith(f"--topic {CHOSEN[name]}")
     assert found["good.mcap"]["status"] == "judged"
 
@@ -123,7 +123,7 @@ def test_another_topic_is_passed_over(name: str, tmp_path: Path, good: Path) -> 
     code, found, verdicts = checked([log, good], name)
     assert (code, found["bad.mcap"]["lossy"], found["good.mcap"]["lossy"]) == (3, True, False)
     (told,) = (each for each in found["bad.mcap"]["quality"] if each["check_id"] == "unread_topic")
-    assert told["message"].endswith("is in 'xcdr', which is not read: what it says is unknown")
+    assert told["message"].endswith("is in 'xcdr', which is not read: its content is unknown")
     assert verdicts["ukhc.no-collision"] == {"kept"}
     assert verdicts["ukhc.r124.speed-limit"] == {"missing_map"}
     assert verdicts["ukhc.r116.hazards"] == {"missing_indicator"}

@@ -20,6 +20,8 @@ from tests.fleet.audits import ego_drive, found, said
 from tests.fleet_report.told import Told, touched, words
 from tests.report.synthetic import rule
 
+pytestmark = pytest.mark.ci
+
 
 def test_findings_where_not_all_was_judged_do_not_look_like_none() -> None:
     """One site has two contacts, in a drive that has unknowns too; the other has none."""
@@ -64,12 +66,12 @@ def test_the_header_names_contacts_and_how_sure_they_are() -> None:
     drives, verdicts = [ego_drive("a"), ego_drive("b")], [*words("a", "fail"), *words("b", "fail")]
     findings = [touched("a", n_copies=100, n_stays=100), touched("b", n_copies=100, n_stays=30)]
     told = Told(drives, verdicts, findings, robustness=True)
-    said_ = "CONTACT in 1 drive; possible contact in 1 drive; how sure the findings are was examined: 1 only possible"
+    said_ = "CONTACT in 1 drive; possible contact in 1 drive; certainty of the findings: examined: 1 only possible"
     assert said_ in told.header
     assert said_ in told.markdown
     assert "| 2 (1 possible) |" in told.markdown
     told = Told(drives, verdicts, [touched("a"), touched("b")], robustness=False)
-    assert "CONTACT in 2 drives; how sure the findings are was not examined: audit --robustness" in told.header
+    assert "CONTACT in 2 drives; certainty of the findings: not examined: use audit --robustness" in told.header
 
 
 def test_rules_of_contacts_stand_above_others_of_their_severity() -> None:

@@ -86,7 +86,7 @@ def test_it_is_what_another_audit_says(own: Own, judged: Path, tmp_path: Path, l
 def test_the_text_counts_flips_by_release(judged: Path) -> None:
     done = ran("what-if", judged, "own.slow.limit=11", "--by", "release")
     assert done.code == 0
-    assert "12 of 12 verdicts become others: 12 pass -> fail" in done.out
+    assert "12 of 12 verdicts change: 12 pass -> fail" in done.out
     told, _, which = done.out.partition("which:\n")
     assert [line for line in told.splitlines() if line.startswith("  ")] == [
         "  v0  6 pass -> fail",
@@ -110,7 +110,7 @@ def test_a_copy_with_another_tag_counts_for_both_values_and_once_in_all(own: Own
     finally:
         manifest.write_text(listed, encoding="utf-8")
     done = ran("what-if", out, "own.slow.limit=11", "--by", "release")
-    assert "12 of 12 verdicts become others: 12 pass -> fail" in done.out
+    assert "12 of 12 verdicts change: 12 pass -> fail" in done.out
     told, _, which = done.out.partition("which:\n")
     lines = [line for line in told.splitlines() if line.startswith("  ")]
     assert lines == ["  v0  6 pass -> fail", "  v1  7 pass -> fail"]
@@ -135,13 +135,13 @@ def test_a_rule_that_is_not_as_it_was_needs_another_audit(own: Own, judged: Path
     finally:
         file.write_text(before, encoding="utf-8")
     assert done.code == 4
-    assert "the rule is not as it was in the audit" in done.out
+    assert "the rule has changed since the audit" in done.out
 
 
 def test_where_only_a_bound_is_stored_it_says_so(filled: lake.Lake) -> None:
     done = ran("what-if", filled.folder, "ukhc.overtake-zone.margin_s=1.2", "--by", "site")
     assert done.code == 4
-    assert "only a bound of what was observed" in done.out
+    assert "only a bound of the observed value" in done.out
     assert "unknown -> needs a new audit" in done.out
 
 

@@ -9,6 +9,8 @@ import pytest
 from tests.fleet.audits import ego_drive
 from tests.fleet_report.told import Told, touched, words, words_of
 
+pytestmark = pytest.mark.ci
+
 
 def told(*drives: tuple[str, int, dict[str, str]], km: float = 100.0) -> Told:
     """Return the page of drives with so many contacts and these tags."""

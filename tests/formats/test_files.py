@@ -95,7 +95,7 @@ def test_a_folder_that_cannot_be_looked_through_is_named(
     barred(monkeypatch, tmp_path / "sub" / "barred", error)
     assert names(expand_traces([str(tmp_path)])) == ["a.csv", "barred"]
     assert names(expand_traces([str(tmp_path / "sub" / "barred")])) == ["barred"]
-    with pytest.raises(TraceError, match=rf"barred: a folder that cannot be looked through \({error.strerror}\)"):
+    with pytest.raises(TraceError, match=rf"barred: a folder that cannot be searched \({error.strerror}\)"):
         read(tmp_path / "sub" / "barred")
 
 

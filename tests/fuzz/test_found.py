@@ -147,7 +147,7 @@ def test_an_ego_without_an_id_is_none(tmp_path: Path) -> None:
     pq.write_table(
         actors.set_column(actors.schema.get_field_index("actor_id"), "actor_id", ids), folder / "actor.parquet"
     )
-    with pytest.raises(TraceError, match="no ego: the log does not say which actor is the ego"):
+    with pytest.raises(TraceError, match="no ego: the log does not name the ego"):
         read(folder)
 
 
@@ -223,7 +223,7 @@ def test_a_film_of_impossible_frame_numbers_is_refused(tmp_path: Path) -> None:
         found = quality(read(changed, **source.options))
         assert "malformed_row" in found
     every = re.sub(r"\n(\d+),", r"\n90000000\1,", text)
-    with pytest.raises(TraceError, match="holds no frame numbers"):
+    with pytest.raises(TraceError, match="has no frame numbers"):
         read(source.written(tmp_path / "every", {"film.csv": every.encode()}), **source.options)
 
 

@@ -175,7 +175,7 @@ def test_what_still_fails_at_another_step_is_a_class_of_its_own() -> None:
     entry = next(e for e in diff.compare(base, new).entries if e.standing == "elsewhere")
     assert (entry.base_id, entry.there) == ("second", "fail")
     told = descriptions.difference_text(diff.compare(base, new), [], "critical")
-    assert "gone but not fixed: 0 unknown now, 0 not looked at, 1 still failing elsewhere" in told
+    assert "gone but not fixed: 0 unknown now, 0 not judged now, 1 still failing elsewhere" in told
     assert "Not fixed: the rule still fails, at another step or place (1)" in told
     assert "cannot be told" not in told
     gone = model.exit_status(GateInputs(date(2026, 11, 26), base).apply_to(new))
@@ -208,7 +208,7 @@ OPEN = said("unknown", 5, 12, reason="the limit is not known")
         (run([], said("pass"), OPEN), "unknown", "unknown", "the limit is not known"),
         (run([], said("pass"), said("unknown", 15, 20)), "fixed", "pass", "because pass"),
         (run([], said("error", t_start_ns=None, t_end_ns=None, t_worst_ns=None)), "unknown", "error", "because error"),
-        (run([at(20)], said("fail", n_expected=9, n_judged=9)), "fixed", "pass", "kept there, though"),
+        (run([at(20)], said("fail", n_expected=9, n_judged=9)), "fixed", "pass", "kept there, but"),
         (run([at(20)], said("fail", n_expected=9, n_judged=7)), "unknown", "unknown", "2 of 9 steps were not judged"),
         (run([], said("pass"), rules=RULES[:1]), "lost", "none", "the rule was not run"),
         (run([], said("pass", ego_id="2")), "lost", "none", "ego 1 was not judged"),
@@ -308,8 +308,8 @@ def test_json_holds_every_entry_and_the_counts() -> None:
 
 def test_text_says_what_is_not_fixed() -> None:
     told = descriptions.difference_text(diff.compare(run([at(8)]), run([], OPEN)), [], "critical")
-    assert "0 fixed (0 now pass, 0 now not applicable); gone but not fixed: 1 unknown now, 0 not looked at" in told
-    assert "Not fixed: it cannot be told any more (1)" in told
+    assert "0 fixed (0 now pass, 0 now not applicable); gone but not fixed: 1 unknown now, 0 not judged now" in told
+    assert "Not fixed: it cannot be judged any more (1)" in told
     assert "(now unknown: the limit is not known)" in told
     assert told.endswith(
         "exit 4: no new finding at or above severity critical, but 1 earlier finding gone but not fixed"

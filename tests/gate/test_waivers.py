@@ -162,7 +162,7 @@ def test_an_expired_waiver_waives_nothing_and_is_told() -> None:
     assert run.gate is not None
     assert list(descriptions.waiver_warnings(run.gate)) == [
         "w:1: expired 2026-11-19 (jo): it waives nothing; 1 finding like that",
-        "w:1: no finding is like that: none.* (jo); correct or drop it",
+        "w:1: no finding matches none.* (jo); correct or remove it",
     ]
 
 

@@ -9,7 +9,7 @@ import pytest
 from drivelint import guide
 from tests.shared_data import ROOT
 
-HEADS = ["quantity", "drivelint", "the other tool", "why", "held by"]
+HEADS = ["quantity", "drivelint", "the other tool", "why", "tested by"]
 ROWS = [
     [cell.strip() for cell in re.split(r"(?<!\\)\|", line.strip("|"))]
     for line in guide.text("differences").splitlines()

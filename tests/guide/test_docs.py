@@ -138,7 +138,7 @@ def test_the_guide_of_columns_has_every_column_of_every_file() -> None:
     text = guide.text("columns")
     for stem, table in {**TABLE_OF_FILE, "margins": "margin"}.items():
         section = text.partition(f"### {stem}.parquet\n")[2].partition("\n### ")[0]
-        columns = [*column_comments()[table], *(["geom"] if table in SHAPES else [])]
+        columns = [*column_comments()[table], *SHAPES.get(table, ())]
         assert re.findall(r"^\| `(\w+)` \|", section, re.MULTILINE) == columns, stem
         assert f"`{stem}.parquet`" in text.partition("## The columns")[0]
 
@@ -220,10 +220,10 @@ def test_the_reference_of_rules_has_every_key_condition_and_signal() -> None:
         return [name for cell in rows for name in re.findall(r"`\[?(\w+)[^`]*`", cell)]
 
     assert first_cells("All keys of the header") == list(Header.__struct_fields__)
-    assert first_cells("The conditions under which it holds") == list(Conditions.__struct_fields__)
+    assert first_cells("The conditions under which it applies") == list(Conditions.__struct_fields__)
     assert sorted(first_cells("The signals of requires")) == sorted(SIGNALS)
     for name, words in CONDITION_VALUES.items():
-        row = re.search(rf"^\| `{name}` \| (.*) \|$", sections["The conditions under which it holds"], re.MULTILINE)
+        row = re.search(rf"^\| `{name}` \| (.*) \|$", sections["The conditions under which it applies"], re.MULTILINE)
         assert row
         named = set(re.findall(r"`([\w-]+)`", row[1]))
         assert named <= set(words), name

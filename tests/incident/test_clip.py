@@ -179,7 +179,7 @@ def test_a_clip_names_the_log_that_it_was_cut_from(
     )
     assert "--profile relaxed --profile nominal --out results" in summary_text(written)  # as that check had them
     (sizes,) = [row for row in rows if row["check_id"] == ASSUMED_SIZE]
-    assert sizes["message"] == "size as the mapping 'mapping' says, not recorded"
+    assert sizes["message"] == "size from the mapping 'mapping', not recorded"
 
 
 @pytest.mark.slow
@@ -195,12 +195,12 @@ def test_the_sheet_and_the_check_of_a_clip_say_what_the_log_s_say_of_sizes_and_f
     ]
     assert "sizes are assumed, not recorded" in told[0]["rests"] == told[1]["rests"]
     assert [[party["size_source"] for party in each["parties"]] for each in told] == [
-        ["size as the mapping 'carla-testbench' says, not recorded"] * 2
+        ["size from the mapping 'carla-testbench', not recorded"] * 2
     ] * 2
     lines = [next(note.words for note in input_notes(each) if note.label == "log") for each in (result, again)]
     # the clip's format has an end mark, the log's has none
-    assert "size as the mapping 'carla-testbench' says" in lines[0].replace(" as far as .csv tells", "") == lines[1]
-    assert "y and heading turned, as the mapping 'carla-testbench' says: the log's frame is left-handed" in lines[0]
+    assert "size from the mapping 'carla-testbench'" in lines[0].replace(" as far as .csv tells", "") == lines[1]
+    assert "y and heading turned, as the mapping 'carla-testbench' states: the log's frame is left-handed" in lines[0]
 
 
 @pytest.mark.ci

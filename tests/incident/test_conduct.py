@@ -109,10 +109,10 @@ def test_every_profile_is_told_the_mildest_first() -> None:
 
 
 def test_what_was_not_decided_is_said_in_full_without_advice() -> None:
-    reason = "the log does not say when the headlights are on: record either their signal or the event headlights, on and off"
+    reason = "the log does not record when the headlights are on: record either their signal or the event headlights, on and off"
     found = told([row("lamps", "unknown", reason=reason, reason_code="missing", finding_ids=None)], [])
     assert found["reasons"].texts == [
-        "\u201cHeadlights at night\u201d: The log does not say when the headlights are on"
+        "\u201cHeadlights at night\u201d: The log does not record when the headlights are on"
     ]
 
 

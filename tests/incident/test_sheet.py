@@ -212,7 +212,7 @@ def test_nobody_is_said_to_have_braked_by_the_crash(collision: dict[str, Any]) -
 @pytest.mark.ci
 def test_sizes_that_the_log_does_not_have(case_of: CaseOf) -> None:
     case = case_of("no-collision@collision")
-    trace, said = case.drive.trace, "size as the mapping 'mapping' says, not recorded"
+    trace, said = case.drive.trace, "size from the mapping 'mapping', not recorded"
     assert [size_source(trace, who) for who in case.finding.parties] == [said] * 2
     assert render(case).decode().count(str(escape(said))) == 2
     tables = trace.tables["quality"]

@@ -334,8 +334,8 @@ def test_every_signal_that_the_library_tells_has_advice() -> None:
 
 
 def test_an_osi_file_has_no_place_for_declared_events() -> None:
-    table = "drivelint convert --to parquet, and in its tables declared_event.parquet (columns drive_id, actor_id, t_ns, event, value)"
-    assert how_to_provide("declared_events", "osi-file").endswith(f": a .osi file has no place for them: {table}")
+    table = "use drivelint convert --to parquet, and add declared_event.parquet (columns drive_id, actor_id, t_ns, event, value)"
+    assert how_to_provide("declared_events", "osi-file").endswith(f": a .osi file cannot contain them: {table}")
     assert how_to_provide("declared_events", "osi-mcap").endswith(
         "drivelint.DeclaredEvent (keys t_ns, actor_id, event, value)"
     )

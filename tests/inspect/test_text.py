@@ -78,7 +78,7 @@ def test_plain_where_it_is_no_terminal() -> None:
     assert (done.returncode, done.stderr) == (0, "")
     assert "\x1b" not in done.stdout
     assert all(line == line.rstrip() for line in done.stdout.splitlines())
-    assert "give it with --map" in done.stdout
+    assert "name a map with --map" in done.stdout
 
 
 def test_json_for_machines() -> None:

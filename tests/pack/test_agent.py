@@ -117,10 +117,10 @@ def test_an_agent_where_nobody_confirms_is_said_to_refuse(tmp_path: Path, monkey
 def test_without_an_agent(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     _, public = make_key(tmp_path, "ours")
     monkeypatch.delenv("SSH_AUTH_SOCK", raising=False)
-    with pytest.raises(UsageError, match="SSH_AUTH_SOCK names none"):
+    with pytest.raises(UsageError, match="SSH_AUTH_SOCK names no agent"):
         signature.signing_key(public)
     monkeypatch.setenv("SSH_AUTH_SOCK", str(tmp_path / "nothing"))
-    with pytest.raises(UsageError, match="cannot be asked"):
+    with pytest.raises(UsageError, match="cannot be reached"):
         signature.signing_key(public)
 
 

@@ -156,7 +156,7 @@ def test_without_the_logs_the_sql_is_run_and_the_note_says_so(packed: PackedAudi
     assert not one.problems
     assert f"1 of {N_DRIVES} drives judged again" in one.sentence
     assert one.notes[0].startswith("1 drive without a log")
-    with pytest.raises(UsageError, match="no log there is of a drive with a finding"):
+    with pytest.raises(UsageError, match="no log there belongs to a drive with a finding"):
         verify(VerifyRequest(without_logs, packed.public, (logs / LOSSY,)))
 
 
@@ -206,7 +206,7 @@ def test_an_audit_that_has_not_ended_is_not_packed(packed: PackedAudit, tmp_path
 def test_tables_that_their_summary_does_not_fit_are_not_packed(packed: PackedAudit, tmp_path: Path) -> None:
     audit = shutil.copytree(packed.audit, tmp_path / "audit")
     audited.change_json(audit / "summary.json", lambda told: told.update(refused=0))
-    with pytest.raises(UsageError, match=r"summary\.json: is not as drivelint audit wrote it"):
+    with pytest.raises(UsageError, match=r"summary\.json: was changed since drivelint audit wrote it"):
         make_pack(audit, tmp_path / "pack")
     (audit / MANIFEST).unlink()
     with pytest.raises(UsageError, match=r"has ended, and files\.json.* is not there"):
@@ -220,9 +220,9 @@ def test_tables_that_their_summary_does_not_fit_are_not_packed(packed: PackedAud
         (("pack", "DIR", "--out", "s3://fleet/pack"), "a pack is a folder of this machine"),
         (("pack", "DIR", "--out", "DIR/pack"), "lies in the result that is packed"),
         (("audit", "nothing", "--out", "s3://fleet/audit", "--evidence", "pack"), "is in an object store"),
-        (("audit", "nothing", "--out", "a", "--evidence", "pack", "--shard", "1/2"), "give drivelint merge"),
-        (("audit", "nothing", "--out", "a", "--sign", "key.pem"), "say where that goes with --evidence PACK"),
-        (("check", "nothing", "--evidence", "pack"), "give --out, too"),
+        (("audit", "nothing", "--out", "a", "--evidence", "pack", "--shard", "1/2"), "run drivelint merge"),
+        (("audit", "nothing", "--out", "a", "--sign", "key.pem"), "name its folder with --evidence PACK"),
+        (("check", "nothing", "--evidence", "pack"), "use --out, too"),
         (("check", "nothing", "--out", "a", "--evidence", "pack", "--sign", "nothing.pem"), "nothing.pem"),
         (("pack", "DIR", "--out", "pack", "--findings", "most"), "write a number such as 100, or all"),
     ],
@@ -316,7 +316,7 @@ def verdicts_turned_and_the_receipts_left(pack: Path, p: PackedAudit) -> tuple[s
     change_table(table_of(pack, "verdicts"), "verdict", to_pass)
     audited.follow_tables(pack)
     audited.sign_anew(pack, p.key)
-    return "receipts do not fit the tables", "counts"
+    return "receipts do not match the tables", "counts"
 
 
 @into(FORGED)
@@ -324,7 +324,7 @@ def a_row_moved_by_a_little(pack: Path, p: PackedAudit) -> tuple[str, str]:
     change_table(table_of(pack, "verdicts"), "margin", lambda value: None if value is None else value + 1e-9)
     audited.follow_tables(pack)
     audited.sign_anew(pack, p.key)
-    return "receipts do not fit the tables", "rows_sha256"
+    return "receipts do not match the tables", "rows_sha256"
 
 
 @into(FORGED)
@@ -333,7 +333,7 @@ def lossy_drive_said_to_be_whole(pack: Path, p: PackedAudit) -> tuple[str, str]:
     audited.follow_tables(pack)
     change_evidence(pack, lambda told: told.update(n_lossy=0))
     audited.sign_anew(pack, p.key)
-    return "receipts do not fit the tables", "lossy"
+    return "receipts do not match the tables", "lossy"
 
 
 @into(FORGED)
@@ -342,7 +342,7 @@ def refused_drive_said_to_be_judged(pack: Path, p: PackedAudit) -> tuple[str, st
     audited.follow_tables(pack)
     change_evidence(pack, lambda told: told.update(not_judged=[]))
     audited.sign_anew(pack, p.key)
-    return "receipts do not fit the tables", "status"
+    return "receipts do not match the tables", "status"
 
 
 @into(FORGED)
@@ -350,7 +350,7 @@ def summary_that_knows_no_refusal(pack: Path, p: PackedAudit) -> tuple[str, str]
     audited.change_json(pack / AUDIT / "summary.json", lambda told: told.update(refused=0, judged=N_DRIVES))
     change_evidence(pack, lambda _told: None)
     audited.sign_anew(pack, p.key)
-    return "summary.json does not fit the tables", "refused"
+    return "summary.json does not match the tables", "refused"
 
 
 @into(FORGED)
@@ -361,7 +361,7 @@ def other_rules_in_the_settings(pack: Path, p: PackedAudit) -> tuple[str, str]:
     audited.change_json(pack / AUDIT / "audit.json", other)
     change_evidence(pack, lambda told: told["audit"]["settings"].update(rules=["ukhc"]))
     audited.sign_anew(pack, p.key)
-    return "audit.json does not fit the result", "run_id"
+    return "audit.json does not match the result", "run_id"
 
 
 @into(FORGED)
@@ -376,7 +376,7 @@ def worst_finding_left_out(pack: Path, p: PackedAudit) -> tuple[str, str]:
 
     change_evidence(pack, less)
     audited.sign_anew(pack, p.key)
-    return "evidence.json does not fit the result", "findings"
+    return "evidence.json does not match the result", "findings"
 
 
 @into(FORGED)

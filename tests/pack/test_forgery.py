@@ -327,14 +327,14 @@ def text_before_the_key(pack: Path, _p: Packed) -> tuple[str, str]:
 def name_of_the_key_in_the_envelope_changed(pack: Path, _p: Packed) -> tuple[str, str]:
     """DSSE does not sign it, and the script does not read it."""
     change_envelope(pack, lambda envelope: envelope["signatures"][0].update(keyid="the ministry"))
-    return "text beside what is signed", STATEMENT
+    return "text beside the signed content", STATEMENT
 
 
 @into(UNSEEN)
 def text_added_to_the_envelope(pack: Path, _p: Packed) -> tuple[str, str]:
     """As with the name of the key."""
     change_envelope(pack, lambda envelope: envelope.update(result="PASSED"))
-    return "text beside what is signed", STATEMENT
+    return "text beside the signed content", STATEMENT
 
 
 @into(UNSEEN)
@@ -342,7 +342,7 @@ def second_signature_added(pack: Path, p: Packed) -> tuple[str, str]:
     """The script verifies the first."""
     other = json.loads((p.other_pack / STATEMENT).read_bytes())["signatures"]
     change_envelope(pack, lambda envelope: envelope["signatures"].extend(other))
-    return "text beside what is signed", STATEMENT
+    return "text beside the signed content", STATEMENT
 
 
 @into(UNSEEN)

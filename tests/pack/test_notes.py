@@ -44,7 +44,7 @@ def test_what_is_the_packs_own_is_said(packed: Packed, tmp_path: Path) -> None:
     assert found.notes == [
         "rules and profiles in data/rules_dirs/0/rules are not drivelint's: read them",
         "not judged when it was checked, nor now: empty.csv",
-        "baseline and waivers are as the pack says: they are not held against anything again",
+        "baseline and waivers are as the pack says: they are not checked again",
     ]
     assert "1 drive judged again: the same bytes; it states that the drives broke rules (FAILED)" in found.sentence
     # a rule that is added to those of the pack is named, whoever signs

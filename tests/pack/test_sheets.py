@@ -90,9 +90,9 @@ def test_a_sheet_of_no_finding(packed: Packed, mine: Path, name: str) -> None:
     reseal(mine, packed.key)
     found = verify(VerifyRequest(mine, packed.public)).problems
     assert {(each.kind, each.subject) for each in found} == {
-        ("evidence.json does not fit the result", each) for each in (name, "data/incidents/more.html")
+        ("evidence.json does not match the result", each) for each in (name, "data/incidents/more.html")
     }
-    assert all(each.kind == "evidence.json does not fit the result" for each in found)
+    assert all(each.kind == "evidence.json does not match the result" for each in found)
 
 
 @pytest.mark.slow

@@ -46,40 +46,40 @@ BY_SIGNER: dict[str, Tamper] = {}
 def report_says_otherwise(pack: Path, _p: Packed) -> tuple[str, str]:
     edit(pack / "data/result/report.html", "FAIL", "PASS")
     change_evidence(pack, lambda _told: None)
-    return "report does not fit the tables", "data/result/report.html"
+    return "report does not match the tables", "data/result/report.html"
 
 
 @into(BY_SIGNER)
 def failures_left_out_of_the_test_report(pack: Path, _p: Packed) -> tuple[str, str]:
     edit(pack / "data/result/junit.xml", "<failure", "<system-out")
     change_evidence(pack, lambda _told: None)
-    return "report does not fit the tables", "data/result/junit.xml"
+    return "report does not match the tables", "data/result/junit.xml"
 
 
 @into(BY_SIGNER)
 def counts_changed(pack: Path, _p: Packed) -> tuple[str, str]:
     edit(pack / SUMMARY, '"fail": ', '"fail": 1')
     change_evidence(pack, lambda _told: None)
-    return "summary.json does not fit the tables", "verdicts"
+    return "summary.json does not match the tables", "verdicts"
 
 
 @into(BY_SIGNER)
 def count_added(pack: Path, _p: Packed) -> tuple[str, str]:
     edit(pack / SUMMARY, '"near_misses"', '"approved": true,\n  "near_misses"')
     change_evidence(pack, lambda _told: None)
-    return "summary.json does not fit the tables", "approved"
+    return "summary.json does not match the tables", "approved"
 
 
 @into(BY_SIGNER)
 def parameter_edited(pack: Path, _p: Packed) -> tuple[str, str]:
     edit(pack / EVIDENCE, '"ukhc.contact-signature.within_m": "0.4"', '"ukhc.contact-signature.within_m": "0.1"')
-    return "evidence.json does not fit the result", "parameters"
+    return "evidence.json does not match the result", "parameters"
 
 
 @into(BY_SIGNER)
 def rule_edited(pack: Path, _p: Packed) -> tuple[str, str]:
     edit(pack / "data/rules/ukhc/no-collision.sql", "title", "titel")
-    return "evidence.json does not fit the result", "rules"
+    return "evidence.json does not match the result", "rules"
 
 
 @into(BY_SIGNER)
@@ -159,7 +159,7 @@ def something_said_twice(pack: Path, _p: Packed) -> tuple[str, str]:
 @into(BY_SIGNER)
 def something_more_said(pack: Path, _p: Packed) -> tuple[str, str]:
     change_evidence(pack, lambda told: told.update(approved_by="the ministry"))
-    return "evidence.json does not fit the result", "approved_by"
+    return "evidence.json does not match the result", "approved_by"
 
 
 @into(BY_SIGNER)
@@ -172,7 +172,7 @@ def form_of_the_future(pack: Path, _p: Packed) -> tuple[str, str]:
 def rules_from_outside(pack: Path, _p: Packed) -> tuple[str, str]:
     edit(pack / "data/result/run.json", '"rules_dirs": []', '"rules_dirs": ["/tmp"]')
     change_evidence(pack, lambda _told: None)
-    return "evidence.json does not fit the result", "rules_dirs"
+    return "evidence.json does not match the result", "rules_dirs"
 
 
 @into(BY_SIGNER)
@@ -184,21 +184,21 @@ def places_that_are_no_places(pack: Path, _p: Packed) -> tuple[str, str]:
 @into(BY_SIGNER)
 def reason_beside_the_sql(pack: Path, _p: Packed) -> tuple[str, str]:
     change_evidence(pack, lambda told: told["findings"][0].update(without_sql_because="it is not needed"))
-    return "evidence.json does not fit the result", "sql"
+    return "evidence.json does not match the result", "sql"
 
 
 @into(BY_SIGNER)
 def parameter_of_the_check_edited(pack: Path, _p: Packed) -> tuple[str, str]:
     edit(pack / "data/result/run.json", "within_m=0.4", "within_m=0.1")
     change_evidence(pack, lambda _told: None)
-    return "run.json does not fit the result", "parameters"
+    return "run.json does not match the result", "parameters"
 
 
 @into(BY_SIGNER)
 def parameter_of_the_check_that_is_none(pack: Path, _p: Packed) -> tuple[str, str]:
     edit(pack / "data/result/run.json", "within_m=0.4", "width_m=0.4")
     change_evidence(pack, lambda _told: None)
-    return "run.json does not fit the result", "width_m"
+    return "run.json does not match the result", "width_m"
 
 
 @into(BY_SIGNER)
@@ -206,7 +206,7 @@ def title_of_a_rule_edited(pack: Path, _p: Packed) -> tuple[str, str]:
     """Its file has another one."""
     change_table(pack / "data/result/rules.parquet", "title", lambda title: title.replace("No ", "Little "))
     rewrite_reports(pack)
-    return "run.json does not fit the result", "rules"
+    return "run.json does not match the result", "rules"
 
 
 @pytest.fixture(scope="session")
@@ -250,7 +250,7 @@ def test_a_log_that_its_signer_replaced(packed: Packed, tmp_path: Path) -> None:
     shutil.copyfile(log_of(packed.other_pack), log_of(pack))
     sign_anew(pack, packed.key)
     (found,) = verify(VerifyRequest(pack, packed.public)).problems
-    assert found.kind == "inputs do not fit the result"
+    assert found.kind == "inputs do not match the result"
     assert "another log" in found.subject
 
 
@@ -259,7 +259,7 @@ def test_a_map_that_its_signer_replaced(packed: Packed, tmp_path: Path) -> None:
     edit(pack / "data/inputs/map/road.xodr", "<road ", "<road  ")
     sign_anew(pack, packed.key)
     (found,) = verify(VerifyRequest(pack, packed.public)).problems
-    assert found.kind == "inputs do not fit the result"
+    assert found.kind == "inputs do not match the result"
     assert "another map" in found.subject
 
 

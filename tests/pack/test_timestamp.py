@@ -108,12 +108,12 @@ def stamped(packed: Packed, tmp_path_factory: pytest.TempPathFactory) -> Stamped
 def test_a_stamp_is_verified_as_openssl_does(stamped: Stamped, packed: Packed, tmp_path: Path) -> None:
     found = verify(VerifyRequest(stamped.pack, packed.public, timestamp_root=stamped.authority.root))
     assert found.problems == []
-    assert ", there since 20" in found.sentence
+    assert ", existed by 20" in found.sentence
     statement, response = stamped.pack / "statement.dsse.json", stamped.pack / timestamp.FILE
     openssl("ts", "-verify", "-data", statement, "-in", response, "-CAfile", stamped.authority.root)
     without = verify(VerifyRequest(stamped.pack, packed.public))
     assert without.problems == []
-    assert "only --timestamp-root tells whose" in without.sentence
+    assert "only --timestamp-root identifies its authority" in without.sentence
     done = script(stamped.pack, packed.public, tmp_path)
     assert (done.returncode, done.stdout) == (0, "untouched since it was signed\n"), done.stderr
     # nothing else differs from the pack without it but the hashes of the tag files
@@ -129,7 +129,7 @@ def test_a_stamp_is_verified_as_openssl_does(stamped: Stamped, packed: Packed, t
 
 def test_another_authority_is_not_trusted(stamped: Stamped, packed: Packed) -> None:
     (found,) = verify(VerifyRequest(stamped.pack, packed.public, timestamp_root=stamped.other.root)).problems
-    assert found.kind == "time stamp of nobody who is trusted"
+    assert found.kind == "time stamp of an authority that is not trusted"
 
 
 def test_the_order_in_which_an_authority_sends_its_certificates_does_not_matter(
@@ -217,7 +217,7 @@ def test_without_the_package_a_stamp_is_not_looked_at(
     (pack / timestamp.FILE).write_bytes(b"whatever")
     rehash(pack, payload=False)
     found = verify(VerifyRequest(pack, packed.public))
-    assert "with a time stamp that was not looked at" in found.sentence
+    assert "with a time stamp that was not examined" in found.sentence
     assert "pip install 'drivelint[timestamp]'" in found.notes[0]
     with pytest.raises(UsageError, match="rfc3161-client"):
         verify(VerifyRequest(pack, packed.public, timestamp_root=packed.public))

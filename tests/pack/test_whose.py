@@ -36,7 +36,7 @@ def dated(packed: Packed, tmp_path_factory: pytest.TempPathFactory) -> tuple[Pat
 def test_without_a_key_nobody_is_identified(dated: tuple[Path, ...], packed: Packed, tmp_path: Path) -> None:
     pack = dated[1]
     code, said = verified(pack)
-    assert (code, "consistent" in said, "only --key tells" in said) == (0, True, True)
+    assert (code, "consistent" in said, "only --key identifies" in said) == (0, True, True)
     code, said = verified(pack, "--require-signature")
     assert (code, said.startswith("nobody identified: ")) == (1, True)
     assert verified(pack, "--require-signature", "--key", packed.public)[0] == 0

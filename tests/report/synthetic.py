@@ -65,7 +65,7 @@ def rule(rule_id: str = SDA, **over: Any) -> dict[str, Any]:
         "rule_id": rule_id, "rule_version": "v", "pack": "ukhc", "pack_title": "UK Highway Code", "law": [], "tags": [],
         "title": "room to overtake", "clause": "Rule 162",
         "hypothesis": "is there room?", "kind": "execution", "derivation": "model", "severity": "critical",
-        "legal": "should", "status": "stable", "sense": ">", "unit": "m", "requires": [], "profiles": ["nominal"],
+        "legal": "should", "status": "stable", "is_named": False, "sense": ">", "unit": "m", "requires": [], "profiles": ["nominal"],
         "params": [],
     } | over  # fmt: skip
 

@@ -107,7 +107,7 @@ def test_unknown_is_told_with_its_reason_and_never_as_a_pass() -> None:
         verdict("unknown", reason="no map: give one", t_ref_ns=None, t_start_ns=None, t_end_ns=None, t_worst_ns=None)
     ]
     parsed = Parsed(page(result(rows)))
-    assert "No findings, as nothing could be decided" in parsed.text
+    assert "No findings, because nothing could be decided" in parsed.text
     assert "No map: give one" in parsed.text
     assert "No rule was broken" not in parsed.text
 

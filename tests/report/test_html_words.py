@@ -63,7 +63,7 @@ TABLE_2 = "517679d844fca426b466d6b86ed5ee3d570cb5cfe527b74acfd6e71503da0857"
     ("sha256", "said"),
     [
         pytest.param(TABLE_1, "some 2 m less", id="table 1"),
-        pytest.param(TABLE_2, "nobody was detected, which is not nobody there", id="table 2"),
+        pytest.param(TABLE_2, "no vehicle was detected, but one may have been there", id="table 2"),
         pytest.param("ab" * 32, "", id="no log of theirs"),
     ],
 )

@@ -160,13 +160,13 @@ def test_a_baseline_tells_what_is_new_and_what_is_not_fixed() -> None:
     text = told(gated([finding(), gone], [finding(), late, finding(object_id="4", finding_id="w")]))
     assert "3 findings in 1 of 1 drive: 1 new (1 critical), 1 known (1 critical), 1 waived (1 critical)." in text
     assert "Of the baseline's findings: 0 changed (0 worse), 1 unchanged, 0 fixed" in text
-    assert "gone but not fixed: 1 unknown now, 0 not looked at" in text
+    assert "gone but not fixed: 1 unknown now, 0 not judged now" in text
     assert "### New findings (1)" in text
     assert tables(text)[1][1][2] == "15.00 s"
     assert [row[-1] for row in tables(text)[2][1:]] == [
         "known: the baseline has it", "waived until 2027-01-31 by jo: ticket 17",
     ]  # fmt: skip
-    assert "### Not fixed: it cannot be told any more (1)" in text
+    assert "### Not fixed: it cannot be judged any more (1)" in text
     assert "### More is unknown than was (1)" in text
     assert "### Waivers to look at\n\n* w.toml:9: expired 2026-01-31 (al): it waives nothing; no finding" in text
 
@@ -211,7 +211,7 @@ def test_a_difference_as_markdown() -> None:
     assert "exit 1: 1 new finding at or above severity critical." in text
     assert tables(text)[0][1:] == [["main", "0", "1", "0", "0", "0"], ["pull|request", "0", "1", "1", "0", "0"]]
     assert "### New (1)\n\n* critical: d1 at 15.00 s:" in text
-    assert "### Not fixed: it cannot be told any more (1)" in text
+    assert "### Not fixed: it cannot be judged any more (1)" in text
 
 
 def test_a_time_is_in_utc_too_where_the_log_has_one() -> None:

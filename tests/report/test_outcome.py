@@ -162,7 +162,7 @@ def test_of_many_drives_most_must_be_decided() -> None:
     ("now", "why"),
     [
         ([verdict("unknown", t_start_ns=None), verdict("pass", rule_id="ukhc.spare", profile=None)], "1 unknown now"),
-        ([verdict("pass", rule_id="ukhc.spare", profile=None)], "1 not looked at"),
+        ([verdict("pass", rule_id="ukhc.spare", profile=None)], "1 not judged now"),
     ],
 )
 def test_what_is_gone_but_not_fixed_is_no_pass(now: list[dict[str, Any]], why: str) -> None:
@@ -208,11 +208,10 @@ def test_what_is_gone_gates_only_where_it_would_have() -> None:
 def test_what_is_missing_for_some_egos_only_says_for_how_many() -> None:
     rows = [verdict("unknown", ego_id=f"{n}", reason_code="missing_registration") for n in range(2)]
     rows += [verdict("pass", ego_id=f"{n}") for n in range(2, 22)]
-    line = next(line for line in screen(result(rows)) if line.startswith("map: "))
-    assert line.endswith("not judged: registration (1 rule, 2 of 22 egos)")
+    assert "not judged: 1 rule without registration (for 2 of 22 egos)" in screen(result(rows))
     rows = [verdict("unknown", drive_id="d1", reason_code="missing_horn"), verdict("pass", drive_id="d2")]
-    line = next(line for line in screen(result(rows, drives=[drive(), drive("d2")])) if line.startswith("map: "))
-    assert line.endswith("not judged: horn (1 rule, 1 of 2 drives)")
+    told = screen(result(rows, drives=[drive(), drive("d2")]))
+    assert "not judged: 1 rule without horn (for 1 of 2 drives)" in told
 
 
 def test_the_title_of_a_broken_rule_does_not_stand_alone() -> None:
@@ -264,7 +263,7 @@ def test_a_rule_that_did_not_apply_somewhere_is_not_said_to_be_judged_nowhere() 
 
 def test_a_run_in_which_no_rule_applied_says_so() -> None:
     of = result([verdict("not_applicable"), verdict("not_applicable", ego_id="2")])
-    words = "not applicable no findings, as no rule applied: what they are about did not happen"
+    words = "not applicable no findings, because no rule applied: the situations that they are about did not happen"
     assert heads(of) == [words] * 3
     assert exit_status(of).code == ExitCode.OK
     assert any(re.match(r"d1 +no rule applied ", line) for line in screen(of))

@@ -174,7 +174,7 @@ def test_unknown_verdicts_are_grouped_by_what_is_missing() -> None:
     lines = summary(result([*rows, verdict("pass", rule_id="ukhc.a")], rules=rules))
     assert [line for line in lines if line.startswith("unknown")] == ["unknown (1 rule, 90 times): a hole at 0 s"]
     told = " ".join(" ".join(lines).split())
-    assert "| not judged: headlights (2 rules), indicator (1 rule); 90 other verdicts" in told
+    assert " not judged: 2 rules without headlights, 1 rule without indicator; 90 other verdicts" in told
     assert "4 rules: 1 judged, 3 never judgeable" in lines
 
 

@@ -13,6 +13,7 @@ import pytest
 import shapely
 from shapely import affinity
 
+from drivelint.arrays import with_columns
 from drivelint.audit.worker import TABLES
 from drivelint.report.outputs import write
 from drivelint.resources import folder as folder_of
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 
     from drivelint.result.model import Result
 
-FILES = {stem: SHAPES[table] for stem, table in TABLE_OF_FILE.items() if table in SHAPES}
+FILES = {stem: SHAPES[table]["geom"] for stem, table in TABLE_OF_FILE.items() if "geom" in SHAPES.get(table, ())}
 
 
 @pytest.fixture(scope="module")
@@ -180,6 +181,25 @@ def test_rows_without_a_known_coordinate_stay_and_have_no_geometry(table: str, l
     rows = pa.table({field.name: pa.array([row[field.name]] * 3, field.type) for field in schema})
     made = with_geometry(rows, table)
     assert made.num_rows == 3
-    known = [shapely.from_wkb(wkb) for wkb in made["geom"].to_pylist() if wkb is not None]
-    assert all(each.is_empty for each in known)
-    assert made.drop_columns("geom").to_pylist() == rows.to_pylist()
+    for column in SHAPES[table]:
+        assert all(shapely.from_wkb(wkb).is_empty for wkb in made[column].to_pylist() if wkb is not None)
+    assert made.drop_columns(list(SHAPES[table])).to_pylist() == rows.to_pylist()
+
+
+@pytest.mark.parametrize(("stem", "primary"), [("findings", "geom"), ("drives", "geom_lonlat")])
+def test_places_on_the_earth_are_said_to_be_so(result: Result, stem: str, primary: str, tmp_path: Path) -> None:
+    """GeoParquet 1.1: longitude first; geopandas and DuckDB read the reference of each column by itself."""
+    table = TABLE_OF_FILE[stem]
+    rows = getattr(result, stem)
+    lon, lat = [8.4 + n / 1000 for n in range(rows.num_rows)], [49.0] * (rows.num_rows - 1) + [None]
+    placed = with_columns(rows, {"lon": lon, "lat": lat})
+    path = tmp_path / "placed.parquet"
+    path.write_bytes(parquet_bytes(placed, table))
+    frame = opened(path)
+    assert frame.geometry.name == primary
+    assert frame["geom_lonlat"].crs.equals("OGC:CRS84")
+    assert [(each.x, each.y) for each in frame["geom_lonlat"][:-1]] == list(zip(lon, lat, strict=True))[:-1]
+    assert frame["geom_lonlat"][len(frame) - 1] is None
+    with store.open_as_is() as con:
+        said = con.execute(f"SELECT DISTINCT ST_CRS(geom_lonlat) FROM '{path}' WHERE lat IS NOT NULL").fetchall()
+    assert said == [("OGC:CRS84",)]

@@ -101,7 +101,7 @@ def test_on_a_road_of_one_direction_the_lanes_do_not_tell_the_side() -> None:
             else [
                 (
                     "--handedness says lht, the traces fit rht: lht is taken. If that is wrong, the side for overtaking is wrong: "
-                    "leave the option out, or give rht."
+                    "leave the option out, or set rht."
                 )
             ]
         )

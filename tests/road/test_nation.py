@@ -5,18 +5,27 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import pyarrow.parquet as pq
 import pytest
 
+from drivelint.audit import AuditRequest, audit
 from drivelint.drive.trace import DriveInput
+from drivelint.engine.default_rules import chosen_selectors
 from drivelint.engine.map_library import MapLibrary
 from drivelint.formats import load_map, read_trace
+from drivelint.inspect import InspectRequest, inspect
 from drivelint.report.law import law_words
+from drivelint.report.progress import Silent
 from drivelint.road.map_reader import MapSource
+from drivelint.run import CheckOptions, check
+from drivelint.watch.judge import WindowJudge
+from drivelint.watch.options import WatchOptions
 from tests.engine.few_states import log_of, states
 from tests.formats.commonroad.scenario_text import lanelet, scenario, state
 from tests.formats.opendrive.xodr import road, xodr
 from tests.formats.osi import osi_log
 from tests.report.synthetic import drive, result, rule, verdict
+from tests.shared_data import ROOT
 
 
 def signal(country: str) -> str:
@@ -88,7 +97,7 @@ def test_the_country_of_the_signals_of_an_opendrive_map(countries: list[str], na
             [[], [("de", "map")]],
             (
                 "of gb assumed, as the nation is not known in 1 drive; not applied: nation de by the map in 1 drive; "
-                "of de not asked for: --rules stvo"
+                "of de not requested: --rules stvo"
             ),
         ),
     ],
@@ -100,3 +109,51 @@ def test_the_first_line_names_the_law(conditions: list[list[tuple[str, str]]], w
     ]
     assert law_words(result([verdict("pass")], drives=drives, rules=[rule(law=["gb"])])) == words
     assert not law_words(result([verdict("pass")], drives=drives, rules=[rule()]))
+
+
+@pytest.mark.parametrize(
+    ("benchmark", "env", "rules", "selectors"),
+    [
+        ("DEU_T-1", (), (), ("ukhc,status:stable", "stvo,status:stable")),
+        ("ZAM_T-1", (), (), ()),
+        ("ZAM_T-1", ("nation=de",), (), ("ukhc,status:stable", "stvo,status:stable")),
+        ("DEU_T-1", ("nation=gb",), (), ()),
+        ("DEU_T-1", ("nation=fr",), (), ()),
+        ("DEU_T-1", (), ("ukhc.no-collision",), ("ukhc.no-collision",)),
+        (None, (), (), ()),
+    ],
+)
+def test_rules_are_by_default_those_of_the_nation(
+    benchmark: str | None, env: tuple[str, ...], rules: tuple[str, ...], selectors: tuple[str, ...], tmp_path: Path
+) -> None:
+    road_file = None
+    if benchmark:
+        road_file = tmp_path / "road.xml"
+        road_file.write_text(scenario(lanelet(1, 0.0), benchmark=benchmark))
+    assert chosen_selectors(rules, (), DriveInput(map=road_file, env=env)) == selectors
+
+
+def test_a_map_that_cannot_be_read_says_no_nation(tmp_path: Path) -> None:
+    """The error is that of the drive, which the result has."""
+    broken = tmp_path / "road.xodr"
+    broken.write_text("no map")
+    assert chosen_selectors((), (), DriveInput(map=broken)) == ()
+
+
+@pytest.mark.ci
+@pytest.mark.parametrize(("env", "packs"), [((), {"ukhc"}), (("nation=de",), {"stvo", "ukhc"})])
+def test_every_command_judges_by_them(env: tuple[str, ...], packs: set[str], tmp_path: Path) -> None:
+    fixture = ROOT / "fixtures" / "overtake"
+    log, mapping, map_ = str(fixture / "safe.csv"), str(fixture / "mapping.toml"), fixture / "road.xodr"
+    result = check(
+        CheckOptions(traces=(log,), map=map_, mapping=mapping, env=env, robustness=False, annotate=False), Silent()
+    )
+    assert {row["rule_id"].partition(".")[0] for row in result.rules.to_pylist()} == packs
+    drive = inspect(InspectRequest(trace=log, map=map_, mapping=mapping, env=env)).drive
+    assert drive is not None
+    assert set(drive.selection) == packs
+    with WindowJudge(WatchOptions(source="-", map=map_, mapping=mapping, env=env)) as judge:
+        assert {rule.pack for rule in judge.rules.values()} == packs
+    audit(AuditRequest(sources=(log,), out=str(tmp_path / "audit"), map=map_, mapping=mapping, env=env), Silent())
+    rules = pq.read_table(tmp_path / "audit" / "rules.parquet").to_pylist()
+    assert {row["rule_id"] for row in rules} == {row["rule_id"] for row in result.rules.to_pylist()}

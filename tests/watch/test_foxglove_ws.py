@@ -161,7 +161,7 @@ def test_a_server_that_is_not_up_yet_is_waited_for(tmp_path: Path) -> None:
         received(source, server.n_messages)
         playing.join()
     assert ended(source)
-    assert [*found, *source.notes()] == [f"{uri}: no server answers yet: it is waited for"]
+    assert [*found, *source.notes()] == [f"{uri}: no server answers yet: waiting for it"]
     source.close()
 
 
@@ -172,7 +172,7 @@ def test_no_server_is_one_line(tmp_path: Path) -> None:
             ended(source)
         source.close()
         assert not source.recording.exists()
-    with pytest.raises(UsageError, match="give ws://HOST:PORT"):
+    with pytest.raises(UsageError, match="write ws://HOST:PORT"):
         foxglove_ws.open("http://127.0.0.1:1", tmp_path)
 
 

@@ -152,7 +152,7 @@ def test_messages_are_of_their_schemas() -> None:
 def test_a_port_that_is_taken_is_one_line() -> None:
     with socket.create_server(("127.0.0.1", 0)) as other:
         port = other.getsockname()[1]
-        with pytest.raises(UsageError, match=rf"--serve 127\.0\.0\.1:{port}: nothing can be served there"):
+        with pytest.raises(UsageError, match=rf"--serve 127\.0\.0\.1:{port}: the server cannot start there"):
             LiveServer("127.0.0.1", port)
 
 
@@ -212,7 +212,7 @@ def test_without_a_host_this_machine_alone_can_watch(address: str) -> None:
 def test_an_address_that_others_reach_is_said() -> None:
     with open_server("0.0.0.0:0", []) as server:
         assert server is not None
-        assert server.notes() == ["--serve 0.0.0.0:0: whoever reaches this address can watch"]
+        assert server.notes() == ["--serve 0.0.0.0:0: every machine that reaches this address can connect"]
 
 
 IDLE = """

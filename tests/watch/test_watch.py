@@ -209,13 +209,13 @@ def test_a_program_that_ends_by_itself_is_waited_for(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("asked", "said"),
     [
-        ({"window_s": 12.0, "every_s": 8.0}, "--every 8: give at most 7 s, or a longer --window"),
-        ({"window_s": 9.0}, "--window 9: give more than 10 s"),
+        ({"window_s": 12.0, "every_s": 8.0}, "--every 8: use at most 7 s, or a longer --window"),
+        ({"window_s": 9.0}, "--window 9: use more than 10 s"),
         ({"on": ("ukhc.no-collision",)}, "write SEL=COMMAND"),
         ({"on": ("stvo.rg1=true",)}, "none of the selected rules is meant"),
         ({"command": ("true",)}, "there is no program to start"),
-        ({"command": ("true",), "replay": None}, "is there already: the program behind -- must write a new file"),
-        ({"command": ("true",), "replay": None, "source": "-"}, "is there before the program behind -- is started"),
+        ({"command": ("true",), "replay": None}, "exists already: the program after -- must write a new file"),
+        ({"command": ("true",), "replay": None, "source": "-"}, "stdin exists before the program after -- is started"),
     ],
 )
 def test_mistakes(asked: dict[str, Any], said: str) -> None:

@@ -24,7 +24,7 @@
 -- [params.v_max_mps]
 -- default = 16.67
 -- unit = "m/s"
--- why = "60 km/h, where the table ends: beyond it the law of the country holds"
+-- why = "60 km/h, the end of the table: beyond it the law of the country applies"
 -- source = "UN R157 5.2.3.3"
 
 -- @reference

@@ -24,7 +24,7 @@
 -- [params.brake_mps2]
 -- default = 6.0
 -- unit = "m/s2"
--- why = "deceleration that the system is held to be capable of"
+-- why = "deceleration that the system is assumed to be capable of"
 -- source = "UN R157 5.2.5.2"
 --
 -- [params.delay_s]

@@ -26,7 +26,7 @@
 -- [params.edge_s]
 -- default = 1.0
 -- unit = "s"
--- why = "our default: so near to the ends of the log the filter's windows are not whole"
+-- why = "our default: this near to the ends of the log, the filter's windows are not complete"
 --
 -- [reasons.emergency_undeclared]
 -- says = "the log never declares emergency_manoeuvre"

@@ -17,7 +17,7 @@
 -- [params.v_max_mps]
 -- default = 16.67
 -- unit = "m/s"
--- why = "60 km/h, where the table ends: beyond it the law of the country holds"
+-- why = "60 km/h, the end of the table: beyond it the law of the country applies"
 -- source = "UN R157 5.2.3.3"
 --
 -- [params.restore_s]
@@ -33,7 +33,7 @@
 -- [params.faster_mps]
 -- default = 0.5
 -- unit = "m/s"
--- why = "our default: if the ego's speed is higher by more than this than it was while the vehicle ahead braked, the ego itself closes the gap; a held speed jitters by less"
+-- why = "our default: if the ego's speed is higher by more than this than while the vehicle ahead braked, the ego itself closes the gap; a constant speed varies by less"
 
 -- @condition
 SELECT f.drive_id, f.ego_id, f.t_ns, f.gap_m AS observed, r157_gap_m(f.ego_speed_mps) AS required,

@@ -29,7 +29,7 @@
 -- [params.edge_s]
 -- default = 1.0
 -- unit = "s"
--- why = "our default: so near to the ends of the log the filter's windows are not whole"
+-- why = "our default: this near to the ends of the log, the filter's windows are not complete"
 
 -- @condition
 -- Braking that is too hard is known to have lasted for brief_s only if the acceleration is known at every step of that time. Steps outside

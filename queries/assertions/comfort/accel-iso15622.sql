@@ -34,7 +34,7 @@
 -- [params.edge_s]
 -- default = 0.5
 -- unit = "s"
--- why = "our default: so near to the ends of the log the filter's window is not whole"
+-- why = "our default: this near to the ends of the log, the filter's window is not complete"
 
 -- @condition
 -- The speed is filtered before it is differentiated, see ego_motion. A reversing ego accelerates when the speed along its heading falls.

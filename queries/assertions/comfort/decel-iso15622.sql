@@ -34,7 +34,7 @@
 -- [params.edge_s]
 -- default = 2.5
 -- unit = "s"
--- why = "our default: so near to the ends of the log the two seconds are not whole"
+-- why = "our default: this near to the ends of the log, the two seconds are not complete"
 
 -- @condition
 -- The speed is filtered before it is differentiated, see ego_motion.

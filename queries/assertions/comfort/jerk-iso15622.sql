@@ -29,7 +29,7 @@
 -- [params.edge_s]
 -- default = 1.5
 -- unit = "s"
--- why = "our default: so near to the ends of the log the second and the filter's window are not whole"
+-- why = "our default: this near to the ends of the log, the second and the filter's window are not complete"
 
 -- @condition
 -- The speed is filtered before it is differentiated, see ego_motion. An ego that only ends its acceleration does not brake: the growth of

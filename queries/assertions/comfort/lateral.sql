@@ -29,11 +29,11 @@
 -- [params.edge_s]
 -- default = 0.5
 -- unit = "s"
--- why = "our default: so near to the ends of the log the filter's window is not whole"
+-- why = "our default: this near to the ends of the log, the filter's window is not complete"
 --
 -- [reasons.heavy_vehicle_unknown]
--- says = "whether the ego is a bus or lorry is not known"
--- advice = "give --env vehicle_class=..."
+-- says = "it is not known whether the ego is a bus or lorry"
+-- advice = "set --env vehicle_class=..."
 
 -- @condition
 -- The heading is filtered before it is differentiated, see ego_motion. If the kind of the ego is not known, a value within both limits is a

@@ -23,14 +23,14 @@
 -- [params.edge_s]
 -- default = 0.5
 -- unit = "s"
--- why = "our default: so near to the ends of the log the windows of the accelerations are not whole"
+-- why = "our default: this near to the ends of the log, the windows of the accelerations are not complete"
 --
 -- [reasons.points_into_way]
--- says = "{object_id} is beside the ego's way and does not close in, but its heading at this step points into the way"
+-- says = "{object_id} is beside the ego's path and does not come nearer, but its heading at this step points into the path"
 -- advice = "record headings more exactly"
 --
 -- [reasons.mean_accelerations]
--- says = "the accelerations are means over half a second, so whether the time is above or below the limit is not known"
+-- says = "the accelerations are means over half a second, so it is not known whether the time is above or below the limit"
 -- advice = "no better recording can decide this"
 
 -- @applies

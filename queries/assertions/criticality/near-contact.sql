@@ -1,4 +1,4 @@
--- title = "Room beside whom the ego passes"
+-- title = "Room beside other road users"
 -- breach = "Nearly touched another road user"
 -- clause = "Our default: boxes of data sets leave out mirrors, which stand out by some 0.2 m; who passes nearer than 0.3 m has touched but for luck"
 -- hypothesis = "At every step at which the ego moved past another road user, or that one past it, were there at least 0.3 m between their boxes?"
@@ -23,17 +23,17 @@
 -- [params.passing_mps]
 -- default = 2.0
 -- unit = "m/s"
--- why = "our default: a brisk walk; who differs by less in velocity drives beside the ego and does not pass"
+-- why = "our default: a brisk walk; an actor whose velocity differs by less drives beside the ego and does not pass"
 --
 -- [params.near_m]
 -- default = 3.0
 -- unit = "m"
--- why = "our default: the width of a lane; who is further away is not passed but met"
+-- why = "our default: the width of a lane; an actor that is further away is not passed closely"
 --
 -- [params.contact_s]
 -- default = 2.0
 -- unit = "s"
--- why = "our default: so long before and after a contact the distance is the contact's, which ukhc.no-collision judges"
+-- why = "our default: this long before and after a contact, the distance belongs to the contact, which ukhc.no-collision judges"
 --
 -- [reasons.nearness_between_steps]
 -- says = "contact between this step and the next, {step_s:.2f} s later, cannot be ruled out"

@@ -23,10 +23,10 @@
 -- [params.crossing_rad]
 -- default = 0.7854
 -- unit = "rad"
--- why = "our default: 45 degrees; ways that meet at less merge or part, as in a lane change, where the follower's headway and time to collision say how close it was"
+-- why = "our default: 45 degrees; paths that meet at less merge or divide, as in a lane change, where the headway of the follower and the time to collision measure how close it was"
 --
 -- [reasons.pet_at_most]
--- says = "Not decided: at most {pet_s:.1f} s were between the two, but one of them was not seen all the time."
+-- says = "Not decided: at most {pet_s:.1f} s were between the two, but one of them was not recorded all the time."
 
 -- @reference
 SELECT drive_id, ego_id, t_ego_in_ns AS t_ns, object_id, occurrence, NULL AS code FROM conflict
@@ -50,6 +50,6 @@ SELECT
     CASE WHEN c.pet_s >= $least_s AND c.pet_at_most THEN why('pet_at_most', {'pet_s': c.pet_s}) END AS reason
 FROM reference r
 LEFT JOIN conflict c USING (drive_id, ego_id, occurrence)
--- Who leave the ground in one direction have merged: one follows the other.
+-- Two actors that leave the ground in one direction have merged: one follows the other.
 LEFT JOIN ego_state e ON e.drive_id = c.drive_id AND e.ego_id = c.ego_id AND e.t_ns = c.t_ego_out_ns
 LEFT JOIN state_dynamics o ON o.drive_id = c.drive_id AND o.actor_id = c.object_id AND o.t_ns = c.t_object_out_ns

@@ -24,17 +24,17 @@
 -- [params.slowest_mps]
 -- default = 5.0
 -- unit = "m/s"
--- why = "our default: below it a queue closes up, and a headway says nothing"
+-- why = "our default: below it a queue closes up, and a headway means nothing"
 --
 -- [params.settle_s]
 -- default = 5.0
 -- unit = "s"
--- why = "our default: after another vehicle cuts in, the ego has so long to restore the gap; after the ego itself cuts in, the rule asks at once"
+-- why = "our default: after another vehicle cuts in, the ego has this long to restore the gap; after the ego itself cuts in, the rule applies at once"
 --
 -- [params.faster_mps]
 -- default = 0.5
 -- unit = "m/s"
--- why = "our default: if the ego's speed is higher by more than this than it was when the other vehicle came in, the ego itself closes the gap; a held speed jitters by less"
+-- why = "our default: if the ego's speed is higher by more than this than when the other vehicle came in, the ego itself closes the gap; a constant speed varies by less"
 
 -- @applies
 -- At a step without a row in `vehicle_ahead` it is not known which vehicle is ahead. The ego's speed is rounded because a speed that is

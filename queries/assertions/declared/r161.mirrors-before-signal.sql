@@ -14,7 +14,7 @@
 -- [params.window_s]
 -- default = 5.0
 -- unit = "s"
--- why = "our default: an older look says nothing about now"
+-- why = "our default: an older look does not show the present situation"
 
 -- @reference
 SELECT drive_id, ego_id, t_on_ns AS t_ns, side

@@ -22,7 +22,7 @@
 -- [params.least]
 -- default = 0.9
 -- unit = ""
--- why = "our default: what counts as doubt is for the maker to say"
+-- why = "our default: the maker must define what counts as doubt"
 
 -- @reference
 SELECT DISTINCT drive_id, ego_id, t0_ns AS t_ns, begin_seen

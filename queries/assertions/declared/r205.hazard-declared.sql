@@ -19,7 +19,7 @@
 -- [params.near_m]
 -- default = 3.0
 -- unit = "m"
--- why = "our default: who is further away is no hazard; which hazards the ego must expect is a judgement, so the rule is a draft"
+-- why = "our default: an actor that is further away is no hazard; which hazards the ego must expect is a judgement, so the rule is a draft"
 --
 -- [params.moving_mps]
 -- default = 2.0

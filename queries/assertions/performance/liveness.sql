@@ -27,15 +27,15 @@
 -- [params.junction_m]
 -- default = 20.0
 -- unit = "m"
--- why = "our default: near a junction there may be somebody to wait for"
+-- why = "our default: near a junction there may be an actor to wait for"
 --
 -- [params.near_m]
 -- default = 15.0
 -- unit = "m"
--- why = "our default: somebody on foot or on the move so near may be waited for"
+-- why = "our default: the ego may wait for a pedestrian or a moving actor this near"
 --
 -- [reasons.ends_standing]
--- says = "the log ends before the ego goes on: it may have arrived"
+-- says = "the log ends before the ego drives on: it may have arrived"
 
 -- @reference
 -- This rule is a draft: no log says what a stop is for (passengers, a delivery, a gesture). Only standing is judged, not slow driving.

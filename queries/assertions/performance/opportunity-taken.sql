@@ -22,7 +22,7 @@
 -- [params.notice_s]
 -- default = 5.0
 -- unit = "s"
--- why = "our default: who is held up for less has hardly had the time to see it"
+-- why = "our default: an ego that is held up for less has hardly had time to see the opportunity"
 
 -- @reference
 -- This rule is a draft: `opportunity` does not say whether lines, signs and junctions allowed the overtake.

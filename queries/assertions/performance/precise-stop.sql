@@ -21,7 +21,7 @@
 -- [params.for_it_m]
 -- default = 5.0
 -- unit = "m"
--- why = "our default: who stands further off, a car's length or more, stands for something else and drives up to the line later"
+-- why = "our default: a vehicle that stands further away, a car's length or more, stands for another reason and drives up to the line later"
 --
 -- [reasons.stood_beyond_line]
 -- says = "the front stood {front_m:.2f} m beyond the line; it should stand before the line, at most {within_m:.2f} m away"

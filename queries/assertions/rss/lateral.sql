@@ -41,7 +41,7 @@
 -- [params.mu_m]
 -- default = 0.1
 -- unit = "m"
--- why = "vehicles do not hold their line exactly"
+-- why = "vehicles do not keep their line exactly"
 -- source = "ad-rss-lib, parameter discussion (fluctuation margin)"
 
 -- @applies

@@ -41,7 +41,7 @@
 -- [params.brake_correct_mps2]
 -- default = 3.0
 -- unit = "m/s2"
--- why = "braking of the one in its own lane, who need not expect the other"
+-- why = "braking of the vehicle in its own lane, which need not expect the other"
 -- source = "ad-rss-lib, parameter discussion"
 --
 -- [params.lat_accel_mps2]
@@ -59,7 +59,7 @@
 -- [params.mu_m]
 -- default = 0.1
 -- unit = "m"
--- why = "vehicles do not hold their line exactly"
+-- why = "vehicles do not keep their line exactly"
 -- source = "ad-rss-lib, parameter discussion (fluctuation margin)"
 
 -- @applies

@@ -14,7 +14,7 @@
 -- observes = "deceleration"
 -- near_margin = 0.5
 -- reads = ["clock", "ego_motion", "step", "vehicle_ahead"]
--- without_time = "it cannot be told at every step who was ahead of the ego, or how near and fast: rss.longitudinal says at which it cannot, and what to record"
+-- without_time = "at some steps, the vehicle ahead of the ego, its distance or its speed is not known: rss.longitudinal names these steps, and what to record"
 -- requires = ["way", "ego_size"]
 --
 -- [params.rho_s]
@@ -62,7 +62,7 @@
 -- [params.mu_m]
 -- default = 0.1
 -- unit = "m"
--- why = "vehicles do not hold their line exactly"
+-- why = "vehicles do not keep their line exactly"
 -- source = "ad-rss-lib, parameter discussion (fluctuation margin)"
 --
 -- [params.window_s]

@@ -39,7 +39,7 @@
 -- [params.cut_in_s]
 -- default = 3.0
 -- unit = "s"
--- why = "time to restore the distance after somebody changed lane in front; an ego that changes lanes itself keeps it at once"
+-- why = "time to restore the distance after another vehicle changed lane in front; an ego that changes lanes itself must keep it at once"
 -- source = "Maierhofer et al. 2020, R_G1"
 
 -- @condition

@@ -51,10 +51,10 @@
 -- [params.edge_s]
 -- default = 1.0
 -- unit = "s"
--- why = "our default: so near to the ends of the log the filter's windows are not whole"
+-- why = "our default: this near to the ends of the log, the filter's windows are not complete"
 --
 -- [reasons.peak_beyond_limit_flattened]
--- says = "the filter that takes the noise out may have flattened a peak beyond the limit"
+-- says = "the filter against noise may have flattened a peak beyond the limit"
 -- advice = "no better recording can decide this"
 
 -- @condition

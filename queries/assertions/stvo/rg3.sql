@@ -60,11 +60,11 @@
 --
 -- [reasons.ego_class_unknown]
 -- says = "the ego's class of vehicle is not known"
--- advice = "give --env vehicle_class=..."
+-- advice = "set --env vehicle_class=..."
 --
 -- [reasons.limit_by_class_and_road]
--- says = "the limit depends on the class of vehicle and the kind of road, not all of which is known"
--- advice = "give them, such as --env vehicle_class=car and --env road_type=rural"
+-- says = "the limit depends on the class of vehicle and the kind of road, and one of these is not known"
+-- advice = "set them, such as --env vehicle_class=car and --env road_type=rural"
 
 -- @condition
 -- A sign replaces the limit that holds for every car. The limits of heavier vehicles outside built-up areas hold under a sign, too. If the

@@ -48,7 +48,7 @@
 -- source = "StVO 18(5) no. 1"
 --
 -- [reasons.class_speed_unknown]
--- says = "how fast its kind of vehicle may drive is not known"
+-- says = "the speed limit for the ego's kind of vehicle is not known"
 
 -- @condition
 -- The kind of vehicle may allow less than the road. If it is not known, a speed between the values that are required of the slowest and of

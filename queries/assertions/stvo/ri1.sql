@@ -24,23 +24,23 @@
 -- [params.queue_m]
 -- default = 30.0
 -- unit = "m"
--- why = "our default: who stops further behind than this does not stop for the queue"
+-- why = "our default: a vehicle that stops further behind than this does not stop for the queue"
 --
 -- [params.lights_s]
 -- default = 10.0
 -- unit = "s"
--- why = "our default: the ego puts its hazard lights on within this time if it breaks down, which StVO 15 asks for at once"
+-- why = "our default: a broken-down ego puts its hazard lights on within this time; StVO 15 demands it at once"
 --
 -- [reasons.may_have_broken_down]
--- says = "it had its hazard lights on, or declared an emergency or minimal risk manoeuvre: whether it broke down is for a person to say"
+-- says = "the ego had its hazard lights on, or declared an emergency or minimal risk manoeuvre: a person must judge whether it broke down"
 
 -- @reference
 SELECT drive_id, ego_id, t_start_ns AS t_ns, ahead_id AS object_id, ahead_gap_m, ahead_speed_mps, ahead_known, t_end_ns
 FROM standstill
 
 -- @condition
--- To stop means to halt by choice. An ego that stands for somebody in its way does not stop in this sense, nor does an ego that broke down.
--- Hazard lights say that it may have broken down.
+-- To stop means to halt by choice. An ego that stands for an actor in its way does not stop in this sense, nor does an ego that broke down.
+-- Hazard lights show that it may have broken down.
 WITH possible_breakdown AS (
     SELECT r.ref_id
     FROM reference r

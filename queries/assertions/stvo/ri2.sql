@@ -40,10 +40,10 @@
 -- source = "StVO 4(3), StVZO 32(4)"
 --
 -- [reasons.broad_line_unknown]
--- says = "the ego was on a lane of type {lane_type}: whether a broad line separated it from the through lanes is not known"
+-- says = "the ego was on a lane of type {lane_type}: it is not known whether a broad line separated it from the through lanes"
 --
 -- [reasons.log_ends_beside]
--- says = "at the end of the log the ego was beside it and no slower: whether it got ahead is not known"
+-- says = "at the end of the log the ego was beside the other vehicle and no slower: it is not known whether the ego got ahead"
 
 -- @reference
 SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.speed_mps, p.ego_speed_mps, CASE WHEN p.ego_passes THEN c.side END AS side, n.lane_type, p.is_cut_off

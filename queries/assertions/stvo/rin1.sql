@@ -17,10 +17,10 @@
 -- [params.stand_s]
 -- default = 1.0
 -- unit = "s"
--- why = "our default: a complete halt that can be seen; the law asks for a halt of any length, the model for 3 s (t_slw)"
+-- why = "our default: a complete halt that can be seen; the law demands a halt of any length, the model one of 3 s (t_slw)"
 --
 -- [reasons.line_control_unknown]
--- says = "the map does not say what governs this line"
+-- says = "the map does not state what governs this line"
 
 -- @reference
 SELECT drive_id, ego_id, t_ns, control, begin_seen, stood_s

@@ -34,11 +34,11 @@
 -- [params.cut_in_s]
 -- default = 3.0
 -- unit = "s"
--- why = "time to restore the distance after somebody changed lane in front; an ego that changes lanes itself keeps it at once"
+-- why = "time to restore the distance after another vehicle changed lane in front; an ego that changes lanes itself must keep it at once"
 -- source = "case law: a gap that is too small only for a moment is no offence; time as in R_G1 of Maierhofer et al. 2020"
 --
 -- [reasons.weight_unknown]
--- says = "the ego was {gap_m:.1f} m behind the vehicle ahead: whether the ego weighs more than 3.5 t is not known"
+-- says = "the ego was {gap_m:.1f} m behind the vehicle ahead: it is not known whether the ego weighs more than 3.5 t"
 
 -- @condition
 -- A goods vehicle of up to 7.5 t may be a van of up to 3.5 t, for which the rule requires nothing.

@@ -30,15 +30,15 @@
 -- [params.waited_s]
 -- default = 10.0
 -- unit = "s"
--- why = "our default: for this long after the ego moves off, who drew up beside it while it stood need not be given the distance (StVO 5(4) sentence 4)"
+-- why = "our default: for this long after the ego moves off, the distance to a cyclist who came up beside the standing ego does not apply (StVO 5(4) sentence 4)"
 --
 -- [params.junction_m]
 -- default = 60.0
 -- unit = "m"
--- why = "our default: a vehicle this near before a junction, or in it, counts as waiting there; a cyclist who rides past it on the right need not be given the distance (StVO 5(4) sentence 4)"
+-- why = "our default: a vehicle this near before a junction, or in it, counts as waiting there; the distance to a cyclist who rides past it on the right does not apply (StVO 5(4) sentence 4)"
 --
 -- [reasons.built_up_unknown]
--- says = "whether the area is built up is not known"
+-- says = "it is not known whether the area is built up"
 
 -- @applies
 -- A cyclist on a cycle lane behind a solid line is beside the carriageway: whether passing that cyclist is overtaking is disputed.

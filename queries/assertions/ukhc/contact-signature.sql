@@ -28,7 +28,7 @@
 -- [params.jolt_s]
 -- default = 0.1
 -- unit = "s"
--- why = "our default: so long an impact lasts; over a longer step its loss of speed looks like braking"
+-- why = "our default: an impact lasts this long; over a longer step, its loss of speed looks like braking"
 --
 -- [params.walk_mps]
 -- default = 3.0
@@ -39,21 +39,21 @@
 -- says = "object {object_id} came close between two samples"
 --
 -- [reasons.close_after_hole]
--- says = "object {object_id} is close by where a hole of the log ends"
+-- says = "object {object_id} is close to the ego at the end of a hole in the log"
 --
 -- [reasons.stood_still]
--- says = "the ego stood still: if there was a contact, the other actor struck it"
+-- says = "the ego stood still: if there was a contact, the other actor hit the ego"
 --
 -- [reasons.ego_braking_unknown]
--- says = "how hard the ego braked is not known here: there is no speed just before"
+-- says = "the ego's braking is not known here, because its speed just before is missing"
 -- advice = "begin recording earlier"
 --
 -- [reasons.object_braking_unknown]
--- says = "how hard object {object_id} braked is not known here: there is no speed just before"
+-- says = "the braking of object {object_id} is not known here, because its speed just before is missing"
 -- advice = "begin recording earlier"
 --
 -- [reasons.step_too_long]
--- says = "a step of {step_s:.2f} s is too long to tell a jolt from braking"
+-- says = "a step of {step_s:.2f} s is too long to distinguish an impact from braking"
 
 -- @applies
 SELECT drive_id, ego_id, t_ns, object_id, CASE WHEN clearance_m IS NOT NULL THEN true END AS applies, NULL AS reason

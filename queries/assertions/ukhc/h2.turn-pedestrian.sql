@@ -18,7 +18,7 @@
 -- [params.pet_s]
 -- default = 2.0
 -- unit = "s"
--- why = "our default: who gets there sooner was crossing, or about to, when the ego went"
+-- why = "our default: a person who gets there sooner was crossing, or about to cross, when the ego went"
 --
 -- [params.decel_mps2]
 -- default = 1.5

@@ -15,12 +15,12 @@
 -- [params.pet_s]
 -- default = 2.0
 -- unit = "s"
--- why = "our default: the two seconds that are also asked for when following"
+-- why = "our default: the two seconds that are also demanded when following"
 --
 -- [params.decel_mps2]
 -- default = 1.5
 -- unit = "m/s2"
--- why = "our default: a cyclist who brakes harder than this has been made to"
+-- why = "our default: a cyclist who brakes harder than this was forced to brake"
 
 -- @reference
 WITH encounter AS (

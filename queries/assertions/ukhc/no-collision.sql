@@ -20,7 +20,7 @@
 -- [params.walking_mps]
 -- default = 2.0
 -- unit = "m/s"
--- why = "a person slower than this beside a standing vehicle gets in, out or past; who runs into it may be a contact"
+-- why = "a person slower than this beside a standing vehicle gets in, out or past; a faster person may run into it, which may be a contact"
 -- source = "our default: a brisk walk"
 --
 -- [reasons.contact_between_steps]
@@ -30,21 +30,21 @@
 -- says = "contact between this step and the next, {step_s:.2f} s later, cannot be ruled out"
 --
 -- [reasons.impact_beside_boxes]
--- says = "the speeds show an impact here, though the boxes are {apart_m:.2f} m apart: the log's sizes or positions are not exact enough to tell"
+-- says = "the speeds show an impact here, although the boxes are {apart_m:.2f} m apart: the log's sizes or positions are not exact enough"
 -- advice = "see the rule contact-signature"
 --
 -- [reasons.boxes_of_nobody_moving]
--- says = "the boxes overlap by {depth_m:.2f} m while neither moves: their sizes or places are not exact enough to tell a contact"
--- advice = "see the steps before, at which one of them moved"
+-- says = "the boxes overlap by {depth_m:.2f} m while neither moves: their sizes or positions are not exact enough to show a contact"
+-- advice = "see the earlier steps, when one of them moved"
 --
 -- [reasons.contact_standing]
--- says = "contact, {depth_m:.2f} m deep, while the ego stood still: it was struck"
+-- says = "contact, {depth_m:.2f} m deep, while the ego stood still: the ego was hit"
 --
 -- [reasons.contact_moving]
--- says = "contact, {depth_m:.2f} m deep, the ego having moved at {fastest_3s_mps:.1f} m/s in the 3 s before"
+-- says = "contact, {depth_m:.2f} m deep; the ego moved at up to {fastest_3s_mps:.1f} m/s in the 3 s before"
 --
 -- [reasons.contact_speed_unknown]
--- says = "contact, {depth_m:.2f} m deep; who struck whom is not known: the log does not have the ego's speed for all of the 3 s before"
+-- says = "contact, {depth_m:.2f} m deep; it is not known which of the two hit the other: the ego's speed is missing for a part of the 3 s before"
 
 -- @condition
 SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id,

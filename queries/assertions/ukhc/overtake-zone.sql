@@ -23,7 +23,7 @@
 -- says = "the spare time of the overtake as it was driven is not known[: {observed_doubt}]"
 --
 -- [reasons.no_profile_in_time]
--- says = "no profile would have had so much time to spare; that of the overtake as it was driven is not known[: {observed_doubt}]"
+-- says = "no profile would have had that much spare time; the spare time of the overtake as it was driven is not known[: {observed_doubt}]"
 
 -- @reference
 SELECT drive_id, ego_id, t0_ns AS t_ns, ov_id AS object_id, occurrence

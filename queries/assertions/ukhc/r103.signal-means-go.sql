@@ -17,7 +17,7 @@
 -- [params.window_s]
 -- default = 10.0
 -- unit = "s"
--- why = "our default: a signal that is older than that has misled somebody"
+-- why = "our default: a signal that is older than this has misled others"
 --
 -- [params.turned_rad]
 -- default = 0.5

@@ -14,10 +14,10 @@
 -- [params.near_m]
 -- default = 50.0
 -- unit = "m"
--- why = "our default: whoever moves within this distance may have been a danger, which is for a person to say"
+-- why = "our default: an actor that moves within this distance may have been a danger, which a person must judge"
 --
 -- [reasons.somebody_moving]
--- says = "somebody near was moving: whether it was a danger is for a person to say"
+-- says = "an actor nearby was moving: a person must judge whether it was a danger"
 
 -- @reference
 SELECT drive_id, ego_id, t_ns

@@ -22,7 +22,7 @@
 -- source = "UKHC R113"
 --
 -- [reasons.street_lamps_unknown]
--- says = "the headlights were off, and whether the street was lit is not known"
+-- says = "the headlights were off, and it is not known whether the street was lit"
 --
 -- [reasons.lamps_need_limit]
 -- says = "the headlights were off: lit street lamps excuse that only under a low speed limit, and the limit is not known"

@@ -25,13 +25,13 @@
 -- source = "UKHC R124"
 --
 -- [reasons.may_warn_here]
--- says = "hazard lights may warn on this road: whether there was a hazard ahead is for a person to say"
+-- says = "hazard lights are allowed as a warning on this road: a person must judge whether there was a hazard ahead"
 --
 -- [reasons.dual_carriageway_unknown]
--- says = "whether this road is a dual carriageway is not known"
+-- says = "it is not known whether this road is a dual carriageway"
 --
 -- [reasons.carriageway_limit_unknown]
--- says = "the limit of this dual carriageway is not known"
+-- says = "the speed limit of this dual carriageway is not known"
 
 -- @condition
 SELECT e.drive_id, e.ego_id, e.t_ns,

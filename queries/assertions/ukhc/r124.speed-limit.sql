@@ -29,7 +29,7 @@
 -- says = "the ego is on no lane"
 --
 -- [reasons.limit_by_vehicle_and_road]
--- says = "the limit depends on the class of the vehicle and the kind of road, not all of which is known"
+-- says = "the limit depends on the class of the vehicle and the kind of road, and one of these is not known"
 
 -- @condition
 -- If the class, nation or kind of road is not known, the limit lies between two values: a speed between them is neither a pass nor a fail.

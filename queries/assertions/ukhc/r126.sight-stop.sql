@@ -18,12 +18,12 @@
 -- # end of the map or of the corridor is no end of sight, so it is a lower bound; vehicles on the road are the business of r126.stopping-gap.
 --
 -- [reasons.driving_side_unknown]
--- says = "how far the road goes on is not known, because the side that is driven on is not known"
--- advice = "give it with --handedness"
+-- says = "the length of the road ahead is not known, because the side that is driven on is not known"
+-- advice = "set it with --handedness"
 --
 -- [reasons.map_too_short]
--- says = "the map shows the road for {free_m:.0f} m only"
--- advice = "give one that goes on"
+-- says = "the map has only {free_m:.0f} m of the road ahead"
+-- advice = "use a map that extends further"
 
 -- @condition
 SELECT e.drive_id, e.ego_id, e.t_ns, o.free_m AS observed, stopping_factor(c.weather) * stopping_distance_m(e.speed_mps) AS required,

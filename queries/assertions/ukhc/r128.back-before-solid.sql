@@ -15,10 +15,10 @@
 --
 -- [reasons.no_lane_beyond_line]
 -- says = "the map has no lane beyond the line, which may be the edge of the road"
--- advice = "give a map with the lanes of both directions"
+-- advice = "use a map with the lanes of both directions"
 --
 -- [reasons.solid_overtake_unsure]
--- says = "the line was solid, but whether the ego overtook is not sure"
+-- says = "the line was solid, but it is not sure whether the ego overtook"
 -- advice = "record all vehicles from before the ego leaves its lane until it is back in it"
 --
 -- [reasons.solid_crossing_unseen]

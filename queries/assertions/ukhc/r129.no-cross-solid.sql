@@ -16,8 +16,8 @@
 -- says = "{out_m:.2f} m over a line marked {marking}"
 --
 -- [reasons.middle_unknown]
--- says = "whether the line is the middle of the road is not known, because the map has nothing beyond it, or a gap or strip that may be a central reservation"
--- advice = "give a map with the lanes of both directions"
+-- says = "it is not known whether the line is the middle of the road, because beyond it the map has nothing, or a gap or strip that may be a central reservation"
+-- advice = "use a map with the lanes of both directions"
 
 -- @condition
 -- Edge lines, and the lines between lanes of one direction, are judged by other rules.

@@ -18,12 +18,12 @@
 -- [params.astride_s]
 -- default = 5.0
 -- unit = "s"
--- why = "our default: an ego astride a line for longer than this is not correcting its course; time in which it stands or goes round somebody does not count"
+-- why = "our default: an ego astride a line for longer than this is not correcting its course; time in which it stands or goes round an actor does not count"
 --
 -- [params.change_s]
 -- default = 10.0
 -- unit = "s"
--- why = "UN R79 5.6.4.6.5 gives a lane change by the system 5 s, that of a bus or lorry 10 s; here a driver has 10 s whatever it drives"
+-- why = "UN R79 5.6.4.6.5 allows 5 s for a lane change by the system, 10 s for that of a bus or lorry; here every ego has 10 s"
 --
 -- [reasons.astride_begin_unseen]
 -- says = "the ego is already astride the line when the log begins or when the ego enters the map"
@@ -34,8 +34,8 @@
 -- advice = "record the ego for longer"
 --
 -- [reasons.may_go_round_unplaced]
--- says = "the ego may be going round somebody whose place is not known"
--- advice = "record everybody nearby without a break"
+-- says = "the ego may be going round an actor whose position is not known"
+-- advice = "record every actor nearby without a break"
 
 -- @condition
 WITH astride_step AS (

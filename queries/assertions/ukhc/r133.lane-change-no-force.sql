@@ -30,12 +30,12 @@
 -- # place of the ego.
 --
 -- [reasons.lane_change_begin_unseen]
--- says = "the log does not show where the lane change began"
+-- says = "the log does not show the beginning of the lane change"
 -- advice = "record the ego from before it"
 --
 -- [reasons.follower_unknown]
--- says = "who followed in the new lane is not known, because somebody nearby cannot be placed"
--- advice = "record everybody there from before the lane change"
+-- says = "the follower in the new lane is not known, because an actor nearby cannot be placed"
+-- advice = "record every actor there, from before the lane change"
 
 -- @reference
 SELECT drive_id, ego_id, t_start_ns AS t_ns, follower_id AS object_id, occurrence

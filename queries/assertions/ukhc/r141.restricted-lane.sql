@@ -15,12 +15,12 @@
 -- [params.always_in_force]
 -- default = false
 -- unit = ""
--- why = "our default: maps do not say in which hours such a lane is kept for others, so it is unknown whether the ego may be there; set true for a map whose lanes are always kept for others"
+-- why = "our default: maps do not state the hours in which such a lane is reserved for others, so it is unknown whether the ego may be there; set true for a map whose lanes are always reserved"
 --
 -- # Draft: hours, and how many sit in the vehicle, are in no table; what can be proved is that the ego was never there.
 --
 -- [reasons.on_restricted_lane]
--- says = "on lane {lanelet_id}, which is kept for others in its hours"
+-- says = "on lane {lanelet_id}, which is reserved for others at certain hours"
 
 -- @condition
 WITH occupied_lane AS (

@@ -26,7 +26,7 @@
 -- [params.manoeuvring_m]
 -- default = 30.0
 -- unit = "m"
--- why = "our default: whoever turns round, parks or reverses goes no further against its lane than this; further is driving, however slow (R203: no further than necessary)"
+-- why = "our default: an ego that turns round, parks or reverses goes no further against its lane than this; further is driving, however slow (R203: no further than necessary)"
 --
 -- [params.manoeuvring_s]
 -- default = 30.0
@@ -59,26 +59,26 @@
 -- why = "our default: a heading within 30 degrees of the opposite direction is against a lane of a junction; a turn that cuts the corner is not"
 --
 -- [reasons.passing_unknown]
--- says = "whether it is on its way past another vehicle is not known"
+-- says = "it is not known whether the ego is passing another vehicle"
 -- advice = "record that vehicle from before the ego passes it until after"
 --
 -- [reasons.may_pass_unseen]
--- says = "in the opposing lane for less than {within_s:g} s, it may pass something that the log does not show"
--- advice = "record what stands in the lane, such as road works"
+-- says = "in the opposing lane for less than {within_s:g} s, the ego may be passing something that the log does not show"
+-- advice = "record obstacles in the lane, such as road works"
 --
 -- [reasons.lane_closed_unknown]
--- says = "whether something closes its lane is not known"
--- advice = "record what stands or walks there"
+-- says = "it is not known whether something blocks the ego's lane"
+-- advice = "record all actors and obstacles there"
 --
 -- [reasons.on_restricted_lane]
--- says = "the ego drives on restricted ground, which belongs to neither direction for certain"
--- advice = "give its lanes another type than restricted, if vehicles may drive on them"
+-- says = "the ego drives on restricted ground, whose direction is not known"
+-- advice = "use another lane type than restricted in the map, if vehicles may drive there"
 --
 -- [reasons.with_lane]
--- says = "{along_mps:.1f} m/s along its own heading, which is the direction of lane {lanelet_id}"
+-- says = "{along_mps:.1f} m/s along the ego's heading, which is the direction of lane {lanelet_id}"
 --
 -- [reasons.against_lane]
--- says = "{along_mps:.1f} m/s along its own heading, which is against the direction of lane {lanelet_id}"
+-- says = "{along_mps:.1f} m/s along the ego's heading, which is against the direction of lane {lanelet_id}"
 
 -- @applies
 -- The rule does not apply where the ego is off every lane, as in a car park.
@@ -86,7 +86,7 @@ WITH ego_step AS (
     SELECT drive_id, ego_id, t_ns, front_s_m, rear_s_m, width_m, speed_mps, with_direction, $closed_m + $closed_s * speed_mps AS reach_m FROM ego_state
 ),
 -- Steps at which the ego is beyond the end of the lane that it came along, in a lane of a two-way road: the map joins the two roads by no
--- link. Whether the ego is still on its way past somebody is not known then, for as long as an overtake takes.
+-- link. Whether the ego is still passing another actor is not known then, for as long as an overtake takes.
 chain_end AS (
     SELECT drive_id, ego_id, chain_id, max(s_start_m + length_m) AS end_m FROM chain GROUP BY ALL
 ),

@@ -29,7 +29,7 @@
 -- says = "part of the ego is on ground that the map does not have"
 --
 -- [reasons.may_be_access]
--- says = "slowly over the footway, from or to ground that the map does not have, which may be private property that the ego may reach"
+-- says = "slowly over the footway, from or to ground that the map does not have; it may be private property with access over the footway"
 
 -- @condition
 -- Ground that the map does not have may be property: an ego that comes from there slowly, or goes there, may cross the footway to get

@@ -18,7 +18,7 @@
 -- [params.near_m]
 -- default = 10.0
 -- unit = "m"
--- why = "our default: who stands closer than this behind somebody stands because of them"
+-- why = "our default: an ego that stands closer than this behind another vehicle stands because of it"
 --
 -- [params.slow_mps]
 -- default = 1.0

@@ -20,7 +20,7 @@
 -- why = "our default: time to see the ego pull out and to slow down in comfort"
 --
 -- [reasons.overtaken_unknown]
--- says = "which vehicle the ego meant to overtake, if any, is not known"
+-- says = "it is not known which vehicle the ego meant to overtake, if any"
 -- advice = "record all vehicles ahead of it, with their classes"
 
 -- @reference

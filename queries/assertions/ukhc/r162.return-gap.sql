@@ -15,15 +15,15 @@
 -- requires = ["map", "registration", "handedness", "ego_size"]
 --
 -- [reasons.actor_may_be_there]
--- says = "actor {object_id}, who may be there, {lack}"
+-- says = "actor {object_id}, which may be there, {lack}"
 -- advice = "record it without a break"
 --
 -- [reasons.class_there_unknown]
--- says = "the class of somebody there is not known"
+-- says = "the class of an actor there is not known"
 -- advice = "record it"
 --
 -- [reasons.may_pass_next]
--- says = "{gap_m:.2f} m ahead of the vehicle being passed are too few, but the log ends before the ego is back: it may pass the next vehicle, too"
+-- says = "{gap_m:.2f} m ahead of the vehicle being passed are not enough, but the log ends before the ego is back: it may pass the next vehicle, too"
 -- advice = "record until the ego is back"
 
 -- @reference

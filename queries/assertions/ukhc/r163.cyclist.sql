@@ -25,7 +25,7 @@
 -- [params.fast_clearance_m]
 -- default = 2.0
 -- unit = "m"
--- why = "our default for 'more' at higher speeds: what R163 gives people on foot and R215 horses"
+-- why = "our default for 'more' at higher speeds: the distance of R163 for people on foot and of R215 for horses"
 --
 -- [params.fast_mps]
 -- default = 13.4112

@@ -26,7 +26,7 @@
 -- advice = "record it from before that"
 --
 -- [reasons.pulled_out_no_faster]
--- says = "the ego pulled out no faster than {object_id}: for that the model gives no time"
+-- says = "the ego pulled out no faster than {object_id}: the model has no time for that"
 
 -- @reference
 SELECT drive_id, ego_id, coalesce(t3_ns, t0_ns) AS t_ns, vbp_id AS object_id, occurrence

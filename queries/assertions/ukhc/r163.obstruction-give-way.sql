@@ -37,16 +37,16 @@
 -- why = "our default: slower, at 10 mph each, two drivers can squeeze past each other with care"
 --
 -- [reasons.oncoming_braked]
--- says = "{object_id} braked with {decel_mps2:.1f} m/s2"
+-- says = "{object_id} braked at {decel_mps2:.1f} m/s2"
 --
 -- [reasons.came_by]
--- says = "{object_id} came by with {room_m:.2f} m between"
+-- says = "{object_id} passed with {room_m:.2f} m between"
 --
 -- [reasons.ran_into]
 -- says = "the ego and {object_id} ran into each other"
 --
 -- [reasons.braked_and_stood]
--- says = "{braked}, and it stood until the ego had left or was about to leave"
+-- says = "{braked}, and stood until the ego had left or was about to leave"
 --
 -- [reasons.object_lacks_unbroken]
 -- says = "object {object_id} {lack}"

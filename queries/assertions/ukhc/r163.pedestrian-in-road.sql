@@ -27,7 +27,7 @@
 -- [params.across_mps]
 -- default = 0.5
 -- unit = "m/s"
--- why = "our default: who moves faster across the road is crossing it, which is the business of R195 and R170"
+-- why = "our default: a person who moves faster across the road is crossing it, which R195 and R170 cover"
 --
 -- # Draft: what a low speed is, and whether there was no pavement, is a judgement; somebody who waits to cross is taken for one who walks along.
 

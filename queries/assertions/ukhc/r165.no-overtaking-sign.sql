@@ -12,8 +12,8 @@
 -- requires = ["map", "registration", "handedness", "ego_size"]
 --
 -- [reasons.sign_unknown]
--- says = "whether a no-overtaking sign holds here is not known, because behind the ego the map shows no such sign, no end of one and no junction"
--- advice = "give a map that goes back to the last junction"
+-- says = "it is not known whether a no-overtaking sign applies here, because behind the ego the map has no such sign, no end of such a sign and no junction"
+-- advice = "use a map that goes back to the last junction"
 
 -- @reference
 SELECT o.drive_id, o.ego_id, o.t0_ns AS t_ns, o.vbp_id AS object_id, o.occurrence

@@ -28,10 +28,10 @@
 -- [params.gone_s]
 -- default = 2.0
 -- unit = "s"
--- why = "our default: who is between the two for less than this may only be passing through"
+-- why = "our default: a vehicle that is between the two for less than this may only be passing through"
 --
 -- [reasons.boxes_overlap]
--- says = "the boxes of the ego and {object_id} overlap, or did before, which leaves no gap to restore"
+-- says = "the boxes of the ego and {object_id} overlap, or did before, so there is no gap to restore"
 -- advice = "correct them, or see ukhc.no-collision"
 
 -- @reference

@@ -38,7 +38,7 @@
 -- why = "our default, that of r162.not-being-overtaken: a vehicle in the opposing lane that reaches the ego within this time is overtaking it"
 --
 -- [reasons.accelerates_and_drifts]
--- says = "accelerates by {accel_mps2:.2f} m/s2, drifts towards it at {drift_mps:.2f} m/s[, is {gained_mps:.1f} m/s faster than before]"
+-- says = "the ego accelerates by {accel_mps2:.2f} m/s2 and drifts towards it at {drift_mps:.2f} m/s[, and is {gained_mps:.1f} m/s faster than before]"
 
 -- @applies
 -- If the lane beside is driven the other way, a vehicle that is beside the ego there and drives the ego's way is overtaking it, and so is a

@@ -16,12 +16,12 @@
 -- [params.pet_s]
 -- default = 2.0
 -- unit = "s"
--- why = "our default: the two seconds that are also asked for when following"
+-- why = "our default: the two seconds that are also demanded when following"
 --
 -- [params.decel_mps2]
 -- default = 2.0
 -- unit = "m/s2"
--- why = "our default: who brakes harder than this has been made to"
+-- why = "our default: a vehicle that brakes harder than this was forced to brake"
 
 -- @reference
 SELECT p.drive_id, p.ego_id, p.t_in_ns AS t_ns, p.occurrence, p.control, c.relation, c.reason,

@@ -26,10 +26,10 @@
 -- why = "our default: a stop line crossed longer than this before or after is not the one at this junction"
 --
 -- [reasons.no_stop_line]
--- says = "the map has a stop sign here and no stop line"
+-- says = "the map has a stop sign here, but no stop line"
 --
 -- [reasons.approach_unseen]
--- says = "the log does not show how the ego came to the stop line"
+-- says = "the log does not show how the ego approached the stop line"
 
 -- @reference
 -- A way into a junction that is, or may be, governed by a stop sign, and has no stop line in the map, cannot be judged.

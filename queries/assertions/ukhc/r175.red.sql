@@ -14,10 +14,10 @@
 -- [params.line_m]
 -- default = 0.4
 -- unit = "m"
--- why = "our default: maps, boxes and places together do not tell more exactly whether a vehicle that stands at the line stands behind it"
+-- why = "our default: maps, boxes and positions together are not more exact about a vehicle that stands at the line"
 --
 -- [reasons.stands_at_line]
--- says = "the light was {state}, and the ego stood no more than {line_m:g} m further on: whether behind the line is not known so exactly"
+-- says = "the light was {state}, and the ego stood at most {line_m:g} m further on: positions are not exact enough to show whether it was before the line"
 --
 -- [params.seen_line_m]
 -- default = 1.0
@@ -27,16 +27,16 @@
 -- [params.turn_m]
 -- default = 30.0
 -- unit = "m"
--- why = "our default: who turns at a junction has turned so far past its stop line"
+-- why = "our default: a vehicle that turns at a junction has turned this far past its stop line"
 --
 -- [reasons.right_on_red]
--- says = "the light was {state}, and the ego turned right: in {nation} that is allowed after a stop, or without one where a lane of its own leads off; a person must judge"
+-- says = "the light was {state}, and the ego turned right: in {nation} that is allowed after a stop, or without a stop on a separate turning lane; a person must judge"
 --
 -- [reasons.line_crossing_unseen]
 -- says = "the log does not show when the ego crossed the stop line"
 --
 -- [reasons.red_then_off]
--- says = "the light was red and then off: whether the light or its recording failed is not known"
+-- says = "the light was red and then off: it is not known whether the light or its recording failed"
 --
 -- [reasons.light_turned]
 -- says = "the light turned {state} while the ego was crossing the stop line"

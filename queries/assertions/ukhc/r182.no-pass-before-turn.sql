@@ -23,7 +23,7 @@
 -- says = "the ego got ahead of {object_id}"
 --
 -- [reasons.unplaced_beside]
--- says = "somebody who may be beside the ego cannot be placed"
+-- says = "an actor that may be beside the ego cannot be placed"
 
 -- @reference
 SELECT drive_id, ego_id, t_in_ns AS t_ns, occurrence, across, at_fork(turn, turn_rad, straightest_rad) AS fork,

@@ -17,15 +17,15 @@
 -- [params.near_m]
 -- default = 1.5
 -- unit = "m"
--- why = "our default: a car has 0.9 m left in the middle of a lane of 3.5 m; nobody else can drive in less than this"
+-- why = "our default: a car in the middle of a lane of 3.5 m leaves 0.9 m; no other vehicle can drive in less than this"
 --
 -- [params.passing_m]
 -- default = 30.0
 -- unit = "m"
--- why = "our default: who is at the near edge up to so far ahead, or beside the ego, may have to be passed with room"
+-- why = "our default: an actor at the near edge, up to this far ahead or beside the ego, may have to be passed with room"
 --
 -- [reasons.near_side_taken]
--- says = "somebody is, or may be, on the near side, or the near side has another lane of the ego's direction, and either keeps the ego away from the edge"
+-- says = "an actor is, or may be, on the near side, or the near side has another lane of the ego's direction; either keeps the ego away from the edge"
 -- advice = "no better recording can decide this"
 
 -- @reference

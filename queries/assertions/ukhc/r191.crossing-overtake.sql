@@ -18,8 +18,8 @@
 -- why = "our default, since maps do not show them: eight marks of two metres and the space between"
 --
 -- [reasons.crossing_kind_unknown]
--- says = "the map does not say whether crossing {crossing_id} is a zebra, has lights, or neither"
--- advice = "give one that does"
+-- says = "the map does not state whether crossing {crossing_id} is a zebra, has lights, or neither"
+-- advice = "use a map that does"
 --
 -- [reasons.zigzags_at_junction]
 -- says = "crossing {crossing_id} has lights and lies at a junction, where a crossing of the junction's own lights has no zig-zags"
@@ -28,7 +28,7 @@
 -- says = "passed {object_ids} before crossing {crossing_id}"
 --
 -- [reasons.may_have_given_way]
--- says = "whether {object_id} stood before crossing {crossing_id} to give way is not known"
+-- says = "it is not known whether {object_id} stood before crossing {crossing_id} to give way"
 --
 -- [reasons.may_have_been_passed]
 -- says = "actor {object_id} may have been passed before crossing {crossing_id}"
@@ -39,7 +39,7 @@
 
 -- @reference
 SELECT drive_id, ego_id, t_in_ns AS t_ns, coalesce(t_out_ns, t_in_ns) AS t_out_ns, crossing_id, kind, occurrence,
-    -- Whether there is somebody for whom a vehicle may have stopped; NULL: not known.
+    -- Whether there is an actor for whom a vehicle may have stopped; NULL: not known.
     on_id IS NOT NULL OR coming_id IS NOT NULL OR waiting_id IS NOT NULL OR CASE WHEN known AND coming_known THEN false END AS for_whom
 FROM crossing_passage
 

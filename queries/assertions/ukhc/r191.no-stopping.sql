@@ -16,10 +16,10 @@
 -- [params.stop_s]
 -- default = 5.0
 -- unit = "s"
--- why = "our default: shorter is a pause, such as for somebody on foot"
+-- why = "our default: shorter is a pause, such as for a pedestrian"
 --
 -- [reasons.stood_idle_on_crossing]
--- says = "the ego stood on the crossing for {stood_s:.1f} s, of which {idle_s:.1f} s with nobody in its way"
+-- says = "the ego stood on the crossing for {stood_s:.1f} s, and for {idle_s:.1f} s of these nothing was in its way"
 
 -- @reference
 -- An ego that reverses onto the crossing and stands there has no passage: its standstill is the reference point.

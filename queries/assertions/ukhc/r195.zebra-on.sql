@@ -12,10 +12,10 @@
 -- requires = ["map", "registration", "ego_size"]
 --
 -- [reasons.was_on_crossing_of_unknown_kind]
--- says = "{object_id} was on it; the map does not say what kind of crossing it is"
+-- says = "{object_id} was on it; the map does not state the kind of the crossing"
 --
 -- [reasons.came_over_maybe_island]
--- says = "{object_id} came over from the other half: whether an island divides the crossing is not known"
+-- says = "{object_id} came over from the other half: it is not known whether an island divides the crossing"
 
 -- @reference
 SELECT drive_id, ego_id, t_in_ns AS t_ns, occurrence, crossing_id, kind, on_id AS object_id, t_on_ns, known, coming_id, coming_known

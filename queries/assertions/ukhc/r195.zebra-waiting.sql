@@ -13,10 +13,10 @@
 -- requires = ["map", "registration", "ego_size"]
 --
 -- [reasons.stood_at_end]
--- says = "{object_id} stood at its end"
+-- says = "{object_id} stood at the end of the crossing"
 --
 -- [reasons.stood_at_end_of_unknown_kind]
--- says = "{object_id} stood at its end; the map does not say what kind of crossing it is"
+-- says = "{object_id} stood at the end of the crossing; the map does not state the kind of the crossing"
 
 -- @reference
 SELECT drive_id, ego_id, t_in_ns AS t_ns, occurrence, crossing_id, kind, waiting_id AS object_id, known AND waiting_known AS known

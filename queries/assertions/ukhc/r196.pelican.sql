@@ -21,15 +21,15 @@
 -- says = "the light was {line_state} at the line and {state} at the crossing[, and {object_id} on the crossing]"
 --
 -- [reasons.light_unknown]
--- says = "the light was not known[, and {object_id} on the crossing]"
+-- says = "the state of the light was not known[, and {object_id} on the crossing]"
 -- advice = "record the light's state at every step"
 --
 -- [reasons.light_unknown_at_line]
--- says = "the light was not known at the line and {state} at the crossing[, and {object_id} on the crossing]"
+-- says = "the state of the light was not known at the line and {state} at the crossing[, and {object_id} on the crossing]"
 -- advice = "record the light's state at every step"
 --
 -- [reasons.light_unknown_at_crossing]
--- says = "the light was {line_state} at the line and not known at the crossing[, and {object_id} on the crossing]"
+-- says = "the light was {line_state} at the line, and its state not known at the crossing[, and {object_id} on the crossing]"
 -- advice = "record the light's state at every step"
 
 -- @reference

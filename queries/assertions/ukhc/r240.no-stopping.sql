@@ -23,7 +23,7 @@
 -- [params.near_m]
 -- default = 10.0
 -- unit = "m"
--- why = "our default: who stands closer than this behind somebody stands because of them"
+-- why = "our default: an ego that stands closer than this behind another vehicle stands because of it"
 --
 -- [params.hazard_m]
 -- default = 30.0
@@ -36,14 +36,14 @@
 -- why = "10 km/h: a vehicle as slow as this is in congestion (as R_I1 of Maierhofer et al. 2020)"
 --
 -- [reasons.may_be_emergency]
--- says = "it stands with its hazard lights on, or at the end of a manoeuvre that it declared"
--- advice = "whether it was an emergency is for a person to say"
+-- says = "the ego stands with its hazard lights on, or at the end of a manoeuvre that it declared"
+-- advice = "a person must judge whether it was an emergency"
 --
 -- [reasons.stands_and_unplaced]
--- says = "the ego stands, and not everybody who may be in its way can be placed"
+-- says = "the ego stands, and an actor that may be in its way cannot be placed"
 --
 -- [reasons.standstill_begin_unseen]
--- says = "the log does not show since when the ego has stood"
+-- says = "the log does not show when the ego stopped"
 --
 -- [reasons.has_stood]
 -- says = "the ego has stood for {stood_s:.1f} s"

@@ -25,12 +25,12 @@
 -- [params.parked_s]
 -- default = 60.0
 -- unit = "s"
--- why = "our default: who stands longer than this has parked, or waits for so long that it comes to the same"
+-- why = "our default: an ego that stands longer than this has parked, or waits so long that it has the same effect"
 --
 -- [params.near_m]
 -- default = 10.0
 -- unit = "m"
--- why = "our default: who stands closer than this behind somebody stands because of them"
+-- why = "our default: an ego that stands closer than this behind another vehicle stands because of it"
 --
 -- [params.slow_mps]
 -- default = 1.0
@@ -38,7 +38,7 @@
 -- why = "our default: a vehicle slower than this moves up in a queue"
 --
 -- [reasons.may_have_queued]
--- says = "not everybody ahead can be placed: it may have been a queue"
+-- says = "not every actor ahead can be placed: it may have been a queue"
 
 -- @reference
 SELECT drive_id, ego_id, t_start_ns AS t_ns, occurrence, junction_id, junction_m,

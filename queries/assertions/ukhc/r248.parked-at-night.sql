@@ -18,7 +18,7 @@
 -- [params.parked_s]
 -- default = 60.0
 -- unit = "s"
--- why = "our default: who stands longer than this has parked, or waits for so long that it comes to the same"
+-- why = "our default: an ego that stands longer than this has parked, or waits so long that it has the same effect"
 
 -- @reference
 SELECT drive_id, ego_id, t_start_ns AS t_ns, occurrence

@@ -27,7 +27,7 @@
 -- # Draft: in dense traffic merging into less than two seconds is common, and whether it was forced is a judgement.
 --
 -- [reasons.gap_behind]
--- says = "the vehicle behind was {gap_m:.1f} m away at {speed_mps:.1f} m/s, and then braked with {decel_mps2:.1f} m/s2"
+-- says = "the vehicle behind was {gap_m:.1f} m away at {speed_mps:.1f} m/s, and then braked at {decel_mps2:.1f} m/s2"
 
 -- @reference
 SELECT drive_id, ego_id, t_start_ns AS t_ns, follower_id AS object_id, occurrence

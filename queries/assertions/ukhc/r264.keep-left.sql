@@ -26,17 +26,17 @@
 -- [params.ahead_s]
 -- default = 10.0
 -- unit = "s"
--- why = "our default: somebody less than this ahead in the near lane is about to be overtaken too"
+-- why = "our default: a vehicle less than this ahead in the near lane is about to be overtaken too"
 --
 -- [params.behind_m]
 -- default = 20.0
 -- unit = "m"
--- why = "our default: somebody closer behind in the near lane would be cut in on"
+-- why = "our default: the ego would cut in on a vehicle that is closer behind in the near lane"
 --
 -- [params.clear_s]
 -- default = 5.0
 -- unit = "s"
--- why = "our default: time to draw clear of the vehicles just passed; only who is still close behind after it keeps the ego from moving back"
+-- why = "our default: time to draw clear of the vehicles just passed; after it, only a vehicle that is still close behind keeps the ego from moving back"
 --
 -- # Draft: whether the lane was free for long enough to make moving back worth it is a judgement.
 

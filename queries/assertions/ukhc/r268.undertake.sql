@@ -23,7 +23,7 @@
 -- # Draft: whether it was done to overtake, or the other merely slowed down in its lane to leave, is a judgement.
 --
 -- [reasons.other_unplaced]
--- says = "the other cannot be placed, and may have been passed"
+-- says = "another vehicle cannot be placed, and may have been passed"
 --
 -- [reasons.passed_on_side]
 -- says = "ego at {ego_speed_mps:.1f} m/s, the other {speed_mps:.1f} m/s on its {side}"

@@ -16,7 +16,7 @@
 -- [params.warns_s]
 -- default = 10.0
 -- unit = "s"
--- why = "our default: who has to stop there puts the hazard lights on within this time of getting there, or of standing"
+-- why = "our default: an ego that has to stop there puts the hazard lights on within this time after getting there, or after stopping"
 --
 -- [params.stops_mps2]
 -- default = 2.0
@@ -26,14 +26,14 @@
 -- [params.rejoins_s]
 -- default = 20.0
 -- unit = "s"
--- why = "our default: time to build up speed on it after a breakdown, which R276 asks for"
+-- why = "our default: time to build up speed on it after a breakdown, as R276 demands"
 --
 -- [reasons.drove_with_hazard_lights]
--- says = "it drove along the hard shoulder with its hazard lights on"
--- advice = "whether that was an emergency is for a person to say"
+-- says = "the ego drove along the hard shoulder with its hazard lights on"
+-- advice = "a person must judge whether that was an emergency"
 --
 -- [reasons.stop_unseen]
--- says = "the log does not show whether it stops with its hazard lights on"
+-- says = "the log does not show whether the ego stops with its hazard lights on"
 
 -- @condition
 -- An emergency is a declared mode, or hazard lights on an ego that stops.

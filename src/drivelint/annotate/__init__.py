@@ -1,4 +1,4 @@
-"""Annotated logs: the verdicts, and what they stand on, in an MCAP file that viewers open without an extension."""
+"""Annotated logs: the verdicts and their evidence in an MCAP file that viewers open without an extension."""
 
 from drivelint.annotate.annotator import Annotator
 

@@ -24,7 +24,7 @@ MAX_BOXES: Final = 1_000_000
 """A drive with more states shows only every second, third ... step: about 30 MB of boxes are enough for any viewer."""
 CHUNK_BYTES: Final = 2 << 20
 EGO_FRAME: Final = "base_link"
-"""The name that viewers follow without being asked."""
+"""The frame that viewers follow by default."""
 EGO_COLOUR = Colour(0.13, 0.45, 0.95)
 VEHICLE_COLOUR = Colour(0.62, 0.66, 0.72)
 ON_FOOT_COLOUR = Colour(0.95, 0.78, 0.25)
@@ -134,7 +134,7 @@ def _lifetime(t_ns: Times) -> int:
 
 
 def _heads(tracks: Tracks, lifetime_ns: int) -> list[bytes]:
-    """Return per actor what is the same at every step: the entity's name, its class, the box's size and colour."""
+    """Return the constant parts of each actor: the entity's name, its class, the box's size and colour."""
     heads = []
     for name, kind, size, is_ego in zip(tracks.names, tracks.classes, tracks.sizes, tracks.is_ego, strict=True):
         length, width, height = (
@@ -156,7 +156,7 @@ def _heads(tracks: Tracks, lifetime_ns: int) -> list[bytes]:
 
 
 def _tails(tracks: Tracks, rows: NDArray[np.intp], log_time: NDArray[np.uint64]) -> wire.Bytes:
-    """Return per row what changes: the cube's pose (its last field), the entity's time."""
+    """Return the parts that change per row: the cube's pose (its last field), the entity's time."""
     half = tracks.yaw[rows] / 2
     z = tracks.z[rows]
     height = np.nan_to_num(tracks.sizes[tracks.actor[rows], 2], nan=_HEIGHT)

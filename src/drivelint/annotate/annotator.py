@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from drivelint.road.map_reader import MapTables
 
 LAYOUT_FILE = "viewer-layout.json"
-"""Panels and topics as Foxglove and Lichtblick import them: there, topics are hidden until somebody asks for them."""
+"""Panels and topics as Foxglove and Lichtblick import them: there, topics are hidden until a user shows them."""
 _BUFFER = 1 << 20
 _OF_PARTS = ("evidence/overtake_space", "evidence/chain_point", "evidence/first_ego_measures")
 """What the database only has while it has that part: danger spaces in overtakes, the chains that they lie on, measures of the ego."""
@@ -43,7 +43,7 @@ class Annotator:
     """Writes `<folder>/<drive_id>.mcap` for every drive, and a layout for the viewer.
 
     `rules` is the run's rule table, `fail_on`, `strict` and `required` are as those of its result. A drive that cannot be
-    annotated is judged all the same: `note` is told which, and why. `release` gives back memory that the database can do without.
+    annotated is judged all the same: `note` gets their names and the reasons. `release` gives back memory that the database can do without.
     """
 
     def __init__(
@@ -71,7 +71,7 @@ class Annotator:
     def __call__(self, con: duckdb.DuckDBPyConnection, drives: Sequence[Drive], *, first: bool, last: bool) -> None:
         """Annotate the drives of a judged batch; of a batch judged in parts, after its last part.
 
-        Errors: `OutputError` when the folder cannot be written; whatever else goes wrong with a drive is told.
+        Errors: `OutputError` when the folder cannot be written; other problems of a drive are reported.
         """
         ids = [drive.trace.drive_id for drive in drives]
         if first:
@@ -138,5 +138,5 @@ def _whole(path: Path) -> Iterator[BinaryIO]:
             "or use --no-annotate"
         ) from error
     finally:
-        with suppress(OSError):  # the folder itself may be what is wrong: the first error is the one to tell
+        with suppress(OSError):  # the folder itself may be the problem: the first error is reported
             temporary.unlink(missing_ok=True)

@@ -90,7 +90,7 @@ def _strip(line: Floats, start: float, end: float, d: float, half: float) -> tup
 
 
 def _roles(row: dict[str, Any], poses: Mapping[str, ActorPoses], k: int) -> bytes:
-    """Return who is who at one step, the k-th of `poses`, as texts above the boxes that are placed."""
+    """Return the roles of the actors at one step, the k-th of `poses`, as texts above the boxes that are placed."""
     roles = [(row["ego_id"], "ego: " + row["stage"].replace("_", " ")), *((name, "VBP") for name in row["vbp_ids"])]
     if row["ov_id"] is not None:
         roles.append((row["ov_id"], "OV"))

@@ -1,6 +1,6 @@
 """Markers of findings and near misses: the boxes of ego and object and a label, at every step of interest.
 
-Each message is complete: it takes away what was drawn before, so that a viewer that jumps to a time shows what holds there.
+Each message is complete: it removes earlier drawings, so that a viewer that jumps to a time shows the right state.
 """
 
 from __future__ import annotations
@@ -134,7 +134,7 @@ def _entities(frames: list[MarkerFrame], time: int) -> Iterator[bytes]:
             more = [f"and {len(ego_frames) - MAX_LABEL_LINES} more"] if len(ego_frames) > MAX_LABEL_LINES else []
             text = "\n".join([*(one.window.text for one in ego_frames[:MAX_LABEL_LINES]), *more])
             label = draw.label(box.x, box.y + LABEL_OFFSET_M, box.z + 2.0, text, ego_frames[0].window.colour)
-            yield draw.entity(f"what is said of {ego}", time, label)
+            yield draw.entity(f"notes on {ego}", time, label)
 
 
 def _pair(frame: MarkerFrame) -> bytes:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from drivelint.annotate.measures import Series
 
 MAX_SERIES: Final = 10
-"""So many lines a person can tell apart; the margins of further rules have their topics all the same."""
+"""A person can distinguish this many lines; the margins of further rules still have their topics."""
 _MARGINS: Final = "Plot!drivelint-margins"
 
 

@@ -1,4 +1,4 @@
-"""Numbers for a viewer's plots: what is measured of the ego at each step, and the margins around findings and near misses."""
+"""Numbers for a viewer's plots: measures of the ego at each step, and the margins around findings and near misses."""
 
 from __future__ import annotations
 

@@ -51,7 +51,7 @@ def finding_messages(rows: pa.Table, clock: LogClock) -> list[Message]:
 
 
 def event_messages(rows: pa.Table, clock: LogClock, sense_by_rule: Mapping[str, str]) -> list[Message]:
-    """Return a `foxglove.Event` for every finding: its failing stretch, and what is known of it as text."""
+    """Return a `foxglove.Event` for every finding: its failing stretch, and its facts as text."""
     events = []
     for row in rows.to_pylist():
         start, end = clock.at(row["t_start_ns"]), clock.at(row["t_end_ns"])
@@ -81,7 +81,7 @@ def log_messages(
 def _log_line(row: dict[str, Any], time: int, sense_by_rule: Mapping[str, str]) -> Message:
     critical = (row["verdict"], row["severity"]) == ("fail", "critical")
     level = foxglove.ERROR if critical else _LEVELS[row["verdict"]]
-    # a reason that tells the numbers needs no headline with the same numbers
+    # a reason that states the numbers needs no headline with the same numbers
     said = f"{_subject(row)}:" if row["reason_measures"] else f"{headline(row, sense_by_rule)}."
     text = f"{said} {row['reason'][:1].upper()}{row['reason'][1:]}"
     return Message(
@@ -96,7 +96,7 @@ def display_time(row: dict[str, Any], t_start_ns: int) -> int:
 
 
 def headline(row: dict[str, Any], sense_by_rule: Mapping[str, str]) -> str:
-    """Return a verdict or finding in a few words: what, which rule, with whom, how much.
+    """Return a verdict or finding in a few words: what, which rule, which object, how much.
 
     `sense_by_rule`: rule -> relation that must hold.
     """
@@ -108,7 +108,7 @@ def headline(row: dict[str, Any], sense_by_rule: Mapping[str, str]) -> str:
 
 
 def _subject(row: dict[str, Any]) -> str:
-    """Return what is said of which rule, with whom; a finding that too few copies of the drive keep is only possible."""
+    """Return the outcome, the rule and the object in words; a finding that stays in too few copies of the drive is only possible."""
     word = "NEAR MISS" if row.get("near_miss") else row.get("verdict", "fail").upper().replace("_", " ")
     possible = "POSSIBLE " if "n_copies" in row and certainty(row) == POSSIBLE else ""
     profile = f" [{row['profile']}]" if row["profile"] else ""

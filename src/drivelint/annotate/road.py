@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from drivelint.road.map_reader import MapTables
 
 NEAR_M: Final = 40.0
-"""Lanes within this distance of anybody's way are drawn (the way is kept on a grid of the same size)."""
+"""Lanes within this distance of an actor's path are drawn (the path is kept on a grid of the same size)."""
 _ROWS: Final = 1 << 31  # more than any map has in one column of the grid
 ASPHALT = Colour(0.27, 0.28, 0.30)
 PAVEMENT = Colour(0.42, 0.40, 0.37)

@@ -1,4 +1,4 @@
-"""One drive's actor states as arrays, and who is where at a given time."""
+"""One drive's actor states as arrays, and the places of the actors at a given time."""
 
 from __future__ import annotations
 

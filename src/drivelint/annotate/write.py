@@ -1,4 +1,4 @@
-"""One annotated log: the original's bytes, or a generated scene, with the verdicts and what they stand on beside it."""
+"""One annotated log: the original's bytes, or a generated scene, with the verdicts and their evidence beside it."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ _TRANSFORMS: Final = ("FrameTransform", "FrameTransforms", "TFMessage", "tfMessa
 
 @dataclass(frozen=True)
 class Annotation:
-    """What was found in one drive, which is written beside its log.
+    """The results of one drive, which are written beside its log.
 
     `result` is that of the drive as if it had been checked alone. `spaces` are the danger spaces in overtakes, `chains` what they
     lie on. `measures` and `margins` are rows of `evidence/first_ego_measures.sql` and of `evidence/least_margin.sql`. `road` is
@@ -162,7 +162,7 @@ class _Writer:
             self._sink.add_chunk(records, {channel: np.stack([log_time, place.astype(np.uint64)], axis=1)})
 
     def _facts(self, every: int) -> dict[str, str]:
-        """Return what the verdicts stand on: tool, log, map, rules with their versions."""
+        """Return the basis of the verdicts: tool, log, map, rules with their versions."""
         row = self._annotation.result.drives.to_pylist()[0]
         known = (
             "drive_id", "file_name", "sha256", "format", "environment_id", "map_name", "map_sha256", "handedness",

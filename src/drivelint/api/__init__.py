@@ -1,4 +1,4 @@
-"""The Python interface: what the command line does, as functions that return and raise and never exit."""
+"""The Python interface: the commands of the command line as functions, which return or raise and never exit."""
 
 from __future__ import annotations
 
@@ -104,12 +104,12 @@ def check(
     with errors_name_keywords():
         paths, folder = options.texts(traces), options.path(out)
         if not paths:
-            raise UsageError("no traces: give files, globs or folders")
+            raise UsageError("no traces: name files, globs or folders")
         chosen = options.texts(rules)
         if rules is not None and not chosen:
             raise UsageError("rules names none: leave it out for the rules that are checked by default")
         if keep_db and folder is None:
-            raise UsageError("--keep-db writes a file: say where with --out DIR")
+            raise UsageError("--keep-db writes a file: name its folder with --out DIR")
         robustness = option_values.robustness_for(confidence, robustness)
         day = option_values.parse_today(today.isoformat() if isinstance(today, date) else today)
         gate_inputs = GateInputs.from_files(

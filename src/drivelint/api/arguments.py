@@ -1,4 +1,4 @@
-"""Refuses arguments of another type than the signature says, by name: what comes from a notebook is often a text."""
+"""Refuses arguments of the wrong type, by name: a value from a notebook is often a text."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an audit found, for whoever asks it in Python."""
+"""The result of an audit, for Python."""
 
 from __future__ import annotations
 

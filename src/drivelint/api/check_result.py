@@ -1,4 +1,4 @@
-"""What a check found, for whoever asks it in Python."""
+"""The result of a check, for Python."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class CheckResult(TableSet):
         self.notes = tuple(map(in_keywords, notes))
         self.folder = folder
         self._result = replace(result, margins_file=None)
-        self._scratch = scratch  # its folder, with the margins, goes when nobody has the result any more
+        self._scratch = scratch  # its folder, with the margins, is removed with the last reference to the result
         margins = result.margins_file if folder is None else folder / _MARGINS
         self._margins_file = margins if margins is not None and margins.is_file() else None
 
@@ -74,7 +74,7 @@ class CheckResult(TableSet):
 
     @property
     def exit_code(self) -> int:
-        """What the command line's exit code is: 0 nothing failed, 1 something did, 3 lossy, 4 not judged, 2 a rule erred."""
+        """The exit code of the command line: 0 nothing failed, 1 something failed, 3 lossy, 4 not judged, 2 a rule could not be run."""
         return int(exit_status(self._result).code)
 
     @property
@@ -84,7 +84,7 @@ class CheckResult(TableSet):
 
     @property
     def margins(self) -> Table | None:
-        """Every judged step, if `check` was asked for it; None: it was not."""
+        """Every judged step; None: `check` ran without `margins`."""
         if self._margins_file is None:
             return None
         import pyarrow.parquet as pq
@@ -143,7 +143,7 @@ class CheckResult(TableSet):
         trace: AnyPath | None = None,
         map: AnyPath | None = None,  # noqa: A002 - the option's name
     ) -> Explained:
-        """Tell why one verdict is what it is, as `drivelint explain` does: its drive is judged again by that rule.
+        """Explain one verdict, as `drivelint explain` does: its drive is judged again by that rule.
 
         `name`: a finding's id or how it begins; or a rule, or rule@drive, or how they begin. The others choose among several
         verdicts. `trace`, `map`: where they are, if they were moved. Errors: `DriveLintError`.
@@ -155,7 +155,7 @@ class CheckResult(TableSet):
 
     @typed
     def timeline(self, finding: str) -> Timeline:
-        """Return what happened around a finding over time: gap, speeds, accelerations, and what its rule measured.
+        """Return a finding over time: gap, speeds, accelerations, and the measure of its rule.
 
         `finding`: its id or how it begins; or a rule, or rule@drive. `.plot()` shows it. Errors: `DriveLintError`.
         """

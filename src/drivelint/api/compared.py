@@ -1,4 +1,4 @@
-"""The difference of two results, for whoever asks in Python."""
+"""The difference of two results, for Python."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class Comparison:
-    """What `drivelint diff` tells of two results."""
+    """The content of `drivelint diff` for two results."""
 
     def __init__(self, difference: Difference, failing: list[ComparedFinding], least: str, gate: Gate | None) -> None:
         self._difference, self._failing, self._least, self._gate = difference, failing, least, gate
@@ -36,7 +36,7 @@ class Comparison:
 
     @property
     def text(self) -> str:
-        """What the command line prints."""
+        """The output of the command line."""
         return descriptions.difference_text(self._difference, self._failing, self._least, self._gate)
 
     def findings(self) -> list[dict[str, Any]]:
@@ -44,7 +44,7 @@ class Comparison:
         return [asdict(entry) for entry in self._difference.entries]
 
     def data(self) -> dict[str, Any]:
-        """Return what `--format json` prints, as plain data."""
+        """Return the output of `--format json` as plain data."""
         told: dict[str, Any] = json.loads(descriptions.to_json(self._difference, self._failing, self._least))
         return told
 
@@ -67,7 +67,7 @@ def diff(base: CheckResult | AnyPath, new: CheckResult | AnyPath, *, fail_on: Fa
 
 
 def _result(source: CheckResult | AnyPath, name: str) -> tuple[Result, str]:
-    """Return a result and what it is called: by its folder, if it has one."""
+    """Return a result and its name: that of its folder, if it has one."""
     if isinstance(source, CheckResult):
         return source.result, name if source.folder is None else source.folder.resolve().name
     if not isinstance(source, str | PathLike):

@@ -1,4 +1,4 @@
-"""Why one verdict is what it is, for whoever asks in Python."""
+"""The reason for one verdict, for Python."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Explained:
 
     @property
     def text(self) -> str:
-        """What the command line prints."""
+        """The output of the command line."""
         from rich.console import Console
 
         console = Console(width=_WIDTH, highlight=False, color_system=None, force_jupyter=False)
@@ -31,7 +31,7 @@ class Explained:
         return "\n".join(line.rstrip() for line in captured.get().splitlines())
 
     def data(self) -> dict[str, Any]:
-        """Return what `--format json` prints, as plain data: the numbers in full."""
+        """Return the output of `--format json` as plain data: the numbers in full."""
         told: dict[str, Any] = json.loads(text.to_json(self._explanation))
         return told
 

@@ -1,4 +1,4 @@
-"""What a notebook shows of a result: the verdict, map and logs, the counts, refused logs and the worst findings."""
+"""The view of a result in a notebook: the verdict, map and logs, the counts, refused logs and the worst findings."""
 
 from __future__ import annotations
 

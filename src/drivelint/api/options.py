@@ -33,7 +33,7 @@ def texts(value: Paths | None) -> tuple[str, ...]:
     several = (value,) if isinstance(value, str | PathLike) else tuple(value)
     for each in several:
         if not isinstance(each, str | PathLike):
-            raise UsageError(f"{reprlib.repr(each)} is no text and no path")
+            raise UsageError(f"{reprlib.repr(each)} is neither a text nor a path")
     return tuple(fspath(each) for each in several)
 
 

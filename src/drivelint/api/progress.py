@@ -1,4 +1,4 @@
-"""Progress for a caller in Python: nothing is shown unless asked for, and the notes are kept."""
+"""Progress for a caller in Python: nothing is shown unless requested, and the notes are kept."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tables for whoever works with them in Python: held in Arrow, handed over as Arrow, polars or pandas, queried with SQL."""
+"""Tables for Python: kept in Arrow, returned as Arrow, polars or pandas, queried with SQL."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import duckdb
 
 from drivelint.errors import DriveLintError, UsageError
 from drivelint.phrases import hint
-from drivelint.result.geometry import COLUMN, SHAPES, with_geometry
+from drivelint.result.geometry import EARTH_COLUMN, SHAPES, with_geometry
 from drivelint.sql import store
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ class Table:
         return tuple(self._rows.column_names)
 
     def describe(self) -> Table:
-        """Return what each column is: `column`, `type`, and `meaning` with the unit, empty for what a query made."""
+        """Return a row per column: `column`, `type`, and `meaning` with the unit, empty for the columns of a query."""
         import pyarrow as pa
 
         meanings = store.column_comments().get(self._schema_table, {})
@@ -85,20 +85,28 @@ class Table:
         return self._rows.to_pandas()
 
     def geo(self) -> gpd.GeoDataFrame:
-        """Return the rows with their geometry (`geom`, in the map's metres) as a frame of geopandas.
+        """Return the rows with their geometries as a frame of geopandas.
+
+        `geom` is in the map's metres, `geom_lonlat` in degrees of longitude and latitude.
 
         Errors: `DriveLintError` where geopandas is not installed, and for a table without a geometry.
         """
         if self._schema_table not in SHAPES:
             raise UsageError(
-                "geo(): this table has no geometry; findings, scenes, lanes, spaces, courses and tracks have"
+                "geo(): this table has no geometry; findings, drives, scenes, lanes, spaces, courses and tracks have"
             )
         try:
             import geopandas as gpd
         except ImportError as error:
             raise DriveLintError("geo() needs geopandas, which is not installed: pip install geopandas") from error
-        wkb = with_geometry(self._rows, self._schema_table)[COLUMN].to_pylist()
-        return gpd.GeoDataFrame(self.df().assign(**{COLUMN: gpd.GeoSeries.from_wkb(wkb)}), geometry=COLUMN)
+        shown, shapes = with_geometry(self._rows, self._schema_table), SHAPES[self._schema_table]
+        series = {
+            column: gpd.GeoSeries.from_wkb(
+                shown[column].to_pylist(), crs="OGC:CRS84" if column == EARTH_COLUMN else None
+            )
+            for column in shapes
+        }
+        return gpd.GeoDataFrame(self.df().assign(**series), geometry=next(iter(shapes)))
 
     def rows(self) -> list[dict[str, Any]]:
         """Return every row as a dictionary."""
@@ -137,19 +145,18 @@ class TableSet:
     def sql(self, query: str, params: object = None) -> Table:
         """Return the rows of a DuckDB query over the tables, by their names; `params` fill in `?` or `$name`.
 
-        A query with `geom` or a function `ST_...` has the spatial extension, and `geom` (a GEOMETRY in the map's metres) in the tables that
-        have one; a geometry in the result is WKB. The tables stay as they are, and nothing that a query creates is there for the next.
+        A query with `geom`, `geom_lonlat` or a function `ST_...` has the spatial extension, and these columns (GEOMETRY) in the tables that
+        have them; a geometry in the result is WKB. The tables stay as they are, and nothing that a query creates is there for the next.
         Of columns with one name, as of a join, the later ones get numbers: `t_start_ns_1`.
         Errors: `DriveLintError` for a query that DuckDB refuses, or that returns no rows and columns.
         """
-        has_geometry = re.search(r"\bgeom\b|\bst_", query, re.IGNORECASE) is not None
+        has_geometry = re.search(r"\bgeom(_lonlat)?\b|\bst_", query, re.IGNORECASE) is not None
         with store.open_as_is() if has_geometry else duckdb.connect() as con:
             for name, rows in self._queried().items():
                 if has_geometry and name in self._shapes:
                     con.register("_wkb", with_geometry(rows, self._shapes[name]))
-                    con.execute(
-                        f"CREATE TABLE {name} AS SELECT * REPLACE (ST_GeomFromWKB({COLUMN}) AS {COLUMN}) FROM _wkb"
-                    )
+                    made = ", ".join(f"ST_GeomFromWKB({each}) AS {each}" for each in SHAPES[self._shapes[name]])
+                    con.execute(f"CREATE TABLE {name} AS SELECT * REPLACE ({made}) FROM _wkb")
                     con.unregister("_wkb")
                 else:
                     con.register(name, rows)

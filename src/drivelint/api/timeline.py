@@ -1,4 +1,4 @@
-"""What happened around a finding over time: a table for whoever computes with it, and strips to look at."""
+"""A finding over time: a table to compute with, and charts to look at."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class Timeline(Table):
         self._strips, self._title = strips, title
 
     def plot(self) -> Figure | None:
-        """Return the strips of the report: speeds, gap, and what the rule measures; None where the ego's way is not known."""
+        """Return the charts of the report: speeds, gap, and the measure of the rule; None if the ego's path is not known."""
         if self._strips is None:
             return None
         template = page_environment(()).from_string(_PAGE)

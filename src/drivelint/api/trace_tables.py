@@ -1,4 +1,4 @@
-"""The tables of one recorded drive, for whoever asks for them in Python."""
+"""The tables of one recorded drive, for Python."""
 
 from __future__ import annotations
 

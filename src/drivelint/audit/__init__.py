@@ -1,7 +1,7 @@
 """Audits: many drives judged by many workers, with results that stay when the audit is interrupted and resumed.
 
-Each drive's result is keyed by the hash of what decides it. Workers write a batch of drives as one Parquet file per table and then a
-receipt per drive; a drive without a receipt has no result. Small files are packed into chunks of some thousand drives.
+The key of a drive's result is a hash of everything that decides it. Workers write a batch of drives as one Parquet file per table and
+then a receipt per drive; a drive without a receipt has no result. Small files are packed into chunks of some thousand drives.
 """
 
 from drivelint.audit.model import JudgeSettings

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 _CELL: Final = re.compile(r'(")((?:[^"]|"")*)"|[^,"\r\n]+')
 _NUMBER: Final = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|[+-]?(?:inf|nan)")
 _FORMULA: Final = tuple("=+-@\n\uff1d\uff0b\uff0d\uff20")
-"""What a cell begins with that a spreadsheet takes for a formula; so does a tab, which is shown as a backslash and t."""
+"""First characters of a cell that a spreadsheet treats as a formula; so is a tab, which is shown as a backslash and t."""
 
 
 def ask(dest: str, query: str, format_: str, warn: Callable[[str], None] = lambda _: None) -> str:
@@ -45,7 +45,7 @@ def ask(dest: str, query: str, format_: str, warn: Callable[[str], None] = lambd
         try:
             statements = con.extract_statements(query)
             if len(statements) != 1 or statements[0].type != duckdb.StatementType.SELECT:
-                raise UsageError("drivelint sql takes one SELECT: give one, without others before or behind it")
+                raise UsageError("drivelint sql takes exactly one SELECT, without other statements before or after it")
             if format_ == "text":
                 return inert(f"{con.sql(query)}\n")
             if format_ == "csv":
@@ -96,7 +96,7 @@ def _open(con: duckdb.DuckDBPyConnection, dest: str, home: Path, warn: Callable[
 def _warn_of_changes(
     results: ResultStore, dest: str, home: Path, warn: Callable[[str], None], *, is_audit: bool
 ) -> None:
-    """Tell of the first file that is not as it was written; whoever asks may want to look at just that.
+    """Warn of the first file that has changed since it was written; a query may be about exactly that.
 
     Errors: `UsageError` for an audit that has ended and does not say how its files were.
     """
@@ -108,9 +108,7 @@ def _warn_of_changes(
             warn(str(error))
     elif isinstance(results, LocalFolder):  # the files of a bucket would have to be copied here
         for name in changed_files(results.root)[:1]:
-            warn(
-                f"{dest.rstrip('/')}/{name}: is not as drivelint check wrote it with the others: check the drives again"
-            )
+            warn(f"{dest.rstrip('/')}/{name}: was changed since drivelint check wrote it: check the drives again")
 
 
 def _view(con: duckdb.DuckDBPyConnection, results: ResultStore, name: str, file: str, home: Path) -> None:

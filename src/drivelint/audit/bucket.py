@@ -28,9 +28,9 @@ _RETRY: Final[Any] = {
     "retry_timeout": timedelta(seconds=120),
     "backoff": {"init_backoff": timedelta(seconds=0.1), "max_backoff": timedelta(seconds=10), "base": 2},
 }
-"""A store that is busy is asked again, ever more slowly; after that the run ends with exit code 75."""
+"""Requests to a busy store are repeated after longer and longer pauses; then the run ends with exit code 75."""
 _ATTEMPTS: Final = 6
-"""How often an answer that is cut off is asked for."""
+"""Number of requests for an answer that is cut off."""
 _CLIENT: Final[Any] = {"allow_http": True, "timeout": timedelta(seconds=60)}
 
 
@@ -41,7 +41,7 @@ class StoreError(DriveLintError):
 
 
 class Object(NamedTuple):
-    """An object of a store: its URL, its size in bytes, and its ETag, which changes with what it holds."""
+    """An object of a store: its URL, its size in bytes, and its ETag, which changes with its content."""
 
     url: str
     size: int
@@ -189,7 +189,7 @@ def download(bucket_object: Object, folder: Path) -> Path:
 
 
 def _listed(client: Any, prefix: str) -> Iterator[Any]:
-    """Yield what a store tells of each object below a prefix, page after page; a page that was cut off is asked for again."""
+    """Yield the objects below a prefix of a store, page after page; a page that was cut off is requested again."""
     last: str | None = None
     for attempt in range(_ATTEMPTS):
         try:

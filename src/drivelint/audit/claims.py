@@ -1,7 +1,7 @@
 """Claims: how several audits into one place share its drives without a scheduler.
 
-Who judges a drive writes a claim with its name first, and a sign of life every few seconds. A claim of somebody without a sign of life
-for `LEASE_S` counts no more. Claims only save work: should two judge the same drive, one receipt wins.
+Before an audit judges a drive, it writes a claim with its name. It writes a sign of life every few seconds. If an audit shows no sign of
+life for `LEASE_S`, its claims no longer count. Claims only save work: if two audits judge the same drive, one receipt wins.
 """
 
 from __future__ import annotations
@@ -59,10 +59,10 @@ class Claims:
             self._results.delete([f"claims/owners/{self._owner}.json"])
 
     def claimed_drives(self, todo: Iterable[AuditDrive]) -> Iterator[AuditDrive]:
-        """Yield the drives that this audit gets in one pass over `todo`, what is to be judged by all.
+        """Yield the drives that this audit gets in one pass over `todo`, the drives to be judged by all audits.
 
-        `n_waiting` is then how many somebody else has who is alive: after a while they are done, or free. This never waits itself, as
-        what is judged meanwhile is said to be done by whoever takes the drives.
+        `n_waiting` is then the number of drives that other living audits have: after a while they are done, or free. This never waits
+        itself: the caller marks the drives that are judged meanwhile as done.
         """
         self.n_waiting = self.n_taken = 0
         left = iter(todo)
@@ -92,7 +92,7 @@ class Claims:
             self._results.write(_name(drive), b'{"owner": ""}\n')
 
     def _take(self, drive: AuditDrive) -> tuple[Claim, str]:
-        """Claim a drive. Return whose it is now, and the id of its owner, '' where it is done."""
+        """Claim a drive. Return the outcome of the claim, and the id of the drive's owner, '' if the drive is done."""
         if self._results.create(_name(drive), self._claim()):
             return Claim.THIS_AUDIT, self._owner
         content = self._results.read(_name(drive))

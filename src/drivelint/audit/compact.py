@@ -1,7 +1,7 @@
 """Packs the many small files of an audit into few: chunks of some thousand drives, each a file per table and its receipts.
 
-A chunk is there once its receipts are: they are written last. What a chunk holds is removed from the small files only then, so
-that an audit that is killed at any moment neither loses a drive nor has it twice.
+A chunk is there once its receipts are: they are written last. Only then are its drives removed from the small files, so that an audit
+that is killed at any moment neither loses a drive nor has it twice.
 """
 
 from __future__ import annotations
@@ -82,7 +82,7 @@ def compact(results: ResultStore, *, while_judging: bool = False) -> int:
 
 
 def drop(results: ResultStore, keys: pa.Array) -> None:
-    """Take the drives with these keys out of the chunks, so that they are judged again. Not while anybody compacts."""
+    """Remove the drives with these keys from the chunks, so that they are judged again. Not while another process compacts."""
     with TemporaryDirectory(prefix="drivelint-compact-") as home:
         for chunk in chunks(results) if len(keys) else ():
             receipts = _read(results, "receipts", chunk, Path(home))
@@ -228,7 +228,7 @@ def _write_chunk(results: ResultStore, tables: dict[str, bytes], receipts: pa.Ta
 
 
 def _remove_unfinished(results: ResultStore) -> None:
-    """Remove files of chunks without receipts: their compaction was killed, and what they hold is still in small files."""
+    """Remove files of chunks without receipts: their compaction was killed, and their content is still in small files."""
     whole = set(chunks(results))
     results.delete(
         name for table in TABLES for name in list(results.names(f"tables/{table}")) if Path(name).stem not in whole

@@ -1,8 +1,8 @@
 """Keeps Delta tables of an audit's packed tables, for Spark, Databricks, Trino and others that read them.
 
-A Delta table is a folder of Parquet files and a log that names the files of each version. Its files are copies of the packed files,
-named by the hash of what they hold. One commit adds the files that are new and takes out those that the audit has no more, so that
-a reader sees the former version or the next one, also where the writer is killed.
+A Delta table is a folder of Parquet files and a log that names the files of each version. Its files are copies of the packed files, named
+by the hash of their content. One commit adds the files that are new and takes out those that the audit has no more, so that a reader sees
+the former version or the next one, also where the writer is killed.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ _COLOUR: Final = re.compile(r"\x1b\[[0-9;]*m")
 
 
 class DeltaChange(NamedTuple):
-    """How many files a writing has added and taken out, in all tables."""
+    """The number of files that a write added and removed, in all tables."""
 
     n_added: int
     n_removed: int
@@ -57,7 +57,7 @@ class DeltaChange(NamedTuple):
         """Return the sentence for a person."""
         if not self.n_added and not self.n_removed:
             return f"{dest}: the Delta tables were up to date"
-        return f"{dest}: {plural(self.n_added, 'file')} added to the Delta tables, {self.n_removed} taken out"
+        return f"{dest}: {plural(self.n_added, 'file')} added to the Delta tables, {self.n_removed} removed"
 
 
 def ready(dest: str, out: str, run: str) -> None:
@@ -71,7 +71,7 @@ def ready(dest: str, out: str, run: str) -> None:
     except ModuleNotFoundError as error:
         raise UsageError(f"--delta: {error.name} is not installed: pip install 'drivelint[delta]'") from error
     if f"{_absolute(dest)}/".startswith(f"{_absolute(out)}/"):
-        raise UsageError(f"--delta {dest}: lies within the audit: choose a place outside {out}")
+        raise UsageError(f"--delta {dest}: lies within the audit: choose a folder outside {out}")
     if not is_url(dest) and Path(dest).exists() and not Path(dest).is_dir():
         raise UsageError(f"--delta {dest}: is a file: give a folder for the Delta tables")
     for table in NAMES:
@@ -82,10 +82,10 @@ def ready(dest: str, out: str, run: str) -> None:
 def write(
     con: duckdb.DuckDBPyConnection, results: ResultStore, home: Path, dest: str, *, run: str, digest: str | None
 ) -> DeltaChange:
-    """Make the Delta tables in `dest` have what the packed tables have, each by one commit, where they differ.
+    """Make the Delta tables in `dest` equal to the packed tables, each by one commit, where they differ.
 
     `con`: has the views of `create_views`; `home`: has their copies. `digest`: that of the audit's summary. Only one process may write
-    an audit's tables at a time. Errors: `UsageError` for a table of somebody else; `OutputError`.
+    an audit's tables at a time. Errors: `UsageError` for a table of another program; `OutputError`.
     """
     ids = chunks(results)
     n_added = n_removed = 0
@@ -200,5 +200,5 @@ def _persistent(where: str, job: Callable[[], T]) -> T:
         except (DeltaError, OSError) as error:
             if attempt + 1 == _ATTEMPTS:
                 why = " ".join(_COLOUR.sub("", str(error)).split())[:300]
-                raise OutputError(f"{where}: the Delta table failed: {why}: give the same command again") from error
+                raise OutputError(f"{where}: the Delta table failed: {why}: run the same command again") from error
     raise AssertionError("unreachable")

@@ -1,4 +1,4 @@
-"""The driver: cuts drives into tasks, keeps the workers busy, tries again what was lost, and quarantines what kills workers."""
+"""The driver: divides drives into tasks, keeps the workers busy, repeats lost tasks, and quarantines drives that kill workers."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ TASK_BYTES: Final = 8_000_000
 TASK_DRIVES: Final = 64
 """A task ends with the drive with which its logs have so many bytes or so many are in it: short drives are judged together."""
 LEAST_TASK_DRIVES: Final = 8
-"""Where there are few drives, tasks have so many, so that results come soon and all workers have something to do."""
+"""The number of drives in a task if there are few drives, so that results come soon and all workers have work."""
 MOST_ATTEMPTS: Final = 3
 """A drive over which so many workers were lost is quarantined; from the second on it is judged alone."""
 
@@ -48,19 +48,25 @@ def tasks(
     *,
     ahead: int,
     max_drives: int = TASK_DRIVES,
+    n_small: int = 0,
 ) -> Iterator[Task]:
-    """Cut drives into tasks, the largest of each `ahead` drives first, so that no long one is left for the end."""
-    left = iter(drives)
+    """Cut drives into tasks, the largest of each `ahead` drives first, so that no long one is left for the end.
+
+    The first `n_small` tasks are small: an audit that is interrupted early keeps something.
+    """
+    left, n_cut = iter(drives), 0
     while some := list(islice(left, ahead)):
         some.sort(key=lambda drive: (-drive.size, drive.log))
         part: list[AuditDrive] = []
         for drive in some:
             part.append(drive)
-            if len(part) >= max_drives or sum(each.size for each in part) >= TASK_BYTES:
+            most = min(max_drives, LEAST_TASK_DRIVES) if n_cut < n_small else max_drives
+            if len(part) >= most or sum(each.size for each in part) >= TASK_BYTES:
                 yield Task(tuple(part), dest, run_id, settings)
-                part = []
+                part, n_cut = [], n_cut + 1
         if part:
             yield Task(tuple(part), dest, run_id, settings)
+            n_cut += 1
 
 
 @dataclass
@@ -100,13 +106,13 @@ class Driver:
             self.busy()
 
     def _after_loss(self, task: Task, why: str) -> list[Task]:
-        """Return what is to be done again: the drives of a lost task one by one; a drive alone until it is quarantined."""
+        """Return the tasks to repeat: the drives of a lost task one by one; a drive alone until it is quarantined."""
         attempts = task.attempts + 1
         if len(task.drives) > 1:
             return [replace(task, drives=(drive,), attempts=attempts) for drive in task.drives]
         if attempts < MOST_ATTEMPTS:
             return [replace(task, attempts=attempts)]
-        for receipt in self._quarantine(task.drives[0], f"{attempts} workers were lost over it: {why}"):
+        for receipt in self._quarantine(task.drives[0], f"{attempts} workers died on this drive: {why}"):
             self.tell(receipt)
         self.mark_done(task.drives)
         return []

@@ -1,4 +1,4 @@
-"""What decides a result besides the log: its hash keys the results of an audit by content."""
+"""Everything that decides a result besides the log: its hash is part of the key of a result."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ class OptionHashes:
         self._file = cache(_file_sha256)
 
     def of(self, options: DriveInput) -> str:
-        """Return the hash of a drive's options and of what its map and mapping hold.
+        """Return the hash of a drive's options and of the content of its map and mapping.
 
         A map that cannot be read counts by its name: the drive is refused, until the map is there.
         """

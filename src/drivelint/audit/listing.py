@@ -1,4 +1,4 @@
-"""The drives of the sources as a table of the database, which is held against the receipts."""
+"""The drives of the sources as a table of the database, which is compared with the receipts."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ _NAME: Final = "lock.json"
 def locked(results: ResultStore, *, shared: bool) -> Iterator[None]:
     """Hold a place while the block runs. `shared`: with others that share it, as shards do, which pack nothing.
 
-    Errors: `UsageError` where somebody else has it.
+    Errors: `UsageError` if another process has it.
     """
     if isinstance(results, LocalFolder):
         with _locked_folder(results, shared=shared):
@@ -81,4 +81,6 @@ def _locked_store(results: ResultStore) -> Iterator[None]:
 
 
 def _in_use_error(where: str) -> UsageError:
-    return UsageError(f"{where}: another audit is at work there: wait for its end, or share the drives with --claim")
+    return UsageError(
+        f"{where}: another audit is running there: wait until it has ended, or share the drives with --claim"
+    )

@@ -1,4 +1,4 @@
-"""The data of an audit: what was asked, one drive of it, a task for a worker, and the receipt that proves a drive's result."""
+"""The data of an audit: its request, one drive of it, a task for a worker, and the receipt that proves a drive's result."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Status = Literal["judged", "refused", "quarantined"]
 
 @dataclass(frozen=True)
 class JudgeSettings:
-    """What decides the verdicts of an audit besides its logs and maps: the options of `check` of the same names."""
+    """The settings that decide the verdicts of an audit besides its logs and maps: the options of `check` of the same names."""
 
     rules: tuple[str, ...] = ()
     ignore: tuple[str, ...] = ()
@@ -35,7 +35,7 @@ class JudgeSettings:
 class AuditDrive:
     """One drive of an audit: a row of the manifest, or a log that was found in a folder.
 
-    `log`: path or URL. `size` in bytes and `stamp` (time of the last change, or ETag) tell that it is still the same file.
+    `log`: path or URL. `size` in bytes and `stamp` (time of the last change, or ETag) identify an unchanged file.
     `source_id`: hash of them, of the tags, of the options and of the run; `options_id`: hash of the options and of what the map holds.
     """
 
@@ -48,7 +48,7 @@ class AuditDrive:
     options_id: str = ""
 
     def with_ids(self, size: int, stamp: str, run_id: str, options_id: str) -> AuditDrive:
-        """Return the drive with what was found of its log, and its ids."""
+        """Return the drive with the data of its log, and its ids."""
         source_id = digest([run_id, options_id, self.log, size, stamp, self.tags])
         return replace(self, size=size, stamp=stamp, source_id=source_id, options_id=options_id)
 
@@ -110,7 +110,7 @@ class Receipt:
     options: str = ""
     n_in_batch: int = 1
     reused: bool = False
-    """It was there already. This is said of this run only and never stored."""
+    """The result existed before. This is only for this run and is never stored."""
     version: int = RECEIPT_VERSION
 
     def to_json(self) -> bytes:

@@ -1,4 +1,4 @@
-"""Which parts of an audit have begun and which have come to their end, so that an unfinished audit never looks whole."""
+"""The parts of an audit that have started, and those that have ended, so that an unfinished audit never looks complete."""
 
 from __future__ import annotations
 

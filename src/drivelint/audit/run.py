@@ -1,4 +1,4 @@
-"""One run of an audit: finds what has no result yet, has it judged, packs the results and sums them up."""
+"""One run of an audit: finds the drives without a result, has them judged, packs the results and summarises them."""
 
 from __future__ import annotations
 
@@ -29,6 +29,7 @@ from drivelint.audit.summary import AuditSummary, summed, summed_receipts
 from drivelint.audit.unpacked import SUMMARY_FILE
 from drivelint.drive.conditions import CONDITION_VALUES
 from drivelint.drive.trace import DriveInput
+from drivelint.engine.default_rules import chosen_selectors
 from drivelint.engine.memory import DEFAULT_MEMORY, LEAST_MEMORY
 from drivelint.errors import UsageError
 from drivelint.phrases import listed, plural
@@ -53,7 +54,7 @@ _LISTED: Final = "(FROM receipts SEMI JOIN _listed USING (source_id))"
 """The receipts of the drives of this part that were packed before."""
 RECEIPTS_PER_COMPACTION: Final = 4_000
 WORKER_BYTES: Final = 500_000_000
-"""What a worker takes beside its database: programs, rules, and a log that is being read."""
+"""The memory of a worker besides its database: programs, rules, and a log that is being read."""
 _ALIKE: Final = 0.8
 """From this likeness on, the name of a tag is taken for a misspelt column: `maps` is, `lap` is not."""
 
@@ -82,30 +83,30 @@ class AuditRequest(DriveInput):
     lease_s: float = LEASE_S
     retry_errors: bool = False
     prune: bool = False
-    """Take out results of logs that are not among the sources any more."""
+    """Remove results of logs that are no longer among the sources."""
     cluster: str | None = None
     delta: str | None = None
     """Folder or prefix of Delta tables of the packed tables."""
 
 
 def audit(request: AuditRequest, progress: Progress, executor: Executor | None = None) -> AuditSummary:
-    """Judge every drive of the sources that has no result yet, and return what all drives of the sources come to.
+    """Judge every drive of the sources without a result, and return the summary of all drives of the sources.
 
     Errors: `UsageError`, `RuleError`, `TraceError` for what was asked; `OutputError` where results cannot be written. Whatever ends
     it, what was judged stays, and the same command goes on with the rest.
     """
+    rules = chosen_selectors(request.settings.rules, request.settings.rules_dirs, request)
+    request = replace(request, settings=replace(request.settings, rules=rules))
     id_ = run_id(request.settings)
     results = open_store(request.out)
     alone = request.shard is None and not request.claim
     if request.delta is not None:
         if not alone:
-            raise UsageError(
-                "--delta has tables that are packed: give drivelint merge --delta, when all parts have ended"
-            )
+            raise UsageError("--delta needs packed tables: when all parts have ended, run drivelint merge --delta")
         delta.ready(request.delta, request.out, id_)
     was_whole = _begin(request, results, id_)
     if not alone and (request.retry_errors or request.prune):
-        raise UsageError("--retry-errors and --prune take results out: give them without --shard and --claim")
+        raise UsageError("--retry-errors and --prune remove results: use them without --shard and --claim")
     part = parts.name_of(request.shard, claim=request.claim)
     with locked(results, shared=not alone):
         parts.begin(results, part)
@@ -148,7 +149,7 @@ def _audited(
         progress.stage("auditing", n_drives)
         progress.advance(n_known)
         if not alone and (n_stale := len(_stale(con, retry=False))):
-            raise UsageError(f"{plural(n_stale, 'log')} changed since: give the audit once without --shard and --claim")
+            raise UsageError(f"{plural(n_stale, 'log')} changed since: run the audit once without --shard and --claim")
         audit_summary = _judge(request, con, results, progress, id_=id_, executor=executor)
         n_reused = n_known + audit_summary.reused
         if not alone:
@@ -160,14 +161,14 @@ def _audited(
 
 
 def _doubtful_tags(con: duckdb.DuckDBPyConnection) -> Iterator[str]:
-    """Yield what is said of tags that have the name of a condition, or nearly that of a column that is no tag."""
+    """Yield warnings about tags with the name of a condition, or nearly that of a column that is no tag."""
     rows = con.execute("SELECT DISTINCT unnest(map_keys(tags)) FROM _listed ORDER BY 1").fetchall()
     names = [name for (name,) in rows]
     if conditions := listed([f"column {name}" for name in names if name in CONDITION_VALUES]):
-        yield f"the manifest's {conditions} is a tag only: what holds in a drive stands in the column environment, such as weather=wet"
+        yield f"the manifest's {conditions} is only a tag: conditions of a drive stand in the column environment, such as weather=wet"
     for name in names:
         for meant in get_close_matches(name.casefold(), OPTION_COLUMNS, n=1, cutoff=_ALIKE):
-            yield f"the manifest's column {name} is a tag only: did you mean {meant}?"
+            yield f"the manifest's column {name} is only a tag: did you mean {meant}?"
 
 
 def _judge(
@@ -179,7 +180,7 @@ def _judge(
     id_: str,
     executor: Executor | None,
 ) -> AuditSummary:
-    """Have the listed drives judged that have no receipt; return what those come to."""
+    """Have the listed drives without a receipt judged; return their summary."""
     audit_summary, fresh = AuditSummary(), 0
     claims = Claims(results, request.lease_s) if request.claim else None
 
@@ -208,7 +209,8 @@ def _judge(
             driver = Driver(workers, results, tell, busy, claims.mark_done if claims else lambda _drives: None)
             while True:
                 todo = claims.claimed_drives(listing.todo(con)) if claims else listing.todo(con)
-                driver.run(tasks(todo, request.out, id_, _settings_of_workers(request), ahead=ahead, max_drives=most))
+                settings, n_small = _settings_of_workers(request), workers.capacity
+                driver.run(tasks(todo, request.out, id_, settings, ahead=ahead, max_drives=most, n_small=n_small))
                 if claims is None or not claims.n_waiting:
                     break
                 if not claims.n_taken:
@@ -228,7 +230,7 @@ def _settings_of_workers(request: AuditRequest) -> JudgeSettings:
 
 
 def _compact_apart(out: str) -> None:
-    """Pack what is whole in a process of its own, so that what its libraries keep does not add up in the driver. Errors: as `compact`."""
+    """Pack the complete results in a process of its own, so that their memory does not add up in the driver. Errors: as `compact`."""
     context = multiprocessing.get_context("spawn")  # a fork would copy threads that hold locks
     with (
         suppress(BrokenProcessPool),  # what a killed process has not packed is packed the next time
@@ -279,7 +281,7 @@ def _write_delta(
     id_: str,
     audit_summary: AuditSummary,
 ) -> None:
-    """Make the Delta tables have what was packed. Of an audit without all its parts they would look like those of a whole one."""
+    """Write the packed results to the Delta tables. With some parts missing, they would look like those of a complete audit."""
     if audit_summary.missing_parts:
         progress.note(f"{dest}: the Delta tables stay as they are: parts of the audit have not ended")
         return
@@ -316,12 +318,12 @@ def _absent(con: duckdb.DuckDBPyConnection, results: ResultStore, request: Audit
     absent = con.execute(statement("audit/absent")).to_arrow_table()["key"].combine_chunks()
     if request.prune and len(absent):
         drop(results, absent)
-        progress.note(f"{plural(len(absent), 'result')} taken out: their logs are not among the sources")
+        progress.note(f"{plural(len(absent), 'result')} removed: their logs are not among the sources")
     return len(absent)
 
 
 def _begin(request: AuditRequest, results: ResultStore, id_: str) -> bool:
-    """Write down what decides the results, or make sure that the audit that is there has the same.
+    """Write the settings that decide the results, or check that the existing audit has the same.
 
     Return whether that audit had ended, and its files are as they were then. Errors: `UsageError` for an audit by other rules,
     parameters or versions, and for one whose files were changed since it ended.
@@ -347,7 +349,7 @@ def _begin(request: AuditRequest, results: ResultStore, id_: str) -> bool:
 
 
 def told_of(results: ResultStore, dest: str) -> dict[str, Any] | None:
-    """Return what `audit.json` says; None: no audit is there. `dest`: where, for the error. Errors: `UsageError` for a damaged file."""
+    """Return the content of `audit.json`; None: no audit. `dest`: where, for the error. Errors: `UsageError` for a damaged file."""
     content = results.read(AUDIT_FILE)
     try:
         told = None if content is None else json.loads(content)
@@ -356,7 +358,7 @@ def told_of(results: ResultStore, dest: str) -> dict[str, Any] | None:
     except (ValueError, KeyError, TypeError, RecursionError):
         pass
     raise UsageError(
-        f"{dest}: {AUDIT_FILE} is not as drivelint audit wrote it: audit the drives again into another --out"
+        f"{dest}: {AUDIT_FILE} was changed since drivelint audit wrote it: audit the drives again into another --out"
     )
 
 

@@ -1,4 +1,4 @@
-"""Tells whether an audit's files were changed after they were written.
+"""Checks whether an audit's files were changed after they were written.
 
 An audit that has ended has `files.json`, the sha256 of tables and summary, as in the folder of a check. One that has not ended has
 the receipts, each with the hash of its drive's rows.
@@ -48,7 +48,7 @@ def unseal(results: ResultStore) -> None:
 
 
 def require_unchanged(results: ResultStore, home: Path, dest: str) -> bool:
-    """Refuse an audit whose files are not as they were when it ended; return whether it has the list of them.
+    """Refuse an audit whose files have changed since it ended; return whether it has the list of them.
 
     One without a list has not ended, or is of an older version. `home`: for copies. Errors: `UsageError`, which names the first of
     these files; `OutputError`.
@@ -60,7 +60,7 @@ def require_unchanged(results: ResultStore, home: Path, dest: str) -> bool:
         if name not in said or _sha256(results, home, name) != said[name]:
             if results.read(MANIFEST) is None:  # a shard has found the files as they were, and has begun to change them
                 return False
-            raise UsageError(f"{dest.rstrip('/')}/{name}: is not as drivelint audit wrote it with the others: {_AGAIN}")
+            raise UsageError(f"{dest.rstrip('/')}/{name}: was changed since drivelint audit wrote it: {_AGAIN}")
     return True
 
 
@@ -84,7 +84,7 @@ def require_list(results: ResultStore, dest: str) -> None:
     """Refuse an audit that has ended and does not say how its files were. Errors: `UsageError`; `OutputError`."""
     if not hashes_in(results.read(MANIFEST) or b"") and _has_ended(results):
         raise UsageError(
-            f"{dest}: has ended, and {MANIFEST}, which says how its files were, is not there or not readable: "
+            f"{dest}: has ended, and {MANIFEST}, the list of its files, is missing or not readable: "
             "give the same audit again, which holds all rows against their receipts"
         )
 
@@ -101,7 +101,7 @@ def _names(results: ResultStore) -> set[str]:
 
 
 def require_rows_unchanged(results: ResultStore, dest: str, *, packed: bool) -> None:
-    """Refuse an audit in which a drive's rows are not those of its receipt. Not while anybody packs.
+    """Refuse an audit in which a drive's rows are not those of its receipt. Not while another process packs.
 
     `packed`: look at packed results, too, besides those that are not packed yet. Errors: `UsageError`, which names the first such
     log, or a file that cannot be read; `OutputError`.
@@ -136,7 +136,7 @@ def _require_rows(
     by_key = {table: dict(_by_key(rows)) for table, rows in read.items()}
     for key, (log, rows_hash) in expected_hashes.items():
         if rows_sha256({table: by_key[table].get(key, rows.slice(0, 0)) for table, rows in read.items()}) != rows_hash:
-            raise UsageError(f"{dest}: the rows of {log} are not as drivelint audit wrote them: {_AGAIN}")
+            raise UsageError(f"{dest}: the rows of {log} were changed since drivelint audit wrote them: {_AGAIN}")
     for table, rows in by_key.items():
         n_told = sum(of.num_rows for key, of in rows.items() if key in expected_hashes or not nothing_else)
         if n_told != read[table].num_rows:
@@ -159,7 +159,7 @@ def _read(results: ResultStore, dest: str, name: str, home: Path, schema: pa.Sch
         rows = pq.read_table(results.fetch(name, home), partitioning=None)
         return rows if schema is None else rows.cast(schema)
     except (OSError, ValueError) as error:  # those of pyarrow are among these
-        raise UsageError(f"{dest.rstrip('/')}/{name}: is not as drivelint audit wrote it: {_AGAIN}") from error
+        raise UsageError(f"{dest.rstrip('/')}/{name}: was changed since drivelint audit wrote it: {_AGAIN}") from error
 
 
 def _sha256(results: ResultStore, home: Path, name: str) -> str | None:

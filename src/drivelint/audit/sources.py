@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
 OPTION_COLUMNS: Final = ("log", "map", "ego", "environment", "handedness", "mapping", "topic")
-"""Columns of a manifest that are no tags: the log, its map, its ego, what holds in the drive (`weather=wet;light=night`), and options."""
+"""Columns of a manifest that are no tags: the log, its map, its ego, conditions (`weather=wet;light=night`), and options."""
 _SIDES: Final = ("auto", "lht", "rht")
 _TABLE_NEVER_HAS: Final = frozenset({"map", "environment", "handedness", "mapping"})
 """Columns of a manifest that no table of states has."""
@@ -56,7 +56,7 @@ def drives(sources: Sequence[str], options: DriveInput) -> Iterator[AuditDrive]:
     if logs:
         for path in expand_traces(logs, but=options.map):
             if not is_utf8(str(path)):
-                raise UsageError(f"{path}: its name is not UTF-8, in which results name it: rename it")
+                raise UsageError(f"{path}: its name is not UTF-8, which results need: rename it")
             yield AuditDrive(str(path), options)
 
 
@@ -76,7 +76,7 @@ def with_manifests(traces: Sequence[str], options: DriveInput) -> tuple[tuple[st
         for drive in _of_manifest(Path(trace), trace, plain):
             if own.setdefault(Path(drive.log), drive.options) != drive.options:
                 raise UsageError(
-                    f"{trace}: names {drive.log} twice, with other options: drivelint audit judges it by both"
+                    f"{trace}: names {drive.log} twice, with different options: drivelint audit judges it with both"
                 )
             logs.append(drive.log)
     return tuple(logs), own
@@ -137,7 +137,7 @@ def _is_manifest(path: Path, *, with_mapping: bool) -> bool:
         is_name = "/" in text or text.lower().endswith(tuple(TRACE_SUFFIXES))
         if is_name and name not in OPTION_COLUMNS and (is_url(text) or _exists(path.parent / text)):
             raise UsageError(
-                f"{path}: a manifest needs a column log: its column {name!r} names logs: call that one log"
+                f"{path}: a manifest needs a column log: its column {name!r} names logs: rename that column to log"
             )
     if not with_mapping and (not _TABLE_NEVER_HAS.isdisjoint(names) or not _may_have_states(path)):
         apart = "; separate them by commas" if re.search(r"[;\t]", "".join(names)) else ""
@@ -174,7 +174,7 @@ def _exists(path: Path) -> bool:
 
 
 def _first_row(path: Path) -> dict[str, Any]:
-    """Return the first row of a Parquet file; empty where there is none, or where it is damaged, which its reader tells."""
+    """Return the first row of a Parquet file; empty where there is none, or if it is damaged, which its reader reports."""
     try:
         with pq.ParquetFile(path) as file:
             batch = next(file.iter_batches(1), None)
@@ -208,7 +208,7 @@ def _of_manifest(path: Path, manifest_name: str, options: DriveInput) -> Iterato
 
 
 def _require_values(row: Mapping[str, str], options: DriveInput) -> None:
-    """Refuse what a drive could not be judged with, so that no drive is judged before somebody mends it. Errors: `UsageError`."""
+    """Refuse options that make judging impossible, before any drive is judged. Errors: `UsageError`."""
     try:
         conditions.parse((*options.env, *_parts(row.get("environment", ""))))
     except UsageError as error:
@@ -223,7 +223,7 @@ def _parts(environment: str) -> tuple[str, ...]:
 
 
 def _rows(path: Path) -> Iterator[dict[str, str]]:
-    """Yield the rows of a manifest as text, empty for what is not there."""
+    """Yield the rows of a manifest as text, empty for missing cells."""
     try:
         if path.suffix.lower() == ".parquet":
             with path.open("rb") as opened, pq.ParquetFile(opened) as file:

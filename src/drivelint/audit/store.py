@@ -1,4 +1,4 @@
-"""Where an audit's results lie: a folder, or a prefix in an object store. Whatever is there under its name is whole."""
+"""The place of an audit's results: a folder, or a prefix in an object store. A file under its final name is always complete."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class ResultStore(Protocol):
         ...
 
     def read(self, name: str) -> bytes | None:
-        """Return what a file holds; None: there is none."""
+        """Return the content of a file; None: there is none."""
         ...
 
     def names(self, prefix: str) -> Iterator[str]:
@@ -128,7 +128,7 @@ class LocalFolder:
             raise self._failed(error) from error
 
     def sweep(self) -> None:
-        """Remove what killed writers left unfinished. Only while nobody writes."""
+        """Remove unfinished files of killed writers. Only while no process writes."""
         for file in self.root.rglob(".*.tmp"):
             file.unlink(missing_ok=True)
 

@@ -1,4 +1,4 @@
-"""What an audit comes to, and its exit code."""
+"""The summary of an audit, and its exit code."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ MOST_COPIES: Final = 3
 MOST_LOGS: Final = 3
 _NAMES_IN_FILE: Final = {"n_judged": "judged", "n_refused": "refused"}
 """Fields with another name in `summary.json`."""
-_UNDECIDED: Final = "nothing failed, as nothing could be decided"
+_UNDECIDED: Final = "nothing failed, because nothing could be decided"
 
 
 @dataclass
 class AuditSummary:
-    """What an audit comes to. `digest` is that of all rows; None where the results are not packed (`--shard`, `--claim`).
+    """The summary of an audit. `digest` is that of all rows; None where the results are not packed (`--shard`, `--claim`).
 
     `off_map`: drives that their map does not fit. `failed`: severity -> failed verdicts of stable rules; `findings`: severity -> findings.
     `errors`: verdicts that are errors; `beyond_limits`: of these, those of rules that took too much time or memory.
@@ -104,7 +104,7 @@ class AuditSummary:
         return {_NAMES_IN_FILE.get(name, name): value for name, value in vars(self).items()}
 
     def plus(self, second: AuditSummary) -> AuditSummary:
-        """Return what both come to together, but for what is only told of a whole audit."""
+        """Return the sums of both, without the counts that only a whole audit has."""
         names = (
             "n_drives",
             "n_judged",
@@ -145,7 +145,7 @@ class AuditSummary:
 
 
 def summed_receipts(con: duckdb.DuckDBPyConnection, of: str) -> AuditSummary:
-    """Return what these receipts come to; `of`: a relation with the columns of `receipts`."""
+    """Return the sums of these receipts; `of`: a relation with the columns of `receipts`."""
     (row,) = con.execute(statement("audit/summed", of=of)).to_arrow_table().to_pylist()
     return AuditSummary(**row, failed=dict(con.execute(statement("audit/failed", of=of)).fetchall()))
 
@@ -166,7 +166,7 @@ def logs_that_are(con: duckdb.DuckDBPyConnection, flag: str) -> LogList:
 
 
 def summed(con: duckdb.DuckDBPyConnection, n_reused: int) -> AuditSummary:
-    """Return what all drives that have receipts come to; `n_reused`: those that had one before."""
+    """Return the sums of all drives with receipts; `n_reused`: those that had one before."""
     create_counted_views(con)
     event = statement("fleet/event", of=COUNTED_PREFIX, least_share=str(LEAST_SHARE))
     broken, contacts, unknown_for, not_judged = (

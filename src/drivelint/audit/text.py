@@ -1,4 +1,4 @@
-"""What `drivelint audit` prints at its end, in one screen."""
+"""The text that `drivelint audit` prints at its end, on one screen."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def _lines(audit_summary: AuditSummary, out: str, code: ExitCode, gate: Iterable
         return
     found = [f"{audit_summary.findings.get(severity, 0)} {severity}" for severity in SEVERITIES]
     sure = f"examined: {audit_summary.possible} only possible" if audit_summary.robust else "not examined: --robustness"
-    yield f"findings: {', '.join(found)}{_contacts(audit_summary)}; how sure they are was {sure}"
+    yield f"findings: {', '.join(found)}{_contacts(audit_summary)}; certainty: {sure}"
     yield from _broken(audit_summary, out)
     yield from _unknown(audit_summary, out)
     yield from _not_judged(audit_summary, out)
@@ -117,7 +117,7 @@ def _copies(audit_summary: AuditSummary, out: str) -> Iterator[str]:
 
 
 def _repeated(row: dict[str, Any]) -> str:
-    """Return what a result is whose log has another one before."""
+    """Return why a result is a repetition: its log has another result before."""
     if row["log"] != row["other"]:
         return f"a copy of {row['other']}"
     if row["same_options"]:

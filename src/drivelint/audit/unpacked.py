@@ -1,4 +1,4 @@
-"""Reads an audit that has not ended, or whose results are not packed yet, as a whole one is read, and says that it is not one."""
+"""Reads an audit that has not ended, or whose results are not packed yet, like a complete one, with a warning."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from drivelint.audit.store import ResultStore
 
 SUMMARY_FILE: Final = "summary.json"
-AT_WORK: Final = "an audit is at work there and has just packed results: ask again"
+AT_WORK: Final = "an audit is running there and has just packed results: repeat the query"
 
 
 class Standing(NamedTuple):
@@ -70,7 +70,7 @@ class Standing(NamedTuple):
 def views_of_all(con: duckdb.DuckDBPyConnection, results: ResultStore, home: Path, prefix: str = "") -> Standing:
     """Create the views of `create_views` over all results, also those that are not packed. `prefix`: as there.
 
-    Errors: `UsageError` where somebody packs them meanwhile, or has taken a file away.
+    Errors: `UsageError` if they are being packed, or a file was removed.
     """
     inner = f"packed_{prefix}"
     try:
@@ -93,7 +93,7 @@ def views_of_all(con: duckdb.DuckDBPyConnection, results: ResultStore, home: Pat
     except (duckdb.Error, ValueError) as error:
         why = " ".join(str(error).split())[:300]
         raise UsageError(
-            f"a file there is not as drivelint audit wrote it ({why}): audit the drives again into another --out"
+            f"a file there was changed since drivelint audit wrote it ({why}): audit the drives again into another --out"
         ) from error
     unfinished_parts = parts.unfinished_parts(results)
     return Standing(told.get("digest"), len(loose), n, parts.n_expected_drives(results), tuple(unfinished_parts))

@@ -140,7 +140,7 @@ class Judge:
     def _judge_part(
         self, part: Mapping[str, tuple[AuditDrive, Drive | RefusedLog]], results: ResultStore
     ) -> list[Receipt]:
-        """Judge drives with different ids together, and write what comes out."""
+        """Judge drives with different ids together, and write the results."""
         for table in store.tables_of_lifetime("run"):
             if table not in _LASTING_TABLES:
                 store.recreate_empty(self._con, [table])
@@ -227,7 +227,7 @@ def with_key(rows: pa.Table, key: str, drive: AuditDrive | None) -> pa.Table:
 
 
 def said_of_rows(rows: Mapping[str, pa.Table], stable: pa.Array) -> dict[str, Any]:
-    """Return what a receipt says of a drive's rows. `stable`: the ids of the stable rules."""
+    """Return the columns of a receipt about a drive's rows. `stable`: the ids of the stable rules."""
     (about,) = rows["drives"].to_pylist()
     verdicts = rows["verdicts"]
     gating = verdicts.filter(pc.is_in(verdicts["rule_id"], value_set=stable))

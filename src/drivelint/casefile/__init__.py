@@ -1,6 +1,6 @@
 """`<rule>.cases.yml`, the regression cases beside every rule, and their harness.
 
-A list of cases; each fills tables with a tiny scene, judges the rule, and says what must come out:
+A list of cases; each fills tables with a tiny scene, judges the rule, and states the expected verdicts:
 
     - name: faster than the limit            # shows: violation, if the name does not say it
       given:
@@ -56,7 +56,7 @@ CATEGORIES = ("clean", "violation", "boundary", "not_applicable", "unknown")
 
 
 class CaseResult(NamedTuple):
-    """One case: its name, whether what came out is what it expects, and the difference if not."""
+    """One case: its name, whether its outcome is the expected one, and the difference if not."""
 
     name: str
     ok: bool
@@ -74,7 +74,7 @@ class Case(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True
     missing_signals: tuple[str, ...] = msgspec.field(default=(), name="missing")
     findings: int | None = None
     line: int = 0
-    """Where it stands in its file: filled in, never written."""
+    """Its line in the file: filled in, never written."""
 
     def categories(self) -> set[str]:
         """Return which of CATEGORIES this case shows: those in `shows`, else those in its name."""
@@ -165,7 +165,9 @@ def _parsed(file: Path, text: str) -> list[Case]:
     cases = []
     for line, item in zip(lines, raw, strict=True):
         if not isinstance(item, dict) or "line" in item:
-            raise RuleError(f"{file}:{line}: a case is 'key: value' pairs: {', '.join(Case.__struct_fields__[:-1])}")
+            raise RuleError(
+                f"{file}:{line}: a case consists of 'key: value' pairs: {', '.join(Case.__struct_fields__[:-1])}"
+            )
         try:
             cases.append(msgspec.convert({**item, "line": line}, Case))
         except msgspec.ValidationError as error:
@@ -277,7 +279,7 @@ def run_merged_cases(
 ) -> tuple[str, set[str]]:
     """Judge all cases in one database; return '' or the first problem, and all reason codes.
 
-    Errors: `RuleError`. `keys`: by what they are told apart there, in turn.
+    Errors: `RuleError`. `keys`: the columns that distinguish them there, in turn.
     """
     everybody = numbered_cases(rule, cases)
     codes: set[str] = set()

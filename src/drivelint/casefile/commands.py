@@ -96,9 +96,9 @@ def watch(
     say: Say,
     over: Event,
 ) -> ExitCode:
-    """Test the rules, and then, until `over` is set, each whose file or cases were changed; return what the last test came to."""
+    """Test the rules, and then, until `over` is set, each rule whose file or cases were changed; return the result of the last test."""
     code, before = test(root, only, say), _stamps(root)
-    say("waiting for changes; Ctrl-C ends")
+    say("waiting for changes; press Ctrl-C to end")
     while not over.wait(_LOOK_S):
         now = _stamps(root)
         changed = {_rule_file(file) for file, _ in now.items() ^ before.items()}
@@ -166,7 +166,7 @@ def _files(root: Path | None) -> Sequence[Path]:
     if root is None or not root.is_file():
         return rule_files(root or folder("queries") / "assertions")
     if not _rule_file(root).is_file():
-        raise UsageError(f"{root}: no rule, nor the cases of one: give PACK/NAME.sql, or a folder of packs")
+        raise UsageError(f"{root}: neither a rule nor the cases of a rule: name PACK/NAME.sql, or a folder of packs")
     return [_rule_file(root)]
 
 
@@ -180,7 +180,7 @@ def _is_chosen(file: Path, only: Sequence[str]) -> bool:
 
 
 def _check_plans(rule: Rule) -> None:
-    """Refuse a rule whose SQL does not fit the tables, or that compares every row with every other."""
+    """Refuse a rule whose SQL does not match the tables, or that compares every row with every other."""
     try:
         plans = query_plans(case_database(), rule)
     except duckdb.Error as error:

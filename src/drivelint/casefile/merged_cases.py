@@ -1,7 +1,7 @@
 """Cases judged together: as drives of one database, or as egos of one drive.
 
-A drive checked alone has the same rows as one among others: a rule whose join leaves out `drive_id` or `ego_id` mixes the
-cases up, and that shows. And many variants of a rule can be judged at once on tables that are filled once.
+A drive checked alone has the same rows as one among others: a rule whose join leaves out `drive_id` or `ego_id` mixes the cases up, and
+fails. And many variants of a rule can be judged at once on tables that are filled once.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ Scene = dict[str, list[Row]]
 
 
 class CaseOutcome(NamedTuple):
-    """What one rule said about one case: its verdict rows, in the order that `expect` uses, and its finding rows."""
+    """The result of one rule for one case: its verdict rows, in the order that `expect` uses, and its finding rows."""
 
     verdicts: list[Row]
     findings: list[Row]
@@ -69,7 +69,7 @@ def judge(rules: Sequence[Rule], scene: Scene, params: Mapping[str, Any]) -> dic
 def mergeable_groups(members: Sequence[NumberedCase], key: str) -> list[list[NumberedCase]]:
     """Group the cases that can share one database as different drives (or egos: `key` = ego_id).
 
-    They must agree on parameters and on the tables that the key does not tell apart.
+    They must agree on parameters and on the tables that the key does not distinguish.
     """
     groups: dict[str, list[NumberedCase]] = {}
     for member in members:
@@ -79,7 +79,7 @@ def mergeable_groups(members: Sequence[NumberedCase], key: str) -> list[list[Num
 
 
 def _is_apart(table: str, scene: Scene, key: str) -> bool:
-    """Whether the rows of two cases can stand in one table and be told apart by the key."""
+    """Whether the rows of two cases can stand in one table and be distinguished by the key."""
     names = {name for row in scene[table] for name in row}
     if key == "drive_id":
         return key in names or _of_the_map(table)

@@ -1,6 +1,6 @@
 """Judges each mutant of a rule by the rule's cases, and counts the mutants that some case notices.
 
-A mutant that no case notices asks for a case. Where none can be written (it is the same rule in other words), the
+A mutant that no case notices shows that a case is missing. Where none can be written (it is the same rule in other words), the
 pack's `survivors.toml` says so: `[[survivor]]` with `rule` (its id), `mutant` (the fault as printed) and `reason`.
 """
 
@@ -16,6 +16,7 @@ from drivelint.casefile import case_location, merged_cases_difference, numbered_
 from drivelint.casefile.merged_cases import MERGE_KEYS, judge, merge, mergeable_groups
 from drivelint.casefile.mutants import mutants
 from drivelint.errors import RuleError
+from drivelint.toml_text import parse_toml
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -45,12 +46,12 @@ class MutationResult(NamedTuple):
 
     @property
     def noticed(self) -> int:
-        """How many mutants some case noticed; 0 if the mutants could not be judged."""
+        """The number of mutants that some case noticed; 0 if the mutants could not be judged."""
         return 0 if self.problem else self.n - len(self.survivors)
 
     @property
     def unlisted(self) -> tuple[str, ...]:
-        """Survivors for which nobody gave a reason."""
+        """Survivors without a reason."""
         return tuple(fault for fault in self.survivors if fault not in self.listed)
 
     @property
@@ -157,6 +158,6 @@ def _read(file: Path) -> list[_Survivor]:
     if not file.is_file():
         return []
     try:
-        return msgspec.convert(tomllib.loads(file.read_text(encoding="utf-8")), _Survivors).survivor
+        return msgspec.convert(parse_toml(file.read_text(encoding="utf-8")), _Survivors).survivor
     except (tomllib.TOMLDecodeError, msgspec.ValidationError) as error:
         raise RuleError(f"{file}: {error}") from error

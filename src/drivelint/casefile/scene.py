@@ -1,4 +1,4 @@
-"""Completes the tables of a case from the few columns, ranges and times that it gives."""
+"""Completes the tables of a case from the few columns, ranges and times in it."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def _tables() -> dict[str, dict[str, Any]]:
 
 
 def complete_scene(rule: Rule, given_tables: Mapping[str, Any], missing_signals: Sequence[str]) -> dict[str, list[Row]]:
-    """Return table -> rows: what a case gives, and what follows from it. Errors: `RuleError`."""
+    """Return table -> rows: those of a case, and those derived from it. Errors: `RuleError`."""
     scene = {table: _rows(table, blocks) for table, blocks in given_tables.items()}
     clock = scene.pop("clock", [{}])
     scene["step"] = _steps(scene, clock[0].get("max_gap_ns"))
@@ -231,7 +231,7 @@ def _period(ordered: Sequence[int]) -> int:
 
 
 def _clocks(steps: Iterable[Row], clock_rows: Sequence[Row]) -> list[Row]:
-    """Return one clock row per drive and ego, with what the case gives replacing the defaults."""
+    """Return one clock row per drive and ego; values of the case replace the defaults."""
     times: dict[tuple[str, str], list[int]] = {}
     for row in steps:
         times.setdefault((row["drive_id"], row["ego_id"]), []).append(row["t_ns"])

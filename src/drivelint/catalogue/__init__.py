@@ -5,13 +5,14 @@ from __future__ import annotations
 from drivelint.catalogue.header import Conditions, Header, Param, json_schema
 from drivelint.catalogue.load import load_rule, load_rules, read_rule
 from drivelint.catalogue.rule import Rule
-from drivelint.catalogue.select import parse_params, required_rules, select_rules
+from drivelint.catalogue.select import default_packs, parse_params, required_rules, select_rules
 
 __all__ = [
     "Conditions",
     "Header",
     "Param",
     "Rule",
+    "default_packs",
     "json_schema",
     "load_rule",
     "load_rules",

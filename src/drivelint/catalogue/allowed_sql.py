@@ -1,4 +1,4 @@
-"""Lists what a rule's SQL may contain, as `allowed.toml` has it; everything else is refused, because a rule is untrusted code."""
+"""Lists the allowed elements of a rule's SQL, from `allowed.toml`; everything else is refused, because a rule is untrusted code."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Mechanical checks of a rule's SQL: one SELECT, known tables and functions only, bound parameters, named columns.
 
-What stands in DuckDB's syntax tree is held against the lists in `allowed_sql`: that DuckDB can parse or serialise a statement
-says nothing (it does so with two statements, DESCRIBE, `query('...')` and `FROM '/etc/passwd'`).
+The content of DuckDB's syntax tree is compared with the lists in `allowed_sql`: DuckDB can parse and serialise statements that are not
+allowed (such as two statements, DESCRIBE, `query('...')` and `FROM '/etc/passwd'`).
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _DEEP = "too deeply nested to be checked: split it into CTEs"
 
 
 class Query(NamedTuple):
-    """What one SELECT is made of.
+    """The parts of one SELECT.
 
     `places`: table or `$parameter` -> `file:line` of its first mention. `columns` is None where a star hides them.
     `needs`: tables that must have rows for it to have any. `column_names`: the names of columns that stand in it, but for
@@ -68,14 +68,14 @@ class _Text(NamedTuple):
         return f"{self.file}:{self.line + before.count(10)}"
 
     def of(self, error: duckdb.Error) -> str:
-        """Return file:line of what DuckDB complains about."""
+        """Return file:line of DuckDB's error."""
         line = re.search(r"^LINE (\d+):", str(error), re.MULTILINE)
         return f"{self.file}:{self.line + (int(line[1]) - 1 if line else 0)}"
 
 
 @contextmanager
 def noted(problems: list[str]) -> Iterator[None]:
-    """Add the refusal inside the block to the problems, so that an author is told of all."""
+    """Add the refusal inside the block to the problems, so that an author sees all of them."""
     try:
         yield
     except RuleError as error:
@@ -89,7 +89,7 @@ def refuse(problems: Sequence[str]) -> None:
 
 
 def complaint(error: duckdb.Error) -> str:
-    """Return what DuckDB complains about in one line, with the names that it takes for meant, without the part of the SQL."""
+    """Return DuckDB's error in one line, with the names that it suggests, without the part of the SQL."""
     said = re.split(r"^LINE \d+:", str(error), maxsplit=1, flags=re.MULTILINE)[0]
     return " ".join(said.split())
 
@@ -105,9 +105,9 @@ def complained_line(error: duckdb.Error, text: str) -> int | None:
     return found[0] if len(found) == 1 else None
 
 
-@lru_cache(maxsize=2048)  # whoever judges twice in a process reads the same rules again
+@lru_cache(maxsize=2048)  # a process that judges twice reads the same rules again
 def check_query(sql: str, file: str, line: int = 1) -> Query:
-    """Check the SQL of one section, which begins at `line` of `file`, and return what it is made of.
+    """Check the SQL of one section, which begins at `line` of `file`, and return its parts.
 
     Errors: `RuleError` with file and line when it is not exactly one SELECT, or reads, calls or is built of anything that
     `allowed_sql` does not name, or has a CTE named like a table of ours or like the engine's own (`_...`).
@@ -162,7 +162,7 @@ def _parameter(sql: str, name: str) -> int | None:
 
 
 class _SyntaxFindings:
-    """Keeps what is not allowed in a syntax tree (`refusals`), the tables read (name -> file:line), the columns and the reasons."""
+    """Collects forbidden elements of a syntax tree (`refusals`), the tables read (name -> file:line), the columns and the reasons."""
 
     def __init__(self, text: _Text) -> None:
         self._text = text
@@ -176,10 +176,10 @@ class _SyntaxFindings:
         """Look at one node; `ctes`: the names of those in sight."""
         kind = part.get("type")
         if part.get("sample"):
-            self._refuse(part, "a sample is another one every time: a rule may not take one")
+            self._refuse(part, "a sample differs every time: a rule may not use one")
         modifiers = {each["type"] for each in part.get("modifiers") or ()}
         if modifiers & {"LIMIT_MODIFIER", "LIMIT_PERCENT_MODIFIER"} and "ORDER_MODIFIER" not in modifiers:
-            self._refuse(part, "LIMIT without ORDER BY takes other rows every time: order them")
+            self._refuse(part, "LIMIT without ORDER BY returns different rows every time: add ORDER BY")
         if part.get("ref_type") == "POSITIONAL":
             self._refuse(part, "POSITIONAL JOIN depends on the order of rows, which is not fixed")
         if "class" in part:
@@ -203,11 +203,13 @@ class _SyntaxFindings:
         if name and name not in allowed_sql.functions():
             self._refuse(
                 part,
-                f"function {name}() is not allowed in a rule: only those that give the same answer every time and touch "
+                f"function {name}() is not allowed in a rule: only functions that always return the same value and use "
                 "nothing but the tables, and the library's macros",
             )
         if name in allowed_sql.ORDERED and not _is_ordered(part):
-            self._refuse(part, f"{name}() without ORDER BY takes another row every time: order them, or write max(...)")
+            self._refuse(
+                part, f"{name}() without ORDER BY returns a different row every time: add ORDER BY, or write max(...)"
+            )
         if name == "why":
             place = self._text.at(offset_of(part))
             code, *rest = part["children"]
@@ -220,7 +222,7 @@ class _SyntaxFindings:
         if kind == "COLUMN_REF" and len(part["column_names"]) == 1:
             word = part["column_names"][0].lower()
             if word in allowed_sql.REFUSED_NAMES:
-                self._refuse(part, f"{word} does not give the same answer every time: a rule may not use it")
+                self._refuse(part, f"{word} does not return the same value every time: a rule may not use it")
 
     def _table(self, part: Node, ctes: frozenset[str]) -> None:
         name = part["table_name"].lower()

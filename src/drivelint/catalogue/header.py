@@ -15,6 +15,7 @@ from drivelint.phrases import hint
 from drivelint.reasons import signals
 from drivelint.reasons.reason_text import ReasonText
 from drivelint.sql.words import Quantity, vocabularies
+from drivelint.toml_text import parse_toml
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -64,22 +65,22 @@ class Conditions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 CONTACT: Final = "contact"
-"""Tag of the rules whose findings are contacts: of the boxes, or told by the speeds."""
+"""Tag of the rules whose findings are contacts: of the boxes, or found from the speeds."""
 STANDING: Final = "standing"
 """Tag of the rules that an ego which never moves is judged by, too."""
 EXCUSES: Final = "excuses"
 """Tag of the rules that may be kept although their title is false, as their hypothesis says: leaving the lane to overtake."""
 ROAD_USERS: Final = "road_users"
-"""The signal that every rule needs that looks at others than the ego: whoever was around the ego was recorded."""
+"""The signal that every rule about other actors needs: the actors around the ego were recorded."""
 
 
 class Header(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """What a rule says about itself, field by field as in the design."""
+    """The header of a rule, field by field."""
 
     title: str
     """A statement that is true when the rule is kept."""
     breach: str | None = None
-    """What happened where it is not, as the title of its findings; None: they are told as "Not kept" and the title."""
+    """What happened when it is broken, as the title of its findings; None: their title is "Not kept" and that of the rule."""
     clause: str
     hypothesis: str
     kind: Kind
@@ -94,7 +95,7 @@ class Header(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     sense: Literal[">=", ">", "<=", "<", "holds"]
     unit: str | None = None
     observes: str | None = None
-    """What `observed` is, as a short noun phrase, for the sentence of a verdict."""
+    """The name of `observed`, as a short noun phrase, for the sentence of a verdict."""
     near_margin: float | None = None
     reads: tuple[str, ...]
     requires: tuple[str, ...] = ()
@@ -102,13 +103,13 @@ class Header(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     """Signals without which the rule can be found broken, but not kept."""
     reference: str | None = None
     without_time: str | None = None
-    """What the log does not show where the time of a reference point is not known, as a clause."""
+    """What the log does not show if the time of a reference point is not known, as a clause."""
     without_anchor: str | None = None
     """The same for an anchor without a time."""
     exempt_after_s: Seconds = 0.0
     merge_gap_s: Seconds = 1.0
     tags: tuple[str, ...] = ()
-    """What reports know a rule by: `contact`, its findings are contacts; `danger_space`, its pictures show danger spaces."""
+    """The tags by which reports recognise a rule: `contact`, its findings are contacts; `danger_space`, its pictures show danger spaces."""
     unaffected_by: tuple[Quantity, ...] = ()
     """Quantities that may be doubted without making a step unknown, although the rule reads columns made of them."""
     law: tuple[str, ...] = ()
@@ -134,7 +135,7 @@ def parse_header(text: str, where: str) -> Header:
     fields that contradict each other.
     """
     try:
-        raw = tomllib.loads(text)
+        raw = parse_toml(text)
     except (tomllib.TOMLDecodeError, RecursionError) as error:
         line = re.search(r"at line (\d+)", str(error))
         raise RuleError(f"{where}:{line[1] if line else 1}: the header is not TOML: {error}") from error
@@ -190,7 +191,7 @@ def _parts(name: str) -> list[str]:
 
 
 def _kind_problems(h: Header) -> Iterator[tuple[str, str]]:
-    """Yield the key and what is wrong with it: fields that do not go with the kind or the sense."""
+    """Yield keys with their problems: fields that do not go with the kind or the sense."""
     later, measured = h.kind in {"precondition", "postcondition"}, h.sense != "holds"
     if later != (h.subtype is not None):
         key = "subtype" if h.subtype else "kind"
@@ -202,7 +203,7 @@ def _kind_problems(h: Header) -> Iterator[tuple[str, str]]:
     if h.combine != "each" and h.kind == "invariant":
         yield "combine", "an invariant is judged per object: combine is for conditions at a reference point"
     if measured and h.unit is None:
-        yield "sense", "unit is missing: a measured condition says in which unit"
+        yield "sense", "unit is missing: a measured condition needs its unit"
     if not measured and h.near_margin is not None:
         yield "near_margin", "near_margin needs a measured condition, not sense = 'holds'"
     if h.kind == "invariant" and h.reference is not None:

@@ -86,7 +86,7 @@ def read_rule(file: Path, *, with_words: bool = True) -> Rule:
     """
     pack = _pack_folder(file)
     if not file.is_file():
-        raise RuleError(f"{file}: a rule stands in a file, and this is none")
+        raise RuleError(f"{file}: a rule must be a file, but this is not one")
     return _known_rule(file, pack.name, _title(pack), file.read_bytes(), with_words=with_words)
 
 
@@ -106,11 +106,11 @@ def _known_rule(file: Path, pack: str, pack_title: str, content: bytes, *, with_
 
 @cache
 def _title(folder_: Path) -> str:
-    """Return what a pack is about, as its `pack.toml` says; '' where it has none. Errors: `RuleError`."""
+    """Return the title of a pack from its `pack.toml`; '' if it has none. Errors: `RuleError`."""
     file = folder_ / "pack.toml"
     if not file.is_file():
         return ""
     try:
         return msgspec.toml.decode(file.read_bytes(), type=_Pack).title
     except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
-        raise RuleError(f'{file}: {error}: write title = "...", what the pack is about') from error
+        raise RuleError(f'{file}: {error}: write title = "...", the subject of the pack') from error

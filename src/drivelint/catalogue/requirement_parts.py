@@ -1,4 +1,4 @@
-"""`<rule>.parts.toml`, beside a rule that has one: what its requirement is made of, for readers of one verdict.
+"""`<rule>.parts.toml`, beside a rule that has one: the parts of its requirement, for readers of one verdict.
 
     sql = "SELECT drive_id, ego_id, t_ns, thinking_m, braking_m FROM ..."
 
@@ -30,7 +30,7 @@ _REQUIRED: Final = frozenset({"drive_id", "ego_id", "t_ns"})
 
 
 class RequirementParts(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What a requirement is made of: column of `sql` -> what it is, in words."""
+    """The parts of a requirement: column of `sql` -> its name in words."""
 
     sql: str
     parts: dict[str, str]
@@ -52,7 +52,7 @@ def parts_path(rule: Rule) -> Path:
 
 
 def read_parts(rule: Rule) -> RequirementParts | None:
-    """Return what a rule's requirement is made of; None: no file says it.
+    """Return the parts of a rule's requirement; None: no file defines them.
 
     Errors: `RuleError` for a file that cannot be understood, or that reads, binds or returns what it may not.
     """

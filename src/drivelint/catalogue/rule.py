@@ -1,4 +1,4 @@
-"""One rule, as the rest of the program knows it."""
+"""One rule, as the rest of the program uses it."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Rule(Header, frozen=True, forbid_unknown_fields=True, kw_only=True):
     quantities: frozenset[str]
     """What of the actors it uses (position, size, ...), as the columns that it reads declare."""
     is_named: bool = True
-    """The user named this rule. It is unknown where the log lacks a signal that it needs; a rule that nobody named does not apply there."""
+    """The user named this rule. If the log lacks a signal that it needs, it is unknown; without being named, it does not apply."""
     occasion_needs: frozenset[str]
     """Tables without whose rows it has no reference point or, if it is an invariant with @applies, no step to judge."""
 
@@ -49,7 +49,7 @@ class Rule(Header, frozen=True, forbid_unknown_fields=True, kw_only=True):
 
     @property
     def needed_signals(self) -> tuple[str, ...]:
-        """The signals that it cannot do without: those that it requires, and whoever is around the ego if it looks at others."""
+        """The signals that it needs: those that it requires, and `road_users` if it is about other actors."""
         from drivelint.sql.derivations import with_sources  # and with it the database
 
         return (*self.requires, *((ROAD_USERS,) if "pair" in with_sources(self.reads) else ()))

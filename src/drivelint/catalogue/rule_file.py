@@ -26,7 +26,7 @@ RULE_NAME = re.compile(r"[a-z0-9][a-z0-9._-]*")
 SECTIONS = ("applies", "reference", "condition", "anchor")
 _MARK = re.compile(r"^--\s*@(\S+)\s*$")
 _HIDDEN = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]")
-"""Characters that end a line unseen, steer a terminal or turn the order of what is read."""
+"""Characters that end a line invisibly, control a terminal or reverse the reading order."""
 _KEYS = ("drive_id", "ego_id", "t_ns")
 _MEASURES = ("object_id", "ref_id", "profile", "observed", "required", "holds", "applies", "at_least", "error")
 _CONDITION = (*_KEYS, *_MEASURES, "reason_code", "reason")
@@ -57,7 +57,7 @@ def checked_rule(file: Path, pack: str, pack_title: str, content: bytes, *, with
         raise RuleError(f"{file}: not UTF-8 at byte {error.start}") from error
     if hidden := _HIDDEN.search(text):
         line = text.count("\n", 0, hidden.start()) + 1
-        raise RuleError(f"{file}:{line}: the character U+{ord(hidden[0]):04X} hides what the rule does: take it out")
+        raise RuleError(f"{file}:{line}: the character U+{ord(hidden[0]):04X} hides what the rule does: remove it")
     toml, sections = split_sections(text, str(file))
     problems: list[str] = []
     with noted(problems):
@@ -98,7 +98,7 @@ def checked_rule(file: Path, pack: str, pack_title: str, content: bytes, *, with
 
 
 def _quantities(header: Header, queries: dict[str, Query]) -> frozenset[str]:
-    """Return what of the actors a rule uses: what the columns that it names are made of, and that there is somebody at all."""
+    """Return the quantities of actors that a rule uses: those of the columns that it names, and existence."""
     declared = store.column_quantities()
     # a table of events that the header names hands over all its columns: those count that the other sections name
     named = {
@@ -272,4 +272,4 @@ def _check_reasons(header: Header, queries: dict[str, Query], file: Path, toml: 
             yield (f"{place}: the words of {code!r} need the argument {absent[0]!r}: add it to why({code!r}, {{...}})")
     if unused := sorted(header.reasons.keys() - {reason.code for reason in given}):
         line = line_of(toml, f"reasons.{unused[0]}")
-        yield (f"{file}:{line}: the reason {unused[0]!r} is never given: give it by why({unused[0]!r}), or remove it")
+        yield (f"{file}:{line}: the reason {unused[0]!r} is never used: use it in why({unused[0]!r}), or remove it")

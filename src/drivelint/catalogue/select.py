@@ -1,6 +1,6 @@
 """Selects rules and sets their parameters from options of the command line.
 
-A selector is what a rule must be, or several of that joined by commas, all of which it must be:
+A selector is a property of a rule, or several properties joined by commas, all of which the rule must have:
 
     ukhc.r162.safe-distance-ahead       a rule
     ukhc.r162.*                         a glob over ids
@@ -23,21 +23,31 @@ from typing import TYPE_CHECKING, Final
 
 import msgspec
 
+from drivelint.drive import conditions
 from drivelint.errors import UsageError
 from drivelint.phrases import hint, listed
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 
     from drivelint.catalogue.rule import Rule
 
 
+DEFAULT_PACK: Final = "ukhc"
+"""Without `--rules`, drives everywhere are judged by its stable rules; rules of one nation's law apply only there."""
+
+
 def select_rules(
-    rules: Mapping[str, Rule], include: Sequence[str], ignore: Sequence[str], *, default_pack: str = "ukhc"
+    rules: Mapping[str, Rule],
+    include: Sequence[str],
+    ignore: Sequence[str],
+    *,
+    default_pack: str = DEFAULT_PACK,
+    named: Collection[str] | None = None,
 ) -> list[Rule]:
     """Return the selected rules, sorted by id.
 
-    A rule is `is_named` where a selector is or contains its id.
+    A rule is `is_named` where its id is in `named`; None: where a selector is or contains its id.
 
     Selectors: see the module. None given: the stable rules of `default_pack`. A deprecated rule is chosen only by its full
     id or as `status:deprecated`. Errors: `UsageError` for a selector that matches nothing, or when nothing is left.
@@ -51,8 +61,19 @@ def select_rules(
             chosen.pop(rule.id, None)
     if not chosen:
         raise UsageError("no rule is left to check: see `drivelint rules list` and choose with --rules")
-    named = {part.strip() for selector in include for part in selector.split(",")}
+    if named is None:
+        named = {part.strip() for selector in include for part in selector.split(",")}
     return [msgspec.structs.replace(chosen[name], is_named=name in named) for name in sorted(chosen)]
+
+
+def default_packs(rules: Mapping[str, Rule], nation: str | None) -> tuple[str, ...]:
+    """Return the packs whose stable rules judge in a nation without `--rules`: the pack for everywhere, and those of its law."""
+    of_its_law = {
+        rule.pack
+        for rule in rules.values()
+        if rule.status == "stable" and rule.law and nation in conditions.all_values(rule.law)
+    }
+    return (DEFAULT_PACK, *sorted(of_its_law - {DEFAULT_PACK}))
 
 
 def required_rules(
@@ -70,11 +91,11 @@ def required_rules(
     for selector in required:
         stable = {rule.id for rule in _matching(rules, selector) if rule.status == "stable"}
         if not stable:
-            raise UsageError(f"--require {selector!r}: is no stable rule, and others do not gate")
+            raise UsageError(f"--require {selector!r}: is not a stable rule, and other rules cannot fail a run")
         # a selector of many rules is about those of the run: a severity has rules of every pack
         lacking = sorted(stable - chosen - (left_out - {selector}))
         if not stable & chosen and not lacking:
-            raise UsageError(f"--require {selector!r}: --ignore leaves out all of it")
+            raise UsageError(f"--require {selector!r}: --ignore excludes all of its rules")
         if lacking and (selector in rules or not stable & chosen):
             raise UsageError(f"--require {selector!r}: not selected by --rules: {listed(lacking, 3)}")
         found |= stable & chosen

@@ -73,7 +73,7 @@ def demo(
     *,
     out: Annotated[Path | None, option("--out", "DIR", "The same folder.")] = None,
 ) -> None:
-    """Write drives to try drivelint on.
+    """Write example drives.
 
     Three overtakes at two speeds, as ASAM OSI in MCAP, and their road. Prints the command that checks them.
     """
@@ -90,16 +90,14 @@ def inspect(
     *,
     trace: Annotated[str, argument("TRACE", "One recorded drive.")],
     drive: options.DriveInputValues,
-    rules: Annotated[
-        Texts, option("--rules", "SEL", "Rules to ask about, as in check. Repeatable. Default: ukhc.")
-    ] = None,
+    rules: Annotated[Texts, option("--rules", "SEL", "Rules to list, as in check. Repeatable. Default: ukhc.")] = None,
     rules_dir: options.RulesDirs = None,
     memory: options.MemorySize = None,
     format_: options.FormatOption = "text",
 ) -> None:
-    """Show what is in a log and what it can decide.
+    """Show the content of a log, and the rules that it can decide.
 
-    Also how it lies on the map, what is wrong with it, and what to provide so that more rules can be decided.
+    Also whether it fits the map, the problems that were found, and what to provide so that more rules can be decided.
     """
     from drivelint import inspect as inspection
 
@@ -131,15 +129,19 @@ def convert(
     out: Annotated[Path, option("--out", "DIR", "Folder for the converted log.")],
     clip: Annotated[
         str | None,
-        option("--clip", "FINDING", "Only 15 s before to 7 s after this finding, or more if it needs more. With --in."),
+        option(
+            "--clip",
+            "FINDING",
+            "Only from 15 s before to 7 s after this finding, or longer if the same finding needs it. With --in.",
+        ),
     ] = None,
-    folder: Annotated[Path | None, option("--in", "DIR", "With --clip: what check --out wrote.")] = None,
+    folder: Annotated[Path | None, option("--in", "DIR", "With --clip: the folder that check --out wrote.")] = None,
     drive: options.DriveInputValues,
 ) -> None:
-    """Write a log anew, as OSI in MCAP or as Parquet.
+    """Convert a log to OSI in MCAP, or to Parquet.
 
-    In metres, seconds and box centres, with its map, so that it needs no mapping any more and gives the same verdicts.
-    A clip is judged alone, and is as long as it must be to give the same finding.
+    The new log is in metres, seconds and box centres, and includes its map. It needs no mapping and has the same verdicts.
+    A clip is judged alone. It is as long as needed for the same finding.
     """
     from drivelint import convert as converter
     from drivelint.engine.memory import DEFAULT_MEMORY
@@ -182,7 +184,7 @@ def main() -> NoReturn:
 
     streams.prepare()
     if (limit := least_limit_bytes()) is not None and limit < LEAST_BYTES:
-        _fail(f"a limit of {limit / 1e6:.0f} MB of memory (ulimit -v) is too low: give more", ExitCode.TEMPFAIL)
+        _fail(f"a limit of {limit / 1e6:.0f} MB of memory (ulimit -v) is too low: raise it", ExitCode.TEMPFAIL)
     leave_out_pandas()
     ending_signals.install()
     gc.set_threshold(GARBAGE_AFTER)
@@ -215,9 +217,9 @@ def main() -> NoReturn:
 
 
 def _part_of(word: str) -> typer.Typer:
-    """Return the command line with the command or group of this name alone: to build them all takes longer than some of them run.
+    """Return the command line with only the command or group of this name: building all takes longer than some commands run.
 
-    All of them if none has it, and for `docs`, which tells of all.
+    Return all commands if none has this name, and for `docs`, which describes all.
     """
     if word == "docs":
         return app
@@ -232,7 +234,7 @@ def _name_of(command: CommandInfo) -> str:
 
 
 def _command_words(error: Exception) -> str:
-    """Return the words of the command that a mistake was made in, each with a space behind it; '' for none."""
+    """Return the words of the command with the mistake, each followed by a space; '' for none."""
     about, words = getattr(error, "ctx", None), ""
     while about is not None and about.parent is not None:
         about, words = about.parent, f"{about.info_name} {words}"
@@ -240,9 +242,9 @@ def _command_words(error: Exception) -> str:
 
 
 def _settings() -> dict[str, Any]:
-    """Return what the settings file says about the options of `check`, or of others that read a log.
+    """Return the options of the settings file for `check`, or for another command that reads a log.
 
-    Those take what is about the log and its map, not where `check` writes to and how it prints.
+    Other commands use only options about the log and its map, not those about the output of `check`.
     """
     name = "".join(sys.argv[1:2])
     if name not in {"check", "inspect", "convert"} or (file := find_settings()) is None:

@@ -33,7 +33,9 @@ def audit(
         list[str], argument("SOURCE", "Recorded drives: files, globs, folders, or a manifest (Parquet or CSV) of them.")
     ],
     drive: options.DriveInputValues,
-    out: Annotated[str, option("--out", "DEST", "Folder for the results, which the same command goes on with.")],
+    out: Annotated[
+        str, option("--out", "DEST", "Folder for the results. After an interruption, the same command continues there.")
+    ],
     rules: options.RulesAsInCheck = None,
     ignore: options.Ignore = None,
     profile: options.ProfileAsInCheck = None,
@@ -42,39 +44,48 @@ def audit(
     robustness: Annotated[
         bool,
         options.robustness(
-            "Judge copies with recording errors to tell how sure each finding is, as check does: half as long again. Default: not."
+            "Also judge copies with recording errors, as check does, to find how sure each finding is. Takes half as long again."
         ),
     ] = False,
     fail_on: options.FailOnOption = "critical",
-    strict: Annotated[bool, option("--strict", None, "Unknown is not good enough: exit code 4.")] = False,
+    strict: Annotated[bool, option("--strict", None, "Exit code 4 if a rule is unknown.")] = False,
     min_judged: options.MinJudged = None,
     baseline: Annotated[
         Path | None,
-        option("--baseline", "DEST", "An earlier audit or result: its findings are known, only new ones gate."),
+        option(
+            "--baseline", "DEST", "An earlier audit or result. Its findings are known; only new ones can fail the run."
+        ),
     ] = None,
     waivers: options.Waivers = None,
     today: options.Today = None,
     workers: Annotated[
-        int | None, option("--workers", "N", "Processes that judge. Default: one per core.", min=1)
+        int | None, option("--workers", "N", "Number of processes. Default: one per core.", min=1)
     ] = None,
     memory: options.MemorySize = None,
     worker_memory: Annotated[
         str | None,
-        option("--worker-memory", "SIZE", "Resident memory of one worker; a drive that needs more is quarantined."),
+        option(
+            "--worker-memory",
+            "SIZE",
+            "Limit of the resident memory of one worker. A drive that needs more is quarantined.",
+        ),
     ] = None,
     drive_timeout: Annotated[
         float,
-        option("--drive-timeout", "S", "Seconds of computing for a drive; one that takes more is quarantined.", min=1),
+        option(
+            "--drive-timeout", "S", "Seconds that a drive may compute. A drive that takes longer is quarantined.", min=1
+        ),
     ] = 1800.0,
     shard: Annotated[
-        str | None, option("--shard", "I/N", "Judge the I-th of N parts; `drivelint merge DEST` packs them at the end.")
+        str | None,
+        option("--shard", "I/N", "Judge the I-th of N parts. `drivelint merge DEST` packs the results at the end."),
     ] = None,
     claim: Annotated[
         bool,
         option(
             "--claim",
             None,
-            "Share the drives with other audits into DEST, as they come; `merge` packs them at the end.",
+            "Share the drives with other audits into DEST. `merge` packs the results at the end.",
         ),
     ] = False,
     lease: Annotated[
@@ -82,15 +93,15 @@ def audit(
         option(
             "--lease",
             "S",
-            "With --claim: drives of an audit that shows no sign of life for so long are taken over.",
+            "With --claim: if an audit shows no sign of life for this long, others take over its drives.",
             min=1,
         ),
     ] = 60.0,
     retry_errors: Annotated[
-        bool, option("--retry-errors", None, "Judge drives again that could not be judged before.")
+        bool, option("--retry-errors", None, "Try again the drives that could not be judged before.")
     ] = False,
     prune: Annotated[
-        bool, option("--prune", None, "Take out results of logs that are not among the sources any more.")
+        bool, option("--prune", None, "Remove results of logs that are no longer among the sources.")
     ] = False,
     cluster: Annotated[
         str | None,
@@ -101,12 +112,12 @@ def audit(
     sign: options.Sign = None,
     quiet: options.Quiet = False,
 ) -> None:
-    """Judge many drives, as many at a time as there are cores.
+    """Judge many drives, on all cores.
 
-    Results are kept as they come: an audit that was interrupted goes on where it was when the same command is given again.
-    A manifest has a column log, may have map, ego and environment (weather=wet;light=night), and any others, which are tags.
+    Results are stored as soon as they are computed. After an interruption, the same command continues with the rest.
+    A manifest has a column log, and may have map, ego and environment (weather=wet;light=night). Other columns are tags.
 
-    Exit codes: as those of check; drives that cannot be judged, or kill their worker, make 4.
+    Exit codes: as those of check; 4 also if a drive cannot be judged or kills its worker.
     """
     from drivelint.audit import AuditRequest, JudgeSettings
     from drivelint.audit import audit as audited
@@ -117,7 +128,7 @@ def audit(
     in_parts = shard is not None or claim
     if in_parts and not (baseline is None and waivers is None and min_judged is None):
         raise UsageError(
-            "--baseline, --waivers and --min-judged are of a whole audit: when all parts have ended, give it without parts"
+            "--baseline, --waivers and --min-judged need a whole audit: when all parts have ended, run the audit without parts"
         )
     gate = None
     if not in_parts:
@@ -168,7 +179,7 @@ def audit(
 
 
 def _stored_results_sentence(out: str) -> str:
-    """Return in words how many drives have a result."""
+    """Return a sentence with the number of drives that have a result."""
     from tempfile import TemporaryDirectory
 
     from drivelint.audit.store import open_store
@@ -178,19 +189,19 @@ def _stored_results_sentence(out: str) -> str:
         with TemporaryDirectory(prefix="drivelint-kept-") as home:
             n = n_results(open_store(out), Path(home))
     except (DriveLintError, OSError):  # The user interrupts to stop: an error of the store does not matter then.
-        return f"what was judged stays in {inert_line(out)}: the same command goes on with the rest"
+        return f"results so far stay in {inert_line(out)}: the same command continues with the rest"
     if not n:
         return f"no drive has a result in {inert_line(out)} yet (drives are judged some at a time): the same command begins again"
     kept = f"{plural(n, 'drive')} {'has' if n == 1 else 'have'} a result, which stays in {inert_line(out)}"
-    return f"{kept}: the same command goes on with the rest"
+    return f"{kept}: the same command continues with the rest"
 
 
 def merge(
-    dest: Annotated[str, argument("DEST", "What the shards of audit --out wrote into.")], *, delta: Delta = None
+    dest: Annotated[str, argument("DEST", "The folder of the audits with --shard or --claim.")], *, delta: Delta = None
 ) -> None:
     """Pack the results of audits with --shard or --claim, when all of them have ended.
 
-    Exit codes: 0; 4 where a shard is missing or drives could not be judged; 3 for lossy input. Findings are no matter of it.
+    Exit codes: 0; 4 if a shard is missing or drives could not be judged; 3 for lossy input. Findings do not change it.
     """
     from drivelint.audit import merge as merged
     from drivelint.audit.text import summary_text
@@ -203,18 +214,19 @@ def merge(
 
 
 def sql(
-    dest: Annotated[str, argument("DEST", "What audit --out or check --out wrote.")],
+    dest: Annotated[str, argument("DEST", "The folder that audit --out or check --out wrote.")],
     query: Annotated[
         str,
         argument(
             "QUERY",
-            "One SELECT over verdicts, findings, drives, rules and receipts; of an audit also over counted_verdicts, counted_findings "
-            "and counted_drives, in which copies count once, and counted_events, in which a touch of two egos does, too.",
+            "One SELECT over verdicts, findings, drives, rules and receipts; for an audit also over counted_verdicts, counted_findings "
+            "and counted_drives, in which logs with the same content count once, and counted_events, in which a touch of two egos "
+            "counts once too.",
         ),
     ],
-    format_: Annotated[options.SqlFormat, option("--format", None, "What is printed on stdout.")] = "text",
+    format_: Annotated[options.SqlFormat, option("--format", None, "Format of the output on stdout.")] = "text",
 ) -> None:
-    """Ask the tables of an audit or a check in SQL. Nothing is changed."""
+    """Query the tables of an audit or a check with SQL. Nothing is changed."""
     from drivelint.audit.ask import ask
 
     def warn(warning: str) -> None:

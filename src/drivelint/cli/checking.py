@@ -1,4 +1,4 @@
-"""`drivelint check`: judges recorded drives, or shows what an earlier run of the same inputs came to."""
+"""`drivelint check`: judges recorded drives, or shows the result of an earlier run with the same inputs."""
 
 from __future__ import annotations
 
@@ -39,7 +39,10 @@ def check(
     ] = None,
     overwrite: options.Overwrite = False,
     rules: Annotated[
-        Texts, options.rules("Rules to judge by, see above. Repeatable. Default: stable rules of ukhc.")
+        Texts,
+        options.rules(
+            "Rules to judge by, see above. Repeatable. Default: stable rules of ukhc, in Germany (--env, --map) of stvo too."
+        ),
     ] = None,
     ignore: options.Ignore = None,
     profile: Annotated[
@@ -57,17 +60,25 @@ def check(
         option(
             "--require",
             "SEL",
-            "These of the rules may not be unknown: exit code 4. Repeatable.",
+            "Exit code 4 if one of these rules is unknown. Repeatable.",
             autocompletion=completion.rule_ids,
         ),
     ] = None,
     min_judged: options.MinJudged = None,
     format_: options.FormatOption = "text",
-    margins: Annotated[bool, option("--margins", None, "Also write margins.parquet: every judged step.")] = False,
-    keep_db: Annotated[bool, option("--keep-db", None, "Also keep the database with every stage's tables.")] = False,
+    margins: Annotated[
+        bool, option("--margins", None, "Also write margins.parquet, with a row per judged step.")
+    ] = False,
+    keep_db: Annotated[
+        bool, option("--keep-db", None, "Also keep the database with the tables of every stage.")
+    ] = False,
     annotate: Annotated[
         bool,
-        option("--annotate/--no-annotate", None, "With --out: copy each log with its verdicts in it, for a viewer."),
+        option(
+            "--annotate/--no-annotate",
+            None,
+            "With --out: write a copy of each log that includes its verdicts, for a viewer.",
+        ),
     ] = True,
     pictures: Annotated[
         bool,
@@ -77,7 +88,7 @@ def check(
         bool | None,
         options.robustness(
             "Count in how many copies of the drive with recording errors a critical or major finding stays. "
-            "Default: for the gravest finding of each rule, and for those that small errors may take away."
+            "Default: only for the gravest finding of each rule, and for findings that small errors may remove."
         ),
     ] = None,
     confidence: Annotated[
@@ -85,7 +96,7 @@ def check(
         option(
             "--confidence",
             "SHARE",
-            "Only findings that stay in this share of their copies gate, such as 0.95. Default: all gate.",
+            "Only findings that stay in at least this share of their copies can fail the run, such as 0.95. Default: all findings can.",
             min=0.0,
             max=1.0,
         ),
@@ -99,15 +110,13 @@ def check(
         option(
             "--rule-timeout",
             "S",
-            "Seconds that a rule may compute on a batch of drives: beyond them that rule has not judged, the others go on.",
+            "Seconds that a rule may compute on a batch of drives. A rule that takes longer is an error; the others continue.",
             min=0.1,
         ),
     ] = 30.0,
     evidence: options.Evidence = None,
     sign: options.Sign = None,
-    verbose: Annotated[
-        bool, typer.Option("--verbose", "-v", help="Print every table, not only the summary of one screen.")
-    ] = False,
+    verbose: Annotated[bool, typer.Option("--verbose", "-v", help="Print every table, not only the summary.")] = False,
     jobs: Annotated[
         int,
         typer.Option(
@@ -115,7 +124,7 @@ def check(
             "-j",
             metavar="N",
             min=1,
-            help="Processes that judge, each a part of the logs. The result is the same.",
+            help="Number of processes. Each judges a part of the logs; the result is the same.",
         ),
     ] = 1,
     cache: Annotated[
@@ -123,8 +132,8 @@ def check(
         option(
             "--cache/--no-cache",
             None,
-            "Where logs, map, rules and options are those of an earlier run, write and print what it did, without judging. "
-            "--no-cache judges, and keeps nothing.",
+            "If logs, map, rules and options are those of an earlier run, write and print the same as it did, without judging. "
+            "--no-cache always judges, and keeps no receipt.",
             envvar="DRIVELINT_CHECK_CACHE",
         ),
     ] = True,
@@ -132,15 +141,15 @@ def check(
 ) -> None:
     """Judge recorded drives against the rules.
 
-    With --out: tables of verdicts and findings, report.html, and the logs with their verdicts in them.
+    With --out: writes tables of verdicts and findings, report.html, and copies of the logs that include their verdicts.
 
-    SEL is a rule's id, a glob, a pack, all, or what a rule says of itself: kind:invariant, severity:critical,
-    status:draft, legal:must, clause:R162, requires:indicator. A comma means both (ukhc,legal:must), --rules twice either.
+    SEL is a rule's id, a glob, a pack, all, or a property of a rule: kind:invariant, severity:critical,
+    status:draft, legal:must, clause:R162, requires:indicator. A comma means "and" (ukhc,legal:must); --rules twice means "or".
 
-    Exit codes: 0 nothing failed at or above --fail-on; 1 something did (with --baseline, --waivers or --confidence: something
-    that is new, that nobody answers for, that is sure); 2 usage or rule error; 3 judged on lossy input; 4 some drives not
-    judged, or nothing could be decided (with --strict or --require: some rule unknown; with --min-judged: too many); 75 the
-    machine failed, try again; 130 interrupted: what was judged until then is kept.
+    Exit codes: 0 nothing failed at or above --fail-on; 1 something failed (with --baseline, --waivers or --confidence:
+    something new, not waived, and sure); 2 usage or rule error; 3 judged on lossy input; 4 some drives not judged, or nothing
+    could be decided (with --strict or --require: some rule unknown; with --min-judged: too many); 75 the machine failed, try
+    again; 130 interrupted: results so far are kept.
     """
     arguments = dict(locals())
 
@@ -227,7 +236,7 @@ def check(
 
 
 def _settings_file(*, quiet: bool) -> Path | None:
-    """Return the file of settings that counts, and name it unless the run is quiet."""
+    """Return the settings file that applies, and print its name unless the run is quiet."""
     file = find_settings()
     if file is not None and not quiet:
         streams.say(f"drivelint: settings: {inert_line(str(file))}")
@@ -235,14 +244,16 @@ def _settings_file(*, quiet: bool) -> Path | None:
 
 
 def _with_manifests(settings: CheckOptions, *, packed: bool) -> CheckOptions:
-    """Return the settings with the logs that manifests name in place of these. Errors: `UsageError`."""
+    """Return the settings with manifests replaced by the logs that they name. Errors: `UsageError`."""
     if not any(trace.lower().endswith((".csv", ".parquet")) for trace in settings.traces):
         return settings
     from drivelint.audit.sources import with_manifests
 
     logs, manifest_options = with_manifests(settings.traces, settings)
     if manifest_options and packed:
-        raise UsageError("--evidence: a pack has one set of options for all logs: audit the manifest, and pack that")
+        raise UsageError(
+            "--evidence: a pack has one set of options for all logs: audit the manifest, and pack that audit"
+        )
     return replace(settings, traces=logs, manifest_options=manifest_options)
 
 
@@ -255,7 +266,7 @@ def _judge(
     deaf_rules: Restart | None,
     keep: Callable[[Result], Result],
 ) -> Result:
-    """Judge the logs in this process, or by several."""
+    """Judge the logs in this process, or in several processes."""
     if jobs > 1:
         from drivelint import parallel
 
@@ -266,7 +277,7 @@ def _judge(
 
 
 def _stdout(result: Result, format_: options.Format, out: Path | None, *, verbose: bool) -> str:
-    """Return what is printed of a result."""
+    """Return the text of a result for stdout."""
     from drivelint.report import summary, terminal
     from drivelint.result.one_line import on_one_line
 

@@ -1,4 +1,4 @@
-"""What a shell offers for a word that is being typed."""
+"""Completion of the word that is being typed in a shell."""
 
 from __future__ import annotations
 
@@ -6,6 +6,6 @@ from drivelint.resources import folder
 
 
 def rule_ids(incomplete: str) -> list[str]:
-    """Return the ids of the shipped rules that begin so, by the names of their files: none is read."""
+    """Return the ids of the shipped rules that begin with the word, from the names of their files; no file is read."""
     files = (folder("queries") / "assertions").glob("*/*.sql")
     return sorted(name for file in files if (name := f"{file.parent.name}.{file.stem}").startswith(incomplete))

@@ -1,4 +1,4 @@
-"""What the commands share: a job beside the main thread, progress, printing for a person."""
+"""Shared by the commands: a job beside the main thread, progress, printing for a person."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ T = TypeVar("T")
 def run_interruptible(job: Callable[[], T], interrupt: Callable[[], None] | None = None) -> T:
     """Run `job` in a second thread, so that Ctrl-C interrupts it while the database computes.
 
-    It looks several times a second, because some libraries make the system restart a wait that a signal interrupted. With
-    `interrupt`, the first Ctrl-C calls it until the job has ended by itself, and only the second one leaves.
+    It wakes several times a second, because some libraries make the system restart a wait that a signal interrupted.
+    With `interrupt`, the first Ctrl-C calls `interrupt` until the job has ended by itself; only the second one leaves.
     """
     running = ThreadPoolExecutor(max_workers=1).submit(job)
     with ending_signals.noted_only() as asked:
@@ -51,14 +51,14 @@ def run_interruptible(job: Callable[[], T], interrupt: Callable[[], None] | None
 
 
 def say_nothing_kept(out: Path | None, *, judged_none: bool) -> None:
-    """Tell a person that an interrupted check has no result, and what its folder holds."""
+    """Print that an interrupted check has no result, and what its folder contains."""
     why = "nothing was judged yet" if judged_none else "left at once: nothing is kept"
     typer.echo(f"drivelint: {why}{'' if out is None else f'; {inert_line(str(out))} holds no result'}", err=True)
 
 
 @contextmanager
 def tells_of_earlier(out: Path | None) -> Iterator[None]:
-    """Tell a person where an earlier result is after a run that ended without one."""
+    """After a run without a result, print where an earlier result is."""
     from drivelint.result.folder import EARLIER
 
     try:
@@ -70,14 +70,14 @@ def tells_of_earlier(out: Path | None) -> Iterator[None]:
 
 
 def say_kept(statuses: Sequence[str], out: Path | None) -> None:
-    """Tell a person how much of an interrupted check is kept."""
+    """Print how much of an interrupted check is kept."""
     where = "" if out is None else f" in {inert_line(str(out))}"
     kept = f"kept {statuses.count('judged')} of {plural(len(statuses), 'drive')}{where}"
     typer.echo(f"drivelint: {kept}", err=True)
 
 
 def progress(quiet: bool) -> AbstractContextManager[Progress]:
-    """Return a bar on a terminal's stderr; elsewhere only the pipeline's notes, as lines."""
+    """Return a progress bar if stderr is a terminal; otherwise only the notes of the pipeline are printed, as lines."""
     from drivelint.report.progress import Silent, bar, notes
 
     if quiet:
@@ -86,7 +86,7 @@ def progress(quiet: bool) -> AbstractContextManager[Progress]:
 
 
 def _inert_console() -> type[Console]:
-    """Return a console on which a log's words cannot steer the terminal; only rich's own styles do."""
+    """Return a console on which the words of a log cannot control the terminal; only rich's own styles can."""
     from rich.console import Console
 
     class InertConsole(Console):
@@ -98,12 +98,12 @@ def _inert_console() -> type[Console]:
 
 
 def print_rich(content: RenderableType | Callable[[int], RenderableType], *, soft_wrap: bool = False) -> None:
-    """Print for a person on stdout, as `rich_text` has it."""
+    """Print on stdout for a person, formatted by `rich_text`."""
     typer.echo(rich_text(content, soft_wrap=soft_wrap), nl=False)
 
 
 def rich_text(content: RenderableType | Callable[[int], RenderableType], *, soft_wrap: bool = False) -> str:
-    """Return what a person reads on stdout: plain and wide where that is no terminal. `content` may depend on the width."""
+    """Return the text for a person on stdout: plain and wide if stdout is not a terminal. `content` may depend on the width."""
     terminal = sys.stdout.isatty()
     console = _inert_console()(width=None if terminal or "COLUMNS" in os.environ else 120, highlight=False)
     with console.capture() as captured:

@@ -23,7 +23,9 @@ def docs(
     ctx: typer.Context,
     topic: Annotated[
         str | None,
-        argument("[TOPIC]", "The guide to print, dictionary, catalogue, reasons or macros; default: list the guides."),
+        argument(
+            "[TOPIC]", "The guide to print, or dictionary, catalogue, reasons or macros. Default: list the guides."
+        ),
     ] = None,
     table: Annotated[str | None, argument("[TABLE]", "With dictionary: the table to print; default: all.")] = None,
     *,
@@ -68,7 +70,7 @@ def docs(
 
 
 def _commands(command: Any, name: str) -> Iterator[Command]:
-    """Yield the commands under a group, depth first, with what their help says."""
+    """Yield the commands of a group with the content of their help, depth first."""
     from drivelint.guide.site import Command
 
     if hasattr(command, "commands"):

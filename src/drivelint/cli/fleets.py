@@ -1,4 +1,4 @@
-"""What reads whole audits: `report` and `diff` for a folder that `audit --out` wrote, and `what-if`."""
+"""The commands that read whole audits: `report` and `diff` for a folder that `audit --out` wrote, and `what-if`."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def report_audit(dest: str, to: str, by: Sequence[str], baseline: Path | None, drive_pages: str | None) -> None:
-    """Write the fleet page of an audit into it, and print its name."""
+    """Write the fleet page of an audit into its folder, and print the name of the page."""
     from drivelint.fleet_report import gated, page
     from drivelint.fleet_report.audit_views import destination
     from drivelint.fleet_report.drive_pages import MOST_DRIVES
@@ -76,20 +76,19 @@ def diff_audits(base: str, new: str, format_: str, fail_on: str | None, rows: Pa
 
 
 def what_if(
-    dest: Annotated[Path, argument("DEST", "What audit --out wrote.")],
+    dest: Annotated[Path, argument("DEST", "The folder that audit --out wrote.")],
     setting: Annotated[str, argument("RULE.PARAM=V", "Another value of a rule's parameter.")],
     by: Annotated[
         str | None,
-        option("--by", "TAG", "Tell verdicts apart by a tag of the manifest, or a situation such as weather."),
+        option("--by", "TAG", "Count verdicts by a tag of the manifest, or by a situation such as weather."),
     ] = None,
-    format_: Annotated[options.Format, option("--format", None, "What is printed on stdout.")] = "text",
+    format_: Annotated[options.Format, option("--format", None, "Format of the output on stdout.")] = "text",
 ) -> None:
-    """Tell which verdicts of an audit become others with another value of a parameter, without reading a log.
+    """Show which verdicts of an audit change with another value of a parameter, without reading a log.
 
-    Stored verdicts tell it where the parameter is the required value and nothing else. Where they do not, it says that a new audit
-    is needed, and why.
+    Stored verdicts are enough if the parameter is only the required value. Otherwise a new audit is needed; the output states why.
 
-    Exit codes: 0 all is told; 4 only a new audit can tell of some or all verdicts; 2 usage error.
+    Exit codes: 0 the answer is complete; 4 some or all verdicts need a new audit; 2 usage error.
     """
     from drivelint.fleet_report.audit_views import destination
     from drivelint.fleet_report.what_if import ask_what_if, to_json, to_text
@@ -100,6 +99,6 @@ def what_if(
 
 
 def _warn(audit: Audit) -> None:
-    """Say on stderr that an audit has not ended."""
+    """Print on stderr that an audit has not ended."""
     if audit.warning:
         typer.echo(f"drivelint: {inert_line(audit.warning)}", err=True)

@@ -1,4 +1,4 @@
-"""The help of `check` and `watch`, their options under headings."""
+"""The help of `check` and `watch`, with their options under headings."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _GROUPS: Final = {
 
 
 class GroupedCommand(TyperCommand):
-    """A command whose options stand in groups."""
+    """A command whose options are shown in groups."""
 
     def format_options(self, ctx: Any, formatter: Any) -> None:
         """Write the arguments and one section of options per group."""

@@ -1,4 +1,4 @@
-"""The options that several commands have, each written down once: those of `DriveInput`, which every command that reads a log takes."""
+"""The options of several commands, each defined once: those of `DriveInput` belong to every command that reads a log."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 Format = Literal["text", "json"]
-"""How results are printed on stdout."""
+"""The formats of results on stdout."""
 ConvertTarget = Literal["mcap", "parquet"]
 ReportFormat = Literal["html", "junit", "sarif", "xqar", "markdown"]
 SqlFormat = Literal["text", "csv", "json"]
@@ -25,7 +25,7 @@ RuleKind = Literal["invariant", "execution", "precondition", "postcondition"]
 FailOn = Literal["critical", "major", "minor", "never"]
 """The least severity that makes exit code 1."""
 Texts = list[str] | None
-"""What an option that may be given several times has."""
+"""The value of an option that may be repeated."""
 
 
 def argument(metavar: str, words: str, **more: Any) -> Any:
@@ -39,12 +39,12 @@ def option(flag: str, metavar: str | None, words: str, **more: Any) -> Any:
 
 
 def rules(words: str) -> Any:
-    """Return the option that names the rules to judge by."""
+    """Return the option for the rules to judge by."""
     return option("--rules", "SEL", words, autocompletion=completion.rule_ids)
 
 
 def profile(words: str) -> Any:
-    """Return the option that names the profiles to judge by."""
+    """Return the option for the profiles to judge by."""
     return option("--profile", "NAME", words)
 
 
@@ -54,23 +54,29 @@ def robustness(words: str) -> Any:
 
 
 Baseline = Annotated[
-    Path | None, option("--baseline", "DIR", "An earlier result: its findings are known, only new ones gate.")
+    Path | None,
+    option("--baseline", "DIR", "An earlier result. Its findings are known; only new ones can fail the run."),
 ]
 Waivers = Annotated[
-    Path | None, option("--waivers", "FILE", "TOML of findings that an owner accepts until a day: shown, fail no run.")
+    Path | None,
+    option(
+        "--waivers",
+        "FILE",
+        "TOML file of findings that an owner accepts until a date. They are shown, but do not fail the run.",
+    ),
 ]
 MinJudged = Annotated[
     float | None,
     option(
         "--min-judged",
         "SHARE",
-        "Of the rules that may apply, at least this share must be decided, such as 0.5: else exit code 4.",
+        "Exit code 4 if less than this share of the rules that may apply is decided, such as 0.5.",
         min=0.0,
         max=1.0,
     ),
 ]
 Today = Annotated[
-    str | None, option("--today", "DATE", "The day that waivers are held against. Default: the system's.")
+    str | None, option("--today", "DATE", "The date that decides whether a waiver has expired. Default: today.")
 ]
 MemorySize = Annotated[
     str | None,
@@ -78,34 +84,32 @@ MemorySize = Annotated[
         "--memory",
         "SIZE|none",
         "Memory of the database before it uses the disk: 512MB, 2GB; none: 80 % of the machine's. Results do not depend "
-        "on it; a step that needs more takes more, with a note. The program itself takes some 300 MB more. Default: 1200MB.",
+        "on it. If a step needs more, it takes more, with a note. The program itself takes some 300 MB more. Default: 1200MB.",
     ),
 ]
 Evidence = Annotated[
     Path | None,
-    option("--evidence", "PACK", "Then pack the result as evidence into this folder, as drivelint pack does."),
+    option("--evidence", "PACK", "Also pack the result as evidence into this folder, as drivelint pack does."),
 ]
 Sign = Annotated[
     Path | None,
     option(
         "--sign",
         "KEY",
-        "Sign the pack with this Ed25519 key: PEM, without a password. A public key (id_ed25519.pub): the one that ssh-agent holds.",
+        "Sign the pack with this Ed25519 key: PEM, without a password. Or the public key (id_ed25519.pub) of a key in ssh-agent.",
     ),
 ]
-Overwrite = Annotated[
-    bool, option("--overwrite", None, "Replace files in it that drivelint is not known to have written.")
-]
+Overwrite = Annotated[bool, option("--overwrite", None, "Also replace files in it that drivelint did not write.")]
 Ignore = Annotated[
     Texts, option("--ignore", "SEL", "Leave these rules out. Repeatable.", autocompletion=completion.rule_ids)
 ]
 Param = Annotated[Texts, option("--param", "RULE.PARAM=V", "Set a rule's parameter. Repeatable.")]
-RulesAsInCheck = Annotated[Texts, rules("Rules to judge by, as in check. Repeatable. Default: stable rules of ukhc.")]
+RulesAsInCheck = Annotated[Texts, rules("Rules to judge by, as in check. Repeatable. Default: those of check.")]
 ProfileAsInCheck = Annotated[Texts, profile("As in check. Repeatable.")]
-Strict = Annotated[bool, option("--strict", None, "No rule may be unknown: exit code 4.")]
-FailOnOption = Annotated[FailOn, option("--fail-on", None, "Least severity that makes exit code 1.")]
+Strict = Annotated[bool, option("--strict", None, "Exit code 4 if a rule is unknown.")]
+FailOnOption = Annotated[FailOn, option("--fail-on", None, "Lowest severity that causes exit code 1.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")]
-FormatOption = Annotated[Format, option("--format", None, "What is printed on stdout.")]
+FormatOption = Annotated[Format, option("--format", None, "Format of the output on stdout.")]
 RulesDirs = Annotated[
     list[Path] | None, option("--rules-dir", "DIR", "Folder with rule packs of your own. Repeatable.")
 ]
@@ -114,7 +118,7 @@ DriveInputValues = dict[str, Any]
 
 
 class _DriveOption(NamedTuple):
-    """A field of `DriveInput` as an option, and how its value is read from that of the command line."""
+    """A field of `DriveInput` as an option, and the function that parses its value from the command line."""
 
     type: Any
     annotation: Any
@@ -125,11 +129,16 @@ class _DriveOption(NamedTuple):
 DRIVE_OPTIONS = {
     "map": _DriveOption(
         Path | None,
-        option("--map", "MAP", "The road, as OpenDRIVE, Lanelet2, CommonRoad or a SUMO net: most rules need it."),
+        option(
+            "--map", "MAP", "The map of the road: OpenDRIVE, Lanelet2, CommonRoad or a SUMO net. Most rules need it."
+        ),
     ),
     "ego": _DriveOption(str | None, option("--ego", "ID|all", "The vehicle under test, or every vehicle in turn.")),
     "mapping": _DriveOption(
-        str | None, option("--mapping", "FILE|NAME", "How a table's columns are read: a TOML file or a shipped name.")
+        str | None,
+        option(
+            "--mapping", "FILE|NAME", "The meaning of a table's columns: a TOML file, or the name of a shipped mapping."
+        ),
     ),
     "map_offset": _DriveOption(
         str | None,
@@ -137,11 +146,12 @@ DRIVE_OPTIONS = {
         parse=option_values.parse_offset,
     ),
     "map_dir": _DriveOption(
-        Path | None, option("--map-dir", "DIR", "Folder of maps: each log gets its own, by maps.csv, name or place.")
+        Path | None,
+        option("--map-dir", "DIR", "Folder of maps. Each log gets its map by maps.csv, by name or by place."),
     ),
     "map_origin": _DriveOption(
         str | None,
-        option("--map-origin", "LAT,LON", "Where the log's 0,0 is, for a map in degrees (Lanelet2)."),
+        option("--map-origin", "LAT,LON", "Position of the log's 0,0, for a map in degrees (Lanelet2)."),
         parse=option_values.parse_origin,
     ),
     "handedness": _DriveOption(
@@ -152,7 +162,7 @@ DRIVE_OPTIONS = {
         option(
             "--sensor-range",
             "M",
-            "Range in which the recorder sees everybody. Default: what the log says, else 50 m.",
+            "Range in which the recorder sees every actor. Default: the value in the log, else 50 m.",
             min=0,
         ),
     ),
@@ -161,7 +171,7 @@ DRIVE_OPTIONS = {
         option(
             "--visibility",
             None,
-            "Where an unrecorded actor may be. line-of-sight: not in plain view of the recorder (2.5 s after it was lost); none: anywhere.",
+            "Where an unrecorded actor may be. line-of-sight: not in plain view, from 2.5 s after it was lost; none: anywhere.",
         ),
         "line-of-sight",
     ),
@@ -170,7 +180,7 @@ DRIVE_OPTIONS = {
         option(
             "--ego-size",
             "L,W[,AHEAD]",
-            "The ego's length and width in metres, where the log has none; AHEAD: its centre ahead of the odometry's frame.",
+            "The ego's length and width in metres, if the log has none. AHEAD: distance of its centre ahead of the odometry's frame.",
         ),
         parse=option_values.parse_ego_size,
     ),
@@ -179,12 +189,12 @@ DRIVE_OPTIONS = {
         option(
             "--env",
             "KEY=VALUE",
-            "What holds in the drives: nation, weather, light, vehicle_class, road_type, carriageway, area, engaged. "
-            "Repeatable. Counts before what the map or the log says.",
+            "A condition of the drives: nation, weather, light, vehicle_class, road_type, carriageway, area, engaged. "
+            "Repeatable. Takes precedence over the map and the log.",
         ),
         parse=lambda words: tuple(words or ()),
     ),
-    "topic": _DriveOption(str | None, option("--topic", "NAME", "Read this MCAP topic, where several would do.")),
+    "topic": _DriveOption(str | None, option("--topic", "NAME", "The MCAP topic to read, if several are possible.")),
 }
 
 

@@ -1,4 +1,4 @@
-"""`drivelint pack` and `verify`: a result that others can check."""
+"""`drivelint pack` and `verify`: packs of results that others can check."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ Traces = Annotated[
     option(
         "--trace",
         "FILE",
-        "A log that was moved; of an audit, also a folder of them. Repeatable: its hash tells which.",
+        "New path of a log that was moved; for an audit, also a folder of logs. Repeatable. Logs are recognised by their hash.",
     ),
 ]
-Map = Annotated[Path | None, option("--map", "MAP", "Where the map is, if it was moved.")]
+Map = Annotated[Path | None, option("--map", "MAP", "The new path of the map, if it was moved.")]
 
 
 def pack(
-    folder: Annotated[Path, argument("DIR", "What check --out or audit --out wrote.")],
+    folder: Annotated[Path, argument("DIR", "The folder that check --out or audit --out wrote.")],
     *,
     out: Annotated[Path, option("--out", "PACK", "Folder for the evidence pack.")],
     sign: options.Sign = None,
@@ -43,7 +43,7 @@ def pack(
         option(
             "--date",
             "YYYY-MM-DD",
-            "Its Bagging-Date. Default: the day of SOURCE_DATE_EPOCH, if that is set; else none.",
+            "The Bagging-Date of the pack. Default: the day of SOURCE_DATE_EPOCH, if that is set; else none.",
         ),
     ] = None,
     timestamp: Annotated[
@@ -57,16 +57,16 @@ def pack(
     findings: Annotated[
         str | None,
         option(
-            "--findings", "N|all", "Of an audit: pack the rows of its N worst findings. Default: 100; a check's all."
+            "--findings", "N|all", "For an audit: pack the rows of its N worst findings. Default: 100; for a check all."
         ),
     ] = None,
     overwrite: Annotated[bool, option("--overwrite", None, "Replace a pack that is there.")] = False,
 ) -> None:
-    """Pack the result of a check or an audit as evidence: hashed, signed, and to be checked by others.
+    """Pack the result of a check or an audit as evidence: hashed, signed, and verifiable by others.
 
-    A folder in BagIt form with the tables and reports, the rules, for each finding the rows that its rule read and SQL that gives its
-    margin in any DuckDB, and an in-toto statement of what was judged by what. The logs of these findings are judged again for it. The
-    same command gives the same bytes.
+    Writes a BagIt folder with the tables, the reports and the rules; for each finding the rows that its rule read, and SQL that
+    computes its margin in any DuckDB; and an in-toto statement of the logs, the map, the rules and the results. The logs of these
+    findings are judged again for it. The same command gives the same bytes.
     """
     from drivelint.pack import MOST_FINDINGS, PackRequest
 
@@ -87,7 +87,7 @@ def pack(
 
 
 def write_and_tell(request: PackRequest, *, err: bool = False) -> None:
-    """Write a pack and say what is in it, with `err` on stderr."""
+    """Write a pack and print its content, with `err` on stderr."""
     from drivelint.pack import write_pack
 
     told = run_interruptible(lambda: write_pack(request))
@@ -110,20 +110,19 @@ def write_and_tell(request: PackRequest, *, err: bool = False) -> None:
 
 
 def verify(
-    folder: Annotated[Path, argument("PACK", "What drivelint pack wrote.")],
+    folder: Annotated[Path, argument("PACK", "The folder that drivelint pack wrote.")],
     *,
     key: Annotated[
-        Path | None, option("--key", "PUBLIC", "The Ed25519 key that it must be signed with, PEM. Default: that in it.")
+        Path | None,
+        option("--key", "PUBLIC", "The public Ed25519 key of the signer, PEM. Default: the key in the pack."),
     ] = None,
     require_signature: Annotated[
         bool,
-        option(
-            "--require-signature", None, "A pack of which nobody knows who signed it is wrong: it needs --key, too."
-        ),
+        option("--require-signature", None, "Refuse a pack without a known signer. Needs --key."),
     ] = False,
     not_before: Annotated[
         str | None,
-        option("--not-before", "YYYY-MM-DD", "A pack with an earlier Bagging-Date, or without one, is wrong."),
+        option("--not-before", "YYYY-MM-DD", "Refuse a pack with an earlier Bagging-Date, or without one."),
     ] = None,
     traces: Traces = None,
     map_: Map = None,
@@ -132,17 +131,17 @@ def verify(
         option(
             "--timestamp-root",
             "PEM",
-            "It must have a time stamp of an authority whose root certificate is one of these.",
+            "Require a time stamp of an authority with one of these root certificates.",
         ),
     ] = None,
 ) -> None:
-    """Verify an evidence pack: its files, its signature, what it states; and judge the logs again.
+    """Verify an evidence pack: its files, its signature and its statements; and judge the logs again.
 
-    Without a log in the pack or --trace nothing is judged again, and the line says so. Each thing that is wrong has a line of its own.
-    Without --key the exit code tells nothing of who made the pack: --require-signature makes that 1. An older pack of the same signer is
-    as good as a newer one: the line says the date, and --not-before makes an older one 1.
+    If there is no log in the pack and no --trace, nothing is judged again, and the output states it. Each problem has a line of its
+    own. Without --key, exit code 0 does not prove who made the pack; with --require-signature it is then 1. An older pack of the
+    same signer is equally valid: the output states its date, and with --not-before an older pack has exit code 1.
 
-    Exit codes: 0 untouched; 1 something is wrong; 2 usage error.
+    Exit codes: 0 unchanged; 1 something is wrong; 2 usage error.
     """
     from drivelint.pack import VerifyRequest
     from drivelint.pack import verify as verified

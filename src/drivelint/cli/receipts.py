@@ -1,7 +1,7 @@
-"""The receipts of `check`: shows again what an earlier run of the same inputs came to, and keeps what this one does.
+"""The receipts of `check`: shows the result of an earlier run with the same inputs again, and keeps that of this run.
 
-A run is kept if it can be told by its inputs alone, and wrote nothing but stdout and the files of a result: not one that keeps its
-database or packs evidence, that was interrupted, of which a drive was not judged or a rule erred, or whose logs are its own outputs.
+A run is kept if its inputs alone decide its result, and if it wrote only stdout and the files of a result: a run is not kept if it keeps
+its database or packs evidence, was interrupted, did not judge a drive, had a rule in error, or if its logs are its own outputs.
 """
 
 from __future__ import annotations
@@ -88,7 +88,7 @@ class CheckReceipts:
             self._key = question_sha256({**counted, "places": places})
 
     def earlier(self) -> store.Receipt | None:
-        """Write what an earlier run of the same inputs wrote, and return its receipt; None: there is none.
+        """Write the output of an earlier run with the same inputs, and return its receipt; None: there is none.
 
         Errors: as those of any run whose folder cannot be written.
         """
@@ -115,7 +115,7 @@ class CheckReceipts:
 
     @contextmanager
     def recording(self) -> Iterator[None]:
-        """Record what is read inside the block, if the run may be kept."""
+        """Record the files that are read inside the block, if the run may be kept."""
         if self._key is None:
             yield
             return

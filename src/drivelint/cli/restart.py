@@ -1,7 +1,7 @@
-"""Starts the command again in place of this process when a rule cannot be ended, without that rule.
+"""Restarts the command in place of this process, without a rule that cannot be interrupted.
 
-DuckDB runs a rule in a thread, and a thread that heeds no interrupt ends only with its process. `exec` keeps the process id, the open
-standard streams and so whoever waits for them.
+DuckDB runs a rule in a thread. A thread that ignores interrupts ends only with its process. `exec` keeps the process id and the open
+standard streams, so a program that waits for them is not affected.
 """
 
 from __future__ import annotations

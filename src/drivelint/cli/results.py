@@ -1,25 +1,22 @@
-"""`drivelint report`, `diff` and `explain`: what reads the folders that `check --out` wrote."""
+"""`drivelint report`, `diff` and `explain`. What `check --out` wrote goes to `checks`, what `audit --out` wrote to `fleets`."""
 
 from __future__ import annotations
 
 from pathlib import Path  # noqa: TC003 - Typer looks the annotations up
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from drivelint import option_values
-from drivelint.cli import completion, fleets, options
+from drivelint.cli import checks, completion, fleets, options
 from drivelint.cli.console import print_rich, run_interruptible
 from drivelint.cli.options import argument, option
 from drivelint.errors import UsageError
-from drivelint.phrases import inert, inert_json, inert_line, listed
-
-if TYPE_CHECKING:
-    from drivelint.result.model import Result
+from drivelint.phrases import inert_json
 
 
 def report(
-    folder: Annotated[Path, argument("DIR", "What check --out or audit --out wrote.")],
+    folder: Annotated[Path, argument("DIR", "The folder that check --out or audit --out wrote.")],
     to: Annotated[
         options.ReportFormat,
         option(
@@ -35,135 +32,108 @@ def report(
         option(
             "--incident",
             "FINDING",
-            "Two A4 pages about one finding, instead: incidents/ID.html. Its id, or RULE or RULE@DRIVE, as in explain; "
-            "or contact: the worst contact.",
+            "Write two A4 pages about one finding instead: incidents/ID.html. Give its id, RULE or RULE@DRIVE, as in explain; "
+            "or contact, for the worst contact.",
         ),
     ] = None,
     pdf: Annotated[
         bool, option("--pdf", None, "With --incident: also as PDF, printed by an installed Chromium.")
     ] = False,
     trace: Annotated[
-        Path | None, option("--trace", "FILE", "With --incident: where the log is, if it was moved.")
+        Path | None, option("--trace", "FILE", "With --incident: the new path of the log, if it was moved.")
     ] = None,
-    map_: Annotated[Path | None, option("--map", "MAP", "With --incident: where the map is, if it was moved.")] = None,
+    map_: Annotated[
+        Path | None, option("--map", "MAP", "With --incident: the new path of the map, if it was moved.")
+    ] = None,
     base_url: Annotated[
         str | None,
-        option(
-            "--base-url", "URL", "With markdown: where DIR can be opened, for links to report.html. Default: no links."
-        ),
+        option("--base-url", "URL", "With markdown: the URL of DIR, for links to report.html. Default: no links."),
     ] = None,
     by: Annotated[
         list[str] | None,
         option(
-            "--by", "TAG", "Of an audit: rates by a tag of the manifest, or a situation such as weather. Repeatable."
+            "--by",
+            "TAG",
+            "For an audit: rates by a tag of the manifest, or by a situation such as weather. Repeatable.",
         ),
     ] = None,
     baseline: Annotated[
-        Path | None, option("--baseline", "DEST", "Of an audit: an earlier one, to say what is new since.")
+        Path | None, option("--baseline", "DEST", "For an audit: an earlier audit, to show the changes since then.")
     ] = None,
     drive_pages: Annotated[
         str | None,
         option(
             "--drive-pages",
             "N|all",
-            "Of an audit, with html: pages of the N worst drives in its folder drives; 0 for none. Default: 100.",
+            "For an audit, with html: write pages of the N worst drives into its folder drives; 0 for none. Default: 100.",
         ),
     ] = None,
 ) -> None:
-    """Write a report from a result folder, into it.
+    """Write a report of a result into its folder.
 
-    Files: report.html, junit.xml, report.sarif, report.xqar, report.md. Prints the name of the one that was written.
-    Of an audit: fleet.html or fleet.md, with rates, worst drives, coverage, and what could not be judged. Beside fleet.html, a page of
-    each of the worst drives.
+    Writes report.html, junit.xml, report.sarif, report.xqar or report.md, and prints its name.
+    For an audit: fleet.html or fleet.md, with rates, worst drives, coverage, and what could not be judged; beside fleet.html, a page
+    for each of the worst drives.
 
-    With --incident, the sheet of one finding, to be filed: when and where, both parties, speeds, who slowed, second by second,
-    what each of them did by the same rules, how sure it is, what the recording does not hold. The log is judged again for it.
+    With --incident: a sheet about one finding, to be filed. It has time and place, both parties with their speeds and braking second
+    by second, what each of them did by the same rules, how sure the finding is, and what the recording lacks. The log is judged
+    again for it.
     """
     from drivelint.fleet_report.audit_views import destination, is_audit
 
+    of_the_sheet = pdf or trace is not None or map_ is not None
+    of_an_audit = bool(by) or baseline is not None or drive_pages is not None
     if is_audit(dest := destination(folder)):
-        if incident is not None or pdf or trace is not None or map_ is not None or base_url is not None:
+        if incident is not None or of_the_sheet or base_url is not None:
             raise UsageError(f"{dest} is an audit: --incident, --pdf, --trace, --map and --base-url are of a check")
         fleets.report_audit(dest, to, by or (), baseline, drive_pages)
-        return
-    if by or baseline is not None or drive_pages is not None:
+    elif of_an_audit:
         raise UsageError(
             f"--by, --baseline and --drive-pages are of an audit, and {dest} is none: name the folder of audit --out"
         )
-    if incident is not None:
-        from drivelint.incident import IncidentRequest, other_drives, write_incident
+    elif incident is not None:
+        from drivelint.incident import IncidentRequest
 
-        asked = IncidentRequest(incident, folder, pdf, trace, map_)
-        for path in run_interruptible(lambda: write_incident(asked)):
-            typer.echo(inert_line(str(path)))
-        if others := other_drives(asked):
-            told = f"{incident} is a finding in {listed(others)}, too: the sheet is about the worst; name another by {incident}@DRIVE"
-            typer.echo(f"drivelint: {inert_line(told)}", err=True)
-        return
-    if pdf or trace is not None or map_ is not None:
+        checks.write_incident_sheet(IncidentRequest(incident, folder, pdf, trace, map_))
+    elif of_the_sheet:
         raise UsageError("--pdf, --trace and --map are about an incident sheet: name its finding with --incident")
-    from drivelint.report import markdown
-    from drivelint.report.outputs import REPORT_FORMATS
-    from drivelint.result.folder import add
-    from drivelint.result.load import load_result
-
-    if base_url is not None and to != "markdown":
-        raise UsageError("--base-url is for --to markdown: other reports have no links to the report")
-    name, render = REPORT_FORMATS[to]
-    result = load_result(folder)
-    _warn_of_partial(folder, result)
-    add(folder, name, render(result) if base_url is None else markdown.render(result, base_url))
-    typer.echo(inert_line(str(folder / name)))
+    else:
+        checks.report_check(folder, to, base_url)
 
 
 def diff(
-    base: Annotated[Path, argument("BASE", "What check --out or audit --out wrote, earlier.")],
-    new: Annotated[Path, argument("NEW", "What the same command wrote, later.")],
-    format_: Annotated[options.DiffFormat, option("--format", None, "What is printed on stdout.")] = "text",
+    base: Annotated[Path, argument("BASE", "The folder that an earlier check --out or audit --out wrote.")],
+    new: Annotated[Path, argument("NEW", "The folder that the same command wrote later.")],
+    format_: Annotated[options.DiffFormat, option("--format", None, "Format of the output on stdout.")] = "text",
     fail_on: Annotated[
         options.FailOn | None,
-        option("--fail-on", None, "Least severity of a new finding that makes exit code 1. Default: NEW's."),
+        option("--fail-on", None, "Lowest severity of a new finding that causes exit code 1. Default: that of NEW."),
     ] = None,
     rows: Annotated[
         Path | None,
-        option("--rows", "FILE", "Of two audits: every finding of either as Parquet, with what else differs there."),
+        option(
+            "--rows", "FILE", "For two audits: write every finding of either as Parquet, with the other differences."
+        ),
     ] = None,
 ) -> None:
     """Compare two results, or two audits: new, fixed, changed and unchanged findings.
 
-    What NEW did not judge is not fixed: it is listed apart, with the reason. Findings that NEW's run waived do not gate.
-    Of two audits it also says what else differs (software, rules, parameters, data, map, tool), and which rates do.
+    A finding that NEW did not judge is not fixed; it is listed separately, with the reason. Findings that are waived in NEW do not
+    change the exit code. For two audits, the other differences (software, rules, parameters, data, map, tool) and the changed rates
+    are printed too.
 
     Exit codes: 0 no new finding of a stable rule at or above --fail-on; 1 there is one; 2 usage error; 4 there is none so far, but
-    findings of BASE are unknown or not looked at in NEW, or a run has not ended. Of two audits without a common drive, and without
-    --fail-on: 1 where the rate of such a rule is higher than chance explains, 0 where none is, 4 where no rule has a rate in both.
+    findings of BASE are unknown or were not looked for in NEW, or a run has not ended. For two audits without a common drive, and
+    without --fail-on: 1 if the rate of such a rule is higher than chance explains, 0 if none is, 4 if no rule has a rate in both.
     """
     from drivelint.fleet_report.audit_views import destination, is_audit
-    from drivelint.gate import compare_results, descriptions
-    from drivelint.result.load import load_result
-    from drivelint.result.one_line import on_one_line
 
     if is_audit(destination(base)) or is_audit(destination(new)):
         fleets.diff_audits(destination(base), destination(new), format_, fail_on, rows)
-        return
-    if rows is not None:
+    elif rows is not None:
         raise UsageError("--rows is of two audits: of two checks, --format json has all findings")
-    earlier, later = load_result(base), load_result(new)
-    if format_ == "text":
-        earlier, later = on_one_line(earlier), on_one_line(later)
-    _warn_of_partial(base, earlier)
-    _warn_of_partial(new, later)
-    least = later.fail_on if fail_on is None else fail_on
-    found, failing = compare_results(earlier, later, (base.resolve().name, new.resolve().name), least)
-    if format_ == "json":
-        typer.echo(inert_json(descriptions.to_json(found, failing, least)))
-    elif format_ == "markdown":
-        from drivelint.report import markdown
-
-        typer.echo(markdown.difference(found, failing, least, later.gate))
     else:
-        typer.echo(inert(descriptions.difference_text(found, failing, least, later.gate)))
-    raise typer.Exit(int(descriptions.exit_code(found, failing, least)))
+        checks.diff_checks(base, new, format_, fail_on)
 
 
 def explain(
@@ -171,43 +141,43 @@ def explain(
         str,
         argument(
             "FINDING",
-            "A finding's id or how it begins; or, for any verdict, RULE or RULE@DRIVE, or how they begin.",
+            "The id of a finding, or, for any verdict, RULE or RULE@DRIVE. All of them may be shortened to their beginning.",
             autocompletion=completion.rule_ids,
         ),
     ],
     *,
-    folder: Annotated[Path, option("--in", "DIR", "What check --out wrote.")],
-    profile: Annotated[str | None, option("--profile", "NAME", "The rule's verdict for this profile.")] = None,
-    object_: Annotated[str | None, option("--object", "ID", "The rule's verdict about this actor.")] = None,
-    ego: Annotated[str | None, option("--ego", "ID", "The rule's verdict on this ego.")] = None,
+    folder: Annotated[Path, option("--in", "DIR", "The folder that check --out wrote.")],
+    profile: Annotated[str | None, option("--profile", "NAME", "The verdict for this profile.")] = None,
+    object_: Annotated[str | None, option("--object", "ID", "The verdict about this actor.")] = None,
+    ego: Annotated[str | None, option("--ego", "ID", "The verdict on this ego.")] = None,
     verdict: Annotated[str | None, option("--verdict", "WORD", "A verdict of this kind, such as unknown.")] = None,
-    at: Annotated[float | None, option("--at", "S", "The rule's verdict about this second of the drive.")] = None,
-    trace: Annotated[Path | None, option("--trace", "FILE", "Where the log is, if it was moved.")] = None,
-    map_: Annotated[Path | None, option("--map", "MAP", "Where the map is, if it was moved.")] = None,
+    at: Annotated[float | None, option("--at", "S", "The verdict about this second of the drive.")] = None,
+    trace: Annotated[Path | None, option("--trace", "FILE", "The new path of the log, if it was moved.")] = None,
+    map_: Annotated[Path | None, option("--map", "MAP", "The new path of the map, if it was moved.")] = None,
     position: Annotated[
         float, option("--sigma-position", "M", "Standard error of each actor's position.", min=0)
     ] = 0.1,
     time: Annotated[float, option("--sigma-time", "S", "Standard error of each actor's clock.", min=0)] = 0.05,
-    of_map: Annotated[float, option("--sigma-map", "M", "Standard error of where the map lies.", min=0)] = 0.1,
+    of_map: Annotated[float, option("--sigma-map", "M", "Standard error of the map's position.", min=0)] = 0.1,
     samples: Annotated[
         int | None,
         option(
             "--samples",
             None,
-            "Copies with such errors; 0 leaves them out. Default: 100, for an unknown verdict 10.",
+            "Number of copies with such errors; 0: none. Default: 100; for an unknown verdict 10.",
             min=0,
             max=100_000,
         ),
     ] = None,
-    seed: Annotated[int, option("--seed", None, "Another one draws other errors.", min=0)] = 0,
+    seed: Annotated[int, option("--seed", None, "Seed of the random errors.", min=0)] = 0,
     memory: options.MemorySize = None,
     format_: options.FormatOption = "text",
 ) -> None:
-    """Show why one verdict is what it is.
+    """Show the reason for one verdict.
 
-    The clause, the SQL with its numbers, the rows that it read, the margin over time, the least change of a number that
-    changes the verdict, and how often it stays the same when positions, clocks and map are a little off. Of several
-    verdicts of a rule the worst is shown, unless --ego, --verdict, --profile, --object or --at choose.
+    Prints the clause, the SQL with its numbers, the rows that it read, the margin over time, the smallest change of a number
+    that changes the verdict, and how often the verdict stays the same with small errors in positions, clocks and map. If a rule
+    has several verdicts, the worst is shown, unless --ego, --verdict, --profile, --object or --at choose another.
 
     explain judges the drive again by that rule. It reads the database of check --keep-db, or else the log.
     """
@@ -225,17 +195,9 @@ def explain(
         MeasurementErrors(position, time, of_map, samples, seed),
         option_values.parse_memory(memory),
     )
-    _warn_of_partial(folder, load_result(folder))
+    checks.warn_of_partial(folder, load_result(folder))
     found = run_interruptible(lambda: explained(request))
     if format_ == "json":
         typer.echo(inert_json(to_json(found)))
     else:
         print_rich(lambda width: render(found, width))
-
-
-def _warn_of_partial(folder: Path, result: Result) -> None:
-    """Say on stderr that a result is of an interrupted run."""
-    if result.interrupted:
-        from drivelint.result.model import partial_sentence
-
-        typer.echo(f"drivelint: {inert_line(str(folder))}: {partial_sentence(result.drives)}", err=True)

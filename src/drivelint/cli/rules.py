@@ -18,15 +18,15 @@ app = typer.Typer(help="List, show, write and test the rules.", rich_markup_mode
 
 @app.command("list")
 def list_(
-    selectors: Annotated[Texts, argument("[SEL]...", "Which ones, as --rules of check. Default: all.")] = None,
+    selectors: Annotated[Texts, argument("[SEL]...", "Rules to list, as --rules of check. Default: all.")] = None,
     format_: options.FormatOption = "text",
     rules_dir: options.RulesDirs = None,
 ) -> None:
     """List the rules.
 
-    Such as: drivelint rules list ukhc,status:stable clause:R162
+    Example: drivelint rules list ukhc,status:stable clause:R162
 
-    With --format json also the clause that each is from and what it requires of a log.
+    With --format json, also the clause of each rule and the signals that it requires.
     """
     from drivelint.catalogue import load_rules, select_rules
     from drivelint.report import rules_text
@@ -44,7 +44,9 @@ def show(
     rule_id: Annotated[
         str,
         argument(
-            "ID", "The rule's id, or how it begins, with or without its pack.", autocompletion=completion.rule_ids
+            "ID",
+            "The id of the rule, with or without its pack. It may be shortened to its beginning.",
+            autocompletion=completion.rule_ids,
         ),
     ],
     rules_dir: options.RulesDirs = None,
@@ -65,10 +67,11 @@ def new(
     rule_id: Annotated[str, argument("PACK.NAME", "The id of the rule to write.")],
     folder: Annotated[Path, option("--dir", "DIR", "Folder of packs to write it into.")] = Path(),
     kind: Annotated[
-        options.RuleKind, option("--kind", None, "Judged at every step, or else at, before or after a reference point.")
+        options.RuleKind,
+        option("--kind", None, "When the rule is judged: at every step, or at, before or after a reference point."),
     ] = "invariant",
 ) -> None:
-    """Write a rule to start from.
+    """Write a new rule as a start.
 
     DIR/PACK/NAME.sql and NAME.cases.yml: a small rule with its cases, which runs as it is. Nothing is overwritten.
     """
@@ -82,12 +85,12 @@ def new(
 @app.command("page")
 def page_(
     folder: Annotated[Path | None, argument("[DIR]", "Folder with rule packs; default: the shipped ones.")] = None,
-    out: Annotated[Path | None, option("--out", "FILE", "Write it there; default: print it.")] = None,
+    out: Annotated[Path | None, option("--out", "FILE", "Write the page to this file. Default: print it.")] = None,
 ) -> None:
     """Write the catalogue as one Markdown page.
 
-    A table per pack: what each rule asserts and needs, its numbers and where they are from; by clause what is covered; and the
-    words that logs and maps have for what rules ask.
+    A table per pack: what each rule asserts and requires, its numbers and their sources; which clauses are covered; and how
+    logs and maps contain what rules require.
     """
     from drivelint.catalogue import load_rules
     from drivelint.report.catalogue_page import page
@@ -109,18 +112,18 @@ def run_tests(
     ] = None,
     only: Annotated[Texts, option("--rules", "SEL", "Rule id or glob. Repeatable. Default: all.")] = None,
     mutate: Annotated[
-        bool, option("--mutate", None, "Break each rule in many ways, and ask whether some case notices.")
+        bool, option("--mutate", None, "Change each rule in many ways, and check that some case notices each change.")
     ] = False,
     watch: Annotated[
-        bool, option("--watch", None, "Then test each rule again when its file or its cases are saved, until Ctrl-C.")
+        bool, option("--watch", None, "Then test a rule again whenever its file or its cases are saved, until Ctrl-C.")
     ] = False,
 ) -> None:
     """Run the test cases beside the rules.
 
-    Each is a small scene with the verdict that is due. With --mutate: whether the cases would notice a wrong sense,
+    Each case is a small scene with the expected verdict. With --mutate: checks whether the cases notice a wrong sense,
     threshold or window, or a missing condition.
 
-    Exit codes: 0 all is well; 1 some verdict is another, or a mutant of a stable rule is noticed by no case; 2 a rule
+    Exit codes: 0 all passed; 1 some verdict is not the expected one, or no case notices a mutant of a stable rule; 2 a rule
     or its cases cannot be used.
     """
     from threading import Event
@@ -147,19 +150,19 @@ def run_tests(
 @app.command("scene")
 def scene(
     file: Annotated[Path, argument("FILE", "Scenes as YAML.")],
-    only: Annotated[Texts, argument("[NAME]...", "Scenes by how their names begin. Default: all.")] = None,
+    only: Annotated[Texts, argument("[NAME]...", "Names of scenes, or their beginnings. Default: all.")] = None,
     out: Annotated[
-        Path | None, option("--out", "DIR", "Write each scene's log and map there, into a folder of its name.")
+        Path | None, option("--out", "DIR", "Write the log and the map of each scene into a folder of its name there.")
     ] = None,
-    to: Annotated[options.ConvertTarget, option("--to", None, "The format of these logs.")] = "parquet",
+    to: Annotated[options.ConvertTarget, option("--to", None, "Format of the logs of --out.")] = "parquet",
     rules_dir: options.RulesDirs = None,
 ) -> None:
-    """Judge drawn scenes, and hold the verdicts against those that they expect.
+    """Judge drawn scenes, and compare the verdicts with the expected ones.
 
-    A scene is some ten lines of YAML: a road, who drives on it and how, and the verdicts that are due. `drivelint docs scenes` explains
-    it.
+    A scene is some ten lines of YAML: a road, the actors on it and their movement, and the expected verdicts. `drivelint docs scenes`
+    explains it.
 
-    Exit codes: 0 all is well; 1 some verdict is another; 2 a scene cannot be understood.
+    Exit codes: 0 all passed; 1 some verdict is not the expected one; 2 a scene cannot be understood.
     """
     from drivelint.scene.judge import scene_test
 

@@ -1,4 +1,4 @@
-"""The options of `check` as files of settings hold them: which there are, which of them are paths, and their JSON schema for editors."""
+"""The options of `check` in settings files: their names, which of them are paths, and their JSON schema for editors."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _WAIVER: Final = {
 
 
 def known_settings(params: Iterable[Any]) -> dict[str, Any]:
-    """Return name without dashes -> parameter, of the parameters of `check` that may stand in a file."""
+    """Return the parameters of `check` that a settings file may set, by their names without the leading dashes."""
     options = {p.opts[0].lstrip("-"): p for p in params if p.param_type_name == "option"}
     return {name: param for name, param in options.items() if name not in _NOT_IN_A_FILE}
 

@@ -1,4 +1,4 @@
-"""The standard streams of the command: lines on stderr, and a stdout that may be closed or full, or that nobody reads."""
+"""The standard streams of the command: lines on stderr, and a stdout that may be closed, full or without a reader."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ from typing import Final
 from drivelint.errors import DriveLintError, ExitCode
 
 READER_LEFT: Final = 141
-"""The exit code where whoever read stdout left before its end, as `head` does: the one that a shell gives for SIGPIPE."""
+"""The exit code if the reader of stdout leaves before its end, as `head` does: the code that a shell returns for SIGPIPE."""
 
 
 class ReaderLeftError(Exception):
-    """Nobody reads stdout any more. No OSError: libraries make exit code 1 of these."""
+    """No program reads stdout any more. Not an OSError, because libraries turn that into exit code 1."""
 
 
 class StdoutError(DriveLintError):
-    """The system does not take what is written to stdout."""
+    """The system refuses a write to stdout."""
 
     exit_code = ExitCode.TEMPFAIL
 
 
 class _Stdout(io.TextIOWrapper):
-    """Stdout with our errors."""
+    """Stdout that raises our errors."""
 
     def write(self, text: str) -> int:
         try:
@@ -48,9 +48,9 @@ def _stdout_error(error: OSError) -> Exception:
 
 
 def prepare() -> None:
-    """Make both streams writable whatever the caller did: closed ones take what is written and lose it.
+    """Make both streams writable, whatever the caller did: a write to a closed stream is dropped.
 
-    A terminal of no columns, as some programs say of the one that they are, is one whose width is not known.
+    Some programs report a terminal of 0 columns; its width is then not known.
     """
     if not os.environ.get("COLUMNS", "").strip().lstrip("0"):
         os.environ.pop("COLUMNS", None)
@@ -60,13 +60,13 @@ def prepare() -> None:
         stream = getattr(sys, name)
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # a log's words may not fit the terminal's encoding
-    if isinstance(sys.stdout, io.TextIOWrapper) and sys.stdout is sys.__stdout__:  # not what somebody put in its place
+    if isinstance(sys.stdout, io.TextIOWrapper) and sys.stdout is sys.__stdout__:  # not a stream that replaced it
         encoding, buffered = sys.stdout.encoding, sys.stdout.line_buffering
         sys.stdout = _Stdout(sys.stdout.detach(), encoding, errors="replace", line_buffering=buffered)
 
 
 def say(line: str) -> None:
-    """Print a line on stderr if it can be; the exit code tells in any case."""
+    """Print a line on stderr if possible; the exit code is correct in any case."""
     with suppress(OSError):
         print(line, file=sys.stderr, flush=True)
 

@@ -33,12 +33,12 @@ def watch(
         str,
         argument(
             "SOURCE",
-            "A log that grows (.mcap, .osi), - for OSI messages on stdin, tcp://HOST:PORT, udp://HOST:PORT, ws://HOST:PORT, "
+            "A growing log (.mcap, .osi), - for OSI messages on stdin, tcp://HOST:PORT, udp://HOST:PORT, ws://HOST:PORT, "
             "or a simulation (.sumocfg). With --replay: any log.",
         ),
     ],
     command: Annotated[
-        list[str] | None, argument("[-- COMMAND...]", "A program to start, which writes what is watched.")
+        list[str] | None, argument("[-- COMMAND...]", "A program to start, which writes the log.")
     ] = None,
     drive: options.DriveInputValues,
     halt_on: Annotated[
@@ -50,30 +50,36 @@ def watch(
         ),
     ] = None,
     warn: Annotated[
-        bool, option("--warn", None, "Also say where a margin is small and shrinks, and when it will be used up.")
+        bool, option("--warn", None, "Also warn of a margin that is small and shrinks, with the time until it is 0.")
     ] = False,
     advise: Annotated[
         bool,
-        option("--advise", None, "Also say with which profile an overtake would be possible. Advice, not control."),
+        option(
+            "--advise", None, "Also print the profile with which an overtake would be possible. Advice, not control."
+        ),
     ] = False,
     on: Annotated[
         Texts,
         option(
             "--on",
             "SEL=COMMAND",
-            "Run COMMAND, without a shell, at an alarm by these rules; it gets the alarm on stdin. At most once a second. Repeatable.",
+            "Run COMMAND, without a shell, at an alarm of these rules. It gets the alarm on stdin. At most once a second. Repeatable.",
         ),
     ] = None,
     serve: Annotated[
         str | None,
-        option("--serve", "HOST:PORT", "Show it live: a WebSocket server for Foxglove. Needs drivelint[live]."),
+        option(
+            "--serve",
+            "HOST:PORT",
+            "Start a WebSocket server that shows the drive live in Foxglove. Needs drivelint[live].",
+        ),
     ] = None,
     allow_origin: Annotated[
         Texts,
         option(
             "--allow-origin",
             "ORIGIN",
-            "With --serve: pages of this origin may watch, such as https://app.foxglove.dev. Repeatable. Default: no page may.",
+            "With --serve: web pages of this origin may connect, such as https://app.foxglove.dev. Repeatable. Default: none.",
         ),
     ] = None,
     replay: Annotated[
@@ -81,7 +87,7 @@ def watch(
         option(
             "--replay",
             "SPEED",
-            "Watch a finished log as if it were recorded now: 1: at its own pace, 0: step by step.",
+            "Replay a finished log as if it were being recorded. 1: at its own speed, 0: step by step.",
             min=0.0,
         ),
     ] = None,
@@ -91,13 +97,13 @@ def watch(
         option(
             "--every",
             "S",
-            "Seconds of the log after which they are judged again, where the machine keeps up.",
+            "Seconds of the log between two judgements, if the machine is fast enough.",
             min=0.01,
         ),
     ] = 1.0,
     idle: Annotated[
         float,
-        option("--idle", "S", "Seconds without anything new after which the source has ended; 0: never.", min=0.0),
+        option("--idle", "S", "The source has ended after this many seconds without new data; 0: never.", min=0.0),
     ] = 10.0,
     out: Annotated[
         Path | None,
@@ -121,12 +127,12 @@ def watch(
     """Judge a drive while it is recorded: alarms at once, verdicts at its end.
 
     Prints one JSON object per line: alarm, over, warning, mode, halt, note; at the end checked, verdict and end. An alarm is
-    a finding as far as it is known; what the check of the whole recording makes of it is said at the end, with the verdicts.
+    a preliminary finding; at the end, the check of the whole recording confirms it or not, and prints the verdicts.
 
-    Not a safety function of a vehicle: see drivelint docs watching for what it can and cannot tell, and how fast.
+    This is not a safety function of a vehicle: drivelint docs watching describes its limits and its speed.
 
-    Exit codes: as check, of the whole recording; 1 also where an alarm halted. Ctrl-C ends the recording, which is then checked;
-    once more leaves at once.
+    Exit codes: as check, for the whole recording; 1 also if an alarm halted it. Ctrl-C ends the recording, which is then checked;
+    a second Ctrl-C ends watch at once.
     """
     from drivelint.engine.interruption import NothingJudgedError
     from drivelint.errors import DriveLintError, ExitCode
@@ -180,7 +186,7 @@ def watch(
 
 
 class _Printer:
-    """Prints messages. Whoever reads may leave: the watch goes on, for its result and what it halts."""
+    """Prints messages. If the reader leaves, the watch continues, for its result and to halt."""
 
     has_left = False
 
@@ -202,7 +208,7 @@ def _watch_and_check(
     *,
     overwrite: bool,
 ) -> int:
-    """Watch a source, then check what was recorded. Return the exit code. `work`: where the files of the result grow."""
+    """Watch a source, then check the recording. Return the exit code. `work`: the folder in which the result is written."""
     from drivelint.report.outputs import write
     from drivelint.result.model import exit_status
     from drivelint.watch import messages

@@ -1,1 +1,1 @@
-"""Defines what a trace reader returns, and makes the tables of `schemas/model.sql` of it."""
+"""Defines the output of a trace reader, and makes the tables of `schemas/model.sql` from it."""

@@ -1,11 +1,11 @@
-"""Finds the time in which a log goes on without its ego, gives the ego states without values there, and says how much is lost.
+"""Finds the time in which a log continues without its ego, adds ego states without values there, and reports how much is lost.
 
 The recorder sits in its own ego, which is there from the log's first frame to its last. Who names it: the host of OSI, the odometry of
-ROS, the ego flag of a table, a mapping. An ego that the user picks with --ego, among those whom others observe, comes into their view
-and leaves it: it is there from its first state to its last. Of `--ego all` each has the time of its track, holes included.
+ROS, the ego flag of a table, a mapping. An ego that the user chooses with --ego among observed vehicles comes into view and leaves it: it
+is there from its first state to its last. Of `--ego all` each has the time of its track, holes included.
 
-Without a place at a frame nothing is known of the ego there. With a state that says so every rule is judged at that frame, and unknown.
-Where no frame came, there is no state either: rules have a hole.
+Without a place at a frame nothing is known of the ego there. With such a state, every rule is judged at that frame, and is unknown. Where
+no frame came, there is no state either: rules have a hole.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ class Absence(NamedTuple):
 
 
 def asked_ego(recording: Recording, ego_option: str | None) -> str | None:
-    """Return whom the user asks for as the ego, now or when the log was converted; None: whom the log names."""
+    """Return the ego that the user chose, now or when the log was converted; None: the ego that the log names."""
     if ego_option is None and any(finding.check_id == EGOS_CHOSEN for finding in recording.findings):
         return ALL_EGOS
     return ego_option
@@ -135,7 +135,7 @@ def _absence(name: str, t_ns: Times, span: tuple[int, int], ends_apart_ns: int, 
 
 
 def frames_without_states(recording: Recording, missed: Sequence[Absence]) -> Times:
-    """Return the times of frames that came while an ego was absent, and in which nobody else is (states as read)."""
+    """Return the times of frames that came while an ego was absent, and that have no other actor (states as read)."""
     if recording.frames_ns is None or not missed:
         return np.zeros(0, np.int64)
     within = np.any([each.stretch_of(recording.frames_ns) >= 0 for each in missed], axis=0)
@@ -204,7 +204,7 @@ def absence_findings(missed: Sequence[Absence], states: States) -> list[QualityF
             when = f"in {len(begins)} stretches, the first {when}"
         whole = f"{of_ns / 1e9:.1f} s{' of its track' if absence.of_track else ''}"
         percent = "" if not of_ns else f" ({100 * lost_ns / of_ns:.0f} %)" if 200 * lost_ns >= of_ns else " (under 1 %)"
-        message = f"the ego {absence.ego_id} is absent for {lost_ns / 1e9:.1f} of {whole}{percent}, {when}: what it did then is unknown"
+        message = f"the ego {absence.ego_id} is absent for {lost_ns / 1e9:.1f} of {whole}{percent}, {when}: its conduct then is unknown"
         mine = (
             states.t_ns[states.actor == states.ids.index(absence.ego_id)]
             if absence.ego_id in states.ids
@@ -216,7 +216,7 @@ def absence_findings(missed: Sequence[Absence], states: States) -> list[QualityF
 
 
 def without_choices(findings: Sequence[QualityFinding]) -> list[QualityFinding]:
-    """Return findings without those on whom the user chose when the log was converted."""
+    """Return findings without those about the ego that the user chose when the log was converted."""
     return [finding for finding in findings if finding.check_id not in {EGO_CHOSEN, EGOS_CHOSEN}]
 
 

@@ -25,7 +25,7 @@ LONG_CLASSES: Final = frozenset({"car", "van", "truck", "bus", "vehicle", "trail
 WIDER_SHARE: Final = 1.1
 """A detector's box of a small car may be a little wider than long; one by more than a tenth is turned or wrong."""
 DIRECTION_LEAST_MPS: Final = 2.0
-"""From this speed on the velocity of a box tells which way it moves."""
+"""From this speed on, the velocity of a box shows its direction of motion."""
 LEAST_MOVING_SAMPLES: Final = 5
 ALONG_RAD: Final = np.deg2rad(30.0)
 """A box moves along its heading if most of its moving samples are no further off."""
@@ -109,7 +109,7 @@ def from_table(table: pa.Table, states: States, alias: Mapping[str, str]) -> Act
 
 
 def resolve_sizes(states: States, actors: Actors) -> list[QualityFinding]:
-    """Turn or drop the sizes of boxes that are wider than long, in place; doubt those that nobody has. `states` in order."""
+    """Exchange or drop the sizes of boxes that are wider than long, in place; doubt impossible sizes. `states` in order."""
     length, width = actors.sizes["length_m"], actors.sizes["width_m"]
     long_kind = np.array([kind in LONG_CLASSES for kind in actors.classes], np.bool_)
     wide = long_kind & (width > WIDER_SHARE * length)
@@ -123,7 +123,7 @@ def resolve_sizes(states: States, actors: Actors) -> list[QualityFinding]:
         (
             "size_unknown",
             dropped_sizes,
-            "wider than long, and nothing tells which side is the front: {}: length and width are unknown",
+            "wider than long, and it is not known which side is the front: {}: length and width are unknown",
         ),
     ):
         if ids := _names(actors, rows):

@@ -1,8 +1,8 @@
 """Interpolates objects that are sampled at other times than the ego to the ego's steps.
 
-Every rule asks who is where at a step of the ego. Between two samples an object is where the straight line puts it (at 10 Hz and
-5 m/s2 that is 6 mm off). Before its first sample and after its last it has no state, and none in a hole of its track. Only where
-the log itself begins or ends within a sample's time, its velocity moves it on to there: the recorder's next frame is all that lacks.
+Every rule needs the place of every actor at a step of the ego. Between two samples, an object is on the straight line between them (at
+10 Hz and 5 m/s2 this is 6 mm off). It has no state before its first sample, after its last one, and in a hole of its track. There is one
+exception: if the log itself begins or ends within the time of one sample, the velocity of the object moves it to there.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The data-quality checks that every import runs: what a log says about itself that cannot all be true.
+"""The data-quality checks that every import runs: values of a log that contradict each other.
 
 Each check looks at states in order (by actor and time, no duplicates) and returns findings, one per check and drive.
 """
@@ -29,7 +29,7 @@ YAW_CHECK_LEAST_MPS = 3.0
 """Slip angles of a car stay below about 10 degrees; below 3 m/s reversing and rounding blur the direction of motion."""
 REVERSING_MPS = 8.0
 REVERSING_RAD = np.deg2rad(150.0)
-"""Nobody reverses faster than this (29 km/h), and whoever reverses also drives forwards somewhere in the log."""
+"""No vehicle reverses faster than this (29 km/h), and a reversing vehicle also drives forwards somewhere in the log."""
 TELEPORT_M = 3.0
 TELEPORT_FACTOR = 2.0
 """A step is a jump if longer than 3 m + twice what the higher of both speeds covers: no acceleration explains that."""
@@ -122,7 +122,7 @@ def _jumps(states: States, step: Steps) -> Mask:
 
 
 def _too_fast(states: States) -> list[QualityFinding]:
-    """Report a log in which most of what moves is faster than any road user: its units are wrong."""
+    """Report a log in which most moving actors are faster than any road user: its units are wrong."""
     speed = np.hypot(*states.velocity)
     rows = speed > FASTEST_MPS
     n, n_moving = int(rows.sum()), int((speed > YAW_CHECK_LEAST_MPS).sum())
@@ -182,7 +182,7 @@ def _against_positions(states: States, step: Steps, jump: Mask, n_steps: int) ->
 
 
 def _cause(ratio: float) -> str:
-    """Guess what a wrong ratio of speed to motion comes from."""
+    """Guess the cause of a wrong ratio of speed to motion."""
     for factor, cause in (
         (3.6, "speeds in km/h read as m/s"),
         (2.237, "speeds in mph read as m/s"),

@@ -38,8 +38,8 @@ def backward_steps(t_ns: Times, topic: str | None = None) -> list[QualityFinding
 def unknown_at_restarts(states: States) -> tuple[States, list[QualityFinding]]:
     """Make the states of all actors unknown where the clock covers the same time twice (states in the log's own order).
 
-    Messages that come late are no restart: sorted by their times, they are one story. Of two stories nobody knows who of the one
-    met whom of the other. Rows that say the same in both are no contradiction, and stay.
+    Late messages are no restart: sorted by their times, they are one recording. If two recordings cover the same time, it is not known
+    which actors of the one met those of the other. Rows that are equal in both are no contradiction, and stay.
     """
     back = np.diff(states.t_ns) < 0
     if not back.any():
@@ -57,7 +57,7 @@ def unknown_at_restarts(states: States) -> tuple[States, list[QualityFinding]]:
     codes = {name: np.where(twice, UNKNOWN_CODE, codes) for name, codes in states.codes.items()}
     n, first = int(twice.sum()), int(states.t_ns[twice].min())
     message = (
-        f"the clock goes back and runs again over the same time, from {first / 1e9:g} s on: what {n} of {len(states)} states "
+        f"the clock goes back and repeats the same time, from {first / 1e9:g} s on: what {n} of {len(states)} states "
         "of that time say is unknown"
     )
     return replace(states, numbers=numbers, codes=codes), [QualityFinding("clock_restart", "error", message, n, first)]

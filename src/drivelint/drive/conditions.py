@@ -1,7 +1,7 @@
 """Names the conditions that may restrict a rule, the values of each, and which values include which.
 
-Their words are vocabularies of `schemas/words.toml`, for the rules' `[applies]`, for `--env` and for what a log may say of itself;
-the columns are those of `ego_condition`.
+Their words are vocabularies of `schemas/words.toml`, for the rules' `[applies]`, for `--env` and for conditions in a log; the columns are
+those of `ego_condition`.
 """
 
 from __future__ import annotations
@@ -22,21 +22,21 @@ DRIVE_CONDITION_VALUES: Final = {name: words(name) for name in words("condition"
 CONDITION_VALUES: Final = {name: known for name, known in DRIVE_CONDITION_VALUES.items() if name != "engaged"}
 """Condition by which rules are restricted -> its words; `nation` also takes any other country's, see `value_problem`."""
 CONDITION_TEXTS: Final = {name: vocabularies()[name].says for name in DRIVE_CONDITION_VALUES}
-"""Condition -> what its words say."""
+"""Condition -> the meaning of its words."""
 _NARROWER: Final[dict[str, list[str]]] = toml_beside(__file__, "conditions.toml")["narrower"]
 _COUNTRY = re.compile(r"[a-z]{2}")
 _SPELLED = {name.casefold(): name for name in DRIVE_CONDITION_VALUES}
 
 
 def value_problem(condition: str, word: str) -> str | None:
-    """Return what is wrong with this word for this condition, with the nearest good one; None: nothing."""
+    """Return the problem of this word for this condition, with the nearest good one; None: there is no problem."""
     if condition == "nation" and word.lower() == "uk":
         return "'uk' is no country code: use 'gb', or gb-eng, gb-wls, gb-sct"
     return vocabularies()[condition].problem(word)
 
 
 def canonical_spelling(condition: str, word: str) -> tuple[str, str]:
-    """Return a condition and its word as they are spelled here, whatever their case; what is not known stays as it is."""
+    """Return a condition and its word in our spelling, whatever their case; unknown ones stay as they are."""
     condition = _SPELLED.get(condition.casefold(), condition)
     spelled = {known.casefold(): known for known in DRIVE_CONDITION_VALUES.get(condition, ())}
     country = condition == "nation" and _COUNTRY.fullmatch(word.casefold())
@@ -52,6 +52,11 @@ def broader_values(values: tuple[str, ...]) -> list[str]:
     """Return the words that leave open whether one of these is meant: gb, where the rule is for gb-sct."""
     inside = with_narrower_values(values)
     return sorted(wide for wide, parts in _NARROWER.items() if wide not in inside and set(parts) & set(inside))
+
+
+def all_values(values: tuple[str, ...]) -> set[str]:
+    """Return these words, those that they include, and those that leave it open whether one of them is meant."""
+    return {*with_narrower_values(values), *broader_values(values)}
 
 
 def parse(settings: Iterable[str]) -> tuple[tuple[str, str], ...]:
@@ -73,7 +78,7 @@ def parse(settings: Iterable[str]) -> tuple[tuple[str, str], ...]:
 
 
 def condition_problem(condition: str) -> str | None:
-    """Return what is wrong with this name of a condition, with the nearest good one; None: nothing."""
+    """Return the problem of this name of a condition, with the nearest good one; None: there is no problem."""
     if condition in DRIVE_CONDITION_VALUES:
         return None
     return f"{condition!r} is no condition of a drive; {hint(condition, DRIVE_CONDITION_VALUES)}"

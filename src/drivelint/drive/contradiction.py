@@ -1,10 +1,10 @@
-"""Makes unknown what a log says about an actor that cannot all be true.
+"""Makes values of an actor unknown that contradict each other.
 
-Positions decide over velocities and headings as long as they are a track. Where a position jumps, or stands while the velocity
-moves on, the state is unknown (no position, heading or velocity). A track that goes on elsewhere after a jump is another actor's.
-Where over half a second both lead on and differ, the position is believed and the velocity is unknown.
-A heading that turns round from one sample to the next while the motion goes on is turned back; one across the motion is unknown.
-A place that is not believed and lies upon another actor is said: whoever bounds how near the two came must know.
+Positions decide over velocities and headings as long as they are a track. If a position jumps, or stands still although the velocity is
+not 0, the state is unknown (no position, heading or velocity). If a track continues at another place after a jump, it is another actor's
+from there on. If position and velocity both advance over half a second but differ, the position is used and the velocity is unknown. If a
+heading turns round from one sample to the next while the motion continues, it is turned back; a heading across the motion is unknown. A
+doubted place that lies on another actor is reported, because code that limits how near the two came needs it.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ DIRECTION_LEAST_M: Final = 0.4
 DIRECTION_LEAST_SHARE: Final = 0.5
 """A motion has a direction if the actor moves 0.4 m within a second around it, and half as far as its speed says."""
 REVERSING_MPS: Final = 8.0
-"""Nobody reverses faster than this (29 km/h),"""
+"""No vehicle reverses faster than this (29 km/h),"""
 FAST_REVERSING_MPS: Final = 20.0
 REVERSE_START_MPS: Final = 3.0
 """unless it is seen to stop and to set off backwards: at its first moving sample it is no faster than 3 m/s, and never than 72 km/h."""
@@ -73,9 +73,9 @@ LARGEST_HALF_BOX_M: Final = 6.0
 def resolve(
     states: States, step: Steps, actors: Actors, *, derived: bool, split_tracks: SplitTracks = NO_SPLIT
 ) -> list[QualityFinding]:
-    """Make what contradicts the motion unknown, in place (states in order, velocities complete).
+    """Make values unknown that contradict the motion, in place (states in order, velocities complete).
 
-    `derived`: velocities come from the positions, and contradict nobody. `split_tracks`: what was not believed before.
+    `derived`: velocities come from the positions, and contradict nothing. `split_tracks`: samples that were doubted before.
     """
     if len(states) < 3:
         return []
@@ -89,14 +89,14 @@ def resolve(
         findings += states.findings(frozen, "motion_unknown", "warning", text)
         set_unknown(states, frozen)
         astray = _mismatched(states, step)
-        text = "for half a second and longer the velocity leads elsewhere than the positions: it is unknown"
+        text = "for half a second or longer, the velocity does not match the positions: it is unknown"
         findings += states.findings(astray, "velocity_unknown", "warning", COUNT_PREFIX + text)
         set_unknown(states, astray, MOTION_COLUMNS)
     for each in places:
         findings += _upon_others(states, step, actors, each, split_tracks.alias)
     turned, sideways = _headings(states, step, actors)
     yaw = states.numbers["yaw_rad"]
-    text = COUNT_PREFIX + "the heading is turned round, the motion is not: the motion counts"
+    text = COUNT_PREFIX + "the heading is turned round, but the motion is not: the motion is used"
     findings += states.findings(turned, "heading_turned", "warning", text)
     text = COUNT_PREFIX + "the heading is across the motion: it is unknown"
     findings += states.findings(sideways, "heading_unknown", "warning", text)
@@ -133,9 +133,7 @@ def _upon_others(
         rows = upon & (rejected_states.actor[place] == number)
         others = sorted({states.ids[i] for i in states.actor[other_row[rows]]})
         times = np.unique(rejected_states.t_ns[place[rows]])
-        message = (
-            f"a place of {name} that is not believed lies upon {listed(others)}: whether they met there is unknown"
-        )
+        message = f"a position of {name} that is not credible lies on {listed(others)}: it is unknown whether they touched there"
         findings.append(QualityFinding("jumps_onto", "warning", message, len(times), int(times[0]), name))
     return findings
 
@@ -193,7 +191,7 @@ def _apart(states: States, step: Steps, usable: Mask) -> tuple[Floats, Floats]:
 
 
 def _drifts(rest: Floats, step: Steps) -> bool:
-    """Look at every half second only: whether anybody's velocities may lead away from its positions at all."""
+    """Examine only every half second: whether the velocities of any actor may lead away from its positions."""
     stride = max(1, round(WINDOW_S * 1e9 / step.period_ns)) if step.period_ns else 1
     way = np.cumsum(rest, axis=1)[:, ::stride]
     # a one-second window spans at most three strides, so one of them has at least a third of its difference
@@ -253,7 +251,7 @@ def _around(states: States, pieces: NDArray[np.integer], rows: Indices) -> tuple
 
 
 def _leads(states: States, rows: Mask) -> Mask:
-    """Keep those rows around which the positions lead on as the speed says: what trembles on the spot has no direction."""
+    """Keep the rows around which the positions advance as the speed states: an actor that trembles on the spot has no direction."""
     marked_rows = np.flatnonzero(rows)
     first, last = _around(states, states.actor, marked_rows)
     place, speed = states.place, np.hypot(*states.velocity[:, marked_rows])

@@ -16,12 +16,12 @@ HEADLIGHTS: Final = "headlights"
 HEADLIGHT_STATES: Final = ("off", "on")
 _FACTS: Final = toml_beside(__file__, "declared_events.toml")
 ON_OFF_EVENTS: Final[dict[str, str]] = _FACTS["on_off"]
-"""Events that are on until they are declared off -> what they say."""
+"""Events that stay on until they are declared off -> their meaning."""
 EVENTS: Final[dict[str, dict[str, str]]] = {
     **{mode: {"value": "on, off", "says": says} for mode, says in ON_OFF_EVENTS.items()},
     **_FACTS["other"],
 }
-"""Event -> `value`: what its value is, `says`: what it says. Other events are kept and read by no rule."""
+"""Event -> `value`: its value, `says`: its meaning. Other events are kept, but no rule reads them."""
 
 
 def with_headlight_events(events: pa.Table | None, states: States) -> pa.Table | None:

@@ -22,7 +22,7 @@ SIZE_DIFFERENCE_M: Final = 0.05
 
 
 def asks_for_all(ego_option: str | None, ids: Collection[str]) -> bool:
-    """Say whether the user asks for every motor vehicle: by `all`, if no actor is called so."""
+    """Return whether the user requests every motor vehicle: by `all`, if no actor has this id."""
     return ego_option == ALL_EGOS and ALL_EGOS not in ids
 
 
@@ -32,7 +32,7 @@ def choose(
     """Return the ids of the egos and the findings about the choice.
 
     `ego_option` is the user's id or `all` (every motor vehicle, except in a log whose actor is itself called `all`);
-    `named_egos` are the log's or mapping's. Where nobody names one and `ego_required` is false, there is none and a finding says so.
+    `named_egos` are the log's or mapping's. If none is named and `ego_required` is false, there is none, and a finding states it.
     Errors: `TraceError` when there is no ego though needed, or no such actor.
     """
     ids = set(actors.ids)
@@ -44,7 +44,7 @@ def choose(
         return [ego_option], []
     egos = sorted(ids.intersection(named_egos))
     if not egos:
-        absent = "the log does not say which actor is the ego"
+        absent = "the log does not name the ego"
         if named_egos:
             absent = f"the log's ego {listed([repr(each) for each in named_egos])} has no states"
         message = f"no ego: {absent}: use --ego ID or --ego all (ids: {listed(actors.ids)})"
@@ -58,20 +58,23 @@ def choose(
 
 
 def fill_sizes(actors: Actors, egos: list[str], size: EgoSize | None) -> list[QualityFinding]:
-    """Give egos without a size the user's size, in place, and keep another size that the log has; findings tell of both."""
+    """Give egos without a size the user's size, in place, and keep another size that the log has; findings report both."""
     if size is None:
         return []
     findings = []
     for i in (actors.ids.index(name) for name in egos):
         known = actors.sizes["length_m"][i], actors.sizes["width_m"][i]
         if any(map(isnan, known)):
-            message = "size as --ego-size says, not recorded"
+            message = "size from --ego-size, not recorded"
             findings.append(QualityFinding(ASSUMED_SIZE, "info", message, actor_id=actors.ids[i]))
         for name, has, given in zip(SIZE_COLUMNS, known, size[:2], strict=False):
             if isnan(has):
                 actors.sizes[name][i] = given
             elif abs(has - given) > SIZE_DIFFERENCE_M:
-                message = f"--ego-size gives {actors.ids[i]} a {name.removesuffix('_m')} of {given:g} m, the log {has:g} m, which counts"
+                message = (
+                    f"--ego-size gives {actors.ids[i]} a {name.removesuffix('_m')} of {given:g} m, but the log states "
+                    f"{has:g} m, which is used"
+                )
                 findings.append(QualityFinding("ego_size", "warning", message, actor_id=actors.ids[i]))
     return findings
 
@@ -84,5 +87,5 @@ def _every(path: Path, actors: Actors) -> tuple[list[str], list[QualityFinding]]
         raise TraceError(f"{path}: no ego: {why}: use --ego ID or --ego all (ids: {listed(actors.ids)})")
     if not unknown:
         return egos, []
-    message = f"actors of unknown class are not taken as egos ({listed(unknown)})"
+    message = f"actors of unknown class are not judged as egos ({listed(unknown)})"
     return egos, [QualityFinding("ego_count", "warning", message, len(unknown))]

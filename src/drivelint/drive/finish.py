@@ -62,7 +62,7 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
     as_read = recording.hand_over_states()
     states, restarts = unknown_at_restarts(as_read)
     states = sorted_states(states)
-    # nothing below changes an array in place; the log's own order tells where its clock begins again
+    # nothing below changes an array in place; the log's own order shows where its clock begins again
     recorded = None if not options.as_recorded else as_read if restarts else states.copy()
     del as_read
     states, repeated = without_duplicates(states)
@@ -183,7 +183,7 @@ def with_quality_finding(trace: Trace, finding: QualityFinding) -> Trace:
 
 
 def with_condition_of_map(trace: Trace, condition: str, word: str | None) -> Trace:
-    """Return the trace with what its map says of this condition, where neither the user nor the log says anything."""
+    """Return the trace with the map's value of this condition, if neither the user nor the log states it."""
     rows = trace.tables["drive_condition"]
     if word is None or condition in rows["condition"].to_pylist():
         return trace
@@ -202,7 +202,7 @@ def _refuse_no_drive(path: Path, states: States) -> None:
     if len(longest) > LONGEST_ID:
         raise TraceError(
             f"{path}: an actor's id of {len(longest)} characters, which begins {longest[:40]!r}: the log is damaged, or another "
-            "column holds the ids"
+            "column has the ids"
         )
     first, last = int(states.t_ns.min()), int(states.t_ns.max())
     if max(-first, last) > LATEST_NS:

@@ -31,13 +31,13 @@ JUMP_MPS2: Final = 10.0
 """A step is a jump if it is longer than both its neighbours foretell by 3 m + 10 m/s2 dt2: no tyre does that, and a full stop
 within one sample of 0.1 s, as simulators have it, only from more than 30 m/s."""
 OUTLIER_S: Final = 2.0
-"""A piece of a track between two jumps that is shorter than this is an outlier; a longer one is somebody's track."""
+"""A piece of a track between two jumps that is shorter than this is an outlier; a longer one is the track of an actor."""
 LARGEST_CORRECTION_M: Final = 10.0
 LARGEST_SIDE_CORRECTION_M: Final = 1.5
 CORRECTION_SPEED_CHANGE_MPS: Final = 3.0
 """A jump within these distances along the lane and to the side (not to another lane), at nearly the same velocity, corrects the track."""
 MOVING_MPS: Final = 1.0
-"""Below this the direction of motion is noise, and the heading is what there is."""
+"""Below this speed the direction of motion is noise, and the heading is used."""
 MOTION_COLUMNS: Final = ("vx_mps", "vy_mps", "ax_mps2", "ay_mps2")
 SAME_PLACE_M: Final = 0.01
 """Centres nearer than this are in one place."""
@@ -73,7 +73,7 @@ def split_tracks(states: States, step: Steps, *, kept_ids: Collection[str]) -> S
     recorded = replace(states, numbers=dict(states.numbers))
     set_unknown(states, unknown)
     beside = outlier_samples(states, step)
-    text = "the position is beside its track, for a sample or by a step that nobody drives: they are unknown there"
+    text = "the position is beside its track, for one sample or by a step that no vehicle can drive: they are unknown there"
     findings += states.findings(beside, "teleport", "warning", COUNT_PREFIX + text)
     set_unknown(states, beside)
     return SplitTracks(findings, alias, recorded.take(unknown | beside)) if findings else NO_SPLIT
@@ -173,9 +173,7 @@ def _renamed(
             ids.append(name)
             alias[name] = states.ids[i]
     if alias:
-        message = (
-            f"the track goes on elsewhere after a jump: from there on it is another actor's ({listed(sorted(alias))})"
-        )
+        message = f"the track continues at another place after a jump: from there on it is another actor's ({listed(sorted(alias))})"
         findings.append(QualityFinding("track_parted", "warning", message, len(alias), actor_id=None))
     states.ids, states.actor = ids, actor
     return alias
@@ -206,7 +204,7 @@ def without_removed_actors(
     out = np.zeros(len(states), np.bool_)
     for first, end in gone:
         out[first:end] = True
-    text = "after a jump they stand in one place: they were taken out of the scene, and their tracks end there"
+    text = "after a jump they stand in one place: they were removed from the scene, and their tracks end there"
     return states.take(~out), states.findings(out, "removed", "warning", COUNT_PREFIX + text)
 
 

@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 LOST_TIME: Final = "lost_time"
 """The check of `quality` whose rows are the stretches; the table lost_time follows from them."""
 MOST_STRETCHES: Final = 200
-"""More than this many are told, and judged, as one from the first to the last."""
+"""More than this many are reported, and judged, as one from the first to the last."""
 LATEST_NS: Final = 1 << 62
 """The year 2116: a clock beyond it is broken, and bounds nothing."""
 _BESIDE: Final = 50
-"""So many frames before and after a stretch tell how its clock and the log's differ there."""
+"""This many frames before and after a stretch show how its clock and the log's differ there."""
 
 
 def times_of_lost_rows(t_ns: Times, timed: Mask, lost_rows: Mask, cause: str) -> list[LostTime]:
@@ -70,7 +70,7 @@ def lost_time_findings(lost_times: Sequence[LostTime], frames: FrameTimes | None
     findings = []
     for each in lost_times:
         since, until = _in_clock_of_states(each, frames)
-        message = f"{each.cause}: what was recorded {_words(since, until, start)} is lost: nothing is judged across it"
+        message = f"{each.cause}: the recording {_words(since, until, start)} is lost: nothing is judged across it"
         findings.append(QualityFinding(LOST_TIME, "error", message, 1, since, None, until))
     return findings
 

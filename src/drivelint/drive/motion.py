@@ -47,7 +47,7 @@ def complete_velocities(states: States, step: Steps, *, most_replaced_share: flo
 
 
 def _end_zeros(states: States, step: Steps, starts: Indices) -> list[QualityFinding]:
-    """Replace a velocity of exactly 0 in the first or last sample of a track that moves there: it stands for none."""
+    """Replace a velocity of exactly 0 in the first or last sample of a track that moves there: it means that there is no velocity."""
     n = len(states)
     if n < 3:
         return []
@@ -88,7 +88,7 @@ def _velocity(states: States, step: Steps, starts: Indices, most_replaced_share:
         (astray & ~still, "velocity that is not the motion of the positions"),
         (
             biased & ~astray & ~still,
-            "velocity that is too high or too low by a constant share, against the way of the positions",
+            "velocity that is too high or too low by a constant factor, compared with the positions",
         ),
     ):
         if not tracks.any():
@@ -128,7 +128,7 @@ def _astray(states: States, step: Steps, most_replaced_share: float) -> Mask:
     off, moved, told = np.hypot(*(went - led)), np.hypot(*went), np.hypot(*led)
     fastest = np.maximum(moved, told)
     moving = whole & (fastest > MISMATCH_MPS * span)
-    # positions that stand still do not tell how somebody moves: see `contradiction`
+    # positions that stand still do not show how an actor moves: see `contradiction`
     bad = moving & (moved > MISMATCH_MPS * span) & (off > MISMATCH_MPS * span + MISMATCH_SHARE * fastest)
     seconds, astray = (np.bincount(states.actor[:-k][rows], minlength=len(states.ids)) for rows in (moving, bad))
     wrong = (astray >= LEAST_MISMATCHES) & (2 * astray > seconds)
@@ -182,7 +182,7 @@ def _suspicious(states: States, k: int) -> bool:
 
 
 def _acceleration(states: States, starts: Indices) -> list[QualityFinding]:
-    """Take accelerations that are zero for every actor, although velocities change, for what they are: not recorded."""
+    """Treat accelerations that are zero for every actor, although velocities change, as not recorded."""
     ax, ay = states.numbers["ax_mps2"], states.numbers["ay_mps2"]
     has_acceleration = ~(np.isnan(ax) & np.isnan(ay))
     if not has_acceleration.any() or (ax[has_acceleration] != 0.0).any() or (ay[has_acceleration] != 0.0).any():

@@ -40,7 +40,7 @@ def sorted_states(states: States) -> States:
 
 
 def without_duplicates(states: States) -> tuple[States, list[QualityFinding]]:
-    """Keep one of several states of an actor at one time (states in order): what they do not agree on is unknown.
+    """Keep one of several states of an actor at one time (states in order): values that differ are unknown.
 
     An actor that is in two places, or has two headings or velocities, is present and has none.
     """
@@ -61,9 +61,9 @@ def without_duplicates(states: States) -> tuple[States, list[QualityFinding]]:
     text = "an actor appears again at the same time in {n} states ({ids}), which "
     return unique_states, [
         *states.findings(
-            differing, "duplicate_state", "error", text + "differ: what they do not agree on is unknown there"
+            differing, "duplicate_state", "error", text + "differ: the values that differ are unknown there"
         ),
-        *states.findings(repeated & ~differing, "duplicate_state", "info", text + "are the same: they count once"),
+        *states.findings(repeated & ~differing, "duplicate_state", "info", text + "are equal: they count once"),
     ]
 
 

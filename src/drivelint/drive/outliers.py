@@ -1,8 +1,8 @@
 """Finds single samples beside their track, and small steps of a track, that no motion explains.
 
-`contradiction` knows jumps of metres by their length. A back-step of half a metre in one sample is as wrong: from it a velocity of its own
-would be derived. It is told by what the samples around it do without it, and by the noise of the track's positions. A jolt that most actors
-have at one moment is the log's.
+`contradiction` knows jumps of metres by their length. A back-step of half a metre in one sample is as wrong: from it a velocity of its
+own would be derived. It is recognised by the samples around it, and by the noise of the track's positions. A jolt that most actors have
+at one moment is the log's.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ if TYPE_CHECKING:
 
 
 TYRE_MPS2: Final = 12.0
-"""Nobody changes speed and back again by more (see `ukhc.contact-signature`); an impact changes it for good."""
+"""No vehicle changes speed and back again by more (see `ukhc.contact-signature`); an impact changes it for good."""
 SAME_SPEED_SHARE: Final = 0.25
 """A step of the positions changes the velocity by at most this share of the apparent velocity change during the step."""
 COMMON_LEAST: Final = 4
-"""So many moving actors whose speeds dip or rise alike at one moment show an error of the recorder's clock or places, not their driving."""
+"""If this many moving actors change speed alike at one moment, the recorder's clock or places are wrong, not their driving."""
 ALIKE_SHARE: Final = 0.8
 COMMON_CHANGE: Final = 0.12
 COMMON_SPREAD: Final = 0.08
@@ -37,7 +37,7 @@ AROUND_NS: Final = 300_000_000
 COMMON_NS: Final = 500_000_000
 """What is derived from the velocities within so long before and after is in error too: accelerations, jerks."""
 LEAST_COMMON_MPS: Final = 1.0
-"""Whoever is slower tells nothing by the share of a change."""
+"""For a slower actor, the share of a change means nothing."""
 SIGMAS: Final = 6.0
 """So many standard deviations of its positions' noise a sample is off before it counts."""
 LEAST_STEP_DERIVED_VELOCITY_M: Final = (0.05, 0.25)
@@ -142,7 +142,7 @@ def _stepped(moves: _Moves, has_velocity: Mask, sigma: Floats, error: Floats, be
 
 
 def _can_change_velocity(velocity: Floats, later_velocity: Floats, time_s: Floats, error_mps: Floats) -> Mask:
-    """Say whether somebody can have gone from one velocity to the other in that time."""
+    """Return whether an actor can have changed from one velocity to the other in that time."""
     can: Mask = np.hypot(*(velocity - later_velocity)) <= TYRE_MPS2 * time_s + SIGMAS * error_mps
     return can
 
@@ -165,7 +165,7 @@ def common_jolts(states: States, step: Steps) -> Mask:
     around = (before + after) / 2.0
     with np.errstate(invalid="ignore", divide="ignore"):
         share = speed[middle] / around
-        # a speed that itself changes much around the moment tells nothing
+        # a speed that changes much around the moment shows nothing
         usable = (around > LEAST_COMMON_MPS) & (abs(after - before) < around / 2.0) & np.isfinite(share)
     middle, share = (values[usable & (holes[middle - width] == holes[middle + width])] for values in (middle, share))
     times, moment, count = np.unique(states.t_ns[middle], return_inverse=True, return_counts=True)
@@ -177,7 +177,7 @@ def common_jolts(states: States, step: Steps) -> Mask:
     shared = np.bincount(moment[alike], minlength=len(times)) >= ALIKE_SHARE * count
     common = (count >= COMMON_LEAST) & (abs(median - 1.0) > COMMON_CHANGE) & shared
     at = middle[common[moment] & alike]
-    # beside a dip everybody seems to rise: the median of a window does not see the dip
+    # beside a dip, all actors seem to rise: the median of a window does not see the dip
     window = np.median(speed[at[:, None] + np.arange(-width, width + 1)], axis=1)
     at = at[abs(speed[at] / window - 1.0) > COMMON_CHANGE]
     since = states.t_ns - states.t_ns.min()

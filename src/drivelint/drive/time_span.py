@@ -1,4 +1,4 @@
-"""Cuts a span out of a trace. What still holds at its start, such as the colour of a traffic light, stays in it."""
+"""Cuts a span out of a trace. A state that still applies at its start, such as the colour of a traffic light, stays in it."""
 
 from __future__ import annotations
 

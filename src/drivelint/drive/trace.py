@@ -30,7 +30,7 @@ INDICATORS = words("indicator")
 BRAKE_LIGHTS = words("brake_light")
 ACTOR_CLASSES = words("actor_class")
 MOTOR_VEHICLES = ("car", "van", "truck", "bus", "motorcycle", "vehicle")
-"""What `--ego all` takes as an ego: driven by an engine and by somebody of its own."""
+"""The actors that `--ego all` judges: driven by an engine, with a driver of their own."""
 LEAST_UTC_NS = 946_684_800_000_000_000
 """2000-01-01 UTC: a clock beyond it counts from 1970 in UTC, a smaller one from the start of the recording."""
 SIGNAL_STATES = words("light_state")
@@ -54,7 +54,7 @@ class EgoSize(NamedTuple):
 
 
 ASSUMED_MOTION = "assumed_motion"
-"""The check of a log whose mapping gives speeds and lanes that nobody measured."""
+"""The check of a log whose mapping assumes speeds and lanes."""
 ASSUMED_SIZE = "assumed_size"
 """The check, information only, of a size that the log does not record; a converted log carries it, and so does a clip."""
 TURNED_FRAME = "turned_frame"
@@ -73,9 +73,9 @@ FOUND_ANEW = frozenset({
     "same_body", "size_implausible", "teleport", "too_fast", "track_gap", "track_parted", "velocity_derived",
     "velocity_end_derived", "velocity_filtered", "velocity_jolt", "velocity_mismatch", "velocity_unknown", "yaw_mismatch",
 })  # fmt: skip
-"""Checks of the states: a log that was converted as it was recorded says what they found, and whoever reads it finds that anew."""
+"""Checks of the states: a log that was converted as it was recorded has their findings, which are found again when it is read."""
 LOSS_CHECKS = ("dropped_row", "malformed_row")
-"""Checks that found parts of the log that could not be read, whatever their severity: what is judged is what was left.
+"""Checks for parts of the log that could not be read, whatever their severity: only the rest is judged.
 
 An error of any other check is a loss too."""
 
@@ -84,7 +84,7 @@ An error of any other check is a loss too."""
 class IngestOptions:
     """Options of the command line about reading; None: the log or the mapping decides.
 
-    `need_ego`: a log without an ego is an error; else it is read with none, for whoever only looks at it or converts it.
+    `need_ego`: a log without an ego is an error; else it is read with none, to inspect or convert it.
     """
 
     mapping: str | None = None
@@ -93,12 +93,12 @@ class IngestOptions:
     sensor_range_m: float | None = None
     need_ego: bool = True
     conditions: tuple[tuple[str, str], ...] = ()
-    """What holds in the drive, as (condition, word): see `drivelint.drive.conditions`."""
+    """The conditions of the drive, as (condition, word): see `drivelint.drive.conditions`."""
     ego_size: EgoSize | None = None
     in_sight: bool = False
-    """Whoever is not recorded for a while is taken not to be in plain view."""
+    """An actor that is not recorded for a while is assumed not to be in plain view."""
     as_recorded: bool = False
-    """The states are those of the log: none that is doubted is made unknown, none is derived. Whoever reads them again doubts again."""
+    """The states are those of the log: none that is doubted is made unknown, none is derived. They are doubted again when they are read."""
     map: Path | None = None
     """The map that is given: a log in degrees needs its projection."""
 
@@ -147,12 +147,11 @@ class Trace:
     """One drive as tables of `schemas/model.sql` (data_log, actor, actor_state, signal_state, declared_event,
     drive_condition, quality).
 
-    `data_log` has one row, its `environment_id` NULL. Rows are totally ordered: `actor_state` by actor_id and t_ns.
-    `embedded_map` is OpenDRIVE found in the log; `map_offset` (metres) is added to the map's coordinates. `frame_times`:
-    see `FrameTimes`; None where the log has one clock only. `geo_reference`: the projection of its coordinates, a PROJ string,
-    of which they are after a turn and a shift, `geo_offset`: x and y in metres, the turn in radians. `nobody_ns`: times of frames in
-    which nobody is, as far as the ego should be there. `in_log_order`: the states are as the log has them (`IngestOptions.as_recorded`)
-    and in its order, as its clock begins again.
+    `data_log` has one row, its `environment_id` NULL. Rows are totally ordered: `actor_state` by actor_id and t_ns. `embedded_map` is
+    OpenDRIVE found in the log; `map_offset` (metres) is added to the map's coordinates. `frame_times`: see `FrameTimes`; None where the
+    log has one clock only. `geo_reference`: the projection of its coordinates, a PROJ string, of which they are after a turn and a shift,
+    `geo_offset`: x and y in metres, the turn in radians. `nobody_ns`: times of frames without actors, in which the ego should be there.
+    `in_log_order`: the states are as the log has them (`IngestOptions.as_recorded`) and in its order, as its clock begins again.
     """
 
     drive_id: str
@@ -179,7 +178,7 @@ class Doubt(NamedTuple):
 
 @dataclass(frozen=True)
 class QualityFinding:
-    """One row of `quality`, still without its drive, and what it makes doubtful."""
+    """One row of `quality`, still without its drive, and the values that it makes doubtful."""
 
     check_id: str
     severity: Severity
@@ -324,12 +323,12 @@ class LostTime(NamedTuple):
 
 @dataclass
 class Recording:
-    """What a reader hands over: rows in the log's own order, nothing sorted or checked yet.
+    """The output of a reader: rows in the log's own order, nothing sorted or checked yet.
 
     `actors` is an Arrow table with the columns of `actor` where the log has one apart from its states. `ego_ids` are
     the log's or mapping's egos, `lost` what damage took from it, `conditions` what it says of the drive (condition -> word),
     `strict_units` is set where a mapping the user can correct decided units and frame. `geo_reference` and `geo_offset` are
-    those of `Trace`. `frames_ns`: the times of the log's frames, those in which nobody is among them; None: those of the states.
+    those of `Trace`. `frames_ns`: the times of the log's frames, including those without actors; None: those of the states.
     `names_indicator`: whether a mapping names the column of the indicators.
     `ends_apart_ns`: so far apart the parts of a log may begin and end that were recorded beside each other, such as topics.
     """

@@ -2,7 +2,7 @@
 
 The velocity at a state is the least-squares slope over the positions within some time to both sides: the narrowest of `HALF_WIDTHS_S`
 over which three standard errors are at most `LARGEST_ERROR_MPS`. Exact positions (a simulator's) get central differences; five centimetres
-of noise at 10 Hz get half a second to both sides. What even a second does not tell is unknown. An actor that stays within its noise
+of noise at 10 Hz get half a second to both sides. What even a second does not show is unknown. An actor that stays within its noise
 over two seconds stands: its velocity is zero.
 """
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 LARGEST_ERROR_MPS: Final = 0.25
-"""Three standard errors of a velocity component that counts as known: half of what standing is (`standing_mps`)."""
+"""Three standard errors of a velocity component that counts as known: half of the speed that counts as standing (`standing_mps`)."""
 HALF_WIDTHS_S: Final = (0.25, 0.5, 1.0)
 """Half widths of the filter, after central differences; a braking of 10 m/s3 of jerk is 0.06, 0.25 and 1 m/s off in its middle."""
 LONGEST_PERIOD_NS: Final = 210_000_000

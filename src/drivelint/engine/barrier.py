@@ -1,4 +1,4 @@
-"""Tells a fault of one drive, which is refused, from a fault of the whole run."""
+"""Distinguishes a fault of one drive, which is refused, from a fault of the whole run."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def refusal_of(path: Path, error: BaseException) -> RefusedLog:
 
 
 def _error_text(error: BaseException) -> str:
-    """Return what an unexpected error says, and where it was raised."""
+    """Return the text of an unexpected error, and where it was raised."""
     frames = traceback.extract_tb(error.__traceback__)
     where = f" ({frames[-1].filename.rpartition('drivelint/')[2]}:{frames[-1].lineno})" if frames else ""
     words = (str(error).splitlines() or [""])[0][:200]

@@ -41,7 +41,7 @@ FIRST_BATCH_DRIVES: Final = 16
 FIRST_BATCH_STATES: Final = 100_000
 """So small is a run's first batch, so that something is judged soon."""
 BATCH_GROWTH: Final = 6
-"""A batch has no more than so many times what was judged before it."""
+"""A batch is at most this many times larger than all batches before it."""
 
 
 @dataclass(frozen=True)

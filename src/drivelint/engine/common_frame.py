@@ -29,14 +29,14 @@ LENGTH_TOLERANCE_M: Final = 0.1
 """What a step may be longer or shorter there. UTM's metre is 0.9996 to 1.001 of one on the ground, a local projection's 1."""
 SAME_M: Final = 0.01
 FAR_M: Final = 10_000.0
-"""An offset of more than this is no mistake of somebody who drives beside the road."""
+"""An offset of more than this is not that of a driver beside the road."""
 
 
 def move_into_map_frame(trace: Trace, environment: MapTables) -> Trace:
     """Return the trace in the coordinates of the map, with a finding that says so; as it is where nothing says that they differ.
 
     Each position is moved by itself, each heading, velocity and acceleration turned by the angle between the two norths there.
-    Whoever gives `--map-offset` or `--map-origin` has said how they lie to each other. Heights stay as they are.
+    With `--map-offset` or `--map-origin`, the user states how they lie relative to each other. Heights stay as they are.
     Errors: `MapError` where lengths or shapes would not be kept.
     """
     log_frame, map_frame = frame_of_log(trace)[0], frame_of_map(environment)
@@ -50,7 +50,7 @@ def move_into_map_frame(trace: Trace, environment: MapTables) -> Trace:
         return trace
     low, high = xy[placed].min(axis=0), xy[placed].max(axis=0)
     turn, stretch = _similarity(log_frame, map_frame, low, high)
-    # what lies a metre beside a place tells by how much a heading turns there
+    # a point a metre beside a place shows by how much a heading turns there
     there, beside = np.split(
         _through(log_frame, map_frame, np.concatenate([xy[placed], xy[placed] + np.array([1.0, 0.0])])), 2
     )

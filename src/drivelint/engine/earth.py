@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def place_on_earth(trace: Trace, environment: MapTables | None) -> tuple[GeoFrame | None, str | None]:
-    """Return how the drive's coordinates become those of a projection (None: nothing says it), and what is wrong with the log's own.
+    """Return how the drive's coordinates become those of a projection (None: not known), and the problem of the log's own reference.
 
     What is wrong with the map's is in its `map_quality`.
     """

@@ -1,4 +1,4 @@
-"""Stops a run from another thread, so that what was judged until then can be kept."""
+"""Stops a run from another thread, so that the results so far can be kept."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 COPIES_S: Final = 20.0
-"""So long after an interruption copies of what was judged are begun to be judged."""
+"""Time after an interruption in which judging of copies may still begin."""
 
 
 class InterruptedRunError(Exception):

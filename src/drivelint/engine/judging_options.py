@@ -12,7 +12,7 @@ from drivelint.evaluate.limits import DEFAULT_TIMEOUT_S
 
 @dataclass(frozen=True, kw_only=True)
 class JudgingOptions(DriveInput):
-    """By which rules and profiles drives are judged, what their findings mean for the exit code, and what it may cost."""
+    """The rules and profiles of a run, the effect of findings on the exit code, and the limits of memory and time."""
 
     rules: tuple[str, ...] = ()
     ignore: tuple[str, ...] = ()
@@ -24,7 +24,7 @@ class JudgingOptions(DriveInput):
     require: tuple[str, ...] = ()
     annotate: bool = True
     robustness: bool | None = None
-    """Whether copies tell how robust findings are; None: of each rule that an ego breaks, the gravest finding."""
+    """Whether copies show how robust findings are; None: of each rule that an ego breaks, the gravest finding."""
     memory: int | None = DEFAULT_MEMORY
     """Bytes that the database keeps to before it uses the disk; None: 80 % of the machine's."""
     rule_timeout: float = DEFAULT_TIMEOUT_S

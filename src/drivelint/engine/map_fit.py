@@ -22,7 +22,7 @@ VOTE_SAMPLES: Final = 400  # moving states looked at, evenly spread: enough to v
 LEAST_VOTES: Final = 20
 FIRST_POSITIONS, MOST_POSITIONS = 20, 2000  # positions looked at to see whether a drive is on its map
 LEAST_REVERSED_EACH_WAY: Final = 5
-"""So many of them against their lane in both directions of a road: nobody overtakes both ways."""
+"""This many steps against the lane in both directions of a road: overtaking explains only one."""
 BESIDE_M: Final = 8.0  # so near lie the middles of two lanes of one road, with what may be between them
 FACING_COSINE: Final = 0.9
 AGREEMENT_SHARE: Final = 0.8  # an overtake drives against its lane for a while, a drive does not

@@ -40,7 +40,7 @@ MOVING_MPS = 1.0
 FITS_PROJECTION: Final = QualityFinding(
     "fits_projection",
     "info",
-    "the log does not say its frame: it lies on the map with the coordinates of the map's projection",
+    "the log does not state its frame: it fits the map in the coordinates of the map's projection",
 )
 OFF_MAP_M = 50.0  # beyond the map's own lanes by this much, a drive is somewhere else
 
@@ -55,7 +55,7 @@ class MapLibrary:
 
     def __init__(self, options: DriveInput) -> None:
         if options.map and options.map_dir:
-            raise UsageError("--map names one map and --map-dir many: give one of them")
+            raise UsageError("--map and --map-dir exclude each other: use one of them")
         self._options = options
         self._given = read_source(options.map) if options.map else None
         self._map_folder = MapFolder(options.map_dir) if options.map_dir else None
@@ -70,6 +70,10 @@ class MapLibrary:
         if self._given is not None:
             self._load(self._given, None, None)
 
+    def given_nation(self) -> str | None:
+        """Return the nation of the map of `--map`; None: it states none. Errors: `MapError`, `UsageError`."""
+        return None if self._given is None else self._load(self._given, None, None).nation
+
     def find(self, trace: Trace) -> tuple[MapTables | None, Trace]:
         """Return the environment for one drive, and the drive in its frame; the user's `--map-offset` goes before the drive's own.
 
@@ -83,7 +87,7 @@ class MapLibrary:
         if trouble:
             raise MapError(
                 f"map {environment.environment_id} is of another place than {trace.path.name}: {trouble}; "
-                "give the right --map, or --map-offset"
+                "set the right --map, or --map-offset"
             )
         if environment.lanes_source == "default":
             assert environment.lanes is not None  # noqa: S101 - `lanes` is None only where the map gives each lane's direction
@@ -93,7 +97,7 @@ class MapLibrary:
         return environment, with_condition_of_map(trace, "nation", environment.nation)
 
     def _in_its_frame(self, environment: MapTables, trace: Trace) -> tuple[Trace, str | None]:
-        """Return the drive in the map's frame, and what shows that it is of another place.
+        """Return the drive in the map's frame, and the evidence that it is of another place.
 
         What the references say is not taken where it leads away from the map, and the coordinates as they are do not; nor what the
         same one says of `<offset>`: a log that says no offset of its own mostly has the coordinates of the file. A log without a reference
@@ -148,7 +152,7 @@ class MapLibrary:
         reference, theirs = trace.geo_reference, environment.tables["environment"]["geo_reference"][0].as_py()
         if reference and theirs and geo_reference.different_places(reference, theirs):
             found["geo_reference_differs"] = (
-                f"the log's coordinates are {reference!r}, the map's {theirs!r}: if they are not of one place and frame, give the "
+                f"the log's coordinates are {reference!r}, the map's {theirs!r}: if they are not of one place and frame, set the "
                 "right --map or --map-offset"
             )
         return {check: text for check, text in found.items() if text}
@@ -162,14 +166,14 @@ class MapLibrary:
             raise MapError(
                 f"map {environment.environment_id}: the traffic of {trace.path.name} runs against its lanes, on road {road} both ways: "
                 f"the side of the road ({side} by {source}) or the lanes' direction is wrong; "
-                f"{correction_hint(side, source)}, or give another map"
+                f"{correction_hint(side, source)}, or use another map"
             )
         if map_fit.vote_handedness(side, seen) in {None, side}:
             return None
-        said = "--handedness says" if source == "option" else f"the map says (by {source})"
+        said = "--handedness says" if source == "option" else f"the map states (by {source})"
         return (
-            f"{said} {side}, the traces fit {opposite_side(side)}: of {len(seen.agree)} headings looked at, {int((~seen.agree).sum())} are "
-            f"against the direction of their lane. {side} is taken. If that is wrong, every direction is wrong: "
+            f"{said} {side}, the traces fit {opposite_side(side)}: of {len(seen.agree)} headings examined, {int((~seen.agree).sum())} are "
+            f"against the direction of their lane. {side} is used. If that is wrong, every direction is wrong: "
             f"{correction_hint(side, source)}."
         )
 
@@ -229,7 +233,7 @@ class MapLibrary:
 
 
 def _elsewhere(environment: MapTables, lanes: shapely.STRtree, states: pa.Table) -> str | None:
-    """Return what shows that the map is of another place than the drive, or None."""
+    """Return the evidence that the map is of another place than the drive, or None."""
     drive, roads = _extent(states), _extent(environment.tables["lane_point"])
     if drive is None or roads is None:
         return None
@@ -241,7 +245,7 @@ def _elsewhere(environment: MapTables, lanes: shapely.STRtree, states: pa.Table)
         )
     looked, found = map_fit.count_on_map(lanes, floats(states["x_m"]), floats(states["y_m"]))
     if looked and not found:
-        return f"of {looked} positions looked at, none is on anything that it knows"
+        return f"none of the {looked} examined positions is on a lane or other area of the map"
     return None
 
 

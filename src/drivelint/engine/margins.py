@@ -42,13 +42,13 @@ class MarginFile:
                 self._write()
 
     def close(self) -> None:
-        """Write what waits, and finish the file."""
+        """Write the waiting rows, and finish the file."""
         if self._file:
             self._write()
             self._file.close()
 
     def _write(self) -> None:
-        """Write one block of what waits, or all of it if that is less."""
+        """Write one block of the waiting rows, or all of them if there are fewer."""
         if self._file and self._waiting:
             rows = pa.Table.from_batches(self._waiting)
             # as one piece: where it was cut would show in the pages

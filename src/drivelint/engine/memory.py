@@ -54,7 +54,9 @@ class Memory:
             return False
         self.limited = False
         given = store.lift_memory_limit(self._con)
-        self._note(f"{format_bytes(self._limit)} of memory do not do (--memory): the database may take up to {given}")
+        self._note(
+            f"{format_bytes(self._limit)} of memory are not enough (--memory): the database may use up to {given}"
+        )
         return True
 
     def release(self) -> None:
@@ -68,9 +70,9 @@ class Memory:
                 store.lift_memory_limit(self._con)
 
     def most_growth(self) -> int | None:
-        """Return by how many bytes the process may grow while a rule runs; None where that tells nothing of the rule.
+        """Return by how many bytes the process may grow while a rule runs; None if that means nothing about the rule.
 
-        The system may not tell what is free, or logs are being read meanwhile.
+        The system may not report free memory, or logs are being read meanwhile.
 
         The database counts what its tables take. Functions on huge values take more than that without being counted.
         """
@@ -95,7 +97,7 @@ class Memory:
 
 
 def peak_bytes() -> int | None:
-    """Return the most bytes of memory that this process has had; None where the system does not tell."""
+    """Return the most bytes of memory that this process has had; None if the system does not report it."""
     try:
         import resource
     except ImportError:  # Windows
@@ -105,7 +107,7 @@ def peak_bytes() -> int | None:
 
 
 def free_bytes() -> int | None:
-    """Return how many bytes of memory programs can still get; None where the system does not tell."""
+    """Return how many bytes of memory programs can still get; None if the system does not report it."""
     try:
         found = re.search(r"^MemAvailable:\s*(\d+) kB", Path("/proc/meminfo").read_text(encoding="ascii"), re.MULTILINE)
     except OSError:  # not Linux

@@ -54,7 +54,7 @@ class JudgingSession:
     `out` is where `margins_file` and the kept database go. `observers` are called after each part while its tables are there.
     `memory` says how many, and gives way where there is too little (default: the database has no limit of ours).
     `interruption` ends a batch before it is judged.
-    `errors`: those of the copies that tell how robust findings are; None: no copies are judged.
+    `errors`: those of the copies that show how robust findings are; None: no copies are judged.
     `copies_of_all`: of all critical and major findings, else of the gravest. `judge_copies` ends their judging.
     `limits` of each rule in a batch of drives, `limits_of_copies` in one of copies (default: both as `RuleLimits` has them).
     """
@@ -106,11 +106,12 @@ class JudgingSession:
         self._seen: set[str] = set()
         self._maps: frozenset[str] = frozenset()
         self._kept_maps: set[str] = set()
+        self._has_map_rows = False
         self._margins = MarginFile(out / ".margins.parquet") if margins and out else None
         self._kept = out / "drivelint.duckdb" if keep_db and out else None
         if self._kept:
             self._attach(self._kept)
-        store.lock(con)  # from here on rules of anybody may run in it
+        store.lock(con)  # from here on foreign rules may run in it
 
     @property
     def margins_file(self) -> Path | None:
@@ -244,7 +245,7 @@ class JudgingSession:
         # a rule that erred on a crowd is tried on each drive alone: the fault of one is not the others'
         erred = "SELECT rule_id FROM verdict WHERE verdict = 'error' AND list_contains(?, drive_id) ORDER BY rule_id LIMIT 1"
         if len(ids) > 1 and (row := self._con.execute(erred, [list(ids)]).fetchone()):
-            raise RuleError(f"{row[0]} erred on a batch of {len(ids)} drives")
+            raise RuleError(f"{row[0]} failed on a batch of {len(ids)} drives")
 
     def close(self) -> None:
         """Finish the files that grew with the batches."""
@@ -259,8 +260,9 @@ class JudgingSession:
         environments = {d.environment.environment_id: d.environment for d in drives if d.environment}
         if not environments.keys() <= self._maps:
             self._maps = frozenset()  # until the new ones are whole: a failure here must not leave half a map behind
-            for table in store.tables_of_lifetime("map"):
-                self._con.execute(f"DELETE FROM {table}")
+            if self._has_map_rows:
+                self._con.execute(";".join(f"DELETE FROM {table}" for table in store.tables_of_lifetime("map")))
+            self._has_map_rows = True
             for id_, environment in sorted(environments.items()):
                 known = self._con.execute("FROM environment WHERE environment_id = ?", [id_]).fetchone() is not None
                 for table, rows in environment.tables.items():
@@ -291,7 +293,7 @@ class JudgingSession:
         self._con.execute(f"ATTACH {store.quoted(path)} AS kept")
 
     def _keep(self, tables: Iterable[str], *, again: bool = False) -> None:
-        """Copy tables to the kept database; `again`: what is the same for all parts of a drive is there already."""
+        """Copy tables to the kept database; `again`: rows that are the same for all parts of a drive are there already."""
         if not self._kept:
             return
         for table in tables:
@@ -314,7 +316,7 @@ class JudgingSession:
             self._con.execute(f"DELETE FROM kept.{table} WHERE list_contains(?, drive_id)", [list(ids)])
 
     def _forget_copies(self, ids: Sequence[str]) -> None:
-        """Delete what the database has of these drives; a kept one never had copies."""
+        """Delete the rows of these drives from the database; a kept database never had copies."""
         store.recreate_empty(self._con, self._filled("drive", "part"))
         for table in store.tables_of_lifetime("run"):
             if "drive_id" in store.column_comments()[table]:

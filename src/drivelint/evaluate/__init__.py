@@ -49,7 +49,7 @@ def evaluate(
     params = params or {}
     strange = sorted(params.keys() - {rule.id for rule in rules})
     if strange:
-        raise UsageError(f"parameters are given for {strange[0]!r}, which is not among the selected rules")
+        raise UsageError(f"parameters are set for {strange[0]!r}, which is not among the selected rules")
     if not rules:
         return
     bindings = [Binding(rule, no, params.get(rule.id, {})) for no, rule in enumerate(rules)]
@@ -71,7 +71,7 @@ def evaluate(
 def query_plans(con: duckdb.DuckDBPyConnection, rule: Rule) -> list[str]:
     """Return the physical plans of all statements that a rule may run.
 
-    Errors: `duckdb.Error` where the rule's SQL does not fit the tables.
+    Errors: `duckdb.Error` where the rule's SQL does not match the tables.
     """
     plans: list[str] = []
     for margins in (False, True):

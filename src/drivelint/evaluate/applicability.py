@@ -1,7 +1,7 @@
 """Builds the SQL that decides whether a rule is in force: its header's conditions and the automated driver's engagement.
 
-Engagement costs nothing where it says nothing: `_watched` names the subjects with a step at which the automated driver
-does not drive, or may not; for all others every step is engaged.
+Engagement costs nothing if it is not declared: `_watched` names the subjects with a step at which the automated driver does not drive, or
+may not; for all others every step is engaged.
 """
 
 from __future__ import annotations

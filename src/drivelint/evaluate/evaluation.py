@@ -1,4 +1,4 @@
-"""One evaluation: which statements a rule needs, in order, when it can stop early, and what is done for all rules at once."""
+"""One evaluation: the statements that a rule needs, in order, the early ends, and the statements for all rules at once."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class _StepsToJudge(NamedTuple):
 
 @dataclass
 class Evaluation:
-    """A connection, the rules to judge on it, what is asked for, and what the rules share."""
+    """A connection, the rules to judge on it, the request, and the data that the rules share."""
 
     con: duckdb.DuckDBPyConnection
     bindings: Sequence[Binding]
@@ -135,7 +135,7 @@ class Evaluation:
                 self._take(deque(self._apart(self._pending)))
 
     def _apart(self, bindings: Sequence[Binding]) -> list[Binding]:
-        """Forget what came of these rules, and let each be judged by itself: the fault of one is not the others'."""
+        """Drop the results of these rules, and let each be judged by itself: the fault of one must not affect the others."""
         again = list(bindings)
         numbers = [binding.no for binding in again]
         for table in temp_tables.OUTCOME_TABLES:
@@ -222,7 +222,7 @@ class Evaluation:
         self._may_be_double |= self._check_engagement or n_judged != steps.n
 
     def _first_pass(self, binding: Binding) -> _StepsToJudge | None:
-        """Settle what can be settled without looking at each step; return the steps that are left, None: there are none."""
+        """Settle the subjects that need no look at each step; return the remaining steps, None: there are none."""
         rule, partial = binding.rule, self._is_partial(binding)
         if rule.per_profile:
             self._execute(rule_statement("profile_set", rule), binding)

@@ -1,8 +1,8 @@
 """Holds each rule to an amount of computing time and of memory.
 
-The time is that of the processor, so that verdicts do not depend on what else the machine does. A statement beyond its limit is
+The time is that of the processor, so that verdicts do not depend on other programs of the machine. A statement beyond its limit is
 interrupted. DuckDB heeds an interrupt between two vectors of rows, not inside one: a function that works on one huge value, or many of
-them, goes on. What to do about such a rule is for whoever made the limits (`DeafRules`).
+them, continues. The maker of the limits decides what to do about such a rule (`DeafRules`).
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 DEFAULT_TIMEOUT_S: Final = 30.0
 """Seconds of computing per rule and batch."""
 MOST_EXCESSES: Final = 3
-"""A rule that went beyond its limits so often is not tried again: every drive of a batch is judged alone after a rule failed on it."""
+"""A rule that exceeded its limits so often is not tried again: every drive of a batch is judged alone after a rule failed on it."""
 _LOOK_S: Final = 0.1
 _MEMORY_GRACE_S: Final = 0.5
 """How long a rule may compute before it heeds an interrupt for its memory, unless it takes too much more meanwhile."""
@@ -73,7 +73,7 @@ class RuleLimits:
     ) -> None:
         self.seconds = seconds
         self.batches = 1.0
-        """How many batches what is judged makes, if it is more than one: a long drive is not cut."""
+        """The number of batches that the judged drive makes, if more than one: a long drive is not cut."""
         self.memory: Callable[[], int | None] = lambda: None
         """Bytes by which the process may grow while a rule runs alone, at present; None: any number."""
         self._task = task
@@ -84,7 +84,7 @@ class RuleLimits:
 
     @property
     def allowed_s(self) -> float | None:
-        """Seconds that a rule may compute on what is judged at present."""
+        """Seconds that a rule may compute on the present drives."""
         return None if self.seconds is None else self.seconds * max(1.0, self.batches)
 
     def excess_of(self, rule_id: str) -> Excess | None:
@@ -146,7 +146,7 @@ class RuleLimits:
                 if rule_run.over.is_set():
                     return
                 rule_run.excess = excess
-                machine_bound(f"rule {rule_id} went beyond its limits")
+                machine_bound(f"rule {rule_id} exceeded its limits")
                 con.interrupt()
                 if now >= patience and self._deaf is not None:
                     self._deaf.restart_without(self._task, rule_id, excess)

@@ -1,4 +1,4 @@
-"""Why one verdict is what it is: clause, SQL and numbers behind it, what would change it, and how sure it is.
+"""Explains one verdict: clause, SQL and numbers behind it, changes that would change it, and how sure it is.
 
 `explain` judges the drive again by that rule alone, from the kept database or from the log.
 """
@@ -9,6 +9,9 @@ import json
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
+
+import msgspec
+import pyarrow.compute as pc
 
 from drivelint import catalogue
 from drivelint.engine.memory import DEFAULT_MEMORY
@@ -31,8 +34,12 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
+    import pyarrow as pa
+
     from drivelint.catalogue import Rule
-    from drivelint.explain.model import Change, Row, Step
+    from drivelint.engine.batch import Drive
+    from drivelint.explain.model import Change, Row, Sensitivity, Step
+    from drivelint.explain.sandbox import Sandbox
     from drivelint.explain.target import Target
     from drivelint.result.request import RunRequest
 
@@ -46,7 +53,7 @@ _DRIVE: Final = ["drive_id", "file_name", "format", "t_start_ns", "duration_s", 
 
 @dataclass(frozen=True)
 class ExplainRequest:
-    """What `explain` is asked: a finding or rule, the result folder, and where log and map are if they were moved."""
+    """A request to `explain`: a finding or rule, the result folder, and where log and map are if they were moved."""
 
     name: str
     folder: Path
@@ -66,7 +73,7 @@ def explain(request: ExplainRequest) -> Explanation:
     result = load_result(request.folder)
     target = find_verdict(result, request.name, request.verdict_filter)
     run_options = run_request.load(request.folder).of_drive(target.verdict_row["drive_id"])
-    case = _case(run_options, target, request.memory)
+    case = _case(run_options, target, result.rules, request.memory)
     row = target.verdict_row
     of_drive = next(each for each in result.drives.to_pylist() if each["drive_id"] == row["drive_id"])
     drive, source = open_drive(
@@ -93,13 +100,9 @@ def explain(request: ExplainRequest) -> Explanation:
         changes: list[Change] = []
         sensitivity = None
         if not lacks_signal(row):
-            part, span, sandbox = sufficient_part(case, drive, sandbox, now, exit_stack)
-            if case.rule.version == row["rule_version"] and now == row["verdict"]:
-                sensitivity = sensitivity_of_check(target.worst, request.errors)
-            errors = for_verdict(request.errors, row["verdict"])
-            if errors.samples and sensitivity is None:
-                sensitivity = verdict_sensitivity(case, part, errors, span)
-            changes = verdict_changes(case, sandbox, now)
+            changes, sensitivity = _what_would_change_it(
+                case, drive, sandbox, now, errors=request.errors, exit_stack=exit_stack
+            )
     rule = case.rule
     about = {name: of_drive[name] for name in _DRIVE}
     return Explanation(
@@ -129,12 +132,32 @@ def explain(request: ExplainRequest) -> Explanation:
     )
 
 
-def _case(run_options: RunRequest, target: Target, memory: int | None) -> VerdictContext:
-    """Return the rule of a verdict, as it was set in that run."""
+def _what_would_change_it(
+    case: VerdictContext, drive: Drive, whole: Sandbox, now: str, *, errors: MeasurementErrors, exit_stack: ExitStack
+) -> tuple[list[Change], Sensitivity | None]:
+    """Return the least changes of the rule's numbers that change a verdict, and how often it stays with measuring errors.
+
+    `whole`: the drive as it was judged anew, with the verdict `now`. None: no copies were asked for.
+    """
+    row = case.target.verdict_row
+    part, span, sandbox = sufficient_part(case, drive, whole, now, exit_stack)
+    sensitivity = None
+    if case.rule.version == row["rule_version"] and now == row["verdict"]:
+        sensitivity = sensitivity_of_check(case.target.worst, errors)
+    of_verdict = for_verdict(errors, row["verdict"])
+    if of_verdict.samples and sensitivity is None:
+        sensitivity = verdict_sensitivity(case, part, of_verdict, span)
+    return verdict_changes(case, sandbox, now), sensitivity
+
+
+def _case(run_options: RunRequest, target: Target, rules: pa.Table, memory: int | None) -> VerdictContext:
+    """Return the rule of a verdict, as it was set in that run, whose table of rules is `rules`."""
     rule_id = target.verdict_row["rule_id"]
     rule = catalogue.load_rule(rule_id, run_options.rules_dirs)
     if rule is None:
         raise UsageError(f"rule {rule_id} is not in the catalogue any more: check the drives again")
+    (row,) = rules.filter(pc.equal(rules["rule_id"], rule_id)).to_pylist()
+    rule = msgspec.structs.replace(rule, is_named=row["is_named"])
     mine = [
         setting for setting in run_options.params if setting.partition("=")[0].strip().rpartition(".")[0] == rule_id
     ]
@@ -146,7 +169,7 @@ def _case(run_options: RunRequest, target: Target, memory: int | None) -> Verdic
 
 
 def _asks(rule: Rule, row: Mapping[str, Any], start_ns: int) -> str | None:
-    """Return what the reason of a verdict asks to record or to provide, with its subject; None: nothing."""
+    """Return what to record or to provide, by the reason of a verdict, with its subject; None: nothing."""
     if row["cause_code"] is not None:
         return reason_text.advice_sentence(
             row["cause_code"], json.loads(row["cause_args"] or "{}"), start_ns, rule.reasons
@@ -156,7 +179,7 @@ def _asks(rule: Rule, row: Mapping[str, Any], start_ns: int) -> str | None:
 
 def _decides(target: Target, series: list[Step], now: str) -> int | None:
     """Return the step that the verdict hangs on; None: it is about no step."""
-    # somebody who is lost has no step after the last one: that is the one to show
+    # a lost actor has no step after its last one: that one is shown
     unknown = [step.t_ns for step in series if step.holds is None and now == "unknown"]
     times = [*unknown[:1], target.verdict_row["t_worst_ns"], target.verdict_row["t_start_ns"]]
     return next((t_ns for t_ns in times if t_ns is not None), None)
@@ -168,10 +191,10 @@ def _notes(case: VerdictContext, now: str) -> list[str]:
     if case.rule.version != version:
         notes.append(
             f"The rule has changed since (version {version[:8]} then, {case.rule.version[:8]} now): "
-            "the SQL and what follows from it are today's."
+            "the SQL and everything computed from it are those of the present version."
         )
     if now != before:
-        notes.append(f"Judged anew it is {now}, not {before} as in the result: the tool or the rule has changed.")
+        notes.append(f"Judged again it is {now}, not {before} as in the result: the tool or the rule has changed.")
     return notes
 
 

@@ -1,7 +1,6 @@
 """The nearest value of each parameter and profile number that would change the verdict.
 
-The searches of all numbers run side by side: each says which values it wants to know the verdict at, and all of these are judged
-at once.
+The searches of all numbers run side by side: each requests the verdict at some values, and all of these are judged at once.
 """
 
 from __future__ import annotations

@@ -25,7 +25,7 @@ CONDITION_TABLES: Final = ("ego_condition", "ego_state")
 TRACK_TABLES: Final = ("pair",)
 """Tables with a row at each step of an object's track. Where the track has ended, its last row says where the object was."""
 SERIES_PADDING_NS: Final = 30_000_000_000
-"""How much of a longer episode is shown on each side of what is explained."""
+"""The part of a longer episode that is shown on each side of the explained step."""
 _SPANS: Final = (
     ("t_ns", "t_ns"),
     ("t_start_ns", "t_end_ns"),
@@ -70,7 +70,7 @@ def judged_steps(rule: Rule, target: Target, judgement: Judgement) -> list[Step]
 def requirement_parts(
     rule: Rule, target: Target, sandbox: Sandbox, params: Mapping[str, object], t_ns: int | None
 ) -> list[Part]:
-    """Return what the requirement at one time is made of, as the rule's author says; empty: not said, or not as much as is required."""
+    """Return the parts of the requirement at one time, as the rule defines them; empty: not defined, or they do not add up."""
     row, found = target.verdict_row, read_parts(rule)
     if found is None or row["required"] is None or t_ns is None:
         return []

@@ -55,7 +55,7 @@ class Change(NamedTuple):
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """How often each verdict came out over copies of the drive with random errors.
+    """The number of copies of the drive with random errors that had each verdict.
 
     `certainty`: `sure` or `possible`, as the finding is, whose copies `check` judged with assumed errors; all that is known
     of their verdicts is how many are `fail`. None: these copies were judged with the errors given here.
@@ -69,13 +69,13 @@ class Sensitivity:
     counts: dict[str, int]
     from_ns: int | None
     to_ns: int | None
-    """What of the drive was judged; None: all of it."""
+    """The judged part of the drive; None: all of it."""
     certainty: str | None = None
 
 
 @dataclass(frozen=True)
 class Explanation:
-    """Why one verdict is what it is. Verdicts are those of `verdict`; the numbers are of the deciding step."""
+    """The explanation of one verdict. Verdicts are those of `verdict`; the numbers are of the deciding step."""
 
     rule: Row
     """rule_id, title, clause, hypothesis, kind, severity, legal, status, sense, unit, observes, near_margin."""
@@ -86,10 +86,10 @@ class Explanation:
     other_verdicts: list[Row]
     """Further verdict rows of this rule in this drive: profile, object_id, t_start_ns, verdict."""
     asks: str | None
-    """What the reason asks to record or to provide."""
+    """What to record or to provide, by the reason."""
     decides_ns: int | None
     parts: list[Part]
-    """What the verdict's `required` is made of; empty: not known."""
+    """The parts of the verdict's `required`; empty: not known."""
     sql: dict[str, str]
     params: list[Row]
     rows: list[TableRows]
@@ -97,6 +97,6 @@ class Explanation:
     changes: list[Change]
     sensitivity: Sensitivity | None
     source: str
-    """Where the numbers behind it are from: the kept database, or the log."""
+    """The source of the numbers: the kept database, or the log."""
     notes: list[str] = field(default_factory=list)
     """What could not be shown, and why."""

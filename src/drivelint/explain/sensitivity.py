@@ -26,7 +26,7 @@ def for_verdict(errors: MeasurementErrors, verdict: str) -> MeasurementErrors:
 
 
 def sensitivity_of_check(finding: Row | None, errors: MeasurementErrors) -> Sensitivity | None:
-    """Return in how many copies `check` found what it found; None: it judged none, or others are asked for."""
+    """Return in how many copies the finding of `check` stays; None: it judged none, or other copies are requested."""
     if finding is None or finding["n_copies"] is None or errors != MeasurementErrors():
         return None
     told = asdict(errors) | {"samples": finding["n_copies"], "counts": {"fail": finding["n_stays"]}}

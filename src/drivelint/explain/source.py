@@ -48,17 +48,29 @@ def open_drive(
             return _from_database(kept, drive_id, ego_id), f"the kept database {kept.name}"
         except duckdb.Error as error:
             raise UsageError(f"{kept}: {str(error).splitlines()[0]}: check the drives again with --keep-db") from error
+    return _from_log(run_options, drive_id, ego_id, trace=trace, map_=map_, map_sha256=map_sha256)
+
+
+def _from_log(
+    run_options: RunRequest,
+    drive_id: str,
+    ego_id: str,
+    *,
+    trace: Path | None,
+    map_: Path | None,
+    map_sha256: str | None,
+) -> tuple[Drive, str]:
     path = trace or Path(run_options.traces.get(drive_id, ""))
     if not path.exists() or not (trace or drive_id in run_options.traces):
         raise UsageError(
             f"the log of {drive_id} is not at {path} any more and the result has no database (check --keep-db): "
-            "say where it is with --trace FILE"
+            "name its new path with --trace FILE"
         )
     drive = _read(run_options, path, map_, drive_id, ego_id)
     if drive.environment and map_sha256 not in {None, *drive.environment.tables["environment"]["sha256"].to_pylist()}:
         name = drive.environment.tables["environment"]["name"][0].as_py()
         raise UsageError(
-            f"map {name} is not as it was when {drive_id} was judged: give that one with --map, or check again"
+            f"map {name} has changed since {drive_id} was judged: name the old map with --map, or check again"
         )
     return drive, f"the log {path.name}, read again"
 
@@ -66,18 +78,26 @@ def open_drive(
 def _read(run_options: RunRequest, path: Path, map_: Path | None, drive_id: str, ego_id: str) -> Drive:
     map_path = map_ or run_options.map
     if map_path is not None and not map_path.exists():
-        raise UsageError(f"the map {map_path} is not there any more: say where it is with --map FILE")
+        raise UsageError(f"the map {map_path} is not there any more: name its new path with --map FILE")
     run_options = replace(
         run_options, ego=ego_id, map=map_path, map_dir=None if map_path is not None else run_options.map_dir
     )
     read = read_trace(path, run_options.ingest_options())
     if read.drive_id.rpartition("-")[2] != drive_id.rpartition("-")[2]:
         raise UsageError(
-            f"{path} is not the log that was judged ({drive_id}) but {read.drive_id}: give that one with --trace"
+            f"{path} is not the log that was judged ({drive_id}) but {read.drive_id}: name the right log with --trace"
         )
     if read.drive_id != drive_id:  # the same bytes under another name
         read = renamed(read, drive_id)
     return drive_with_map(read, MapLibrary(run_options))
+
+
+def with_ego(drive: Drive, ego_id: str) -> Drive:
+    """Return the drive with this actor as its ego."""
+    actors = drive.trace.tables["actor"]
+    is_ego = [name == ego_id for name in actors["actor_id"].to_pylist()]
+    tables = {**drive.trace.tables, "actor": with_columns(actors, {"is_ego": is_ego})}
+    return replace(drive, trace=replace(drive.trace, tables=tables))
 
 
 def _from_database(file: Path, drive_id: str, ego_id: str) -> Drive:
@@ -85,8 +105,6 @@ def _from_database(file: Path, drive_id: str, ego_id: str) -> Drive:
         tables = {name: _rows(con, name, "drive_id", drive_id) for name in TRACE_TABLES}
         if not tables["data_log"].num_rows:
             raise DriveLintError(f"{file}: the drive {drive_id} is not in it: check the drives again")
-        is_ego = [name == ego_id for name in tables["actor"]["actor_id"].to_pylist()]
-        tables["actor"] = with_columns(tables["actor"], {"is_ego": is_ego})
         place = tables["data_log"]["environment_id"][0].as_py()
         environment = None
         if place is not None:
@@ -95,7 +113,7 @@ def _from_database(file: Path, drive_id: str, ego_id: str) -> Drive:
             road = {name: _rows(con, name, "environment_id", place) for name in known}
             hand = road["environment"].to_pylist()[0]
             environment = MapTables(place, hand["handedness"], hand["handedness_source"], road)
-    return Drive(Trace(drive_id, file, tables, None, None, []), environment)
+    return with_ego(Drive(Trace(drive_id, file, tables, None, None, []), environment), ego_id)
 
 
 def _rows(con: duckdb.DuckDBPyConnection, table: str, key: str, value: str) -> pa.Table:

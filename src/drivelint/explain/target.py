@@ -168,7 +168,7 @@ def _rule(name: str, rules: Sequence[str], findings: Sequence[str]) -> str:
     )
     if near:
         hint = f"did you mean {near[0]!r}?"
-    raise UsageError(f"no finding begins with {name!r} and no rule of this result is called so; {hint}")
+    raise UsageError(f"no finding begins with {name!r}, and no rule of this result has this name; {hint}")
 
 
 def _complete_name(name: str, names: Sequence[str], kind: str) -> str:
@@ -185,5 +185,5 @@ def _complete_name(name: str, names: Sequence[str], kind: str) -> str:
 def _only_match(name: str, matches: Sequence[str], kinds: str) -> str:
     if len(matches) > 1:
         shown = ", ".join(matches[:5]) + (", ..." if len(matches) > 5 else "")
-        raise UsageError(f"{name!r} is the beginning of several {kinds}: {shown}: write more of it")
+        raise UsageError(f"{name!r} is the beginning of several {kinds}: {shown}: write more of the name")
     return matches[0]

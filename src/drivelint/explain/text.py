@@ -16,12 +16,14 @@ from drivelint.drive.declared_events import EVENTS
 from drivelint.explain.plot import plot
 from drivelint.explain.verdict_context import lacks_signal
 from drivelint.phrases import one_line
-from drivelint.reasons.signals import condition_of, remedy
+from drivelint.reasons.signals import UNRECORDED_PREFIX, condition_of, remedy
 from drivelint.result.text import finite, seconds
 from drivelint.result.text_templates import text_template
 from drivelint.sql import store
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from rich.console import RenderableType
 
     from drivelint.explain.model import Explanation, Row
@@ -39,9 +41,13 @@ _JSON_NAMES: Final = {"other_verdicts": "others", "description": "what", "neares
 _MEANS: Final = {
     "fail": "the rule was broken",
     "pass": "the rule was kept",
-    "unknown": "it cannot be told whether the rule was kept: that is no pass",
-    "not_applicable": "what the rule is about did not happen",
+    "unknown": "it is not known whether the rule was kept: this is not a pass",
+    "not_applicable": "the situation that the rule is about did not happen",
     "error": "the rule could not be run",
+}
+_DOES_NOT_APPLY: Final = {
+    "other_nation": "the rule is the law of another nation",
+    "outside_conditions": "the rule is for other conditions",
 }
 
 
@@ -71,7 +77,7 @@ def render(explanation: Explanation, width: int) -> Group:
         ("What would change it", prose["changes"]),
         ("Margin over time" if explanation.rule["sense"] != "holds" else "Over time", _series(explanation, width)),
         ("What it was judged on", prose["rows"]),
-        ("What the rule asks", prose["asks"]),
+        ("What the rule demands", prose["asks"]),
         ("How it was judged", [*prose["judged"], *_sql(explanation)]),
     ]
     for heading, lines in sections:
@@ -93,9 +99,16 @@ def _title(explanation: Explanation, width: int) -> list[RenderableType]:
     word = row["verdict"].replace("_", " ").upper()
     return [
         Text(f"{rule['rule_id']}: {one_line(rule['title'])}", "bold"),
-        Text.assemble((word, _STYLE.get(row["verdict"], "bold")), f": {_MEANS[row['verdict']]}"),
+        Text.assemble((word, _STYLE.get(row["verdict"], "bold")), f": {_meaning(row)}"),
         *(Text(line) for line in textwrap.wrap(", ".join(who), width)),
     ]
+
+
+def _meaning(row: Mapping[str, Any]) -> str:
+    """Return what a verdict means in words."""
+    if row["verdict"] == "not_applicable" and row["reason_code"].startswith(UNRECORDED_PREFIX):
+        return f"the log has none of a signal that the rule needs; `--rules {row['rule_id']}` makes it unknown"
+    return _DOES_NOT_APPLY.get(row["reason_code"], _MEANS[row["verdict"]])
 
 
 def _prose(explanation: Explanation) -> dict[str, list[str]]:
@@ -136,7 +149,7 @@ def _sql(explanation: Explanation) -> list[str]:
 
 
 def _cells(explanation: Explanation, table: str, row: Row) -> list[str]:
-    """Return the columns of a row that the rule names, and the one that is asked for, each with its value and what it means."""
+    """Return the columns of a row that the rule names, and the requested one, each with its value and meaning."""
     condition = None if "finding_id" in explanation.verdict else condition_of(explanation.verdict["reason_code"])
     asked = {"ego_condition": condition, "ego_state": "lanelet_id"}.get(table) if condition else None
     sql = "\n".join(explanation.sql.values())
@@ -160,7 +173,7 @@ def _cell(column: str, value: Any, start_ns: int) -> str:
 
 
 def _comment(text: str, value: Any) -> str:
-    """Return what a column means, cut: of a value without what NULL means, of a NULL only that, where it is said."""
+    """Return the meaning of a column, shortened: for a value without the meaning of NULL, for NULL only that, if it is stated."""
     of_value, null, of_null = text.partition("NULL: ")
     if null:
         text = null + of_null if value is None else of_value.rstrip("; ") or text

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 SAME_REFERENCE_NS: Final = 2_000_000_000
 """A reference point that moved by no more is the same one."""
 CROP_MARGINS_NS = (20_000_000_000, 60_000_000_000)
-"""How much of a drive around what is explained is enough, if the verdict is the same there; tried in this order."""
+"""Parts of a drive around the explained step, tried in this order until the verdict is the same."""
 _WORST: Final = ("error", "fail", "unknown", "pass", "not_applicable")
 
 
@@ -99,7 +99,7 @@ def sufficient_part(
 
 
 def _same_numbers(context: VerdictContext, series: list[Step]) -> bool:
-    """Tell whether the deciding step has the same numbers in a part of the drive as in all of it."""
+    """Return whether the deciding step has the same numbers in a part of the drive as in all of it."""
     row = context.target.verdict_row
     if context.rule.sense == "holds" or row["margin"] is None:
         return True

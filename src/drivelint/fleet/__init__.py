@@ -1,4 +1,4 @@
-"""What a fleet did: rates, coverage, missing signals, the difference of two audits, and other values of a parameter.
+"""The results of a fleet: rates, coverage, missing signals, the difference of two audits, and other values of a parameter.
 
 Each function takes a DuckDB connection with the views of an audit and runs SQL of `queries/fleet`; Python gets grouped rows only.
 

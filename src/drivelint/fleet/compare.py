@@ -62,7 +62,7 @@ def compare(
     new: str = "other_",
     tools: tuple[str | None, str | None] = (None, None),
 ) -> Comparison:
-    """Return the difference of two audits. `base`, `new`: what the names of their views begin with.
+    """Return the difference of two audits. `base`, `new`: prefixes of the names of their views.
 
     A log that is there twice counts once in the views of `drivelint.fleet.distinct_logs`.
 
@@ -72,7 +72,7 @@ def compare(
     """
     if any("recorded" not in con.table(f"{of}drives").columns for of in (base, new)):
         raise UsageError(
-            "an audit was made by an earlier drivelint, which did not keep when each actor was recorded: audit the drives again"
+            "an audit was made by an earlier drivelint, which did not store when each actor was recorded: audit the drives again"
         )
     numbers = {"near_s": f"{NEAR_S!r}", "near_m": f"{NEAR_M!r}"}
     con.execute(statement("fleet/same_drive", base=base, new=new))

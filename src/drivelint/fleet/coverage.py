@@ -1,4 +1,4 @@
-"""What a fleet's drives covered: the rules that were decided, and the situations that occurred."""
+"""The coverage of a fleet: the rules that were decided, and the situations that occurred."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class SituationCoverage:
 
 @dataclass(frozen=True)
 class Coverage:
-    """The rules by what the fleet says about them; the situations with those that never occurred; and what the tables cannot tell."""
+    """The rules by their results in the fleet; the situations, with those that never occurred; and what the tables do not show."""
 
     rules: tuple[RuleCoverage, ...]
     situations: tuple[SituationCoverage, ...]
@@ -80,7 +80,7 @@ class Coverage:
 
 
 def coverage(con: duckdb.DuckDBPyConnection, *, of: str = "") -> Coverage:
-    """Return what the drives covered, by the views whose names begin with `of`.
+    """Return the coverage of the drives, by the views whose names begin with `of`.
 
     Failures of one rule by situation are `rates(con, by=SITUATION)`.
     """

@@ -1,4 +1,4 @@
-"""Defines what counts of an audit in which a log was judged several times. Every count of a fleet follows it.
+"""Defines the counted rows of an audit in which a log was judged several times. Every count of a fleet follows it.
 
 Logs with the same content are one log, whatever their names are.
 
@@ -26,11 +26,11 @@ _SAME: Final = {
     "verdicts": "t.ego_id, t.rule_id, t.profile, t.object_id, t.occurrence, t.ref_id, t.t_start_ns, t.verdict",
     "findings": "t.ego_id, t.rule_id, t.profile, t.object_id, t.t_start_ns, t.t_end_ns",
 }
-"""Table -> what makes two rows of one log the same."""
+"""Table -> columns that make two rows of one log the same."""
 
 
 def create_counted_views(con: duckdb.DuckDBPyConnection, of: str = "") -> str:
-    """Create views of an audit in which each log is one drive; return what their names begin with.
+    """Create views of an audit in which each log is one drive; return the prefix of their names.
 
     `of`: what the names of the audit's views begin with. `drives` has the first result of each log, with the egos of all its results; a tag
     with several values is left out. In `verdicts` and `findings`, `key` is that of the row in `drives`, `result_key` that of the result.

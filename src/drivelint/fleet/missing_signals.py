@@ -1,4 +1,4 @@
-"""What a fleet's logs and maps lack, and how much would be judged if it were recorded."""
+"""The signals that a fleet's logs and maps lack, and how much could be judged with them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class MissingSignal:
-    """A signal that rules require and drives do not have: a forecast of what recording it would decide, and at most so much.
+    """A signal that rules require and drives lack: how much recording it would decide, at most.
 
     `*_alone`: where nothing else that the rule requires is missing; the others need further signals, too. Where the signal is there, a rule
     may still be unknown for another reason, or not apply. `judgements`: pairs of a rule and an ego of a drive. `formats`: of the logs.
@@ -60,7 +60,7 @@ class SignalGaps:
 
 
 def missing_signals(con: duckdb.DuckDBPyConnection, *, of: str = "") -> SignalGaps:
-    """Return what the drives lack, by the views whose names begin with `of`; a log that is there twice counts once."""
+    """Return the signals that the drives lack, by the views whose names begin with `of`; a log that is there twice counts once."""
     egos = subject(of)
     signals = con.execute(statement("fleet/missing", of=of, subject=egos)).fetchall()
     other_reasons = con.execute(statement("fleet/undecided", of=of, subject=egos)).fetchall()

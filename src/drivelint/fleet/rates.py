@@ -1,16 +1,16 @@
 """Rates of a fleet: findings per 100 km and per hour, failures per occasion and per ego, each with its interval.
 
-**Which denominator.** A rate counts only what was wholly judged. A subject (an ego in a drive) whose verdicts of a rule have an unknown
-or an error, or that was judged at a part of its steps only, gives neither its findings nor its exposure to the rate of this rule: both
-stand beside it. Three other ways would be wrong:
+**Which denominator.** A rate counts only subjects that were wholly judged. A subject (an ego in a drive) whose verdicts of a rule have an
+unknown or an error, or that was judged at a part of its steps only, gives neither its findings nor its exposure to the rate of this rule:
+both stand beside it. Three other ways would be wrong:
 
 * to count its exposure: what was not seen would count as kept, and the rate would be too low;
 * to count its findings alone: the rate would be too high;
 * to leave it out only if it has no finding: one finding is enough to fail, while a pass needs every step. The outcome would decide what
   is counted, and the rate would be too high.
 
-The rate is then that of the subjects that could be judged. It is the fleet's rate if whether a subject could be judged does not depend on
-what it did. Nothing in the tables can show that; `at_least_per_100km` needs no such assumption.
+The rate is then that of the subjects that could be judged. It is the rate of the whole fleet if subjects that could not be judged behaved
+like the others. Nothing in the tables can show that; `at_least_per_100km` needs no such assumption.
 
 Exposure is the way and time with the automated driver, as rules judge nothing else. Of subjects that are not wholly judged it is all of
 their way: where it is not known who drove, all of it may count.
@@ -40,7 +40,7 @@ OTHER_PREFIX: Final = "other_"
 
 @dataclass(frozen=True)
 class Rate:
-    """What a rule found at one value of a tag. `tag_value` is None for drives that do not have the tag, and without a tag.
+    """The results of a rule at one value of a tag. `tag_value` is None for drives that do not have the tag, and without a tag.
 
     `egos_*`: subjects that were wholly judged; of these, with a failed verdict; not wholly judged; where the rule was never in force
     (another nation, other conditions, or the automated driver never drove). `drives_not_judged`: their way is not known at all.

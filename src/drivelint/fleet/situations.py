@@ -1,4 +1,4 @@
-"""The situations by which a fleet's drives are told apart, as far as the tables of an audit tell them."""
+"""The situations by which a fleet's drives are divided, as far as the tables of an audit have them."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ SITUATIONS: Final = {**CONDITION_VALUES, **MEASURED_SITUATIONS}
 """Situation -> its values. Those that are no measured ones are tags, conditions given to `check`, or what the log says."""
 CANNOT_TELL: Final = {
     "junction kind": "the tables say which rules applied, not at which junction: see the rules of junctions",
-    "road type, as the map has it": "only a road type that was given for the whole drive is known",
+    "road type, as the map has it": "only a road type that was set for the whole drive is known",
     "speed at each moment": "the band is that of the mean speed of a drive",
-    "density of the traffic": "the number of recorded actors depends on how far the sensors see",
+    "density of the traffic": "the number of recorded actors depends on the range of the sensors",
 }
-"""What the tables of an audit do not tell -> why, or what to look at instead."""
+"""The situations that the tables of an audit do not show -> why, or what to use instead."""
 
 
 def value_of(by: str | None) -> str:

@@ -1,4 +1,4 @@
-"""Which verdicts of a fleet would be others with another value of a rule's parameter, from what is stored of them.
+"""The verdicts of a fleet that change with another value of a rule's parameter, from their stored values.
 
 A verdict stores the observed value of its worst step only. That is enough where the rule compares an observed value, which the parameter
 has no part in, with the parameter itself. Every other rule or parameter needs a new check.
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Flip(NamedTuple):
-    """Number of verdicts of a profile and value of a tag that become another or stay; `becomes` None: only a new check can tell."""
+    """Number of verdicts of a profile and value of a tag that change or stay; `becomes` None: they need a new check."""
 
     profile: str | None
     tag_value: str | None
@@ -32,7 +32,7 @@ class Flip(NamedTuple):
 
 
 class Flipped(NamedTuple):
-    """One verdict that becomes another; `becomes` None: only a new check can tell."""
+    """One verdict that changes; `becomes` None: it needs a new check."""
 
     log: str
     ego_id: str
@@ -44,7 +44,7 @@ class Flipped(NamedTuple):
 
 
 class WhatIf(NamedTuple):
-    """What another value of a parameter does to the verdicts; `needs_check`: why only a new check can tell of any; None: it need not."""
+    """What another value of a parameter does to the verdicts; `needs_check`: why every verdict needs a new check; None: they do not."""
 
     rule_id: str
     param: str
@@ -59,7 +59,7 @@ class WhatIf(NamedTuple):
 
     @property
     def not_known(self) -> int:
-        """Number of verdicts of which only a new check can tell."""
+        """Number of verdicts that need a new check."""
         return sum(each.n for each in self.verdicts if each.becomes is None)
 
 
@@ -68,8 +68,8 @@ def what_if(
 ) -> WhatIf:
     """Return the verdicts of a rule with another value of a parameter, by profile and value of a tag.
 
-    Makes the temporary table `what_if`, with one row per verdict, unless a new check is needed. Findings are not told: a verdict that fails
-    may have several, whose ends depend on every step. Errors: `UsageError` for a parameter that the rule does not have.
+    Makes the temporary table `what_if`, with one row per verdict, unless a new check is needed. Findings are not predicted: a failed
+    verdict may have several, whose ends depend on every step. Errors: `UsageError` for a parameter that the rule does not have.
     """
     if why := needs_check(rule, param):
         return WhatIf(rule.id, param, value, why)
@@ -88,14 +88,14 @@ def what_if(
 
 
 def flipped(con: duckdb.DuckDBPyConnection, max_verdicts: int, *, of: str = "") -> tuple[Flipped, ...]:
-    """Return the first verdicts of the table `what_if` that become others, or of which only a new check can tell."""
+    """Return the first verdicts of the table `what_if` that change, or that need a new check."""
     return tuple(
         Flipped(*row) for row in con.execute(statement("fleet/flipped", of=of), {"most": max_verdicts}).fetchall()
     )
 
 
 def needs_check(rule: Rule, param: str) -> str | None:
-    """Return why stored verdicts do not tell what another value of a parameter does; None: they do."""
+    """Return why stored verdicts are not enough for another value of a parameter; None: they are enough."""
     if param not in rule.params:
         raise UsageError(f"rule {rule.id} has no parameter {param!r}; {hint(param, rule.params)}")
     default = rule.params[param].default

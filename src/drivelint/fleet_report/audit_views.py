@@ -66,7 +66,7 @@ class Audit:
 
 
 def destination(path: Path) -> str:
-    """Return what was given as the place of results: a URL, or a path."""
+    """Return the given place of results: a URL, or a path."""
     return as_url(path) or str(path)
 
 

@@ -1,4 +1,4 @@
-"""What the fleet page says of an audit, in whatever format: gathered from SQL, each table as long as it is shown."""
+"""The content of the fleet page of an audit, for every format: gathered from SQL, each table as long as it is shown."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ MAX_CHANGES: Final = 50
 
 @dataclass(frozen=True)
 class FleetContent:
-    """An audit as the fleet page tells it.
+    """An audit as the fleet page shows it.
 
     `totals`: the row of `totals.sql`. `severities`: severity -> row of `severities.sql`. `rules`: rule_id -> row of the table `rule`.
     `rates`: the gravest and most frequent first. `worst`: rows of `worst.sql` with `command` and `explain`. `not_judged`: some of the
@@ -98,9 +98,9 @@ class FleetContent:
         looked = (
             f"examined: {n:,} only possible"
             if self.audit.settings.get("robustness")
-            else "not examined: audit --robustness does it"
+            else "not examined: use audit --robustness"
         )
-        said = "; ".join([*touched, f"how sure the findings are was {looked}"])
+        said = "; ".join([*touched, f"certainty of the findings: {looked}"])
         return said[0].upper() + said[1:]
 
     @property
@@ -126,7 +126,7 @@ class FleetContent:
 
 
 def content(con: duckdb.DuckDBPyConnection, audit: Audit, base: Audit | None, by: Sequence[str]) -> FleetContent:
-    """Return what there is to say of an audit of `opened`. Errors: `UsageError` for a tag in `by` that no drive has."""
+    """Return the content of the page about an audit of `opened`. Errors: `UsageError` for a tag in `by` that no drive has."""
     share = str(LEAST_SHARE)
     create_counted_views(con)
     event = statement("fleet/event", of=COUNTED_PREFIX, least_share=share)

@@ -98,7 +98,7 @@ class AuditDifference:
     """Two audits side by side. `entries`: standing -> at most `most` of its findings, the gravest first.
 
     `of_new_drives`: new findings of drives that the base does not have. `gating`: severity -> new findings of stable rules.
-    `gone_by_severity`: the same of findings of the base that the newer audit did not look at or cannot tell.
+    `gone_by_severity`: the same of findings of the base that the newer audit did not judge or cannot decide.
     `causes`: what else differs -> standing -> number of findings.
     `base_only`, `new_only`: at most `most` logs that the other has not.
     """
@@ -134,7 +134,7 @@ class AuditDifference:
 
     @property
     def is_disjoint(self) -> bool:
-        """Whether no drive is in both, so that no finding of one can be held against the other."""
+        """Whether no drive is in both, so that no finding of one can be compared with the other."""
         told = self.comparison
         return not told.drives_both and bool(told.drives_base_only and told.drives_new_only)
 

@@ -36,7 +36,7 @@ def rate_name(of: RateChange | RuleCoverage) -> str:
 
 
 def least_severity(difference: AuditDifference, fail_on: str | None) -> str | None:
-    """Return the severity that gates: what was asked, else the audit's own; None where no finding can be matched and nothing was asked."""
+    """Return the severity that gates: the requested one, else the audit's own; None if no finding can be matched and none was requested."""
     return fail_on or (None if difference.is_disjoint else _own_severity(difference))
 
 
@@ -82,7 +82,7 @@ def _code_and_reason(difference: AuditDifference, fail_on: str | None) -> str:
 
 
 def _rates_sentence(difference: AuditDifference) -> str:
-    """Return what the rates of two audits without a common drive come to."""
+    """Return the result of comparing the rates of two audits without a common drive."""
     least = _own_severity(difference)
     if risen := difference.risen(least):
         rates_text = ", ".join(
@@ -98,7 +98,7 @@ def _rates_sentence(difference: AuditDifference) -> str:
 
 
 def since(difference: AuditDifference) -> str:
-    """Return what changed since the base, in one sentence for a headline."""
+    """Return the changes since the base, in one sentence for a headline."""
     if not difference.is_disjoint:
         return difference.headline
     rate_texts = [

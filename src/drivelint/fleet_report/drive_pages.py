@@ -1,4 +1,4 @@
-"""Pages about single drives of an audit, one file each beside the fleet page: facts, findings, what is unknown and why.
+"""Pages about single drives of an audit, one file each beside the fleet page: facts, findings, unknown verdicts and their reasons.
 
 The rows of all chosen drives are put into tables by one statement per table of the audit, and read from there some drives at a time:
 neither the number of scans nor the memory of this process grows with the drives.
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 FOLDER: Final = "drives"
 MOST_DRIVES: Final = 100
-"""Drives that get a page if nothing else is asked for."""
+"""Number of drives that get a page by default."""
 MAX_FINDINGS: Final = 200
 """Findings on a page."""
 MAX_NOTES: Final = 40
@@ -95,7 +95,7 @@ def pages(con: duckdb.DuckDBPyConnection, audit: Audit, rules: Mapping[str, Row]
 
 
 def _some(con: duckdb.DuckDBPyConnection, audit: Audit, first: int, last: int) -> Iterator[Row]:
-    """Yield what the template says of each of the drives with these numbers."""
+    """Yield the template's values for each of the drives with these numbers."""
     bound = {"first": first, "last": last}
     facts = rows(con, "page_some", bound, table="page_facts", order="no")
     findings = rows(con, "page_some", bound, table="page_finding", order="no, nth")

@@ -48,7 +48,7 @@ class LogAxis(NamedTuple):
 
     @property
     def words(self) -> str:
-        """From what to what it goes."""
+        """The first and the last value."""
         return f"{10.0**self.low:g} to {10.0**self.high:g}"
 
     def at(self, value: float) -> float:

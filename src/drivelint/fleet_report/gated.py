@@ -69,13 +69,13 @@ def apply_gate(dest: str, inputs: GateInputs | None) -> Result:
 
 
 def exit_code(result: Result, summary: AuditSummary) -> ExitCode:
-    """Return the weightiest of what the findings come to, by the gate, and of all else that an audit tells."""
+    """Return the exit code that takes precedence: that of the findings by the gate, or that of the audit."""
     other_exit = replace(summary, failed={}).exit_code("never", strict=result.strict)
     return min((exit_status(result).code, other_exit), key=_WEIGHT.index)
 
 
 def lines(result: Result) -> Iterator[str]:
-    """Yield what the gate comes to, in words: the findings by how they stand, the reason of the exit code, and doubtful waivers."""
+    """Yield the result of the gate in words: the findings by their standing, the reason of the exit code, and doubtful waivers."""
     yield f"gate: {headline(result).sentence}"
     yield f"  {exit_status(result).why}"
     if result.gate is not None:
@@ -113,7 +113,7 @@ def _result(con: duckdb.DuckDBPyConnection, audit: Audit) -> Result:
 
 
 def _gate(results: ResultStore) -> gate.Gate | None:
-    """Return what the audit's last run said of its gate; None: there was none."""
+    """Return the gate of the audit's last run; None: there was none."""
     content = results.read(GATE_FILE)
     if content is None:
         return None

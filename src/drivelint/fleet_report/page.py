@@ -49,7 +49,7 @@ def write(
 ) -> tuple[str, Audit]:
     """Write the page of an audit into it, and with HTML those of its worst drives; return the fleet page's name and the audit.
 
-    `by`: tags by which rates are told apart. `most_drives`: that get a page of their own; None: all drives of the audit. Errors:
+    `by`: tags by which rates are divided. `most_drives`: that get a page of their own; None: all drives of the audit. Errors:
     `UsageError` for an audit or tag that is not there; `OutputError`.
     """
     with open_audits(dest, baseline) as (con, audit, base):
@@ -85,7 +85,7 @@ def markdown(fleet: FleetContent) -> bytes:
 
 
 def _words(fleet: FleetContent) -> dict[str, Any]:
-    """Return what the templates name."""
+    """Return the values of the templates."""
     assert set(_STANDING_TITLES) == set(STANDINGS) - {"decided"}  # noqa: S101 - a standing without words would be left out
     return {
         "fleet": fleet,
@@ -99,7 +99,7 @@ def _words(fleet: FleetContent) -> dict[str, Any]:
 
 
 def _beside(rate: Rate) -> str:
-    """Return what is to be said beside the rate of what was judged, where there are findings in what was not judged wholly."""
+    """Return the note beside a rate about findings of egos that were not wholly judged."""
     if not rate.findings_of_unknown:
         return ""
     least = rate.at_least_per_100km
@@ -117,7 +117,7 @@ def _provide(missing_signal: MissingSignal) -> str:
 
 
 def _mend(undecided: Undecided) -> str:
-    """Return what would decide verdicts that are unknown for a reason, and what one of them says."""
+    """Return the remedy for verdicts that are unknown for a reason, and the sentence of one of them."""
     advice = remedy(undecided.reason_code, None, "mapped")
     example = f"{undecided.rule_id}: {undecided.reason}"
     return example if advice == WHAT_IS_NULL else f"{advice} ({example})"

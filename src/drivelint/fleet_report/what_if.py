@@ -1,4 +1,4 @@
-"""`drivelint what-if`: which verdicts of an audit become others with another value of a parameter."""
+"""`drivelint what-if`: the verdicts of an audit that change with another value of a parameter."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ MAX_FLIPPED: Final = 10_000
 
 @dataclass(frozen=True)
 class AskedWhatIf:
-    """The answer, and what was asked. `was`: the value that the audit used. `by`: the tag by which verdicts are told apart.
+    """The answer, and the request. `was`: the value that the audit used. `by`: the tag by which verdicts are divided.
 
     `by_value`: the verdicts by profile and value of that tag. One of a log that is there with several values counts for each, and once
     in `answer`.
@@ -51,13 +51,13 @@ class AskedWhatIf:
 
     @property
     def exit_code(self) -> ExitCode:
-        """OK; NOT_JUDGED where only a new audit can tell, where the audit has not ended, or has no verdict of the rule."""
+        """OK; NOT_JUDGED if a new audit is needed, if the audit has not ended, or has no verdict of the rule."""
         left = self.answer.needs_check or self.answer.not_known or self.audit.warning or not self.answer.verdicts
         return ExitCode.NOT_JUDGED if left else ExitCode.OK
 
 
 def ask_what_if(dest: str, setting: str, by: str | None) -> AskedWhatIf:
-    """Return what `RULE.PARAM=VALUE` does to the verdicts of an audit, by the values of a tag.
+    """Return the effect of `RULE.PARAM=VALUE` on the verdicts of an audit, by the values of a tag.
 
     Errors: `UsageError` for an audit, rule, parameter, value or tag that is not there.
     """
@@ -69,7 +69,7 @@ def ask_what_if(dest: str, setting: str, by: str | None) -> AskedWhatIf:
         version, was = _used(con, rule_id, param)
         rule = rules[rule_id]
         if version != rule.version:
-            why = "the rule is not as it was in the audit: its stored verdicts say nothing of the rule as it is now"
+            why = "the rule has changed since the audit: its stored verdicts do not apply to the present rule"
             return AskedWhatIf(audit, setting, was, by, WhatIf(rule_id, param, float(value), why))
         tagged = _answer(con, rule, param, value, by)
         if tagged.needs_check:
@@ -98,7 +98,7 @@ def _used(con: duckdb.DuckDBPyConnection, rule_id: str, param: str) -> tuple[str
 
 
 def to_text(analysis: AskedWhatIf) -> str:
-    """Return the answer for a person: what becomes what, by the values of the tag."""
+    """Return the answer for a person: the changes of verdicts, by the values of the tag."""
     answer = analysis.answer
     lines = [f"{analysis.setting} instead of {analysis.was}, by the verdicts that {analysis.audit.dest} stores"]
     if analysis.audit.warning:
@@ -107,15 +107,15 @@ def to_text(analysis: AskedWhatIf) -> str:
         return "\n".join([*lines, f"needs a new audit: {answer.needs_check}", _command(analysis)])
     total, flips = sum(each.n for each in answer.verdicts), sum(each.n for each in answer.flips)
     words = ", ".join(f"{n} {was} -> {becomes}" for (was, becomes), n in _totals(answer.flips))
-    lines.append(f"{flips} of {total} verdicts become others{f': {words}' if words else ''}")
+    lines.append(f"{flips} of {total} verdicts change{f': {words}' if words else ''}")
     if answer.not_known:
         lines.append(
             f"{plural(answer.not_known, 'verdict')} {'needs' if answer.not_known == 1 else 'need'} a new audit: the stored value may be "
-            "only a bound of what was observed"
+            "only a bound of the observed value"
         )
     lines += _table(analysis)
     lines += _flipped_verdict_lines(analysis.flipped, flips + answer.not_known)
-    lines.append("Findings are not told: one verdict may have several, whose ends depend on every step.")
+    lines.append("Findings are not predicted: one verdict may have several, and their ends depend on every step.")
     return "\n".join([*lines, _command(analysis)] if answer.not_known else lines)
 
 
@@ -125,7 +125,7 @@ def _totals(flips: Iterable[Flip]) -> list[tuple[tuple[str, str | None], int]]:
 
 
 def _table(analysis: AskedWhatIf) -> list[str]:
-    """Return a line per value of the tag and profile, with what becomes of its verdicts."""
+    """Return a line per value of the tag and profile, with the changes of its verdicts."""
     flips_by_group: dict[tuple[str, str], list[Flip]] = {}
     for each in sorted(
         analysis.by_value,
@@ -166,7 +166,10 @@ def _becomes(flip: Flip) -> str:
 
 
 def _command(analysis: AskedWhatIf) -> str:
-    return f"to be told all: drivelint audit SOURCE --param {analysis.setting} --out OTHER, then drivelint diff {analysis.audit.dest} OTHER"
+    return (
+        f"for the complete answer: drivelint audit SOURCE --param {analysis.setting} --out OTHER, then "
+        f"drivelint diff {analysis.audit.dest} OTHER"
+    )
 
 
 def to_json(analysis: AskedWhatIf) -> str:

@@ -68,8 +68,8 @@ class _Compared(NamedTuple):
 def worst_value(con: duckdb.DuckDBPyConnection, all_rates: Sequence[Rate]) -> WorstValue | None:
     """Return the value of a tag that stands out most; None: no tag has values that differ.
 
-    `all_rates`: the rates of all drives, the gravest first; the first rules with findings are compared. Only the highest rate of a tag and
-    rule can be told as the worst, but each value is a comparison that chance may win.
+    `all_rates`: the rates of all drives, the gravest first; the first rules with findings are compared. Only the highest rate of a tag
+    and rule can be reported as the worst, but each value is a comparison that chance may win.
     """
     ids = list(dict.fromkeys(rate.rule_id for rate in all_rates if rate.findings))[:MAX_RULES]
     all_tags = rows(con, "tags")

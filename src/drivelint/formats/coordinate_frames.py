@@ -1,7 +1,7 @@
 """Coordinate frames: poses brought from the frame they are given in to the fixed one, along the chain of transforms.
 
-A transform that moves is interpolated between its neighbours in time, never carried on beyond them: what cannot be placed
-is not placed.
+A transform that moves is interpolated between its neighbours in time, never carried on beyond them: a pose that cannot be transformed has
+no place.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class _Edge:
 
 @dataclass
 class TransformTree:
-    """The transforms of a log. `ambiguous`: frames that are said to have several parents."""
+    """The transforms of a log. `ambiguous`: frames with several parents."""
 
     edges: dict[str, _Edge] = field(default_factory=dict)
     ambiguous: set[str] = field(default_factory=set)

@@ -35,9 +35,9 @@ RESULT_FILES = frozenset(
         "tracks", "verdicts",
     )
 )  # fmt: skip
-"""What `check --out` writes and a folder of traces is not searched for, where it lies with its `summary.json`."""
+"""Files of `check --out`, which are not treated as traces if their `summary.json` is beside them."""
 SCENARIO_LISTS = frozenset({"dataset_summary.pkl", "dataset_mapping.pkl"})
-"""What ScenarioNet writes beside its scenarios, and is none."""
+"""Files that ScenarioNet writes beside its scenarios, which are no scenarios."""
 ANNOTATED_FOLDER = "annotated"
 """The folder beside them: logs that were judged already."""
 
@@ -88,7 +88,7 @@ def _exists(path: Path) -> bool:
 
 
 def _inside(path: Path) -> list[Path]:
-    """Return the logs of a folder, and what may hold some but cannot be looked at, which whoever reads it refuses with the reason."""
+    """Return the logs of a folder, and the paths that may contain logs but cannot be searched; reading those refuses with the reason."""
     if not path.is_dir() or why_not_here(path) is not None or is_drive_folder(path):
         return [path]
     content = tree(path, _SEARCHED_SUFFIXES)
@@ -132,7 +132,7 @@ def _is_xml_log(file: Path) -> bool:
 
 
 def _is_result(file: Path, searched: Path) -> bool:
-    """Say whether an earlier check wrote the file: the logs that somebody recorded beside its results are none.
+    """Return whether an earlier check wrote the file: recorded logs beside its results are not its files.
 
     Who names the folder of annotated logs itself, means them.
     """
@@ -183,7 +183,7 @@ def identify(path: Path) -> Identity:
         raise _unreadable(path, error) from error
     whole = os.path.abspath(path)  # noqa: PTH100 (resolve would name the target of a link)
     if not is_utf8(whole):
-        raise TraceError(f"{escape_invisible(whole)}: its name is not UTF-8, in which results name it: rename it")
+        raise TraceError(f"{escape_invisible(whole)}: its name is not UTF-8, which results need: rename it")
     name = Path(whole).name
     stem = name if path.is_dir() else Path(name).stem
     return Identity(f"{stem}-{digest[:8]}", name, digest)

@@ -94,7 +94,7 @@ def drive_files(path: Path) -> list[Path]:
 
 
 def _files(path: Path, pattern: str) -> Iterator[Path]:
-    """Return the files of a pattern; a dead link is one, which whoever reads it finds not to be here."""
+    """Return the files of a pattern; a dead link is one, which fails when it is read."""
     files = sorted(path.glob(pattern)) if "*" in pattern else [path / pattern]
     return (file for file in files if file.is_file() or (file.is_symlink() and not file.exists()))
 

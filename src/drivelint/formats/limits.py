@@ -1,7 +1,7 @@
-"""Bounds what reading a file may take. A small file can describe a huge drive or map: nobody should wait for it, or lose all memory to it.
+"""Limits the time and memory of reading a file. A small file can describe a huge drive or map, which would take all time or memory.
 
-What is bounded is computing and growth of memory, by the size of the file. Where reading goes beyond, it is interrupted between two
-steps of Python; a single call into a library goes on to its end.
+Computing and growth of memory are limited, by the size of the file. Where reading goes beyond, it is interrupted between two steps of
+Python; a single call into a library continues to its end.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ class _BeyondError(BaseException):
 
 
 class _Watch:
-    """Looks from a thread of its own at what the thread that made it takes, and interrupts that one once."""
+    """Watches from a thread of its own the costs of the thread that made it, and interrupts that thread once."""
 
     def __init__(self, n_bytes: int) -> None:
         self.seconds, self.bytes = LEAST_S + n_bytes * S_PER_BYTE, most_bytes(n_bytes)
@@ -85,7 +85,7 @@ def _noticed() -> None:
 
 
 def bounded(read_file: Callable[[], T], name: str, n_bytes: int, kind: type[DriveLintError]) -> T:
-    """Return what `read_file` does of a file of so many bytes. Errors: `kind`, about `name`, with what was too much and where."""
+    """Return the result of `read_file` for a file of so many bytes. Errors: `kind`, about `name`, with what was too much and where."""
     watch = _Watch(n_bytes)
     try:
         try:
@@ -101,5 +101,5 @@ def bounded(read_file: Callable[[], T], name: str, n_bytes: int, kind: type[Driv
         place = inner[-1].with_suffix("").as_posix() if inner else "the end"
         raise kind(
             f"{name}: reading it took {watch.excess}, too much for a file of {n_bytes} bytes (in {place}): "
-            "it describes more than a drive or a road network has; give a part of it"
+            "it describes more than a drive or a road network has; use a part of it"
         ) from None

@@ -1,4 +1,4 @@
-"""Map formats, told by what a file holds and never by its name."""
+"""Map formats, recognised by the content of a file and never by its name."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def read_source(path: Path) -> MapSource:
     try:
         size = path.stat().st_size
         if is_pipe_or_device(path):
-            raise MapError(f"map {path}: a pipe or a device: write what it gives to a file, and name that")
+            raise MapError(f"map {path}: a pipe or a device: write its output to a file, and name that file")
         content = path.read_bytes() if size <= MAX_BYTES else b""
     except FileNotFoundError:
         raise MapError(f"map {path} does not exist: give the path of an OpenDRIVE file with --map") from None
@@ -64,12 +64,12 @@ def read_source(path: Path) -> MapSource:
     if (told := wrapping(content)) is not None:
         raise MapError(f"map {path}: {told}")
     if not is_utf8(path.name):
-        raise MapError(f"map {escape_invisible(path.name)}: its name is not UTF-8, in which results name it: rename it")
+        raise MapError(f"map {escape_invisible(path.name)}: its name is not UTF-8, which results need: rename it")
     return MapSource(path.name, content)
 
 
 def _too_large(name: str, size: int) -> MapError:
-    return MapError(f"map {name} has {size} bytes, more than the {MAX_BYTES} that are read: give a smaller extract")
+    return MapError(f"map {name} has {size} bytes, more than the {MAX_BYTES} that are read: use a smaller extract")
 
 
 def load_map(

@@ -1,4 +1,4 @@
-"""This module defines what a trace reader provides, and the probe by which it recognises a trace."""
+"""This module defines the interface of a trace reader, and the probe by which it recognises a trace."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ WRAPPINGS: Final = {
     b"/annex/objects/": "a pointer of git-annex, not the file itself: fetch that with git annex get",
     b"version https://git-lfs": "a pointer of Git LFS, not the file itself: fetch that with git lfs pull",
 }
-"""What a file begins with that holds another one -> what it is, and what to do."""
+"""First bytes of a file that stands for another one -> its kind, and the remedy."""
 
 
 def wrapping(head: bytes) -> str | None:
-    """Return what a file with these first bytes is, if it only holds the file that is meant, and what to do."""
+    """Return the kind and the remedy of a file with these first bytes, if it only stands for the real file."""
     return next((told for magic, told in WRAPPINGS.items() if head.startswith(magic)), None)
 
 

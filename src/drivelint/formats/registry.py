@@ -1,4 +1,4 @@
-"""The trace formats, in the order in which they are asked: by what the file holds; a suffix with a fixed beginning must have it."""
+"""The trace formats, in the order in which they are tried: by the content of a file; a suffix with a fixed beginning must have it."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ UNPROTECTED: Final = QualityFinding(
 
 
 def readers() -> Iterator[Reader]:
-    """Yield the readers in the order in which they are asked, each imported when it is its turn."""
+    """Yield the readers in the order in which they are tried, each imported in its turn."""
     for name in READERS:
         yield cast("Reader", import_module(f"drivelint.formats.{name}"))
 
@@ -85,9 +85,9 @@ def _read(probe: Probe, before: list[tuple[str, int, int]]) -> Trace:
 
         return finish_trace(path, identity, recording, options)
     if b"<OpenDRIVE" in probe.head:
-        raise TraceError(f"{path}: this is a map, not a log: give it with --map, beside a log")
+        raise TraceError(f"{path}: this is a map, not a log: use it with --map, together with a log")
     if probe.head.startswith(b"ARROW1"):
-        raise TraceError(f"{path}: an Arrow table is read as part of a log of Argoverse 2 or 123D: give the folder")
+        raise TraceError(f"{path}: an Arrow table is read as part of a log of Argoverse 2 or 123D: name the folder")
     raise TraceError(
         f"{path}: no reader for this file, which begins with {probe.head[:16]!r}: give MCAP, OSI, Parquet, CSV, "
         "SUMO's floating car data, a CommonRoad scenario, a ScenarioNet pickle, or the folder of a log of Argoverse 2 or 123D"

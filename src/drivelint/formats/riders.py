@@ -1,7 +1,7 @@
-"""Riders and what they ride, which a data set may annotate with a box each: together they are one road user.
+"""Riders and their vehicles, which a data set may annotate with a box each: together they are one road user.
 
 Two boxes in one place would be two bodies that touch all the time, and two vehicles to be passed. The rider gets the box around both;
-what is ridden has no state of its own while somebody is on it.
+the ridden vehicle has no state of its own while a rider is on it.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ _SIZES: Final = ("length_m", "width_m", "height_m")
 def join_riders(
     t_ns: Times, actor: NDArray[np.int32], rider: Mask, ridden: Mask, boxes: dict[str, Floats]
 ) -> tuple[Mask, list[int]]:
-    """Give riders the box around them and what they ride, in place; return the rows that are in another's box, and who rides.
+    """Give riders the box around them and their vehicle, in place; return the rows that are in another's box, and the riders.
 
     n boxes: time, track, whether it is a rider or a thing that is ridden, and the columns x_m, y_m, z_m, yaw_rad, length_m, width_m,
-    height_m. Somebody rides what he is on in most of the samples that both have; of several on one, the first track gets the box.
+    height_m. A rider is on the vehicle in most of the samples that both have; of several on one, the first track gets the box.
     """
     inside = np.zeros(len(t_ns), np.bool_)
     on, under = _on_and_under(t_ns, actor, rider, ridden, boxes)

@@ -1,8 +1,7 @@
-"""Looks through a folder for logs, and names what it could not look into: there may be logs in it, and nobody judges those.
+"""Searches a folder for logs, and lists the paths that it could not search: there may be logs in them, which are not judged.
 
 A link to a folder is not followed, as it may lead in a circle or anywhere else, unless its target is looked through anyway. A dead link,
-such as git-annex has for what is not fetched, and a pointer of DVC beside which its target is missing, stand for a log or a folder that
-is not here.
+such as git-annex has for a file that is not fetched, and a pointer of DVC without its target, mean a log or a folder that is not here.
 """
 
 from __future__ import annotations
@@ -19,7 +18,7 @@ _POINTER: Final = ".dvc"
 
 
 class Tree(NamedTuple):
-    """What a folder holds at any depth, in order of names: folders, files, links to folders elsewhere, and what could not be looked at."""
+    """The content of a folder at any depth, in order of names: folders, files, links to folders elsewhere, and unreadable paths."""
 
     folders: list[Path]
     files: list[Path]
@@ -60,20 +59,20 @@ def tree(root: Path, suffixes: Collection[str]) -> Tree:
 
 
 def why_not_here(path: Path) -> str | None:
-    """Return why there may be a log at a path that cannot be looked at, and what to do; None: it can be, or there is nothing."""
+    """Return why there may be a log at a path that cannot be read, and the remedy; None: it can be read, or there is nothing."""
     if os.path.islink(path) and not path.exists():  # noqa: PTH114 - of a name that no file can have, as a damaged bag gives one
-        return f"a dead link, to {path.readlink()}: what it stands for is not here: fetch or mount it (git annex get, dvc pull)"
+        return f"a dead link, to {path.readlink()}: its target is not here: fetch or mount it (git annex get, dvc pull)"
     if _is_pointer(path) and path.is_file():
-        return "a pointer of DVC, and what it stands for is not here: fetch that with dvc pull"
+        return "a pointer of DVC, and its file is not here: fetch it with dvc pull"
     if is_pipe_or_device(path):
-        return "a pipe or a device, and a log is read more than once: write what it gives to a file, and name that"
+        return "a pipe or a device, but a log is read more than once: write its output to a file, and name that file"
     if not os.path.isdir(path):  # noqa: PTH112 - as above
         return None
     try:
         with os.scandir(path):
             return None
     except OSError as error:
-        return f"a folder that cannot be looked through ({error.strerror or error}): whether it has logs is not known: make it readable"
+        return f"a folder that cannot be searched ({error.strerror or error}): it is not known whether it has logs: make it readable"
 
 
 def is_pipe_or_device(path: Path | str) -> bool:
@@ -82,7 +81,7 @@ def is_pipe_or_device(path: Path | str) -> bool:
 
 
 def why_not_followed(path: Path) -> str | None:
-    """Return why a folder that is no drive was not searched, and what to do; None: it is no link."""
+    """Return why a folder that is no drive was not searched, and the remedy; None: it is no link."""
     if not path.is_symlink():
         return None
     return f"a link to the folder {path.readlink()}, which a search does not follow: name that folder, too"

@@ -1,6 +1,6 @@
 """The gate decides which findings fail a run: those that neither the baseline has nor a waiver covers.
 
-Both only change what a finding leads to: verdicts and findings stay as they are, and no clock is in them.
+Both only change the effect of a finding: verdicts and findings stay as they are, and no clock is in them.
 """
 
 from __future__ import annotations
@@ -81,7 +81,8 @@ def refuse_own_baseline(baseline: Path | None, out: Path | None) -> None:
     """Refuse a baseline that the run would replace. Errors: `UsageError`."""
     if baseline is not None and out is not None and baseline.resolve() == out.resolve():
         raise UsageError(
-            f"--baseline {baseline}: is also --out: what is new today would be known tomorrow; write the results elsewhere"
+            f"--baseline {baseline}: is also --out: findings that are new now would be known in the next run; "
+            "write the results into another folder"
         )
 
 

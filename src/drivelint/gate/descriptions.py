@@ -30,10 +30,10 @@ DIFF_SCHEMA: Final = 1
 
 DIFF_STATUS_TITLES: Final = {
     "new": "New",
-    "changed": "Changed: known, but not as it was",
+    "changed": "Changed: known, but different from before",
     "elsewhere": "Not fixed: the rule still fails, at another step or place",
-    "unknown": "Not fixed: it cannot be told any more",
-    "lost": "Not fixed: not looked at any more",
+    "unknown": "Not fixed: it cannot be judged any more",
+    "lost": "Not fixed: not judged any more",
     "fixed": "Fixed",
 }
 """Diff status -> heading, in the order shown; unchanged findings are counted only."""
@@ -53,12 +53,12 @@ def gating_findings(difference: Difference, fail_on: str, gate: Gate | None = No
 
 
 def headline(difference: Difference) -> str:
-    """Return the counts in one sentence: what is new, what is fixed, and what is not fixed but gone."""
+    """Return the counts in one sentence: new, fixed, and gone but not fixed findings."""
     return f"{difference.counts()['new']} new, {since_baseline(difference)}"
 
 
 def since_baseline(difference: Difference) -> str:
-    """Return what became of the earlier result's findings. What is new is not counted: a waiver may cover it."""
+    """Return the standing of the earlier result's findings. New findings are not counted: a waiver may cover them."""
     n = difference.counts()
     kept = Counter(entry.there for entry in difference.with_diff_status("fixed"))
     there = (kept["pass"], kept["not_applicable"])
@@ -79,7 +79,7 @@ def counts_sentence(n: Mapping[str, int], worse: int, fixed: tuple[int, int]) ->
 
 
 def judged_otherwise(difference: Difference) -> str:
-    """Return what the newer result judged less than the earlier one, and what on another map, in words; '' for nothing."""
+    """Return in words what the newer result judged less than the earlier one, and on another map; '' for nothing."""
     n, critical = sum(difference.undecided.values()), difference.undecided.get("critical", 0)
     more = f" ({critical} critical)" if critical else ""
     parts = [f"{plural(n, 'verdict')} unknown that had been pass or fail{more}"] if n else []
@@ -119,14 +119,14 @@ def exit_summary(difference: Difference, failing: Sequence[ComparedFinding], fai
 
 
 def exit_code(difference: Difference, failing: Sequence[ComparedFinding], fail_on: str) -> ExitCode:
-    """Return FAILED for new findings that gate; NOT_JUDGED where the newer result did not look at what the earlier one had found."""
+    """Return FAILED for new findings that gate; NOT_JUDGED if the newer result did not judge a finding of the earlier one again."""
     if failing:
         return ExitCode.FAILED
     return ExitCode.NOT_JUDGED if not_looked_at(difference, fail_on) else ExitCode.OK
 
 
 def not_looked_at(difference: Difference, fail_on: str) -> str:
-    """Return what of the earlier result the newer one did not look at or cannot tell, in words; '' for nothing that gates."""
+    """Return in words the findings of the earlier result that the newer one did not judge or cannot decide; '' if none gates."""
     if fail_on == "never":
         return ""
     severe = counts.SEVERITIES[: counts.SEVERITIES.index(fail_on) + 1]
@@ -149,7 +149,7 @@ def exit_sentence(n_failing: int, fail_on: str, not_looked_at: str = "") -> str:
 
 
 def to_json(difference: Difference, failing: Sequence[ComparedFinding], fail_on: str) -> str:
-    """Return a difference as JSON: all entries, and what it comes to."""
+    """Return a difference as JSON: all entries, and the exit code."""
     content = {
         "diff_schema": DIFF_SCHEMA,
         "exit": {
@@ -165,7 +165,7 @@ def to_json(difference: Difference, failing: Sequence[ComparedFinding], fail_on:
 
 
 def finding_line(entry: ComparedFinding) -> str:
-    """Return a finding in one line: how bad, where, what, and what the other result says there."""
+    """Return a finding in one line: its severity, place, rule, and the result of the other side there."""
     profile = "" if entry.profile is None else f" [{entry.profile}]"
     who = f"ego {entry.ego_id}" + ("" if entry.object_id is None else f", object {entry.object_id}")
     draft = "" if entry.stable else ", draft"
@@ -191,9 +191,9 @@ def waiver_warnings(gate: Gate) -> Iterator[str]:
         if waiver.state == "expired":
             like_that = plural(waiver.findings, "finding") if waiver.findings else "no finding is"
             like_that += " like that"
-            yield f"{waiver.where}: expired {waiver.expires} ({waiver.owner}): it waives nothing; {like_that}"
+            yield f"{waiver.where}: expired {waiver.expires} ({waiver.owner}): it has no effect; {like_that}"
         elif waiver.state == "unmatched":
-            yield f"{waiver.where}: no finding is like that: {waiver_scope(waiver)} ({waiver.owner}); correct or drop it"
+            yield f"{waiver.where}: no finding matches {waiver_scope(waiver)} ({waiver.owner}); correct or remove it"
 
 
 def waiver_scope(waiver: Waiver) -> str:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     Row = Mapping[str, Any]
 
 MARGIN_TOLERANCE: Final = 0.01
-"""A margin has changed by more than this, in its unit, and by more than this part of what is required."""
+"""A margin has changed by more than this, in its unit, and by more than this part of the required value."""
 INTERVAL_TOLERANCE_S: Final = 0.1
 """A failing stretch has changed if one of its ends moved by more."""
 
@@ -32,7 +32,7 @@ LEAST_SHARE: Final = 0.9
 """A drive that lasts less of what it lasted in BASE was perhaps cut off."""
 
 _WEIGHT = ("error", "fail", "unknown", "pass")
-"""Of several verdicts at one moment the first of these is what is said."""
+"""Of several verdicts at one moment, the first of these is reported."""
 _WHERE = ("drive_id", "ego_id", "rule_id", "profile")
 _FIXED_VERDICTS = ("pass", "not_applicable")
 
@@ -111,7 +111,7 @@ def _drive(
 
 
 def _noting_rule(outcome: LookupResult, at: TimedFinding, had: ResultLookup, has: ResultLookup) -> LookupResult:
-    """Add what may be the cause: that the two results had not the same rule."""
+    """Add a possible cause: the two results did not have the same rule."""
     a, b = (lookup.rules.get(at.row["rule_id"]) for lookup in (had, has))
     if a is None or b is None or (a["rule_version"], a["params"]) == (b["rule_version"], b["params"]):
         return outcome
@@ -284,7 +284,7 @@ class ResultLookup:
         return found
 
     def _not_recorded(self, drive_id: str, at: TimedFinding) -> LookupResult | None:
-        """Return who of a finding, ego or object, is not recorded where it is; None: both are."""
+        """Return which of ego and object is not recorded at the finding; None: both are."""
         for what in ("ego", "object"):
             actor = at.row[f"{what}_id"]
             stretches = self._recorded.get((drive_id, actor), ())
@@ -298,7 +298,7 @@ class ResultLookup:
         return None
 
     def _outcome_of(self, verdict: Row, at: TimedFinding) -> LookupResult:
-        """Return what a verdict means for the moment: one that fails does so in its failing stretches only."""
+        """Return the meaning of a verdict for the moment: a fail applies only in its failing stretches."""
         if verdict["reason_code"].startswith(UNRECORDED_PREFIX):
             return LookupResult("unknown", verdict["reason"])
         if verdict["verdict"] != "fail":
@@ -308,7 +308,7 @@ class ResultLookup:
         if any(match.gap_s(other, at) <= match.NEAR_S for other in alike):
             return LookupResult("fail", "the rule fails there still, at another step or place")
         if verdict["n_judged"] == verdict["n_expected"]:
-            return LookupResult("pass", "kept there, though not at another time of the same stretch of driving")
+            return LookupResult("pass", "kept there, but not at another time of the same stretch of driving")
         missing = verdict["n_expected"] - verdict["n_judged"]
         why = f"the rule fails at another time, and {missing} of {verdict['n_expected']} steps were not judged"
         return LookupResult("unknown", why)

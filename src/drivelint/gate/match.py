@@ -1,4 +1,4 @@
-"""Which drives and findings of two results are the same."""
+"""Matches the drives and findings of two results."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ NEAR_M: Final = 5.0
 
 FindingKey = tuple[str, str, str | None, str | None]
 finding_key: Final[Callable[[Row], FindingKey]] = itemgetter("ego_id", "rule_id", "profile", "object_id")
-"""What must agree: it identifies a finding within a drive."""
+"""The columns that must agree: they identify a finding within a drive."""
 
 
 class TimedFinding(NamedTuple):

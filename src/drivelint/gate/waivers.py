@@ -32,6 +32,7 @@ from drivelint.gate.match import seconds_since_start
 from drivelint.phrases import hint
 from drivelint.result.gate import Waiver
 from drivelint.settings import settings_table
+from drivelint.toml_text import parse_toml
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -54,10 +55,10 @@ def read(file: Path, *, only_waivers: bool = True) -> list[Waiver]:
     bad TOML, an unknown key (with the nearest), a missing rule, reason, owner or expiry, or a value of another kind.
     """
     if file.exists() and not file.is_file():
-        raise UsageError(f"{file}: waivers stand in a file, and this is none")
+        raise UsageError(f"{file}: waivers must be in a file, but this is not one")
     try:
         text = file.read_text(encoding="utf-8")
-        content = tomllib.loads(text) if only_waivers else settings_table(file)
+        content = parse_toml(text) if only_waivers else settings_table(file)
     except FileNotFoundError as error:
         raise UsageError(f"{file}: no such file of waivers") from error
     except OSError as error:
@@ -65,7 +66,7 @@ def read(file: Path, *, only_waivers: bool = True) -> list[Waiver]:
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
         raise UsageError(f"{file}: not TOML: {error}") from error
     if only_waivers and (excess := sorted(set(content) - {"waiver"})):
-        raise UsageError(f"{file}: unknown key {excess[0]!r}: it holds tables [[waiver]] only")
+        raise UsageError(f"{file}: unknown key {excess[0]!r}: it may have only tables [[waiver]]")
     tables = content.get("waiver", [])
     if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
         raise UsageError(f"{file}: waiver must be tables, each headed [[waiver]]")
@@ -95,7 +96,7 @@ def apply(waivers: Sequence[Waiver], result: Result, today: date) -> tuple[tuple
 
 
 def _matches(waiver: Waiver, row: Row, drive: Row) -> bool:
-    """Return whether a finding is what a waiver is about: all of what it says."""
+    """Return whether a finding matches all conditions of a waiver."""
     columns = {"rule": "rule_id", "ego": "ego_id", "object": "object_id", "profile": "profile"}
     patterns = ((getattr(waiver, name), row[column]) for name, column in columns.items())
     if any(pattern is not None and not fnmatchcase(text or "", pattern) for pattern, text in patterns):
@@ -118,7 +119,7 @@ def _waiver(table: Row, file: Path, place: tuple[int, Mapping[str, int]]) -> Wai
         if key not in known:
             raise refuse(key, f"unknown key {key!r}; {hint(key, known)}")
     if missing := [key for key in _MUST if key not in table]:
-        raise refuse("", f"{' and '.join(missing)} missing: somebody must answer for it, say why, and until when")
+        raise refuse("", f"{' and '.join(missing)} missing: a waiver needs an owner, a reason and a date")
     for key in ("rule", "reason", "owner", *_PATTERNS):
         if key in table and not (isinstance(table[key], str) and table[key].strip()):
             raise refuse(key, f"{key} = {table[key]!r}: must be a text, and not an empty one")
@@ -147,7 +148,7 @@ def parse_date(value: object) -> date:
 
 
 def _places(text: str, n: int) -> list[tuple[int, dict[str, int]]]:
-    """Return for each waiver the line of its head, and of each of its keys; line 1 where the heads cannot be told apart."""
+    """Return for each waiver the line of its head, and of each of its keys; line 1 if the heads cannot be distinguished."""
     lines = text.splitlines()
     heads = [number for number, line in enumerate(lines, 1) if _HEAD.match(line)]
     if len(heads) != n:  # an inline array, or a head inside a text of several lines

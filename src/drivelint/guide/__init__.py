@@ -11,21 +11,22 @@ from drivelint.errors import UsageError
 from drivelint.phrases import hint
 
 TOPICS: Final = (
-    "traces", "argoverse", "123d", "scenarionet", "mapping", "maps", "convert", "reading-an-unknown", "explain", "differences", "incident",
-    "evidence-pack", "viewer", "pictures", "columns", "python", "ci", "ready-made", "second-run", "watching", "fleets", "fleet-results",
-    "fleet-costs", "writing-a-rule", "scenes", "rule-durations", "rule-reference", "adding-a-format", "architecture",
+    "traces", "damaged-logs", "argoverse", "123d", "scenarionet", "mapping", "maps", "convert", "reading-an-unknown", "explain",
+    "differences", "incident", "evidence-pack", "viewer", "pictures", "columns", "python", "ci", "ready-made", "second-run", "watching",
+    "fleets", "fleet-machines", "fleet-results", "fleet-costs", "writing-a-rule", "scenes", "rule-durations", "rule-reference",
+    "adding-a-format", "architecture",
 )  # fmt: skip
 """The topics in reading order; each is the stem of a file."""
 FOLDER: Final = Path(__file__).parent
 REFERENCE_TOPICS: Final = ("dictionary", "catalogue", "reasons", "macros")
-"""What `drivelint docs` prints beside the guides: the tables, the rules, the reason codes and the macros."""
+"""The topics of `drivelint docs` besides the guides: the tables, the rules, the reason codes and the macros."""
 OUTPUT_TABLES_MARK: Final = "<!-- tables: output -->"
 """The line of a guide that stands for the columns of every output file."""
 _MARK = re.compile(r"^<!-- .* -->\n", re.MULTILINE)
 
 
 class Topic(NamedTuple):
-    """A guide: its name, its title and the sentence that says what it is for."""
+    """A guide: its name, its title and its first sentence."""
 
     name: str
     title: str

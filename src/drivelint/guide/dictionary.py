@@ -1,4 +1,4 @@
-"""The data dictionary: every table of `schemas/*.sql` with its columns, the words that these may hold, and what is derived from what.
+"""The data dictionary: every table of `schemas/*.sql` with its columns, their words, and the tables that it is derived from.
 
 Beside it, as made from the sources too: every reason code with its words, and every macro that SQL can call.
 """
@@ -32,8 +32,8 @@ Distances are metres, speeds metres per second, angles radians, and times intege
 means that the value is not known, unless the column says otherwise. `drivelint check --keep-db` keeps these tables in
 `drivelint.duckdb`.
 
-A column that holds words has those of one vocabulary and no others. They stand with the column, or under *Words*. A rule, a case, a
-mapping and a reader's output with another word are refused.
+A column of words has only the words of one vocabulary. They are listed with the column, or under *Words*. A rule, a case, a mapping or
+a reader's output with any other word is refused.
 """
 _WORDS: Final = "drivelint docs dictionary NAME prints one of them."
 _MACRO: Final = re.compile(r"((?:^--.*\n)*)^CREATE OR REPLACE MACRO (\w+\((?:[^)]+\)|\)(?: AS .+;$)?))", re.MULTILINE)
@@ -87,7 +87,7 @@ def text() -> str:
 
 
 def table_text(name: str) -> str:
-    """Return one table as plain text: its name, what is said of it, and a line per column with its type and meaning; or one vocabulary.
+    """Return one table as plain text: its name, its description, and a line per column with its type and meaning; or one vocabulary.
 
     Errors: `UsageError` with the nearest table or vocabulary.
     """
@@ -172,9 +172,8 @@ def _columns(name: str, *, in_file: bool = False) -> str:
     lines = ["| column | type | meaning |", "|---|---|---|"]
     for column, comment in column_comments()[name].items():
         lines.append(f"| `{column}` | {cell(escaped(_types()[name, column]))} | {cell(escaped(comment))} |")
-    if in_file and name in geometry.SHAPES:
-        shape = geometry.SHAPES[name]
-        lines.append(f"| `{geometry.COLUMN}` | GEOMETRY | {cell(escaped(f'{shape.kind}: {shape.comment}'))} |")
+    for column, shape in geometry.SHAPES.get(name, {}).items() if in_file else ():
+        lines.append(f"| `{column}` | GEOMETRY | {cell(escaped(f'{shape.kind}: {shape.comment}'))} |")
     return "\n".join(lines) + "\n"
 
 
@@ -212,4 +211,4 @@ REFERENCE: Final[dict[str, Callable[[], str]]] = {
     "reasons": reasons_page,
     "macros": macros_page,
 }
-"""What `drivelint docs` prints beside the guides, and the page of each."""
+"""The topics of `drivelint docs` besides the guides, and the page of each."""

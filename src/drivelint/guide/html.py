@@ -1,4 +1,4 @@
-"""Markdown to an HTML page that opens offline: no script, one stylesheet beside it."""
+"""Markdown to an HTML page that opens offline: beside it lie one stylesheet, and the scripts of the search."""
 
 from __future__ import annotations
 
@@ -17,26 +17,38 @@ if TYPE_CHECKING:
     from markdown_it.token import Token
 
 STYLESHEET: Final = "style.css"
+_MARKDOWN: Final = MarkdownIt("commonmark", {"html": False}).enable("table")
 _LONG: Final = 60
 """Characters beyond which a cell should not be narrow."""
 _ELSEWHERE: Final = (("../../../queries/README.md", "catalogue.html"), ("../../../schemas/", "dictionary.html"))
 """What a guide links to in the repository, and the page of the site that has it."""
 
 
-def page(markdown: str, *, name: str, pages: Iterable[tuple[str, Sequence[tuple[str, str]]]], footer: str) -> str:
-    """Return the page `name` of a site. `pages`: heading -> (name, title) of each page under it, for the navigation."""
-    md = MarkdownIt("commonmark", {"html": False}).enable("table")
-    tokens = md.parse(markdown)
+def parse(markdown: str) -> list[Token]:
+    """Return the tokens of a page: its headings have ids, and its links lead to pages of the site."""
+    tokens = _MARKDOWN.parse(markdown)
     _name_headings(tokens)
     _lead_to_pages(tokens)
     _label_cells(tokens)
-    body = str(md.renderer.render(tokens, md.options, {}))
+    return tokens
+
+
+def page(
+    tokens: Sequence[Token], *, name: str, pages: Iterable[tuple[str, Sequence[tuple[str, str]]]], footer: str
+) -> str:
+    """Return the page `name` of a site. `pages`: heading -> (name, title) of each page under it, for the navigation."""
+    body = str(_MARKDOWN.renderer.render(tokens, _MARKDOWN.options, {}))
     body = body.replace("&lt;br&gt;", "<br>")  # the only HTML that the catalogue's cells have
     body = body.replace("<table>", '<div class="wide"><table>').replace("</table>", "</table></div>")
-    title = re.search(r"^# (.+)$", markdown, re.MULTILINE)
+    titles = (words(inline) for opening, inline in pairwise(tokens) if opening.tag == "h1")
     return text_template(__file__, "page.html.j2").render(
-        title=title[1] if title else name, stylesheet=STYLESHEET, body=body, name=name, pages=pages, footer=footer
+        title=next(titles, name), stylesheet=STYLESHEET, body=body, name=name, pages=pages, footer=footer
     )
+
+
+def words(inline: Token) -> str:
+    """Return the text of a heading, a paragraph or a cell, without its markup."""
+    return "".join(" " if child.type.endswith("break") else child.content for child in inline.children or ())
 
 
 def _name_headings(tokens: Sequence[Token]) -> None:
@@ -44,8 +56,9 @@ def _name_headings(tokens: Sequence[Token]) -> None:
     seen: Counter[str] = Counter()
     for opening, inline in pairwise(tokens):
         if opening.type == "heading_open":
-            words = "".join(child.content for child in inline.children or ())
-            slug = re.sub(r"[^\w\- ]", "", words.lower()).replace(" ", "-")
+            slug = re.sub(r"[^\w\- ]", "", "".join(child.content for child in inline.children or ()).lower()).replace(
+                " ", "-"
+            )
             opening.attrSet("id", f"{slug}-{seen[slug]}" if seen[slug] else slug)
             seen[slug] += 1
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 from drivelint import __version__, guide
 from drivelint.errors import UsageError
-from drivelint.guide import dictionary, html
+from drivelint.guide import dictionary, html, search
 from drivelint.result.publishing import publish
 from drivelint.result.text_templates import text_template
 
@@ -30,11 +30,11 @@ REFERENCE_PAGES: Final = {
     "macros": ("Macros", "What the SQL of a rule can call."),
     "commands": ("The command line", "Every command with its arguments and options."),
 }
-"""Page -> its title and what it has."""
+"""Page -> its title and content."""
 
 
 class Command(NamedTuple):
-    """One command: how it is called, what it does, and (name, meaning) of its arguments and options."""
+    """One command: its usage, its description, and (name, meaning) of its arguments and options."""
 
     usage: str
     about: str
@@ -67,11 +67,13 @@ def contents(commands: Iterable[Command]) -> dict[str, bytes]:
         ("Reference", [(name, title) for name, (title, _) in REFERENCE_PAGES.items()]),
     ]
     footer = f"drivelint {__version__}"
+    parsed = {name: html.parse(text) for name, text in pages.items()}
     files = {
-        f"{name}.html": html.page(text, name=name, pages=navigation, footer=footer).encode()
-        for name, text in pages.items()
+        f"{name}.html": html.page(tokens, name=name, pages=navigation, footer=footer).encode()
+        for name, tokens in parsed.items()
     }
-    files |= {name: (guide.FOLDER / name).read_bytes() for name in (html.STYLESHEET, *PICTURES)}
+    files |= {name: (guide.FOLDER / name).read_bytes() for name in (html.STYLESHEET, search.SCRIPT, *PICTURES)}
+    files[search.INDEX] = search.index(parsed)
     return files
 
 

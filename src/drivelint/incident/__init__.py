@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -17,7 +17,7 @@ from drivelint import __version__
 from drivelint.catalogue.header import CONTACT
 from drivelint.engine.memory import DEFAULT_MEMORY
 from drivelint.engine.robustness.copies import MeasurementErrors
-from drivelint.explain.source import open_drive
+from drivelint.explain.source import open_drive, with_ego
 from drivelint.incident import pdf, sheet
 from drivelint.incident.case import Case
 from drivelint.incident.finding import contacts, named_finding
@@ -45,7 +45,7 @@ _NO_VEHICLES: Final = frozenset({"pedestrian", "animal", "object"})
 
 @dataclass(frozen=True)
 class IncidentRequest:
-    """What `report --incident` is asked: a finding, as `explain` takes it, and where log and map are if they were moved."""
+    """A request to `report --incident`: a finding, as `explain` takes it, and where log and map are if they were moved."""
 
     name: str
     folder: Path
@@ -90,7 +90,7 @@ def render(case: Case) -> bytes:
 
 
 def open_case(request: IncidentRequest, run_options: RunRequest | None = None) -> Case:
-    """Find the finding and judge both parties again; what the result says of the other party counts, where it was an ego there.
+    """Find the finding and judge both parties again; if the other party was an ego of the result, the result is used.
 
     `run_options`: the run with the paths at which its files are now; None: they are where `run.json` says.
     Errors: `UsageError` for a finding, log or map that is not there.
@@ -98,7 +98,7 @@ def open_case(request: IncidentRequest, run_options: RunRequest | None = None) -
     result = load_result(request.folder)
     finding = named_finding(result, request.name)
     run_options = (run_options or run_request.load(request.folder)).of_drive(finding.row["drive_id"])
-    judge = Judge.of_run(run_options, result.rules["rule_id"].to_pylist(), request.memory)
+    judge = Judge.of_run(run_options, result.rules, request.memory)
     ego, other = finding.row["ego_id"], finding.row["object_id"]
     drive, source = open_drive(
         request.folder,
@@ -118,7 +118,7 @@ def open_case(request: IncidentRequest, run_options: RunRequest | None = None) -
 def _other_party(
     request: IncidentRequest, run_options: RunRequest, result: Result, finding: NamedFinding, judge: Judge
 ) -> EgoRows | str | None:
-    """Return what is judged of the other party as ego, or why it is not."""
+    """Return the judged result of the other party as ego, or why it was not judged."""
     other, drive_id = finding.row["object_id"], finding.row["drive_id"]
     if other is None:
         return None
@@ -128,11 +128,12 @@ def _other_party(
             for table in (result.verdicts, result.findings)
         ]
         return EgoRows(rows[0], rows[1], result.verdicts.slice(0, 0))
-    # what the options say of the ego is not said of another vehicle
-    run_options = replace(run_options, ego_size=None)
+    # what the options say of the ego is not said of another vehicle, whose object the ego is
+    read_as = other if run_options.ego_size is None else finding.row["ego_id"]
     drive, _ = open_drive(
-        request.folder, run_options, drive_id, other, trace=_log(request, run_options, finding), map_=request.map
+        request.folder, run_options, drive_id, read_as, trace=_log(request, run_options, finding), map_=request.map
     )
+    drive = with_ego(drive, other)
     kinds = {row["actor_id"]: row["actor_class"] for row in drive.trace.tables["actor"].to_pylist()}
     if kinds.get(other) in _NO_VEHICLES:
         return f"The rules are for drivers: {other} is a {kinds[other]}, and was not judged."

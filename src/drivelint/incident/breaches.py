@@ -1,4 +1,4 @@
-"""One line of the sheet for each rule: how it was broken, or what was measured where it was kept."""
+"""One line of the sheet for each rule: how it was broken, or the measured value if it was kept."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 
     from drivelint.result.text import Row
 
-ADVICE: Final = ("begin", "choose", "correct", "give", "make", "record", "see")
-"""First words of what a reason advises."""
+ADVICE: Final = ("begin", "choose", "correct", "give", "make", "provide", "record", "see", "set", "use")
+"""First words of the advice of a reason."""
 _ADVICE: Final = re.compile(rf": (?:{'|'.join(ADVICE)}) .*$")
 _MOST_STRETCHES: Final = 2
 LOWER_BOUND: Final = "lower_bound"
-"""The cause of a verdict whose measure is limited only by the end of what is known."""
+"""The cause of a verdict whose measure is limited only by the end of the data."""
 
 
 def quoted(rule: Row) -> str:
@@ -47,7 +47,7 @@ def broken_line(rule: Row, rows: Sequence[Row], start_ns: int) -> str:
 
 
 def kept_line(rule: Row, rows: Sequence[Row], span: tuple[int, int], start_ns: int) -> str:
-    """Return what was measured of a rule that was kept in all of these verdicts: the worst value, and when, if not in all of the span.
+    """Return the worst measured value of a rule that was kept in all of these verdicts, and when it was judged, if not in all of the span.
 
     A rule without a measure is quoted. So is one that may excuse what was done: what it measures leaves that out.
     """
@@ -65,17 +65,17 @@ def kept_line(rule: Row, rows: Sequence[Row], span: tuple[int, int], start_ns: i
 
 
 def without_advice(reason: str) -> str:
-    """Return a reason without what it advises to record or to give: the sheet is about a recording that is over."""
+    """Return a reason without its advice: the sheet is about a recording that is over."""
     return _ADVICE.sub("", reason).removesuffix(".")
 
 
 def short_clause(clause: str) -> str:
-    """Return the number of a clause without what it says."""
+    """Return the number of a clause without its text."""
     return clause.partition(":")[0].partition(" (")[0]
 
 
 def _measured_by_profile(rule: Row, rows: Sequence[Row]) -> str:
-    """Return what was measured and what each profile requires, the mildest first; '' for one profile, or other measures."""
+    """Return the measured value and the requirement of each profile, the mildest first; '' for one profile, or other measures."""
     if len(rows) < 2 or any(row["observed"] is None or row["required"] is None for row in rows):
         return ""
     ordered = sorted(rows, key=lambda row: (-row["margin"], row["profile"]))
@@ -97,7 +97,7 @@ def _when(row: Row, rule: Row, start_ns: int) -> str:
 
 
 def _certainties(rows: Sequence[Row]) -> str:
-    """Return how sure findings are; nothing is said of a verdict that is no finding."""
+    """Return how sure findings are; empty for a verdict that is no finding."""
     found = [row for row in rows if "finding_id" in row]
     if not found:
         return ""

@@ -1,4 +1,4 @@
-"""Everything that stands behind an incident sheet."""
+"""The data behind an incident sheet."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ LETTERS: Final = ("A", "B")
 
 @dataclass(frozen=True)
 class Case:
-    """A finding, its run, and what the sheet judged again.
+    """A finding, its run, and the results that the sheet judged again.
 
     `other_party`: what was judged of the second party, or in a sentence why it was not; None: there is none.
     """

@@ -7,6 +7,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final
 
+import pyarrow.compute as pc
+
 from drivelint.convert import Clip, convert
 from drivelint.drive.trace import DriveInput
 from drivelint.engine.batch import drive_with_map
@@ -44,7 +46,8 @@ def write_clip(request: ConvertRequest, name: str, folder: Path, memory: int | N
     finding = named_finding(result, name)
     run_options = run_request.load(folder).of_drive(finding.row["drive_id"])
     request = _with_run_options(request, run_options, finding)
-    judge = Judge.of_run(run_options, [finding.row["rule_id"]], memory)
+    rule = result.rules.filter(pc.equal(result.rules["rule_id"], finding.row["rule_id"]))
+    judge = Judge.of_run(run_options, rule, memory)
     for before_s, after_s, clip in _clips(finding):
         with TemporaryDirectory(prefix="drivelint-") as place:
             tried = convert(replace(request, out=Path(place) / "clip", clip=clip))
@@ -100,7 +103,7 @@ def _gives_finding(path: Path, run_options: RunRequest, finding: NamedFinding, j
 
 
 def _clip_sentence(finding: NamedFinding, clip: Clip, before_s: float | None, after_s: float | None) -> str:
-    """Return what the clip covers, in one sentence."""
+    """Return the span of the clip in one sentence."""
     from_s, to_s = ((t_ns - finding.start_ns) / _S for t_ns in (clip.from_ns, clip.to_ns))
     row = finding.row
     if before_s is None:

@@ -1,4 +1,4 @@
-"""The commands that give a finding and its sheet again, for whoever has the log and the map."""
+"""The commands that reproduce a finding and its sheet from the log and the map."""
 
 from __future__ import annotations
 

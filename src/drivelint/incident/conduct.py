@@ -1,4 +1,4 @@
-"""What one party did around the moment, by the verdicts on it: rules broken, kept, not decided, and never asked."""
+"""The conduct of one party around the moment, by its verdicts: rules broken, kept, not decided, and never applicable."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def conduct(
     *,
     touched: bool = False,
 ) -> dict[str, Any]:
-    """Return what the verdicts and findings of one ego say about a span of the drive.
+    """Return the verdicts and findings of one ego in a span of the drive.
 
     A rule counts once, by its worst verdict there: broken, not decided (or in error), kept, or never asked; `elsewhere`: broken, but
     only outside the span. `beside`: what rules of contacts measured that found none where another did: none of them counts as kept
@@ -79,7 +79,7 @@ def conduct(
 
 
 def name_party(conduct_lists: Mapping[str, Any], name: str) -> dict[str, Any]:
-    """Return what is told of a party with its name where rules call it the ego; titles, in quotes, stay as they are."""
+    """Return a text about a party with its name where rules say "the ego"; titles, in quotes, stay as they are."""
     named_lists = dict(conduct_lists)
     for part in ("broken", "kept", "excused", "beside"):
         if part in conduct_lists:

@@ -17,7 +17,7 @@ WINDOW_S: Final = 0.3
 """Crash recorders take the greatest change of velocity in the first 0.3 s of an impact (49 CFR 563.7): an impact is over by then."""
 _LEAST_DEGREES: Final = 5.0
 _LEAST_MPS: Final = 0.5
-"""The direction of a smaller velocity, or of a smaller change, tells nothing."""
+"""The direction of a smaller velocity, or of a smaller change, means nothing."""
 _MOST_STEPS: Final = 2.5
 """Samples further apart, in usual steps, are not continuous: as the rules have it (`max_gap`)."""
 

@@ -1,4 +1,4 @@
-"""Fits what is told into the room of two pages: a reason loses its rules' titles before any reason is left out."""
+"""Fits the content into two pages: a reason loses the titles of its rules before any reason is left out."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 _ROOM: Final = {"broken": 1500, "kept": 300, "excused": 80, "reasons": 350}
-"""Characters that each part has on the page at least; the number of what is left out is told."""
+"""The fewest characters of each part on the page; the number of left-out texts is printed."""
 _FIRST: Final = ("broken", "reasons")
-"""Parts that are told whole before any other, in this order."""
+"""Parts that are printed whole before any other, in this order."""
 _MAY_GO: Final = frozenset({"kept", "excused"})
 """Parts whose number stands in the party's first line."""
 _WASTE: Final = {"broken": 30}
 """Characters that the end of a text's last line leaves empty, where each text begins a line."""
 _ALL_ROOM: Final = 3300
-"""Characters of all parts of both parties: what one does not use, the others may."""
+"""Characters of all parts of both parties: the others may use the room that one leaves."""
 _SECOND_ROOM: Final = 110
 """Characters that fit where the table second by second has a row less than its most."""
 _JOIN: Final = 2
@@ -34,7 +34,7 @@ the hashes."""
 _LINE_PX, _TEXT_PX = 13.7, 15.7
 """Heights of a line in the tables of page 1, and of its first sentences."""
 _FIRST_PX: Final = 465
-"""Height of what page 1 tells of the finding and the parties, with which the lists of what is not recorded still fit below it."""
+"""Greatest height of the finding and the parties on page 1 with which the lists of missing records still fit below them."""
 _CHECK_LINE: Final = 125
 """Characters of the columns of page 2 that a line of the hashes takes."""
 _CELLS: Final = ("delta_v", "fastest", "lane", "lights")
@@ -70,7 +70,7 @@ class Fitting(NamedTuple):
 
 
 def is_crowded(page: dict[str, Any]) -> bool:
-    """Whether page 1, by what `content` tells of the finding and the parties, has no room left for what is not recorded."""
+    """Whether page 1, with the finding and the parties in `content`, has no room left for the missing records."""
     sure, rests, drive = page["sure"], page["rests"], page["drive"]
     facts = [
         8
@@ -111,10 +111,10 @@ def shared_reasons(parties: Sequence[dict[str, Any]]) -> dict[str, Any]:
 
 
 def fit(parties: Sequence[dict[str, Any]], seconds_left: int, used_characters: int) -> None:
-    """Cut the lists of what both parties did to what fits into two columns that share their room.
+    """Cut the lists about both parties so that they fit into two columns that share their room.
 
-    What the lists leave goes first to what was broken, then to the reasons, until all are told; where other lines take more, each list
-    loses its share, that of what was broken last.
+    Room that the lists leave goes first to the broken rules, then to the reasons, until all are printed. If other lines take more room,
+    each list loses its share, the list of broken rules last.
     `seconds_left`: rows that the table second by second does not fill; `used_characters`: characters of other lines.
     """
     parts = [
@@ -140,7 +140,7 @@ def fit(parties: Sequence[dict[str, Any]], seconds_left: int, used_characters: i
 
 
 def _shrunk(parts: Sequence[_Part], by: int) -> list[_Part]:
-    """Take so many characters from the parts, in the order in which they give way; of the reasons of a party one is told in any case."""
+    """Take so many characters from the parts, in the order in which they give way; one reason of a party is printed in any case."""
     rooms = [room for *_, room in parts]
     for giving in ("excused", "kept", "reasons", "broken"):
         spared = {
@@ -178,7 +178,7 @@ def _length(texts: Sequence[str], part: str) -> int:
 
 
 def _fitting(texts: Sequence[str], part: str, room: int) -> Fitting:
-    """Return as many of the texts as fit; at least one, but for parts of which the number alone may be told."""
+    """Return as many of the texts as fit; at least one, except in parts of which only the number may be printed."""
     shown = list(texts[:1])
     if part in _MAY_GO and texts and room < len(texts[0]) // 2:
         return Fitting([], len(texts))

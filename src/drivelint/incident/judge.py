@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import msgspec
+
 from drivelint import catalogue
 from drivelint.engine.memory import DEFAULT_MEMORY, Memory
 from drivelint.engine.profiles import load_profiles, profile_table
@@ -15,7 +17,7 @@ from drivelint.sql import store
 from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Sequence
+    from collections.abc import Sequence
 
     import duckdb
     import pyarrow as pa
@@ -46,22 +48,21 @@ class Judge:
     memory: int | None = DEFAULT_MEMORY
 
     @classmethod
-    def of_run(cls, run_options: RunRequest, rule_ids: Collection[str], memory: int | None) -> Judge:
-        """Return the judge of a run, by these of its rules. Errors: `UsageError` for a rule that is gone."""
+    def of_run(cls, run_options: RunRequest, rules_of_run: pa.Table, memory: int | None) -> Judge:
+        """Return the judge of a run, by these rows of its table of rules. Errors: `UsageError` for a rule that is gone."""
         known = catalogue.load_rules(run_options.rules_dirs)
-        if gone := sorted(set(rule_ids) - known.keys()):
+        named = {row["rule_id"]: row["is_named"] for row in rules_of_run.to_pylist()}
+        if gone := sorted(named.keys() - known.keys()):
             raise UsageError(f"rule {gone[0]} is not in the catalogue any more: check the drives again")
-        rules = [known[rule_id] for rule_id in sorted(rule_ids)]
-        mine = [
-            each for each in run_options.params if each.partition("=")[0].strip().rpartition(".")[0] in set(rule_ids)
-        ]
+        rules = [msgspec.structs.replace(known[rule_id], is_named=named[rule_id]) for rule_id in sorted(named)]
+        mine = [each for each in run_options.params if each.partition("=")[0].strip().rpartition(".")[0] in named]
         profiles = profile_table(load_profiles(run_options.rules_dirs), run_options.profiles)
         return cls(rules, catalogue.parse_params(rules, mine), profiles, memory)
 
     def judge(
         self, drive: Drive, ego_id: str, object_id: str | None, errors: MeasurementErrors | None = None
     ) -> EgoRows:
-        """Judge a drive of one ego. `errors`: of the copies that tell how sure findings are; None: no copies are judged."""
+        """Judge a drive of one ego. `errors`: of the copies that show how sure findings are; None: no copies are judged."""
         steps: list[pa.Table] = []
 
         def look(con: duckdb.DuckDBPyConnection, _drives: Sequence[Drive], /, **_part: bool) -> None:

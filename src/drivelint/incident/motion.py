@@ -1,4 +1,4 @@
-"""How two parties moved against each other: gap, closing speed, who slowed, and a table second by second."""
+"""The relative motion of two parties: gap, closing speed, braking, and a table second by second."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Motion:
     `t`: seconds from the moment; `velocity`: along x and y (2, n) in m/s; `backwards`: whether it moves against its heading; `gap`: box to
     box in m, negative: depth of overlap; `closing`: speed at which the line between the box centres shortens; `relative`: speed of the
     one as seen from the other; `turn`: angle between the headings; `lane_offset`: left of the middle of the ego's lane, as the ego
-    drives; `out_since`: when the ego left its lane, in seconds from the moment; NaN: it is in it, or nobody looked.
+    drives; `out_since`: when the ego left its lane, in seconds from the moment; NaN: it is in it, or this was not examined.
     """
 
     t: Floats
@@ -147,7 +147,7 @@ def _is_backwards(columns: dict[str, Floats], of: str) -> Mask:
 
 
 def slowing_known(motion: Motion, party: int, until_s: float) -> bool:
-    """Whether every half second of the 15 s before `until_s`, as far as recorded, tells if a party slowed."""
+    """Whether every half second of the 15 s before `until_s`, as far as recorded, shows whether a party slowed."""
     t = motion.t
     begin = max(float(t[0]), until_s - BEFORE_S)
     steps = np.flatnonzero((t >= begin + _MEAN_S - 1e-9) & (t <= until_s + 1e-9)).tolist()

@@ -1,4 +1,4 @@
-"""Who the parties are, how fast they were, whether they slowed, and in which lanes; and who else stood or drove around them."""
+"""The parties of an incident: their speeds, braking and lanes, and the other actors around them."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _SIDES: Final = {True: "centre in a lane of its direction", False: "centre in th
 def party(
     case: Case, motion: Motion, number: int, at: int | None, before_s: float | None, *, slowed: Sequence[Slowing]
 ) -> dict[str, Any]:
-    """Return one party: who it is, how fast it was, and whether it slowed."""
+    """Return one party: its kind, its speed, and whether it slowed."""
     actor_id = case.finding.parties[number]
     tables = case.drive.trace.tables
     about: Row = next((row for row in tables["actor"].to_pylist() if row["actor_id"] == actor_id), {})
@@ -122,7 +122,7 @@ def _lane(case: Case, number: int, at: int | None) -> str:
 
 
 def overtaking(case: Case, at: int | None) -> str:
-    """Return in words whom the first party was overtaking at a step, and in which lane; '' for nobody, or where nobody looked."""
+    """Return in words which vehicle the first party was overtaking at a step, and in which lane; '' for none, or if not examined."""
     if at is None:
         return ""
     t_ns, row = case.again.steps["t_ns"][at].as_py(), case.finding.row
@@ -139,7 +139,7 @@ def overtaking(case: Case, at: int | None) -> str:
 
 
 def title(case: Case, motion: Motion, at: int | None, *, possible: bool) -> str:
-    """Return what happened, as the sheet's title."""
+    """Return the title of the sheet: the event."""
     finding, row = case.finding, case.finding.row
     when = seconds(finding.moment_ns, finding.start_ns)
     if not finding.is_contact or len(finding.parties) < 2:
@@ -149,7 +149,7 @@ def title(case: Case, motion: Motion, at: int | None, *, possible: bool) -> str:
 
 
 def others_drawn(plan: Mapping[str, Any], scene: Row) -> list[str]:
-    """Return in words who else the plan view names: kind, size, speed, and distance from the first party."""
+    """Return in words the other actors in the plan view: kind, size, speed, and distance from the first party."""
     actors = {actor["actor_id"]: actor for actor in scene["actors"]}
     ego = shapely.polygons(corners(plan["ego"]))
     told = []

@@ -24,7 +24,7 @@ _INFERRED: Final = {
     "traces": "inferred from how the log's traffic drives",
     "default": "assumed: neither map nor user says it",
 }
-"""Source of the side that is driven on, where nobody gave it, in words."""
+"""Source of the side that is driven on, if the user did not set it, in words."""
 
 
 class Place(NamedTuple):
@@ -53,13 +53,13 @@ def place(case: Case) -> Place:
 
 
 def geo_source(case: Case) -> str:
-    """Return whose geo reference gives latitude and longitude: map or log."""
+    """Return the source of the geo reference: map or log."""
     environment = case.drive.environment
     return "map" if environment is not None and frame_of_map(environment) is not None else "log"
 
 
 def surroundings(drive: Row) -> str:
-    """Return what is known of weather and light, in words."""
+    """Return the known weather and light, in words."""
     known = {each["condition"]: each["value"] for each in drive["conditions"]}
     told = [f"{name} {known[name]}" for name in _SURROUNDINGS if name in known]
     lost = [name for name in _SURROUNDINGS if name not in known]

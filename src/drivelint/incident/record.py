@@ -1,4 +1,4 @@
-"""Which elements of two lists of what a vehicle should record a log does not hold: `elements.toml`."""
+"""Compares a log with two lists of elements that a vehicle should record: `elements.toml`."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ _NEAR_NS: Final = 500_000_000
 
 
 def scene_at(scene: Row, states: pa.Table, t_ns: int) -> Row:
-    """Return a row of `scene` with its actors where they are at `t_ns`; who is not recorded around then is left out.
+    """Return a row of `scene` with its actors at their places at `t_ns`; actors that are not recorded around then are left out.
 
     `states`: the drive's rows of `actor_state`. Between two samples, a place is that of the straight way between them.
     """

@@ -1,4 +1,4 @@
-"""What the two pages of an incident sheet say, as plain values for the template."""
+"""The content of the two pages of an incident sheet, as plain values for the template."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ if TYPE_CHECKING:
     from drivelint.result.text import Row
 
 SPAN_S: Final = (15, 7)
-"""What each party did is told from so long before the moment to so long after it."""
+"""The conduct of each party is reported from this long before the moment to this long after it."""
 _NO_NUMBER: Final = "-"
 _CLIP: Final = re.compile(r"^(.+)-clip-[0-9a-f]{8}$")
 """Name of a clip that `convert --clip` cut, see `clip.py`."""
@@ -58,12 +58,12 @@ _CLIP_NOTE: Final = "; numbers that depend on what is before or after it may dif
 _SPACES: Final = "danger_space"
 _LONGEST: Final = 330
 _LINE_ROOM: Final = 370
-"""Characters of the columns that warnings on the log take, or what a clip was cut from."""
+"""Characters of the columns that warnings on the log take, or the source of a clip."""
 _WARNING_ROOM: Final = 300
 _LABEL_SHARE: Final = 0.1
 """Size of the plan view's labels, of its height: at its least height on the page (`sheet.css`) they are 6 pt or more."""
 _RECORDS_ROOM: Final = 1300
-"""Characters of the columns that the lists of what is not recorded take, where page 1 has no room for them."""
+"""Characters of the columns that the lists of missing records take, if page 1 has no room for them."""
 _MOST_CONTACTS: Final = 2
 
 
@@ -164,7 +164,7 @@ def figure(value: float | None, digits: int = 2) -> str:
 
 
 def _finding_sentence(finding: NamedFinding) -> str:
-    """Return what was found, in one sentence."""
+    """Return the finding in one sentence."""
     row, rule = finding.row, finding.rule
     if overlap := contact(row, rule):
         return f"{overlap[:1].upper()}{overlap[1:]}."
@@ -265,14 +265,14 @@ def _recording(finding: NamedFinding) -> dict[str, str]:
 
 
 def _span(finding: NamedFinding) -> tuple[int, int]:
-    """Return from when to when is told what each party did: no further than the recording goes."""
+    """Return the span in which the conduct of each party is reported, within the recording."""
     end_ns = finding.start_ns + round((finding.drive["duration_s"] or 0.0) * 1e9)
     first, last = (finding.moment_ns + sign * s * 10**9 for sign, s in zip((-1, 1), SPAN_S, strict=True))
     return max(first, finding.start_ns), min(last, end_ns)
 
 
 def _conduct(case: Case, span: tuple[int, int], seconds_left: int, used_characters: int) -> dict[str, Any]:
-    """Return what each party did, by the verdicts on it as ego, and why rules are not decided of both."""
+    """Return the conduct of each party by its verdicts as ego, and the reasons of rules that are undecided for both."""
     finding = case.finding
     rules = {rule["rule_id"]: rule for rule in case.result.rules.to_pylist()}
     # the first party's findings were judged anew without copies
@@ -324,7 +324,7 @@ def _surest(case: Case) -> dict[str, Any]:
 
 
 def _rests_on(case: Case, motion: Motion) -> str:
-    """Return which measure tells the contact, in words, if overlapping boxes do not; '' for all other findings."""
+    """Return the measure that shows the contact, in words, if overlapping boxes do not; '' for all other findings."""
     row = case.finding.row
     if not case.finding.is_contact or row["unit"] == "m":
         return ""

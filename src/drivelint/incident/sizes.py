@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def size_source(trace: Trace, actor_id: str) -> str:
-    """Return, in words, what gave an actor its size; '' where the log did. A clip says what its log said."""
+    """Return in words the source of an actor's size; '' for the log. A clip has the source of its log."""
     rows = trace.tables["quality"].to_pylist()
     mine = [row for row in rows if row["check_id"] == ASSUMED_SIZE and row["actor_id"] in {None, actor_id}]
     return "; ".join(row["message"] for row in mine)

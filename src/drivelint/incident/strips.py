@@ -1,4 +1,4 @@
-"""Charts under the plan view, on one time axis: speeds, gap, and what the rule measured against what it requires."""
+"""Charts under the plan view, on one time axis: speeds, gap, and the observed and the required values of the rule."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ def _chart(title: str, lines: Sequence[_Line], x: Axis, *, from_zero: bool = Fal
 
 
 def _dots(line: _Line, x: Axis, y: Axis) -> list[tuple[str, str]]:
-    """Return the points of what was measured at so few steps that a line would not show."""
+    """Return the points of a measure with so few steps that a line would not show."""
     points = [(num(x.at(at)), num(y.at(v))) for at, v in zip(line.t, line.values, strict=True) if math.isfinite(v)]
     return points if len(points) < _HOLE_STEPS else []
 

@@ -58,7 +58,7 @@ def minus(text: str) -> str:
 
 
 def measured_text(row: Row, rule: Row) -> str:
-    """Return what was measured and what had to be; '' where the rule measures nothing."""
+    """Return the observed and the required value; '' if the rule measures nothing."""
     if row["observed"] is None and row["required"] is None:
         return ""
     if CONTACT in rule["tags"] and row["unit"] == "m" and (row["observed"] or 0.0) < 0:
@@ -72,13 +72,13 @@ def measured_text(row: Row, rule: Row) -> str:
 
 
 def required(row: Row, rule: Row) -> str:
-    """Return what was required, and of a limit how much of it is tolerance."""
+    """Return the required value, and for a limit the part that is tolerance."""
     said, given = amount(row["required"], row["unit"]), tolerance(row, rule)
     return said if given is None else f"{said}, {amount(given, row['unit'])} of it tolerance"
 
 
 def profile(name: str | None) -> str:
-    """Return, after a space, as what an overtake was judged; '' for a rule without profiles."""
+    """Return, after a space, the profile by which an overtake was judged; '' for a rule without profiles."""
     if name is None:
         return ""
     return " (overtake as driven)" if name == "observed" else f" (planned as {name})"
@@ -91,7 +91,7 @@ def how_sure(row: Row) -> str:
 
 
 def contact(row: Row, rule: Row) -> str:
-    """Return what the recording and its copies say of boxes that overlap; '' for another finding."""
+    """Return the overlap of the boxes in the recording and its copies, in words; '' for another finding."""
     if CONTACT not in rule["tags"] or row["unit"] != "m" or row["observed"] is None or row["observed"] >= 0:
         return ""
     said = f"the boxes overlap by {amount(-row['observed'], 'm')} in the recording"
@@ -110,7 +110,7 @@ def story(
     closing_mps: float | None,
     offset_s: float,
 ) -> str:
-    """Return in one sentence what is known to have happened up to the step `at`; '' for one party, or where that step is not known.
+    """Return in one sentence the events up to the step `at`; '' for one party, or if that step is not known.
 
     `slowed`: of each party, see `slowings`; `kinds`: the class of each, None: not recorded; `did`: what the first was doing;
     `closing_mps`: of the finding; `offset_s`: the moment in seconds of the drive.
@@ -156,9 +156,9 @@ def story(
 def collision_title(
     motion: Motion, at: int | None, *, when: str, closing_mps: float | None, oncoming: bool, possible: bool
 ) -> str:
-    """Return what a contact of A and B was, as a title: how they stood to each other, when, where, and how fast they came nearer.
+    """Return a contact of A and B as a title: their directions, time, place, and closing speed.
 
-    It blames nobody. `at`: the last step before; `oncoming`: A was in the oncoming lane then.
+    It does not state who is at fault. `at`: the last step before; `oncoming`: A was in the oncoming lane then.
     """
     turn = math.nan if at is None else float(motion.turn[at])
     how = "" if math.isnan(turn) else f" {_angle(turn)}"
@@ -186,7 +186,7 @@ def _angle(turn_rad: float) -> str:
 
 
 def _left_lane(motion: Motion, at: int, offset_s: float) -> str:
-    """Return when A left the lane that it was out of at a step, and how far B was; '' if it was not, or nobody looked."""
+    """Return when A left the lane that it was out of at a step, and the distance of B; '' if it was not, or if not examined."""
     since = float(motion.out_since[at])
     if math.isnan(since):
         return ""

@@ -12,6 +12,7 @@ from drivelint.drive import conditions
 from drivelint.drive.trace import OWN_MAP_UNUSABLE, DriveInput
 from drivelint.engine.batch import Drive as Judgeable
 from drivelint.engine.batch import drive_with_map
+from drivelint.engine.default_rules import packs_of_nation
 from drivelint.engine.map_library import MapLibrary
 from drivelint.engine.memory import DEFAULT_MEMORY, Memory
 from drivelint.engine.session import JudgingSession
@@ -36,13 +37,12 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import IngestOptions, Trace
     from drivelint.road.map_reader import MapTables
 
-DEFAULT_RULES: Final = ("ukhc",)
 _SEVERITIES: Final = ("error", "warning", "info")
 
 
 @dataclass(frozen=True)
 class InspectRequest(DriveInput):
-    """What `inspect` is asked to do; the names are those of its options."""
+    """A request to `inspect`; the names are those of its options."""
 
     trace: str
     rules: tuple[str, ...] = ()
@@ -55,17 +55,17 @@ def inspect(request: InspectRequest) -> model.Inspection:
     """Return an inspection of a log; if it cannot be read as a drive, `problem` says why.
 
     Errors: `TraceError` for a file that is not there, `UsageError`, `RuleError`, and `MapError` for a map that cannot be
-    read; one of another place is told in the result.
+    read; a map of another place is reported in the result.
     """
-    selection = request.rules or DEFAULT_RULES
-    rules = catalogue.select_rules(catalogue.load_rules(request.rules_dirs), selection, ())
+    library, known = MapLibrary(request), catalogue.load_rules(request.rules_dirs)
+    selection = request.rules or packs_of_nation(known, request, library)
+    rules = catalogue.select_rules(known, selection, ())
     paths = expand_traces([request.trace])
     if len(paths) != 1:
         raise UsageError(
             f"{request.trace}: {len(paths)} logs ({listed([path.name for path in paths])}): inspect looks at one at a time"
         )
     (path,) = paths
-    library = MapLibrary(request)
     options = request.ingest_options(need_ego=False)
     name, size = path.resolve().name, 0 if why_not_here(path) else size_bytes(path)
     try:
@@ -98,7 +98,7 @@ def exit_code(inspection: model.Inspection) -> ExitCode:
 def _content_of_unread(path: Path, options: IngestOptions) -> model.Content:
     try:
         return content(path, None, [], has_reader=not may_be_mapped_table(path, options))
-    except (TraceError, OSError):  # the problem that the reader has told already
+    except (TraceError, OSError):  # the problem that the reader has reported already
         return model.Content()
 
 
@@ -150,7 +150,7 @@ def _judgeable(
     *,
     memory: int | None,
 ) -> tuple[list[model.Ego], list[model.Quality]]:
-    """Fill the database with the drive, derive the library tables, and read from them what is known of its egos and data."""
+    """Fill the database with the drive, derive the library tables, and read from them the facts about its egos and data."""
     known = _Knowledge()
     with store.workspace(memory) as con:
         session = JudgingSession(con, (), {}, None, observers=[known], memory=Memory(con, memory))
@@ -193,7 +193,7 @@ def _judgeable(
 
 
 class _Knowledge:
-    """Looks, while the tables are there, at what is known of each ego at some step: conditions, and the limit."""
+    """Reads, while the tables exist, which facts about each ego are known at some step: conditions, and the limit."""
 
     def __init__(self) -> None:
         self.of: dict[str, dict[str, bool]] = {}

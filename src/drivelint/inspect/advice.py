@@ -18,10 +18,10 @@ SIGNALS_NEEDING_MAP: Final = frozenset(
         "traffic_lights", "stop_lines", "crossings",
     }
 )  # fmt: skip
-"""Signals that nobody can have without a map: where there is none, it is what is missing."""
+"""Signals that need a map: if there is none, the map is missing."""
 MISSING_ON_ROUTE: Final = {
-    "road_types": "the map does not say of what kind the roads are that the ego drives on",
-    "speed_limits": "the map gives no limit that can be read for the lanes that the ego drives on",
+    "road_types": "the map does not state the kind of the roads on which the ego drives",
+    "speed_limits": "the map has no readable speed limit for the lanes on which the ego drives",
 }
 
 

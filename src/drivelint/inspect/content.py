@@ -1,4 +1,4 @@
-"""What a file holds, whether or not it can be read as a drive: channels, tables, columns and what is read of them."""
+"""The content of a file, whether or not it can be read as a drive: channels, tables, columns and what is read of them."""
 
 from __future__ import annotations
 
@@ -172,7 +172,7 @@ def _channels(path: Path) -> list[Channel]:
                     for channel in part.channels.values():
                         counts.setdefault(_key(part, channel), _Count())
     except TraceError:
-        pass  # the drive cannot be read either, for the same reason, and that is told
+        pass  # the drive cannot be read either, for the same reason, which is reported
     roles = _roles(path)
     return [_channel(key, counts[key], roles) for key in sorted(counts)]
 
@@ -199,7 +199,7 @@ def _channel(key: tuple[str, str, str, str], count: _Count, roles: dict[tuple[st
 
 
 def _roles(path: Path) -> dict[tuple[str, str], str]:
-    """Return what is read of a log, by schema and encoding: of one that holds several kinds, only the best is."""
+    """Return what is read of a log, by schema and encoding: if it has several kinds, only the best one is read."""
     try:
         return _ROLES[bag.message_family(path)]
     except TraceError:

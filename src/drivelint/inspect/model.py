@@ -1,4 +1,4 @@
-"""What `inspect` finds out, as its JSON has it: `schemas/inspect.schema.json` is made from here.
+"""The result of `inspect`, as its JSON has it: `schemas/inspect.schema.json` is made from here.
 
 Times are seconds; those named `t_...` or `..._at_s` count from the first time stamp of the log. Lengths are metres.
 """
@@ -15,7 +15,7 @@ INSPECT_SCHEMA: Final = 1
 
 
 def described(meaning: str) -> Meta:
-    """Return what a key means, as the schema says it."""
+    """Return the meaning of a key, for the schema."""
     return Meta(description=meaning)
 
 
@@ -25,7 +25,7 @@ class File(msgspec.Struct, frozen=True, kw_only=True):
     name: Annotated[str, described("file or folder name, without where it lies")]
     bytes: Annotated[int, described("size; of a folder, of its tables together")]
     sha256: Annotated[str | None, described("hash of its content; null: not read as a drive")] = None
-    drive_id: Annotated[str | None, described("what its verdicts are filed under; null: not read as a drive")] = None
+    drive_id: Annotated[str | None, described("its id in the verdicts; null: not read as a drive")] = None
     format: Annotated[str | None, described("osi-mcap, canonical-parquet or the mapping's name; null: not read")] = None
 
 
@@ -46,7 +46,9 @@ class Column(msgspec.Struct, frozen=True, kw_only=True):
     """One column of a table; of a wide table one for all its groups, `{k}` standing for the group's number."""
 
     name: str
-    read_as: Annotated[list[str], described("what the mapping reads from it: time, x, yaw, class, ...; empty: nothing")]
+    read_as: Annotated[
+        list[str], described("the quantity that the mapping reads from it: time, x, yaw, class, ...; empty: none")
+    ]
     unit: Annotated[str | None, described("as the mapping says; null: SI, or no number")] = None
 
 
@@ -59,12 +61,12 @@ class Sheet(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Content(msgspec.Struct, frozen=True, kw_only=True):
-    """What the file holds."""
+    """The content of the file."""
 
     channels: Annotated[list[Channel], described("of an MCAP file, by topic")] = []
     sheets: Annotated[list[Sheet], described("tables, of CSV and Parquet")] = []
     mapping: Annotated[str | None, described("the mapping that a table was read through")] = None
-    notes: Annotated[list[str], described("what the reader said")] = []
+    notes: Annotated[list[str], described("the notes of the reader")] = []
     draft_mapping: Annotated[
         str | None,
         described("where no mapping fits a table: one to start from, TOML, guessed from the columns' names"),
@@ -108,7 +110,7 @@ class Actor(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class MapRegistration(msgspec.Struct, frozen=True, kw_only=True):
-    """How an ego's track lies on the map."""
+    """The fit of an ego's track to the map."""
 
     ok: Annotated[bool, described("good enough for rules that need the map")]
     reason: str
@@ -117,7 +119,7 @@ class MapRegistration(msgspec.Struct, frozen=True, kw_only=True):
     moving: Annotated[int, described("of those, in motion and not overtaking in an opposing lane")]
     with_direction: Annotated[int, described("of the moving ones, along the lane's direction")]
     lateral_median_m: Annotated[float | None, described("median distance from the lane's middle; null: never on one")]
-    aside: Annotated[bool, described("it is so far from the middle that the map may be moved against the log")]
+    aside: Annotated[bool, described("the distance is so large that the map may be moved relative to the log")]
 
 
 class Undecided(msgspec.Struct, frozen=True, kw_only=True):
@@ -128,7 +130,7 @@ class Undecided(msgspec.Struct, frozen=True, kw_only=True):
     missing_signals: Annotated[
         list[str], described("signals and conditions; without a map only `map` for all that is of the map")
     ] = msgspec.field(name="missing")
-    breach_only: Annotated[bool, described("it can be found broken all the same, but not kept")] = False
+    breach_only: Annotated[bool, described("the rule can fail, but not pass")] = False
 
 
 class MissingSignal(msgspec.Struct, frozen=True, kw_only=True):
@@ -136,13 +138,13 @@ class MissingSignal(msgspec.Struct, frozen=True, kw_only=True):
 
     signal: str
     reason: Annotated[str, described("what is wrong or missing")]
-    provide: Annotated[str, described("what to give to have it")]
-    rules: Annotated[list[str], described("rules that wait for it")]
-    alone: Annotated[list[str], described("of them those that wait for nothing else")]
+    provide: Annotated[str, described("what to provide")]
+    rules: Annotated[list[str], described("rules that need it")]
+    alone: Annotated[list[str], described("of them, rules that need nothing else")]
 
 
 class Ego(msgspec.Struct, frozen=True, kw_only=True):
-    """A vehicle under test, and what can be decided about it."""
+    """A vehicle under test, and the rules that can be decided for it."""
 
     actor: Actor
     km: float
@@ -189,12 +191,12 @@ class Drive(msgspec.Struct, frozen=True, kw_only=True):
     classes: Annotated[list[ClassCount], described("the most numerous first")]
     egos: Annotated[list[Ego], described("by id; empty: the log names none and none was chosen")]
     ego_source: Annotated[str, described("how the egos were found, or why there is none")]
-    candidates: Annotated[list[Actor], described("where there is no ego: who might be, the longest way first")]
-    supposed: Annotated[Ego | None, described("where there is no ego: what could be decided of the first candidate")]
+    candidates: Annotated[list[Actor], described("if there is no ego: the candidates, the longest path first")]
+    supposed: Annotated[Ego | None, described("if there is no ego: what could be decided for the first candidate")]
     road: Annotated[Road | None, described("null: no map")]
     road_problem: Annotated[str | None, described("why a map that was given is not used")]
     quality: Annotated[list[Quality], described("errors first")]
-    rules: Annotated[list[str], described("the rules that were asked about")]
+    rules: Annotated[list[str], described("the requested rules")]
     selection: Annotated[list[str], described("as they were selected")]
     drafts: Annotated[
         list[str], described("of them, rules that check runs only if --rules names them; empty: it did")

@@ -31,21 +31,21 @@ _MAX_LISTED_NAMES: Final = 6
 _DRAFT: Final = " (draft)"
 _STYLE: Final = {"error": "bold red", "warning": "yellow", "info": "dim"}
 _READER_NOTE_PREFIX: Final = "read through"
-"""Reader notes that begin with this repeat what the content section says, and are left out."""
+"""Reader notes that begin with this repeat the content section, and are left out."""
 _SOURCES: Final = {
     "option": "as --handedness says",
     "attribute": "as the map says",
     "junctions": "as the map's junctions are linked",
     "lanes": "as its lanes lie beside each other",
     "traces": "as the log's traffic drives",
-    "default": "only by the standard's default: say it with --handedness",
+    "default": "only by the standard's default: set it with --handedness",
 }
-"""Source of the side that is driven on -> who says so."""
+"""Source of the side that is driven on -> its words."""
 Line = tuple[str, Text]
 
 
 def render(inspection: model.Inspection, trace: str) -> Group:
-    """Return the whole inspection; `trace` is what the user called the log."""
+    """Return the whole inspection; `trace` is the user's name of the log."""
     draft = inspection.content.draft_mapping
     inspection = msgspec.convert(flat(msgspec.to_builtins(inspection)), type(inspection))
     lines = [*_content(inspection.content)]
@@ -61,7 +61,7 @@ def render(inspection: model.Inspection, trace: str) -> Group:
     if draft is not None:
         save = f"Save it as my.toml, then: drivelint inspect {shlex.quote(trace)} --mapping my.toml"
         parts += [
-            Text(f"A mapping says which column is what. One to start from, to be checked line by line:\n\n{draft}"),
+            Text(f"A mapping states the meaning of each column. This is a draft; check it line by line:\n\n{draft}"),
             Text(save, style="bold"),
         ]
     return Group(*(Padding(part, (0, 0, 1, 0)) for part in parts))
@@ -148,7 +148,7 @@ def _sheet(sheet: model.Sheet) -> Text:
 
 
 def _cell(column: model.Column, *, per_actor: bool) -> str:
-    """Return what a column is read as; its own name too, unless it is the same or one of many groups."""
+    """Return the quantity that a column is read as; with its own name, unless it is the same or one of many groups."""
     meant = " and ".join(column.read_as)
     unit = f" in {column.unit}" if column.unit else ""
     return f"{meant}{unit}" if per_actor or meant == column.name else f"{column.name}{unit} as {meant}"
@@ -202,7 +202,7 @@ def _actor(actor: model.Actor) -> str:
 def _road(drive: model.Drive) -> Iterator[Line]:
     road = drive.road
     if road is None:
-        why = drive.road_problem or "none: what the road has to do with cannot be decided; give it with --map"
+        why = drive.road_problem or "none: rules about the road cannot be decided; name a map with --map"
         yield "map", Text(why, style="bold red" if drive.road_problem else "yellow")
         return
     yield "map", _map(road)
@@ -239,7 +239,7 @@ def _fit(fit: model.MapRegistration) -> Text:
 
 def _quality(findings: Sequence[model.Quality]) -> Iterator[Line]:
     if not any(q.severity != "info" for q in findings):
-        yield "data", Text("nothing that speaks against it", style="green")
+        yield "data", Text("no problem found", style="green")
     yield from _first_of("data", [_finding(finding) for finding in findings])
 
 
@@ -277,7 +277,7 @@ def _about(drive: model.Drive, egos: list[model.Ego], log: str) -> list[Renderab
         parts.append(Text(f"It can: {', '.join(told)}.", style="dim"))
     if ego.missing_signals:
         parts += [Text("\nTo decide more, provide:", style="bold"), _by_signal(ego)]
-        parts += [Text("\nWhich rules wait for what:", style="bold"), _by_rule(ego, drive.drafts)]
+        parts += [Text("\nRules and the signals that they need:", style="bold"), _by_rule(ego, drive.drafts)]
     return parts
 
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import Trace
 
 MIN_MOVED_M = 1.0
-"""Who moved by less stood: positions of parked cars are noisy."""
+"""An actor that moved by less stood still: positions of parked cars are noisy."""
 
 
 def clock(trace: Trace) -> Clock:

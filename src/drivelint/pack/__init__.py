@@ -1,4 +1,4 @@
-"""The evidence pack: a result that others can check, with what it rests on, hashed and signed."""
+"""The evidence pack: a result with its basis, hashed and signed, so that others can check it."""
 
 from __future__ import annotations
 

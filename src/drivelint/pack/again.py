@@ -1,4 +1,4 @@
-"""Judges the drives of a result again: all of it, and what each finding rests on."""
+"""Judges the drives of a result again: all of it, and the evidence of each finding."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import io
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import msgspec
 import pyarrow.parquet as pq
 
 from drivelint import catalogue
@@ -54,7 +55,7 @@ def rules_of_table(rules: pa.Table, rules_dirs: Sequence[Path]) -> list[Rule]:
         if rule is None or rule.version != row["rule_version"]:
             what = "is not in the catalogue any more" if rule is None else "was changed since"
             raise UsageError(f"rule {row['rule_id']} {what}: check the drives again")
-        found.append(rule)
+        found.append(msgspec.structs.replace(rule, is_named=row["is_named"]))
     return found
 
 
@@ -70,6 +71,7 @@ def check_again(result: Result, check_request: RunRequest, work: Path | None, *,
     given |= {
         "traces": tuple(check_request.traces[name] for name in sorted(check_request.traces)),
         "rules": tuple(rule.id for rule in rules),
+        "named_rules": tuple(rule.id for rule in rules if rule.is_named),
         "fail_on": result.fail_on,
         "strict": result.strict,
         "require": result.required,
@@ -99,7 +101,7 @@ def params_of(rules: Iterable[Rule], check_request: RunRequest) -> dict[str, dic
 def finding_evidence(
     result: Result, check_request: RunRequest, memory: int | None = DEFAULT_MEMORY, loaded_rules: Sequence[Rule] = ()
 ) -> Evidence:
-    """Return what gives the numbers of each finding again. `check_request`: where the logs are; `loaded_rules`: the rules, if read."""
+    """Return the data that reproduce the numbers of each finding. `check_request`: where the logs are; `loaded_rules`: if read."""
     rules = {rule.id: rule for rule in loaded_rules or rules_of(result, check_request)}
     found: Evidence = {}
     findings = result.findings.to_pylist()
@@ -134,7 +136,7 @@ def _of_drive(
 def _of_rule(
     con: duckdb.DuckDBPyConnection, rule: Rule, params: Mapping[str, object], findings: Sequence[Row]
 ) -> Evidence:
-    """Return the evidence of the findings of one rule, while the database has what it reads."""
+    """Return the evidence of the findings of one rule, while the database has the rows that it reads."""
     first = findings[0]
     try:
         references: dict[int, int] = {}
@@ -174,13 +176,13 @@ def compared(
         there = packed[path] if path in packed else (folder / path).read_bytes()
         if there != content:
             other_bytes = True
-            # the same libraries write the same bytes: what differs then is somebody's work
+            # the same libraries write the same bytes: a difference was then made by a person
             if not (other_libraries and path.endswith(".parquet") and same_rows(there, content)):
                 wrong.append(Problem("result not reproduced", path))
     return wrong, other_bytes
 
 
 def same_rows(a: bytes, b: bytes) -> bool:
-    """Tell whether two Parquet files have the same rows and comments, whatever wrote them."""
+    """Return whether two Parquet files have the same rows and comments, whatever wrote them."""
     one, other = (pq.read_table(io.BytesIO(content)) for content in (a, b))
     return bool(one.schema.equals(other.schema, check_metadata=True) and one.equals(other))

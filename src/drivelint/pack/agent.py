@@ -39,7 +39,7 @@ class AgentKey:
         try:
             blobs = list(_strings(answer[4:]))[::2]  # each is followed by its comment
         except ValueError as error:
-            raise UsageError("--sign: the list of keys that ssh-agent gave is cut") from error
+            raise UsageError("--sign: the list of keys from ssh-agent is cut off") from error
         if self._blob not in blobs:
             raise UsageError(
                 f"--sign: ssh-agent has {plural(len(blobs), 'key')}, and not this one: add it with ssh-add"
@@ -50,24 +50,28 @@ class AgentKey:
         return self._public
 
     def sign(self, content: bytes) -> bytes:
-        """Return the signature, 64 bytes. Errors: `UsageError` where the agent refuses, or what it gives is no signature of the key."""
+        """Return the signature, 64 bytes. Errors: `UsageError` if the agent refuses, or its answer is no signature of the key."""
         request = bytes([_SIGN]) + _string(self._blob) + _string(content) + struct.pack(">I", 0)
         try:
             (whole,) = _strings(_ask(request, _SIGN_ANSWER))
             kind, signature = _strings(whole)
             self._public.verify(signature, content)
         except (ValueError, InvalidSignature) as error:
-            raise UsageError("--sign: what ssh-agent gave is no Ed25519 signature of this key") from error
+            raise UsageError("--sign: the answer of ssh-agent is not an Ed25519 signature by this key") from error
         if kind != _KIND:
-            raise UsageError(f"--sign: ssh-agent gave a signature of another kind ({kind.decode('ascii', 'replace')})")
+            raise UsageError(
+                f"--sign: ssh-agent returned a signature of another kind ({kind.decode('ascii', 'replace')})"
+            )
         return signature
 
 
 def _ask(request: bytes, answer_type: int) -> bytes:
-    """Send a message and return what follows the type of the answer."""
+    """Send a message and return the answer without its type."""
     path = os.environ.get("SSH_AUTH_SOCK")
     if not path or not hasattr(socket, "AF_UNIX"):
-        raise UsageError("--sign: a public key signs by ssh-agent, and SSH_AUTH_SOCK names none: give the private key")
+        raise UsageError(
+            "--sign: a public key signs by ssh-agent, but SSH_AUTH_SOCK names no agent: use the private key"
+        )
     try:
         with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as agent:
             agent.settimeout(_PATIENCE_S)
@@ -75,12 +79,12 @@ def _ask(request: bytes, answer_type: int) -> bytes:
             agent.sendall(_string(request))
             (length,) = struct.unpack(">I", _received(agent, 4))
             if not 0 < length <= _LONGEST:
-                raise UsageError(f"--sign: {path} does not speak as ssh-agent does")
+                raise UsageError(f"--sign: {path} does not answer like ssh-agent")
             answer = _received(agent, length)
     except OSError as error:
-        raise UsageError(f"--sign: ssh-agent at {path} cannot be asked: {error.strerror or error}") from error
+        raise UsageError(f"--sign: ssh-agent at {path} cannot be reached: {error.strerror or error}") from error
     if answer[0] != answer_type:
-        raise UsageError("--sign: ssh-agent refused: it is locked, or nobody confirmed")
+        raise UsageError("--sign: ssh-agent refused: it is locked, or the use was not confirmed")
     return answer[1:]
 
 

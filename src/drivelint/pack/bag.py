@@ -1,4 +1,4 @@
-"""A folder in BagIt form (RFC 8493): its manifests, and what of it is not as they say."""
+"""A folder in BagIt form (RFC 8493): its manifests, and the files that do not match them."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _UNFIT: Final = re.compile(r"[\r\n%\\\ud800-\udfff]")
 
 
 class Problem(NamedTuple):
-    """What is wrong with a pack: of which kind, and what it is about."""
+    """A problem of a pack: its kind and its subject."""
 
     kind: str
     subject: str
@@ -39,7 +39,7 @@ def sha256_of(path: Path) -> str:
 
 
 def begin(folder: Path, info: Mapping[str, str]) -> None:
-    """Write the declaration, what is said of the bag, and the manifest of its payload, which is whole.
+    """Write the declaration, the information about the bag, and the manifest of its complete payload.
 
     Errors: `UsageError` for a file name that `sha256sum -c` would not find.
     """
@@ -67,7 +67,7 @@ def _write_manifest(folder: Path, name: str, files: Iterable[Path]) -> None:
 
 
 def problems(folder: Path, tags: Collection[str]) -> list[Problem]:
-    """Return what is not as the manifests say, sorted by file: changed, removed and added files, and changed manifests.
+    """Return the differences from the manifests, sorted by file: changed, removed and added files, and changed manifests.
 
     `tags`: the tag files that it may have beside those of BagIt. No signature names them all, so any other is one that was added.
     Links are not followed. Errors: `UsageError` where it is no bag.
@@ -111,7 +111,7 @@ def date_of(folder: Path) -> str | None:
 
 
 def _of_info(folder: Path, payload: Iterable[str]) -> list[Problem]:
-    """Return in what `bag-info.txt` is not what `begin` writes of such a payload."""
+    """Return the differences between `bag-info.txt` and the text that `begin` writes for such a payload."""
     text = (folder / INFO).read_text("utf-8", "replace")
     match = _BAG_INFO_PATTERN.fullmatch(text)
     if match is None:

@@ -1,4 +1,4 @@
-"""Whether what a pack says agrees: its statement, `evidence.json`, the tables, the reports, the findings, and which files it has."""
+"""Checks that the parts of a pack agree: its statement, `evidence.json`, the tables, the reports, the findings, and its files."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ if TYPE_CHECKING:
     from drivelint.result.request import RunRequest
 
 UNREADABLE: Final = (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError, pa.ArrowException)
-"""What reading files raises that are not as drivelint writes them. Whoever signs a pack may put anything into it."""
+"""The errors of reading files that drivelint did not write. A signer can put anything into a pack."""
 _NOT_FACTS: Final = ("evidence", "packed_with", "mapping", "rules_dirs", "inputs", "incidents", "findings", "left_out")
 _REFERENCE: Final = re.compile(r"\bref_id = (\d+);\n\Z")
 
 
 class Stated(NamedTuple):
-    """What a pack says, read: the result, `evidence.json`, the statement's result in a word."""
+    """The content of a pack: the result, `evidence.json`, the statement's result in a word."""
 
     result: Result
     evidence: dict[str, Any]
@@ -46,7 +46,7 @@ class Stated(NamedTuple):
 
 
 def of_statement(folder: Path) -> tuple[list[Problem], Stated | None]:
-    """Return what does not agree, and what is said; None: it cannot be read."""
+    """Return the contradictions, and the content of the pack; None: it cannot be read."""
     name = ENVELOPE if (folder / ENVELOPE).is_file() else FILE
     try:
         evidence = evidence_of(folder)
@@ -80,16 +80,16 @@ def evidence_of(folder: Path) -> dict[str, Any]:
 
 
 def _of_evidence(folder: Path, result: Result, evidence: dict[str, Any]) -> list[Problem]:
-    """Return in what `evidence.json` does not say what the result and the rules in the pack say."""
+    """Return the contradictions between `evidence.json` and the result and rules in the pack."""
     due = facts(folder, result, run_request.load(folder / RESULT))
     keys = differing(evidence, due, result.findings.select(SAID_OF_FINDINGS).to_pylist(), result.rules.to_pylist())
     keys += sorted(evidence.keys() - due.keys() - set(_NOT_FACTS))
     keys += _misplaced(json.loads((folder / RESULT / "run.json").read_text("utf-8")), evidence)
     keys += sheets.misnamed(folder, evidence, result.findings["finding_id"].to_pylist())
-    wrong = [Problem("evidence.json does not fit the result", key) for key in keys]
+    wrong = [Problem("evidence.json does not match the result", key) for key in keys]
     said, counted = summary_of(folder), json.loads(summary.render(result))
     keys = sorted(key for key in counted.keys() | said.keys() if key != "tool" and said.get(key) != counted.get(key))
-    return wrong + [Problem("summary.json does not fit the tables", key) for key in keys]
+    return wrong + [Problem("summary.json does not match the tables", key) for key in keys]
 
 
 def differing(
@@ -107,14 +107,14 @@ def differing(
 
 
 def _place_of_sql(finding: dict[str, Any], *, by_drive: bool) -> str | None:
-    """Return where the SQL of a finding must be; None: there is none, and the reason is said."""
+    """Return where the SQL of a finding must be; None: there is none, and its reason is in the pack."""
     said = finding["without_sql_because"]
     place = f"{FINDINGS}/{finding['key']}" if by_drive else FINDINGS
     return None if isinstance(said, str) and said else f"{place}/{finding['finding_id']}/{finding_rows.SQL_FILE}"
 
 
 def _misplaced(run: dict[str, Any], evidence: dict[str, Any]) -> list[str]:
-    """Return of what that the check read `evidence.json` does not say where it is in the pack."""
+    """Return the inputs of the check for which `evidence.json` has no path in the pack."""
     wrong = [] if isinstance(run["mapping"], dict) == (evidence["mapping"] is not None) else ["mapping"]
     if len(run["rules_dirs"]) != len(evidence["rules_dirs"]):
         wrong.append("rules_dirs")
@@ -151,11 +151,11 @@ def unnamed(folder: Path, evidence: dict[str, Any], named_files: set[str], roots
 
 
 def _of_reports(folder: Path, result: Result, evidence: dict[str, Any]) -> list[Problem]:
-    """Return the reports that are not what this drivelint writes from the tables, where it is the one that packed them."""
+    """Return the reports that differ from those that this drivelint writes from the tables, if it packed them itself."""
     if packed_by(evidence) != __version__:
         return []
     return [
-        Problem("report does not fit the tables", f"{RESULT}/{name}")
+        Problem("report does not match the tables", f"{RESULT}/{name}")
         for name, render in REPORT_FORMATS.values()
         if (folder / RESULT / name).is_file() and (folder / RESULT / name).read_bytes() != render(result)
     ]
@@ -167,7 +167,7 @@ def packed_by(evidence: dict[str, Any]) -> str:
 
 
 def of_findings(folder: Path, result: Result, check_request: RunRequest) -> tuple[list[Problem], str]:
-    """Run the SQL of each finding on the rows in the pack; return those that give other numbers, and in words what was looked at.
+    """Run the SQL of each finding on the rows in the pack; return those with other numbers, and in words how many were run.
 
     The SQL that runs is made here of the rule; the one in the pack must be the same text. Whether the rows follow from the log,
     only the log tells.
@@ -177,14 +177,14 @@ def of_findings(folder: Path, result: Result, check_request: RunRequest) -> tupl
     except DriveLintError as error:
         return [], f"the findings' SQL was not run: {error}"
     if why := unlike_rules(list(rules.values()), result.rules, check_request):
-        return [Problem("run.json does not fit the result", why)], ""
+        return [Problem("run.json does not match the result", why)], ""
     rows = {f"{FINDINGS}/{row['finding_id']}": row for row in result.findings.to_pylist()}
     wrong, n = of_sql(folder, rows, rules, check_request)
     return wrong, f"{plural(n, 'finding')} gave {'its' if n == 1 else 'their'} numbers from the rows in the pack"
 
 
 def unlike_rules(rules: list[Rule], table: pa.Table, check_request: RunRequest) -> str:
-    """Return in what the table `rule` does not say which rules were asked for, with which parameters; '' where it does."""
+    """Return the contradiction between the table `rule` and the requested rules and parameters; '' if there is none."""
     try:
         given = catalogue.parse_params(rules, check_request.params)
         due = collect.rule_table(rules, given, check_request.profiles or DEFAULT_PROFILES)
@@ -196,7 +196,7 @@ def unlike_rules(rules: list[Rule], table: pa.Table, check_request: RunRequest) 
 def of_sql(
     folder: Path, findings: Mapping[str, finding_sql.Row], rules: Mapping[str, Rule], check_request: RunRequest
 ) -> tuple[list[Problem], int]:
-    """Return the findings whose SQL gives other numbers, and of how many it was run. `findings`: folder in the pack -> finding."""
+    """Return the findings whose SQL returns other numbers, and the number of findings that were run. `findings`: folder -> finding."""
     params = again.params_of(rules.values(), check_request)
     wrong, n = [], 0
     for inner, row in findings.items():

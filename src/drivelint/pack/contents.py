@@ -1,4 +1,4 @@
-"""What `evidence.json` says of a pack: what was judged, by what, with which outputs and findings."""
+"""The content of `evidence.json`: the logs, rules, outputs and findings of a pack."""
 
 from __future__ import annotations
 
@@ -37,17 +37,17 @@ OUTPUTS: Final = frozenset(name for name in RESULT_FILES if not ("*" in name or 
 SAID_OF_FINDINGS: Final = ("finding_id", "rule_id", "drive_id", "observed", "required", "margin", "unit")
 _SAID_OF_DRIVES: Final = ("drive_id", "file_name", "sha256", "format", "map_name", "map_sha256")
 _LIBRARIES: Final = ("duckdb", "duckdb-extension-spatial", "pyarrow", "numpy", "shapely", "polars")
-"""Libraries that have a part in what is judged or how it is written."""
+"""Libraries that affect verdicts or the bytes of files."""
 
 
 def summary_of(folder: Path) -> dict[str, Any]:
-    """Return what `summary.json` in a pack says."""
+    """Return the content of `summary.json` in a pack."""
     told: dict[str, Any] = json.loads((folder / RESULT / "summary.json").read_text("utf-8"))
     return told
 
 
 def facts(folder: Path, result: Result, check_request: RunRequest) -> dict[str, Any]:
-    """Return what follows from the result and the rules that lie in the pack `folder`, and must be said as it is."""
+    """Return the values that follow from the result and the rules in the pack `folder`."""
     drives, rules = result.drives.to_pylist(), result.rules.to_pylist()
     return {
         "tool": summary_of(folder)["tool"],
@@ -90,7 +90,7 @@ def _options(check_request: RunRequest, result: Result) -> dict[str, Any]:
 
 
 def library_versions() -> dict[str, str]:
-    """Return the versions of what wrote the pack."""
+    """Return the versions of the libraries that wrote the pack."""
     return {
         "drivelint": __version__,
         "python": platform.python_version(),

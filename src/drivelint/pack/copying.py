@@ -46,7 +46,7 @@ def write_files(files: Mapping[str, bytes], place: Path, work: Path) -> None:
 
 
 def make_folder(place: Path, work: Path) -> Path:
-    """Make a folder in the pack. Its name may be an id of a result that somebody else made."""
+    """Make a folder in the pack. Its name may be an id of a foreign result."""
     if not place.resolve().is_relative_to(work.resolve() / "data") or place.is_dir():
         raise UsageError(f"{place.name}: no id of a finding or a drive: check the drives again")
     place.mkdir(parents=True)

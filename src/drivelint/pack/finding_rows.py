@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from drivelint.pack.finding_sql import Row
 
 PADDING_NS: Final = 10_000_000_000
-"""How much around a finding is tried before all of a drive is."""
+"""The spans around a finding that are tried before the whole drive."""
 _SPANS: Final = (("t_ns", "t_ns"), ("t_start_ns", "t_end_ns"), ("t_from_ns", "t_to_ns"), ("t_first_ns", "t_last_ns"))
 _OBJECTS: Final = ("object_id", "vbp_id", "ov_id", "lead_id", "actor_id")
 SQL_FILE: Final = "finding.sql"
@@ -46,7 +46,7 @@ def rows_of_ego(con: duckdb.DuckDBPyConnection, table: str, drive_id: str, ego_i
 def evidence(
     rule: Rule, params: Mapping[str, object], finding: Row, ref_id: int | None, tables: Mapping[str, pa.Table]
 ) -> dict[str, bytes] | str:
-    """Return file name -> content of what gives the numbers of a finding again, or why nothing does.
+    """Return file name -> content of the files that reproduce the numbers of a finding, or why there are none.
 
     `tables`: all rows about the ego that the rule's condition reads.
     """
@@ -67,7 +67,7 @@ def evidence(
 
 
 def gives(sql: str, finding: Row, tables: Mapping[str, pa.Table]) -> bool:
-    """Tell whether a DuckDB that has nothing of drivelint gives the numbers of a finding from these rows."""
+    """Return whether a DuckDB without drivelint computes the numbers of a finding from these rows."""
     with duckdb.connect(config={"threads": "1"}) as con:
         try:
             con.execute(";".join(finding_sql.macros(sql)))
@@ -110,7 +110,7 @@ def _is_same(rows: list[dict[str, Any]], finding: Row) -> bool:
 
 
 def _choices(con: duckdb.DuckDBPyConnection, finding: Row, rows: pa.Table) -> list[pa.Table]:
-    """Return rows of a table from few to all: at the worst step or around the finding, of its object or of everybody."""
+    """Return rows of a table from few to all: at the worst step or around the finding, of its object or of all actors."""
     columns = rows.column_names
     step, around = (
         _at_time(columns, *times)

@@ -26,7 +26,7 @@ _MACRO: Final = re.compile(r"\bCREATE OR REPLACE (?:TEMP )?MACRO (\w+)")
 _COMMENT: Final = re.compile(r"--.*")
 _SPATIAL: Final = re.compile(r"\bST_\w+\s*\(")
 COMPARED: Final = ("observed", "required", "margin")
-"""What the SQL of a finding gives, as the finding has it."""
+"""The results of the SQL of a finding, as the finding has them."""
 
 
 def tables_of(rule: Rule) -> list[str]:
@@ -66,13 +66,13 @@ def literal(value: object) -> str:
 
 
 def text_literal(text: str) -> str:
-    """Return a text as SQL on one line, without a character that nobody sees: an id is a log's own word."""
+    """Return a text as SQL on one line, without invisible characters: an id is a word of the log."""
     shown = (c if c.isprintable() else f"' || chr({ord(c)}) || '" for c in text.replace("'", "''"))
     return f"'{''.join(shown)}'" if text.isprintable() else f"('{''.join(shown)}')"
 
 
 def is_read_alike(sql: str) -> bool:
-    """Whether DuckDB's shell ends a statement where its parser does: what it takes for the next one, nobody has checked."""
+    """Whether DuckDB's shell ends a statement where its parser does: the rest would run as a statement that was not checked."""
     content = sql.encode()
     kinds = (content[at : at + 1] for at, kind in duckdb.tokenize(sql) if kind == duckdb.token_type.string_const)
     return "/*" not in sql and all(first == b"'" for first in kinds)

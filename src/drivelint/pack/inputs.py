@@ -38,9 +38,11 @@ def located(check_request: RunRequest, drives: Sequence[Row], traces: Sequence[P
         name, digest = drive["drive_id"], drive["sha256"]
         path = given.get(digest) or Path(check_request.traces.get(name, ""))
         if not path.exists() or (digest not in given and name not in check_request.traces):
-            raise UsageError(f"the log of {name} is not at {path} any more: say where it is with --trace FILE")
+            raise UsageError(f"the log of {name} is not at {path} any more: name its new path with --trace FILE")
         if digest not in given and identify(path).sha256 != digest:
-            raise UsageError(f"{path} is another log than the one that was judged ({name}): give that one with --trace")
+            raise UsageError(
+                f"{path} is another log than the one that was judged ({name}): name the right one with --trace"
+            )
         found[name] = str(path)
     map_ = _map(check_request, drives, map_)
     return replace(check_request, traces=found, map=map_, map_dir=check_request.map_dir if map_ is None else None)
@@ -51,12 +53,12 @@ def _map(check_request: RunRequest, drives: Sequence[Row], map_: Path | None) ->
     if path is None:
         if check_request.map_dir is not None and not check_request.map_dir.is_dir():
             raise UsageError(
-                f"the folder of maps {check_request.map_dir} is not there any more: say where a map is with --map"
+                f"the folder of maps {check_request.map_dir} is not there any more: name the new path of a map with --map"
             )
         return None
     if not path.is_file():
-        raise UsageError(f"the map {path} is not there any more: say where it is with --map FILE")
+        raise UsageError(f"the map {path} is not there any more: name its new path with --map FILE")
     wanted = {drive["map_sha256"] for drive in judged_drives(drives)}
     if sha256_of(path) not in wanted:
-        raise UsageError(f"{path} is another map than the one that was judged on: give that one with --map")
+        raise UsageError(f"{path} is another map than the one used for judging: name the right one with --map")
     return path

@@ -1,4 +1,4 @@
-"""What `pack` and `verify` are asked, and what `verify` finds."""
+"""The requests to `pack` and `verify`, and the result of `verify`."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MOST_FINDINGS: Final = 100
 
 @dataclass(frozen=True)
 class PackRequest:
-    """What `pack` is asked: a result folder, where the pack goes, what goes into it, who signs it, its time stamp.
+    """A request to `pack`: a result folder, the folder of the pack, its content, the signing key, the time stamp.
 
     `findings`: of an audit, the rows of so many of the worst findings go into it; None: of all. A check's all do.
     """
@@ -43,9 +43,9 @@ class Content(NamedTuple):
 
 @dataclass(frozen=True)
 class VerifyRequest:
-    """What `verify` is asked: a pack, who must have signed and stamped it, and where log and map are if they are not in it.
+    """A request to `verify`: a pack, the required signer and time stamp authority, and the paths of log and map if they are not in it.
 
-    `require_signature`: without `key`, which tells whose a signature is, something is wrong. `not_before`: the earliest day of its
+    `require_signature`: a missing `key`, which identifies the signer, is a problem. `not_before`: the earliest day of its
     Bagging-Date, as 2026-11-26; None: any, or none.
     """
 
@@ -60,7 +60,7 @@ class VerifyRequest:
 
 @dataclass(frozen=True)
 class Verification:
-    """What is wrong with a pack, in words if nothing is, and what was not looked at."""
+    """The problems of a pack, a sentence if there are none, and what was not examined."""
 
     problems: list[Problem]
     sentence: str

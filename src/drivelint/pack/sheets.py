@@ -22,7 +22,8 @@ _PDF: Final = ".pdf"
 def of_result(folder: Path, result: Result, check_request: RunRequest) -> dict[str, bytes]:
     """Return path in the pack -> content of the sheets that lie in a result folder and are of its findings.
 
-    `check_request` says where the logs are. A PDF is taken where the page beside it is as it is written anew: only then both tell the same.
+    `check_request` says where the logs are. A PDF is included if the page beside it equals the page that is written again:
+    only then both have the same content.
     """
     ids = set(result.findings["finding_id"].to_pylist())
     found = {}
@@ -48,7 +49,7 @@ def sheet_files(evidence: Mapping[str, Any]) -> list[str]:
 
 
 def has_printed(evidence: Mapping[str, Any]) -> bool:
-    """Whether a pack has a PDF, which nobody can write again."""
+    """Whether a pack has a PDF, which cannot be written again."""
     return any(name.endswith(_PDF) for name in sheet_files(evidence))
 
 

@@ -29,7 +29,7 @@ class EnvelopeError(Exception):
 
 
 class SigningKey(Protocol):
-    """What signs: a private key from a file, or one that ssh-agent holds."""
+    """A signing key: a private key from a file, or one in ssh-agent."""
 
     def public_key(self) -> Ed25519PublicKey:
         """Return the public key."""
@@ -50,7 +50,7 @@ def private_key(path: Path) -> Ed25519PrivateKey:
     try:
         key = load(content, password=None)
     except TypeError as error:
-        raise UsageError(f"{path}: has a password, which drivelint does not ask for: give a key without one") from error
+        raise UsageError(f"{path}: has a password, which drivelint cannot enter: use a key without one") from error
     except (ValueError, UnsupportedAlgorithm) as error:
         raise UsageError(f"{path}: no private key in PEM: openssl genpkey -algorithm ed25519 makes one") from error
     if not isinstance(key, Ed25519PrivateKey):
@@ -109,7 +109,7 @@ def payload_of(content: bytes) -> bytes:
 
 
 def is_signed_by(content: bytes, key: Ed25519PublicKey) -> bool:
-    """Tell whether an envelope has a signature of a key. Errors: `EnvelopeError`."""
+    """Return whether an envelope has a signature of a key. Errors: `EnvelopeError`."""
     kind, payload, signatures = _parse_envelope(content)
     for signature in signatures:
         try:
@@ -121,7 +121,7 @@ def is_signed_by(content: bytes, key: Ed25519PublicKey) -> bool:
 
 
 def is_as_written(content: bytes, key: Ed25519PublicKey) -> bool:
-    """Tell whether an envelope that a key signed is the one that `envelope` writes: what stands beside the payload is not signed."""
+    """Return whether an envelope that a key signed is the one that `envelope` writes: content beside the payload is not signed."""
     _, payload, signatures = _parse_envelope(content)
     return len(signatures) == 1 and content == _rendered(payload, signatures[0], key)
 
@@ -137,5 +137,5 @@ def _parse_envelope(content: bytes) -> tuple[str, bytes, list[bytes]]:
 
 
 def _signed_bytes(kind: str, payload: bytes) -> bytes:
-    """Return what DSSE signs: the type and the payload with their lengths, so that neither can be taken for the other."""
+    """Return the bytes that DSSE signs: the type and the payload with their lengths, so that neither can be mistaken for the other."""
     return b"DSSEv1 %d %s %d %s" % (len(kind.encode()), kind.encode(), len(payload), payload)

@@ -1,4 +1,4 @@
-"""The in-toto statement of a pack: which logs were judged by what, with what result, and which pack says so.
+"""The in-toto statement of a pack: the logs, the rules, the result, and the pack itself.
 
 https://in-toto.io/attestation/test-result/v0.1. A test is a rule on an ego of a drive, for one profile if it has profiles. A verdict
 that is unknown is no passed test: such tests stand in a field of our own, and the result is at most WARNED.
@@ -63,7 +63,7 @@ def statement(folder: Path, result: Result, summary: Mapping[str, Any], evidence
 
 
 def differences(statement: bytes, due: bytes) -> list[bag.Problem]:
-    """Return in what a statement is not what follows from the pack."""
+    """Return the differences between a statement and the one that follows from the pack."""
     try:
         a, b = json.loads(statement), json.loads(due)
         parts = ((a, b, ("_type", "predicateType")), (a["predicate"], b["predicate"], ()))
@@ -89,7 +89,7 @@ def resource_descriptor(name: str, digest: str) -> dict[str, Any]:
 
 
 def _tests(verdicts: Iterable[Mapping[str, Any]]) -> dict[str, list[str]]:
-    """Return outcome -> the tests that came out so: the worst verdict of each counts; what did not apply is no test."""
+    """Return outcome -> the tests with it: the worst verdict of each counts; a rule that did not apply is no test."""
     order = ("fail", "unknown", "near_miss", "pass")
     worst: dict[str, int] = defaultdict(lambda: len(order))
     for row in verdicts:

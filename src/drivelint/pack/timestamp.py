@@ -1,4 +1,4 @@
-"""The time stamp of a pack (RFC 3161): an authority says that the signed statement was there at a time.
+"""The time stamp of a pack (RFC 3161): an authority states that the signed statement existed at a time.
 
 The token is made elsewhere. No signature of the pack covers it: it was made after that.
 """
@@ -52,7 +52,7 @@ def read(path: Path, envelope: bytes) -> bytes:
 
 
 def of_pack(folder: Path, roots: Path | None) -> StampCheck:
-    """Look at the time stamp of a pack. `roots`: certificates (PEM) of the authorities that are trusted; None: nobody is asked for.
+    """Look at the time stamp of a pack. `roots`: certificates (PEM) of the authorities that are trusted; None: no authority is required.
 
     Errors: `UsageError` for certificates that cannot be read, or where they are given and rfc3161-client is not installed.
     """
@@ -63,7 +63,7 @@ def of_pack(folder: Path, roots: Path | None) -> StampCheck:
     except ModuleNotFoundError as error:
         if roots is not None:
             raise UsageError(_missing_package_text("--timestamp-root")) from error
-        return StampCheck([], "with a time stamp that was not looked at", [_missing_package_text("its time stamp")])
+        return StampCheck([], "with a time stamp that was not examined", [_missing_package_text("its time stamp")])
 
 
 def look(content: bytes, envelope: bytes, roots: Path | None) -> StampCheck:
@@ -81,13 +81,13 @@ def look(content: bytes, envelope: bytes, roots: Path | None) -> StampCheck:
         return StampCheck([Problem("time stamp of another statement", FILE)])
     shown = f"{time:%Y-%m-%dT%H:%M:%SZ}"
     if roots is None:
-        return StampCheck([], f"with a time stamp of {shown} (only --timestamp-root tells whose)")
+        return StampCheck([], f"with a time stamp of {shown} (only --timestamp-root identifies its authority)")
     builder = VerifierBuilder(roots=_certificates(roots))
     try:
         builder.build().verify(response, imprint.message)
     except (VerificationError, ValueError) as error:
-        return StampCheck([Problem("time stamp of nobody who is trusted", f"{FILE}: {error}")])
-    return StampCheck([], f"there since {shown}, as an authority that is trusted says")
+        return StampCheck([Problem("time stamp of an authority that is not trusted", f"{FILE}: {error}")])
+    return StampCheck([], f"existed by {shown}, as a trusted authority states")
 
 
 def _in_order(content: bytes) -> bytes:

@@ -1,4 +1,4 @@
-"""Verifies an evidence pack: its files, its signature, what it states, and the result itself where log and map are there."""
+"""Verifies an evidence pack: its files, its signature, its statements, and the result itself if log and map are available."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 _OUTCOMES: Final = {
     "PASSED": "every rule that applied was kept",
-    "WARNED": "no rule was broken, but not everything was judged and kept with room",
+    "WARNED": "no rule was broken, but not everything was judged and kept with a margin",
     "FAILED": "the drives broke rules",
 }
 
@@ -63,7 +63,7 @@ def verify(request: VerifyRequest) -> Verification:
     elif any(problem.kind not in _OF_WHOM for problem in wrong):
         notes.append("not judged again, as the pack is not as it was written")
     n = sum(1 for path in request.folder.rglob("*") if path.is_file())
-    # whoever changes a pack can hash it anew: only a signature that is known says that nobody did
+    # a changed pack can be hashed again: only a known signature shows that it was not changed
     date = bag.date_of(request.folder)
     signed = ", ".join(filter(None, (signed, stamp.description, "without a date" if date is None else f"dated {date}")))
     state = "consistent" if key is None else "untouched since it was signed"
@@ -73,17 +73,19 @@ def verify(request: VerifyRequest) -> Verification:
 
 
 def _of_request(request: VerifyRequest) -> list[Problem]:
-    """Return in what a pack is not what was asked for, however consistent it is: nobody's, or an older one."""
+    """Return why a consistent pack does not meet the request: its signer is not known, or it is too old."""
     found = []
     if request.require_signature and request.key is None:
         what = (
-            "its own key says nothing of whose it is" if (request.folder / ENVELOPE).is_file() else "it is not signed"
+            "the key in the pack does not identify its owner"
+            if (request.folder / ENVELOPE).is_file()
+            else "it is not signed"
         )
-        found.append(Problem("nobody identified", f"{what}: give the signer's with --key"))
+        found.append(Problem("nobody identified", f"{what}: use the signer's key with --key"))
     date = bag.date_of(request.folder)
     if request.not_before is not None and (date is None or date < request.not_before):
         said = "without a date" if date is None else f"dated {date}"
-        found.append(Problem("older pack", f"{said}, and not before {request.not_before} was asked for"))
+        found.append(Problem("older pack", f"{said}, but --not-before {request.not_before} was required"))
     return found
 
 
@@ -91,12 +93,14 @@ def _given_key(request: VerifyRequest) -> Ed25519PublicKey | None:
     if request.key is None:
         return None
     if request.key.resolve().is_relative_to(request.folder.resolve()):
-        raise UsageError(f"--key {request.key}: comes with the pack, so it tells nothing: give one from elsewhere")
+        raise UsageError(
+            f"--key {request.key}: comes with the pack, so it proves nothing: use a key from another source"
+        )
     return signature.public_key(request.key)
 
 
 def _of_signature(folder: Path, key: Ed25519PublicKey | None) -> tuple[list[Problem], str]:
-    """Return what is wrong with the signature and the files beside it, which nobody signed, and who signed in words."""
+    """Return the problems of the signature and of the unsigned files beside it, and the signer in words."""
     if not (folder / ENVELOPE).is_file():
         wanted = key is not None or (folder / PUBLIC_KEY).is_file()
         stamped = [Problem("file added", timestamp.FILE)] if (folder / timestamp.FILE).is_file() else []
@@ -123,18 +127,18 @@ def _of_envelope(folder: Path, pack_key: Ed25519PublicKey, key: Ed25519PublicKey
         return [Problem("another key", f"signed by {has}, not by {wanted}, which was given")], ""
     wrong = [] if by_own else [Problem("another key", f"{PUBLIC_KEY} is not the key that signed")]
     if not signature.is_as_written(content, signer):
-        wrong.append(Problem("text beside what is signed", ENVELOPE))
+        wrong.append(Problem("text beside the signed content", ENVELOPE))
     if (folder / PUBLIC_KEY).read_bytes() != signature.public_pem(pack_key):
         wrong.append(Problem("text beside the key", PUBLIC_KEY))
     if (folder / FILE).is_file():
         wrong.append(Problem("file added", FILE))
     if key is None:
-        return wrong, f"signed by the key in the pack ({wanted}; only --key tells whose that is)"
+        return wrong, f"signed by the key in the pack ({wanted}; only --key identifies its owner)"
     return wrong, f"signed by the key that was given ({wanted})"
 
 
 def _of_contents(request: VerifyRequest, stated: Stated) -> tuple[str, list[Problem], list[str]]:
-    """Judge again what can be; return in words what came out, what is wrong, and what was not looked at or is the pack's own."""
+    """Judge again what can be judged; return the result in words, the problems, and notes on what was not examined."""
     result, evidence = stated.result, stated.evidence
     notes = _notes(evidence, result)
     try:
@@ -152,7 +156,7 @@ def _of_contents(request: VerifyRequest, stated: Stated) -> tuple[str, list[Prob
     except UsageError as error:
         if request.traces or request.map is not None:
             raise
-        return "", [Problem("inputs do not fit the result", str(error))], notes
+        return "", [Problem("inputs do not match the result", str(error))], notes
     if sheets.sheet_files(evidence) and evidence["packed_with"] != library_versions():
         notes.append("packed with other versions of libraries: its incident sheets are not written again")
     judging, wrong = _of_result(request.folder, stated, check_request)
@@ -160,7 +164,7 @@ def _of_contents(request: VerifyRequest, stated: Stated) -> tuple[str, list[Prob
 
 
 def _notes(evidence: dict[str, Any], result: Result) -> list[str]:
-    """Return what nobody can hold against the logs, and what is not drivelint's own."""
+    """Return notes on content that cannot be compared with the logs, and on rules that are not drivelint's own."""
     notes = []
     if (version := consistency.packed_by(evidence)) != __version__:
         notes.append(f"packed by drivelint {version}, and this is {__version__}: its reports are not written again")
@@ -173,12 +177,12 @@ def _notes(evidence: dict[str, Any], result: Result) -> list[str]:
     if sheets.has_printed(evidence):
         notes.append("an incident sheet as PDF is as the pack says: the page beside it is what is written again")
     if result.gate is not None:
-        notes.append("baseline and waivers are as the pack says: they are not held against anything again")
+        notes.append("baseline and waivers are as the pack says: they are not checked again")
     return notes
 
 
 def _request_with_pack_paths(folder: Path, evidence: dict[str, Any]) -> RunRequest:
-    """Return the check with the paths of what is in the pack. Errors: `ValueError` for a path that leads out of it."""
+    """Return the check with the paths of the files in the pack. Errors: `ValueError` for a path that leads out of it."""
 
     inputs = evidence["inputs"]
     check_request = run_request.load(folder / RESULT)
@@ -194,7 +198,7 @@ def _request_with_pack_paths(folder: Path, evidence: dict[str, Any]) -> RunReque
 
 
 def _of_result(folder: Path, stated: Stated, check_request: RunRequest) -> tuple[str, list[Problem]]:
-    """Judge the drives again; return in words what came out, and the files that came out otherwise."""
+    """Judge the drives again; return the result in words, and the files that differ."""
     result = stated.result
     margins = (folder / RESULT / "margins.parquet").is_file()
     other_libraries = stated.evidence["packed_with"] != library_versions()
@@ -230,6 +234,6 @@ def _of_result(folder: Path, stated: Stated, check_request: RunRequest) -> tuple
 
 
 def _judged_rows(result: Result, name: str) -> Any:
-    """Return a table of a result without the drives that were not judged: nobody can judge them again."""
+    """Return a table of a result without the drives that were not judged, which cannot be judged again."""
     rows = getattr(result, name)
     return rows.filter(pc.equal(rows["status"], "judged")) if name == "drives" else rows

@@ -1,4 +1,4 @@
-"""Writes an evidence pack: the result, the rules, what gives each finding again, and by choice the logs and the map."""
+"""Writes an evidence pack: the result, the rules, the data that reproduce each finding, and optionally the logs and the map."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class _PackSource(NamedTuple):
 
 
 def write_pack(request: PackRequest) -> dict[str, Any]:
-    """Write the pack as one: until it is whole, nothing is at `out`. Return what its `evidence.json` says.
+    """Write the pack in one step: until it is complete, nothing is at `out`. Return the content of its `evidence.json`.
 
     Errors: `UsageError` for a result, log, map, rule or key that is not there or is another one, and where `out` is taken; `OutputError`.
     """
@@ -87,7 +87,7 @@ def ready(request: PackRequest) -> signature.SigningKey | None:
     if (url := as_url(request.out)) is not None:
         raise UsageError(f"{url}: a pack is a folder of this machine: write it here and copy it there")
     if request.timestamp is not None and request.key is None:
-        raise UsageError("--timestamp is of a signed statement: give the key, too, with --sign")
+        raise UsageError("--timestamp is for a signed statement: use --sign with the key, too")
     key = None if request.key is None else signature.signing_key(request.key)
     _free(request.out, overwrite=request.overwrite)
     if request.out.resolve().is_relative_to(request.folder.resolve()):
@@ -105,7 +105,7 @@ def _free(out: Path, *, overwrite: bool) -> None:
 
 
 def _content(request: PackRequest) -> Content:
-    """Return what makes a pack of a check's result. The logs are judged again here, before anything is written."""
+    """Return the function that packs the result of a check. The logs are judged again here, before anything is written."""
     result = load_result(request.folder)
     check_request = run_request.load(request.folder)
     if check_request.manifest_options:

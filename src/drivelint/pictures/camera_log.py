@@ -29,7 +29,7 @@ _CHUNKS_KEPT: Final = 4
 
 
 class Place(NamedTuple):
-    """Where a frame is: its log time, file, channel, chunk, and offset in the unpacked chunk."""
+    """The place of a frame: its log time, file, channel, chunk, and offset in the unpacked chunk."""
 
     log_ns: int
     file: int
@@ -51,7 +51,7 @@ def camera_topics(files: Sequence[Path]) -> tuple[str, ...]:
 
 
 class CameraLog:
-    """The MCAP files of one drive, open for reading frames. Errors of all: `FrameError` for what is damaged."""
+    """The MCAP files of one drive, open for reading frames. Errors of all: `FrameError` for damaged data."""
 
     def __init__(self, files: Sequence[Path]) -> None:
         self._stack = ExitStack()
@@ -86,7 +86,7 @@ class CameraLog:
         return sorted(frame_places)
 
     def frame(self, place: Place) -> Frame:
-        """Return what the message at a place says."""
+        """Return the message at a place."""
         records, summary = self._chunk(place.file, place.chunk), self._summaries[place.file]
         try:
             _, length = _RECORD.unpack_from(records, place.at)
@@ -135,7 +135,7 @@ def _index(file: Path) -> Summary:
     try:
         return read_index(file)
     except (OSError, ValueError):
-        return Summary()  # gone, or empty: whoever reads the log says so
+        return Summary()  # gone, or empty: reading the log reports it
 
 
 def _cameras(summary: Summary) -> list[str]:

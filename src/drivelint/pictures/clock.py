@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 SEARCHED_NS: Final = 2_000_000_000
 """Frames are looked for so far around a time in the log: one may be recorded up to a second after it was taken."""
 NEAR_NS: Final = 500_000_000
-"""A frame farther from the time that is asked for does not show it."""
+"""A frame farther from the requested time does not show it."""
 _SAME_CLOCK_NS: Final = 1_000_000_000
 """A camera's stamps are of the drive's clock if both differ from the log's by the same up to this."""
 
@@ -76,5 +76,5 @@ def _time_of(log: CameraLog, place: Place, clock: DriveClock, ahead_ns: int) -> 
     try:
         stamp_ns = log.frame(place).stamp_ns
     except FrameError:
-        return logged_ns  # whoever shows it says what is wrong
+        return logged_ns  # showing it reports the problem
     return logged_ns if stamp_ns is None or abs(stamp_ns - logged_ns) > _SAME_CLOCK_NS else stamp_ns

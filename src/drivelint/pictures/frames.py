@@ -1,4 +1,4 @@
-"""The messages of cameras: which there are, and what one says: the time of the frame, and its image as it is encoded.
+"""The messages of cameras: their types, and the content of one: the time of the frame, and its encoded image.
 
 ROS 2: https://docs.ros.org/en/rolling/p/sensor_msgs; Foxglove: https://docs.foxglove.dev/docs/sdk/schemas.
 """
@@ -67,7 +67,7 @@ _KINDS: Final = {
 }
 """Encoding and schema of the messages of cameras -> how they are read."""
 _NO_PICTURES: Final = ("depth", "disparity", "segmentation", "instance", "optical_flow", "mask", "dvs")
-"""Words in the topics of images that show something else than what a camera saw."""
+"""Words in the topics of images that are not camera pictures."""
 _SIDES: Final = ("left", "right", "rear", "back", "side")
 
 
@@ -85,12 +85,12 @@ def ahead_first(topic: str) -> tuple[int, str]:
 
 
 def camera_name(topic: str) -> str:
-    """Return what a camera is called by whatever way its frames are sent."""
+    """Return the name of a camera, however its frames are sent."""
     return topic.removesuffix("/compressed").removesuffix("/image_raw").removesuffix("/image") or topic
 
 
 def read_frame(channel: Channel, schema: Schema, data: bytes | memoryview) -> Frame:
-    """Return what a message of a camera says. Errors: `FrameError` for one that cannot be read."""
+    """Return the content of a message of a camera. Errors: `FrameError` for one that cannot be read."""
     kind = _KINDS[channel.message_encoding, short_type_name(schema.name)]
     try:
         if channel.message_encoding == "cdr":

@@ -39,7 +39,7 @@ class Jpeg(NamedTuple):
 
 
 def small_jpeg(image: EncodedImage | RawImage | Image.Image) -> Jpeg:
-    """Return an image as a JPEG of at most 640 by 480 pixels, without what its file says beside. Errors: `FrameError`.
+    """Return an image as a JPEG of at most 640 by 480 pixels, without the metadata of its file. Errors: `FrameError`.
 
     It is made smaller by a whole number, which costs a third of any other scale.
     """
@@ -68,7 +68,7 @@ def _image(image: EncodedImage | RawImage | Image.Image) -> Image.Image:
 
 
 def _times_too_large(image: Image.Image) -> int:
-    """Return by what whole number the sides of an image are to be divided."""
+    """Return the whole number by which the sides of an image are divided."""
     return max(1, *(-(-side // most) for side, most in zip(image.size, MOST_PX, strict=True)))
 
 

@@ -1,4 +1,4 @@
-"""Which pictures a run takes: of the worst moments, so that their number and bytes are bounded whatever the logs hold."""
+"""Chooses the pictures of a run: of the worst moments, so that their number and bytes are bounded whatever the logs hold."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Says for each reason code what a verdict lacks, and what to record or to provide."""
+"""Describes for each reason code what a verdict lacks, and what to record or to provide."""

@@ -43,6 +43,8 @@ def make_reason_table(
     causes = con.execute(
         f"SELECT DISTINCT rule_no, cause, start_ns FROM ({select}) WHERE cause IS NOT NULL ORDER BY ALL"
     ).fetchall()
+    if not causes:
+        return  # as in most short drives: ten milliseconds
     reasons = [reason_text.parse_reason(cause) for _, cause, _ in causes]
     sentences = [reason_text.sentence(cause, start_ns, (rule_texts or {}).get(no)) for no, cause, start_ns in causes]
     rows = {

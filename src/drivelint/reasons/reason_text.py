@@ -32,7 +32,7 @@ class ReasonText(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     advice: str = ""
 
     def __post_init__(self) -> None:
-        """Refuse what is no argument: not every text in braces is harmless to fill in."""
+        """Refuse text in braces that is no argument: filling it in may be harmful."""
         for text in (self.says, self.advice):
             if rest := re.search(r"[{}].*", _ARGUMENT.sub("", text)):
                 raise ValueError(f"{rest[0]!r}: write an argument as {{name}} or {{name:.1f}}")
@@ -74,7 +74,7 @@ def parse_reason(reason: str) -> Reason:
 def sentence(reason: str, start_ns: int = 0, rule_texts: Mapping[str, ReasonText] | None = None) -> str:
     """Return a reason in words, its advice last.
 
-    `start_ns`: when the log starts, since times are told from it; `rule_texts`: the rule's words.
+    `start_ns`: when the log starts, since times count from it; `rule_texts`: the rule's words.
     """
     code, arguments = parse_reason(reason)
     return reason if code == PLAIN_TEXT else _sentence(code, arguments, start_ns, rule_texts)

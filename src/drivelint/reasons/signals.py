@@ -1,4 +1,4 @@
-"""Says how to provide a signal that rules require, and by reason code what would decide an unknown verdict."""
+"""Describes how to provide a signal that rules require, and by reason code what would decide an unknown verdict."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ ADVICE: Final[dict[str, str]] = {
     **TEXTS["advice"],
 }
 SIGNALS: Final = ADVICE.keys() - CONDITION_VALUES.keys()
-"""What a rule may require: the signals of the table `capability`. The others are conditions of a drive."""
+"""The signals that a rule may require: those of the table `capability`. The others are conditions of a drive."""
 MISSING_PREFIX: Final = "missing_"
 """Begins the reason code of a rule that is unknown for want of a signal."""
 UNRECORDED_PREFIX: Final = "unrecorded_"
@@ -42,14 +42,14 @@ REMEDIES: Final[dict[str, str]] = TEXTS["remedies"]
 
 
 def problem(signal: str) -> str | None:
-    """Return what is wrong with the name of a signal; None: it is one."""
+    """Return the problem of the name of a signal; None: it is one."""
     if signal in SIGNALS:
         return None
     return f"{signal!r} is no signal; {hint(signal, sorted(SIGNALS))}"
 
 
 def how_to_provide(signal: str, log_format: str, advice: str | None = None) -> str:
-    """Return how to provide a signal in a log of this format. `advice`: what the reason why it is lacking asks for."""
+    """Return how to provide a signal in a log of this format. `advice`: that of the reason why it is missing."""
     if signal == "registration" and advice:
         return advice  # the map is not at fault
     from drivelint.formats.registry import format_words  # the readers, which the catalogue needs not
@@ -63,7 +63,7 @@ def how_to_provide(signal: str, log_format: str, advice: str | None = None) -> s
 
 
 def remedy(code: str, object_id: str | None, log_format: str, advice: str | None = None) -> str:
-    """Return what would decide an unknown verdict with this reason code, for a log of this format. `advice`: what its cause asks for."""
+    """Return what would decide an unknown verdict with this reason code, for a log of this format. `advice`: that of its cause."""
     if code.startswith((MISSING_PREFIX, UNRECORDED_PREFIX)) and code not in REMEDIES:
         return (
             how_to_provide(code.removeprefix(MISSING_PREFIX).removeprefix(UNRECORDED_PREFIX), log_format, advice)

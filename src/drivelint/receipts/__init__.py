@@ -1,4 +1,4 @@
-"""Receipts of `check`: what a run wrote and said, kept with the state of everything that it read.
+"""Receipts of `check`: the output of a run, kept with the state of everything that it read.
 
-A later run that is asked the same, and finds all of that unchanged, writes and says the same without judging.
+If a later run has the same request and finds all of this unchanged, it writes and prints the same without judging.
 """

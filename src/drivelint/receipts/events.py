@@ -1,4 +1,4 @@
-"""What a run tells whoever records its inputs, through the audit events of Python, in which its own opening of files stands, too."""
+"""The messages of a run to the recorder of its inputs: audit events of Python, which also include its opening of files."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ MACHINE_BOUND: Final = "drivelint.machine_bound"
 
 
 def looked_for(path: Path) -> Path:
-    """Tell that the run depends on whether there is a file at a path, outside of the folders that it lists; return the path."""
+    """Report that the run depends on whether there is a file at a path, outside of the folders that it lists; return the path."""
     sys.audit(LOOKED_FOR, os.fspath(path))
     return path
 
 
 def machine_bound(why: str) -> None:
-    """Tell that the result depends on more than the inputs, such as the time that a rule took."""
+    """Report that the result depends on more than the inputs, such as the time that a rule took."""
     sys.audit(MACHINE_BOUND, why)

@@ -30,7 +30,7 @@ def file_sha256(path: Path | str) -> str:
 
 
 def state(path: str, is_output: IsOutput) -> str | None:
-    """Return what is the same as long as nothing changes at a path; None: it cannot be known, as of a pipe.
+    """Return a state that is the same as long as nothing changes at a path; None: it cannot be known, as for a pipe.
 
     Of a file its content counts, of a folder the names in it; of both, where links lead to.
     """
@@ -54,7 +54,7 @@ def matches(pattern: str, is_output: IsOutput) -> str:
 
 @dataclass(frozen=True)
 class Inputs:
-    """What a run read. `states`: absolute path -> state; `globs`: pattern -> hash of the names that it matched."""
+    """The inputs of a run. `states`: absolute path -> state; `globs`: pattern -> hash of the names that it matched."""
 
     states: dict[str, str] = field(default_factory=dict)
     globs: dict[str, str] = field(default_factory=dict)
@@ -73,7 +73,7 @@ def _listing(folder: str, real: str, is_output: IsOutput) -> str:
 
 
 def _kind(entry: os.DirEntry[str]) -> tuple[str, str]:
-    """Return what an entry of a folder is, and where it leads to as a link."""
+    """Return the kind of an entry of a folder, and the target of a link."""
     kind = "folder" if entry.is_dir() else "file" if entry.is_file() else "other"
     return kind, os.readlink(entry.path) if entry.is_symlink() else ""  # noqa: PTH115
 

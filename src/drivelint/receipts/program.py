@@ -1,4 +1,4 @@
-"""What decides a result besides its inputs: the program, what is installed beside it, what was asked, and where."""
+"""Everything that decides a result besides its inputs: the program, the installed packages, the request, and the working folder."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def program_folders() -> tuple[Path, ...]:
 def program_sha256() -> str:
     """Return the hash of all files of the program, of Python, and of the names and versions of what is installed beside it.
 
-    Everything counts: whoever works on drivelint changes it without changing its version.
+    Everything counts: developers change drivelint without changing its version.
     """
     whole = sha256()
     for root in program_folders():
@@ -67,7 +67,7 @@ def _installed() -> list[str]:
 
 
 def question_sha256(arguments: Mapping[str, object]) -> str:
-    """Return the hash of the program and of what it is asked: the options, in which folder, and by whom it is read."""
+    """Return the hash of the program and of the request: the options, the folder, and the reader of the output."""
     asked = {
         "arguments": arguments,
         "folder": os.getcwd(),  # noqa: PTH109 - relative paths begin there

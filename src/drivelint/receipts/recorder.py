@@ -1,7 +1,7 @@
-"""Records what a run reads: every file that Python opens, every folder that it lists, and what is looked for elsewhere.
+"""Records the inputs of a run: every file that Python opens, every folder that it lists, and other searched paths.
 
-The state of each is taken before its first reading, and again at the end of the run. Where both differ, nobody knows of which one the
-verdicts are. What the importer reads is code, and the package's own files are those of its version: the key of a receipt has both.
+The state of each is taken before its first reading, and again at the end of the run. If both differ, it is not known which of them was
+judged. What the importer reads is code, and the package's own files are those of its version: the key of a receipt has both.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ class Recorder:
                 self.trouble = f"{whole} cannot be looked at again"
 
     def add(self, inputs: Inputs | None) -> None:
-        """Add what another process of the same run read; None: its part is not of its inputs alone."""
+        """Add the inputs of another process of the same run; None: its part does not depend on its inputs alone."""
         with self._lock:
             if inputs is None:
                 self.trouble = "a worker's part cannot be repeated"
@@ -75,7 +75,7 @@ class Recorder:
                         self.trouble = f"{name} changed"
 
     def inputs(self) -> Inputs | None:
-        """Return what was read; None: the result is not of these inputs alone, or they changed while they were read."""
+        """Return the inputs; None: the result does not depend on them alone, or they changed while they were read."""
         self._inside.busy = True  # from here on nothing is recorded in this thread
         if self.trouble is not None:
             return None
@@ -127,7 +127,7 @@ _has_hook: Final[list[bool]] = []
 
 @contextmanager
 def recording(is_output: IsOutput, named_paths: Iterable[str | os.PathLike[str]]) -> Iterator[Recorder]:
-    """Record what this process reads inside the block. `named_paths`: paths that were named to it, which are looked at first."""
+    """Record the inputs of this process inside the block. `named_paths`: given paths, which are examined first."""
     recorder = Recorder(is_output)
     for path in named_paths:
         recorder.look(path)

@@ -34,7 +34,7 @@ _PIECE: Final = 1 << 20
 
 @dataclass(frozen=True)
 class Receipt:
-    """A run: what it read, what it printed, what it noted, how it ended, and the names and sizes of the files that it wrote.
+    """A run: its inputs, output, notes and exit code, and the names and sizes of the files that it wrote.
 
     `day`: on which it was, where that counts; `grown_files`: those of the files that grew during the run.
     """
@@ -49,7 +49,7 @@ class Receipt:
 
 
 class OpenedReceipt:
-    """A receipt whose file is open, so that nobody replaces it meanwhile."""
+    """A receipt whose file is open, so that it is not replaced meanwhile."""
 
     def __init__(self, receipt: Receipt, file: IO[bytes], start: int) -> None:
         self.receipt = receipt
@@ -114,7 +114,7 @@ def _folder() -> Path | None:
 
 
 def _write(part: IO[bytes], key: str, receipt: Receipt, files: Sequence[Path]) -> None:
-    """Write a receipt. Errors: `OSError`, also where a file has another size than was said."""
+    """Write a receipt. Errors: `OSError`, also if a file has another size than stated."""
     head = {"format": _FORMAT, "key": key, **asdict(receipt)}
     part.write(json.dumps(head).encode() + b"\n")
     for file, size in zip(files, receipt.files.values(), strict=True):
@@ -158,7 +158,7 @@ def _hash_of(file: IO[bytes], size: int) -> bytes:
 
 
 def _remove_oldest(home: Path) -> None:
-    """Remove what was not used for longest, until the rest is few and small enough; parts that a killed process left are among it."""
+    """Remove the receipts that were unused for longest, until the rest is small enough; parts of killed processes are among them."""
     known = sorted(((path.stat().st_mtime_ns, path) for path in home.iterdir()), reverse=True)
     size = 0
     for n, (_, path) in enumerate(known, 1):

@@ -1,7 +1,7 @@
 """The catalogue as one Markdown page: a table per pack, for the Highway Code a table by clause, and the words of logs and maps.
 
-`queries/README.md` is this page for the shipped packs; a test holds it to be current. A pack that has a `clauses.toml`
-beside its rules gets the table by clause: what covers each clause, what is a draft, and what cannot be decided and why.
+`queries/README.md` is this page for the shipped packs; a test checks that it is current. A pack that has a `clauses.toml` beside its
+rules gets the table by clause: the rules that cover each clause, the drafts, and the clauses that cannot be decided, with the reason.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from drivelint.phrases import escape_invisible
 from drivelint.result.counts import group_rows
 from drivelint.result.text_templates import cell, text_template
 from drivelint.road.signcodes import codes_of
+from drivelint.toml_text import parse_toml
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -72,7 +73,7 @@ def read_clauses(folder: Path) -> list[Clause]:
     if not file.is_file():
         return []
     try:
-        return msgspec.convert(tomllib.loads(file.read_text(encoding="utf-8")).get("clause", []), list[Clause])
+        return msgspec.convert(parse_toml(file.read_text(encoding="utf-8")).get("clause", []), list[Clause])
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, msgspec.ValidationError, RecursionError) as error:
         raise RuleError(f"{file}: {error}") from error
 
@@ -97,7 +98,7 @@ def clause_coverage(rules: Iterable[Rule], table: Sequence[Clause]) -> list[Clau
         covered = tuple(sorted(i for i, rule in mine.items() if rule.status == "stable"))
         drafted = tuple(sorted(i for i, rule in mine.items() if rule.status == "draft"))
         if not mine and not clause.why:
-            raise RuleError(f"clauses.toml: {clause.of}: no rule covers it, and it does not say why")
+            raise RuleError(f"clauses.toml: {clause.of}: no rule covers it, and it has no reason")
         rows.append(ClauseCoverage(clause, covered, drafted))
     return rows
 

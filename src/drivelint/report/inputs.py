@@ -1,4 +1,4 @@
-"""What a run was given, in one line: whether the map fits, whether logs are whole and none is there twice, what was not judged."""
+"""The inputs of a run in one line: whether the map fits, whether logs are complete and none is there twice, what was not judged."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class InputNote(NamedTuple):
 
 
 def input_notes(result: Result) -> list[InputNote]:
-    """Return the parts of the line: the law, where it is one nation's, map, log, what it does not have, not judged."""
+    """Return the parts of the line: the law if it is one nation's, map, log, missing signals, not judged."""
     drives = [drive for drive in result.drives.to_pylist() if drive["status"] == "judged"]
     law = [InputNote(LAW, words, is_warning=False)] if (words := law_words(result)) else []
     return [
@@ -83,7 +83,7 @@ def _egos_off_the_map(drive: Row) -> int:
 
 
 def _log(drives: Sequence[Row]) -> InputNote:
-    """Return whether the logs are complete: what was lost of them, what is assumed, the number of warnings, and copies."""
+    """Return whether the logs are complete: losses, assumptions, the number of warnings, and copies."""
     lossy = [drive["drive_id"] for drive in drives if drive["lossy"]]
     checks = [check for drive in drives for check in drive["quality"] if check["check_id"] != ASIDE_OF_LANE]
     assumed = sorted({check["message"].partition(";")[0] for check in checks if check["check_id"] == ASSUMED_MOTION})
@@ -108,7 +108,7 @@ def _log(drives: Sequence[Row]) -> InputNote:
 
 
 def _whole(drives: Sequence[Row]) -> str:
-    """Say that nothing is missing, as far as the files tell."""
+    """State that nothing is missing, as far as the files show."""
     names = [drive["file_name"].lower() for drive in drives]
     without = [end for end in _WITHOUT_END if any(name.endswith(end) for name in names)]
     return f"complete as far as {listed(without)} tells" if without else "complete"
@@ -127,7 +127,11 @@ def _copies(drives: Sequence[Row]) -> list[str]:
 def _unrecorded(result: Result) -> list[InputNote]:
     """Return the rules that ask nothing of these logs, as they have nothing of a signal that few logs have."""
     rows = counts.unrecorded(result.verdicts).select(["reason_code", "rule_id", *_EGO]).to_pylist()
-    return [InputNote("not in the log", _by_signal(result, rows), is_warning=True)] if rows else []
+    needed = [
+        f"{name} (needed by {plural(n, 'rule')}{', ' if where else ''}{where})"
+        for name, n, where in _by_signal(result, rows)
+    ]
+    return [InputNote("not recorded", listed(needed), is_warning=True)] if rows else []
 
 
 def _parked(result: Result) -> list[InputNote]:
@@ -138,21 +142,25 @@ def _parked(result: Result) -> list[InputNote]:
     return [InputNote("parked", words, is_warning=False)] if n else []
 
 
-def _by_signal(result: Result, rows: Sequence[Row]) -> str:
-    """Return the signals that verdicts lack, each with its number of rules, the most first."""
+def _by_signal(result: Result, rows: Sequence[Row]) -> list[tuple[str, int, str]]:
+    """Return the signals that verdicts lack, the one of most rules first: its name, the number of rules, and for which egos."""
     missing = counts.group_rows(rows, lambda row: signal_name(row["reason_code"]))
     order = sorted(missing.items(), key=lambda item: (-_n_rules(item[1]), -len(item[1]), item[0]))
     egos = {(row["drive_id"], row["ego_id"]) for row in counts.distinct_rows(result.verdicts, _EGO)}
-    return listed([f"{name} ({plural(_n_rules(found), 'rule')}{_for_egos(found, egos)})" for name, found in order])
+    return [(name, _n_rules(verdicts), _for_egos(verdicts, egos)) for name, verdicts in order]
 
 
 def _not_judged(result: Result, drives: int) -> InputNote:
-    """Return what was not judged: drives, rules by the signal that is missing, and the number of the other verdicts."""
+    """Return the parts that were not judged: drives, rules by the missing signal, and the number of the other verdicts."""
     rows = counts.undecided(result.verdicts).select(["reason_code", "rule_id", *_EGO]).to_pylist()
     signals = [row for row in rows if row["reason_code"].startswith(MISSING_PREFIX)]
     parts = [plural(drives, "drive")] if drives else []
     if signals:
-        parts.append(_by_signal(result, signals))
+        without = [
+            f"{plural(n, 'rule')} without {name}{f' ({where})' if where else ''}"
+            for name, n, where in _by_signal(result, signals)
+        ]
+        parts.append(listed(without))
     if others := len(rows) - len(signals):
         parts.append(f"{others} {'other ' if signals else ''}{'verdict' if others == 1 else 'verdicts'}")
     return InputNote("not judged", "; ".join(parts) or "nothing", is_warning=bool(parts))
@@ -162,7 +170,7 @@ def _for_egos(rows: Iterable[Row], egos: AbstractSet[tuple[str, str]]) -> str:
     """Return for how many of the egos these verdicts are, or of the drives where each has one; '' where they are for all."""
     n = len({(row["drive_id"], row["ego_id"]) for row in rows})
     noun = "ego" if len(egos) > len({drive_id for drive_id, _ in egos}) else "drive"
-    return "" if n == len(egos) else f", {n} of {plural(len(egos), noun)}"
+    return "" if n == len(egos) else f"for {n} of {plural(len(egos), noun)}"
 
 
 def rules_without_map(result: Result) -> int:
@@ -175,7 +183,7 @@ def rules_without_map(result: Result) -> int:
 
 
 def signal_name(reason_code: str) -> str:
-    """Return what is missing, in words, from a reason code that begins with `missing_` or `unrecorded_`."""
+    """Return the missing signal, in words, from a reason code that begins with `missing_` or `unrecorded_`."""
     return (
         reason_code.removeprefix(MISSING_PREFIX).removeprefix(UNRECORDED_PREFIX).removeprefix("mode_").replace("_", " ")
     )

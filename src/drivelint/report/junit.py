@@ -79,7 +79,7 @@ def render(result: Result) -> bytes:
 
 
 def _of_drive(drive: Row) -> Iterator[Case]:
-    """Yield what is wrong with a drive as a whole."""
+    """Yield the problems of a drive as a whole."""
     if drive["status"] == "not_judged":
         yield Case("the drive can be judged", "error", "not_judged", [drive["status_reason"] or ""])
     elif drive["lossy"]:
@@ -97,7 +97,7 @@ def _unfixed_case(entry: ComparedFinding) -> Case:
 
 
 class _Lines(NamedTuple):
-    """What a test case has to tell, one line each."""
+    """The content of a test case, one line each."""
 
     erred: list[str]
     stopping: list[str]
@@ -149,7 +149,7 @@ def _keys(rows: pa.Table) -> Iterator[CaseKey]:
 
 
 def _case(key: CaseKey, lines: _Lines, *, required: bool) -> Case:
-    """Return the test case of a drive, rule and profile; `required`: what is unknown in it may not be."""
+    """Return the test case of a drive, rule and profile; `required`: an unknown verdict is an error."""
     _, rule_id, profile = key
     name = f"{rule_id} [{profile}]" if profile is not None else rule_id
     unknown = [f"unknown: {x}" for x in lines.unknown]

@@ -6,7 +6,7 @@ from collections import Counter
 from typing import TYPE_CHECKING, Final
 
 from drivelint.catalogue import load_rules
-from drivelint.drive.conditions import broader_values, with_narrower_values
+from drivelint.drive.conditions import all_values
 from drivelint.phrases import listed, plural
 
 if TYPE_CHECKING:
@@ -28,22 +28,17 @@ def law_words(result: Result) -> str:
 def _left_out(laws: list[tuple[str, ...]], drives: list[Row]) -> Iterator[str]:
     """Yield which packs have the law of a drive's nation, where no rule of the run has it."""
     nations = {said["value"] for drive in drives for said in drive["conditions"] if said["condition"] == "nation"}
-    lacking = sorted(nation for nation in nations if not any(nation in _applied(law) for law in laws))
+    lacking = sorted(nation for nation in nations if not any(nation in all_values(law) for law in laws))
     for nation in lacking:
         rules = load_rules().values()
-        packs = {rule.pack for rule in rules if rule.status == "stable" and rule.law and nation in _applied(rule.law)}
+        packs = {rule.pack for rule in rules if rule.status == "stable" and rule.law and nation in all_values(rule.law)}
         if packs:
-            yield f"of {nation} not asked for: --rules {' --rules '.join(sorted(packs))}"
-
-
-def _applied(law: tuple[str, ...]) -> set[str]:
-    """Return the nations in which a law applies."""
-    return {*with_narrower_values(law), *broader_values(law)}
+            yield f"of {nation} not requested: --rules {' --rules '.join(sorted(packs))}"
 
 
 def _law(law: tuple[str, ...], drives: list[Row]) -> str:
-    """Return whether this law was applied in the drives, and what says so."""
-    applied = _applied(law)
+    """Return whether this law was applied in the drives, and the source."""
+    applied = all_values(law)
     counted: Counter[str] = Counter()
     for drive in drives:
         given = next((said for said in drive["conditions"] if said["condition"] == "nation"), None)

@@ -109,7 +109,7 @@ def _parts(template: str, **values: Any) -> list[str]:
 
 
 def escaped(words_: str) -> str:
-    """Return words so that Markdown shows them as they are: no markup, no HTML, no link, nobody mentioned.
+    """Return words so that Markdown shows them unchanged: no markup, no HTML, no link, no mention.
 
     A word joiner, which no reader sees, keeps GitHub from seeing addresses, mentions and numbers of issues.
     """

@@ -43,7 +43,7 @@ _NO_MAP: Final = {
 }
 """Check that leaves a drive without a map -> words."""
 _COUNTED_LABEL: Final = "counted"
-"""Findings that the asked confidence does not let through."""
+"""Findings that do not fail the run because of the requested confidence."""
 
 
 class Part(NamedTuple):
@@ -54,7 +54,7 @@ class Part(NamedTuple):
 
 
 class Headline(NamedTuple):
-    """What a run comes to. `label`: the word; `kind`: fail, near, unknown, not_applicable or pass; `parts`: the sentence.
+    """The outcome of a run. `label`: the word; `kind`: fail, near, unknown, not_applicable or pass; `parts`: the sentence.
 
     near: there are findings, and a gate lets all of them through.
     """
@@ -84,7 +84,7 @@ class RuleCounts(NamedTuple):
 
 
 def headline(result: Result) -> Headline:
-    """Return what a run comes to. A finding is counted once: as new, or by why a gate lets it through."""
+    """Return the outcome of a run. A finding is counted once: as new, or by the reason why it does not gate."""
     rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
     rows = one_per_event(result.gate, result.findings.to_pylist())
     left = [row for row in rows if standing(result.gate, row["finding_id"]) not in LET_THROUGH]
@@ -184,9 +184,9 @@ def _without_findings(result: Result, verdict_counts: Mapping[str, int], label: 
         not verdict_counts["pass"] + verdict_counts["fail"]
         and verdict_counts["unknown"] + verdict_counts["error"] + counts.unrecorded(result.verdicts).num_rows
     ):
-        return "no findings, as nothing could be decided"
+        return "no findings, because nothing could be decided"
     if not verdict_counts["pass"] + verdict_counts["fail"]:
-        return "no findings, as no rule applied: what they are about did not happen"
+        return "no findings, because no rule applied: the situations that they are about did not happen"
     if label == _MOSTLY:
         return "no findings, but most could not be judged"
     return "no findings" if whole else "no findings, as far as it could be judged"

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def _renderer(format_: str) -> Callable[[Result], bytes]:
-    """Return what renders a report, whose module is loaded when it does: most runs write no report."""
+    """Return the renderer of a report, which loads its module when called: most runs write no report."""
 
     def render(result: Result) -> bytes:
         rendered: bytes = import_module(f"drivelint.report.{format_}").render(result)
@@ -33,7 +33,7 @@ def _renderer(format_: str) -> Callable[[Result], bytes]:
 REPORT_FORMATS: Final[Mapping[str, tuple[str, Callable[[Result], bytes]]]] = {
     name: (file, _renderer(name)) for name, file in REPORT_FILES.items()
 }
-"""Name -> file in the result folder, and what renders it: the same result, the same bytes."""
+"""Name -> file in the result folder, and its renderer: the same result gives the same bytes."""
 
 
 @contextmanager

@@ -24,7 +24,7 @@ _AT_ONCE_S: Final = 0.5
 
 
 class Progress:
-    """Listener of the pipeline: progress and diagnostics, never results. This one ignores what it is told."""
+    """Listener of the pipeline: progress and diagnostics, never results. This one ignores all messages."""
 
     def stage(self, name: str, total: int | None = None) -> None:
         """Begin a stage of `total` units of work (None: not known)."""
@@ -43,11 +43,11 @@ class Progress:
 
 
 class Silent(Progress):
-    """A `Progress` that nobody listens to."""
+    """A `Progress` without a listener."""
 
 
 class NotePrinter(Silent):
-    """A `Progress` for a stderr that is no terminal: what a person should read, and every minute how far it is, one line each."""
+    """A `Progress` for a stderr that is no terminal: notes for a person, and every minute the progress, one line each."""
 
     def __init__(self) -> None:
         self._name, self._activity, self._done, self._part = "", "", 0, 0.0
@@ -88,7 +88,7 @@ class NotePrinter(Silent):
 
     def note(self, text: str) -> None:
         """Print the note."""
-        with suppress(OSError):  # nobody may listen any more
+        with suppress(OSError):  # the listener may be gone
             print(f"drivelint: {inert_line(text)}", file=sys.stderr, flush=True)
 
 

@@ -1,4 +1,4 @@
-"""Tells by how many rules a batch was judged. A module of its own: whoever only tells what was judged before loads no database."""
+"""Reports by how many rules a batch was judged. This is a module of its own, so that printing an earlier result loads no database."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class ToldLimits(RuleLimits):
-    """Limits of rules that also tell how many rules a batch was judged by, so that a person sees it move."""
+    """Limits of rules that also report by how many rules a batch was judged, so that a person sees the progress."""
 
     def __init__(self, progress: Progress, n_rules: int, *args: Any, **options: Any) -> None:
         super().__init__(*args, **options)
@@ -26,7 +26,7 @@ class ToldLimits(RuleLimits):
         self._begun: set[str] = set()
 
     def begin(self, n_drives: int) -> None:
-        """Tell that a batch of so many drives is judged; at first, tables are derived."""
+        """Report that a batch of so many drives is judged; at first, tables are derived."""
         self._n_drives = n_drives
         self._begun.clear()
         self._progress.doing(f"judging {plural(n_drives, 'drive')}: deriving tables")

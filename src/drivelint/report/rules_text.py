@@ -46,7 +46,7 @@ def listing(rules: Iterable[Rule], width: int = 120) -> Table:
 
 
 def rule_details(rule: Rule) -> Group:
-    """Return everything about one rule: what it asks, where that is from, what its header sets, its parameters."""
+    """Return everything about one rule: its demand, its source, the settings of its header, its parameters."""
     facts = Table(box=None, show_header=False, pad_edge=False)
     facts.add_column(style="bold", no_wrap=True)
     facts.add_column(overflow="fold")

@@ -1,4 +1,4 @@
-"""Which findings tell of one contact: it is as sure as the surest of them."""
+"""The findings about one contact: it is as sure as the surest of them."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ if TYPE_CHECKING:
     from drivelint.result.text import Row
 
 SAME_NS: Final = 1_000_000_000
-"""Findings of two rules whose failing stretches are no farther apart tell of the same contact."""
+"""Findings of two rules whose failing stretches are no farther apart are about the same contact."""
 
 
 def same_contact(rows: Iterable[Row], rules: Mapping[str, Row]) -> dict[str, list[Row]]:
-    """Return the id of each finding that is a contact -> the findings of other rules that tell of the same one."""
+    """Return the id of each finding that is a contact -> the findings of other rules about the same contact."""
     contacts = [row for row in rows if is_contact(row, rules)]
     met = group_rows(contacts, lambda row: (row["drive_id"], frozenset((row["ego_id"], row["object_id"]))))
     return {

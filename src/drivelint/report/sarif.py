@@ -143,7 +143,7 @@ class _Run:
         return {"uri": _quoted(drive["file_name"])}
 
     def _location(self, drive: Row, row: Row | None = None) -> dict[str, Any]:
-        """Return a log as a place, and within it, if a finding is given, whom it is about and where it was."""
+        """Return a log as a place, and within it, if a finding is given, its actors and its place."""
         drive_id = drive["drive_id"]
         artifact = {**self._uri(drive), "index": self._artifact_index[drive_id]}
         place: dict[str, Any] = {"physicalLocation": {"artifactLocation": artifact}}
@@ -166,7 +166,7 @@ class _Run:
         return place
 
     def _notifications(self) -> Iterator[dict[str, Any]]:
-        """Yield what could not be judged and why: drives, rules by drive, profile and reason; data quality; waivers."""
+        """Yield the parts that could not be judged, with the reason: drives, rules by drive, profile and reason; data quality; waivers."""
         for drive in self._logs:
             if drive["status"] == "not_judged":
                 yield _notice("not-judged", "error", drive["status_reason"] or "no reason given", self._location(drive))

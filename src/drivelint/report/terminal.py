@@ -117,7 +117,7 @@ def _findings(result: Result, *, wide: bool) -> list[Table | None]:
 
 
 def _measurement_table(result: Result, title: str, rows: pa.Table, style: str, *, wide: bool = True) -> Table | None:
-    """Return findings or near misses with what was measured; None for none. The drive is named where it changes.
+    """Return findings or near misses with their measures; None for none. The drive is named where it changes.
 
     In a narrow terminal what was measured stands below the rule, so that no number and no name is torn apart.
     """
@@ -152,7 +152,7 @@ def _measurement_table(result: Result, title: str, rows: pa.Table, style: str, *
 
 
 def _open(result: Result) -> Table | None:
-    """Return what could not be judged and why: drives, then unknown and erred verdicts by reason."""
+    """Return the parts that could not be judged, with the reason: drives, then unknown and erred verdicts by reason."""
     lost = result.drives.filter(pc.equal(result.drives["status"], "not_judged")).to_pylist()
     rows = counts.distinct_rows(counts.undecided(result.verdicts), ["verdict", "reason", "rule_id"])
     why = counts.group_rows(rows, lambda row: (row["verdict"], row["reason"]))
@@ -201,7 +201,7 @@ def _assumptions(result: Result) -> Text | None:
     if not assumed:
         return None
     verb = "verdict assumes" if assumed == 1 else "verdicts assume"
-    return Text(f"{assumed} {verb} that whoever a log does not have is not in plain view (--visibility)", "dim")
+    return Text(f"{assumed} {verb} that an actor that a log does not have is not in plain view (--visibility)", "dim")
 
 
 def _table(title: str, style: str, columns: Mapping[str, int] | None = None) -> Table:

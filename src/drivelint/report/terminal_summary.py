@@ -56,7 +56,7 @@ _STYLE_OF_PART: Final = {"contact": "bold red", "possible contact": "red", "warn
 
 
 def render(result: Result, out: str | None, width: int = 120) -> Group:
-    """Return the head, the worst of each drive, the broken rules, what is unknown, map and data, the exit code and what to do next.
+    """Return the head, the worst of each drive, the broken rules, the unknown ones, map and data, the exit code and the next steps.
 
     Findings that a gate lets through are counted, not listed; of a drive that has no others the worst of them is shown.
     """
@@ -190,9 +190,9 @@ def _cell(n: int, style: str) -> Text:
 
 
 def _worst(row: Row, rules: dict[str, Any], start_ns: int | None, *, several_egos: bool) -> Text:
-    """Return when, what was measured and by which rule: numbers first, because a narrow column cuts the end.
+    """Return the time, the measure and the rule: numbers first, because a narrow column cuts the end.
 
-    A contact is told by whom the ego met and how fast they came nearer just before.
+    For a contact, the other actor and the closing speed just before it are printed.
     """
     contact = is_contact(row, rules)
     who = [] if row["object_id"] is None else [f"object {row['object_id']}"]
@@ -250,7 +250,7 @@ def _broken(findings: list[Row], without: str) -> Table:
 
 
 def _lines(result: Result) -> list[Text]:
-    """Return how many rules were judged, what is unknown by what is missing, and how map and logs are."""
+    """Return how many rules were judged, the unknown ones by the missing signal, and the state of map and logs."""
     n = rule_counts(result)
     said = [f"{n.judged_somewhere} judged", f"{n.never} never judgeable" if n.never else ""]
     said += [f"{n.unrecorded} lack a signal in the log" if n.unrecorded else ""]
@@ -261,11 +261,11 @@ def _lines(result: Result) -> list[Text]:
         first += f"    near misses: {near}"
     if given := {f"{c['condition']}={c['value']}" for cs in result.drives["conditions"].to_pylist() for c in cs or ()}:
         first += f"    judged in: {', '.join(sorted(given))}"
-    return [Text(first), *_profiles(result), *_unknown(result), _inputs(result)]
+    return [Text(first), *_profiles(result), *_unknown(result), *_inputs(result)]
 
 
 def _profiles(result: Result) -> list[Text]:
-    """Return what the profiles of the findings mean, which stand in brackets behind their numbers."""
+    """Return the meaning of the profiles in brackets after the numbers of the findings."""
     names = sorted(set(result.findings["profile"].to_pylist()) & PROFILES.keys())
     said = "; ".join(f"{name}: {PROFILES[name]}" for name in names)
     return [Text(f"profiles of overtaking (one overtake counts once): {said}", "dim")] if names else []
@@ -295,13 +295,13 @@ def _unknown(result: Result) -> list[Text]:
     return lines
 
 
-def _inputs(result: Result) -> Text:
-    """Return which map the drives were judged on, how many it fits, whether the logs are whole, and what was not judged."""
-    line = Text()
-    for note in (note for note in input_notes(result) if note.label != LAW):
-        line.append(f"{' | ' if line else ''}{note.label}: ", "default")
-        line.append(note.words, "yellow" if note.is_warning else "default")
-    return line
+def _inputs(result: Result) -> list[Text]:
+    """Return which map the drives were judged on, how many it fits, whether the logs are whole, and what was not judged: a line each."""
+    return [
+        Text.assemble(f"{note.label}: ", (note.words, "yellow" if note.is_warning else "default"))
+        for note in input_notes(result)
+        if note.label != LAW
+    ]
 
 
 def _end(result: Result, findings: list[Row], out: str | None) -> list[Text]:
@@ -316,7 +316,7 @@ def _end(result: Result, findings: list[Row], out: str | None) -> list[Text]:
     if gate is not None:
         lines += [Text(f"waiver   {line}", "yellow") for line in descriptions.waiver_warnings(gate)]
     if counts.total(result.verdicts)["unknown"] or counts.unrecorded(result.verdicts).num_rows:
-        lines.append(Text("inspect  drivelint inspect TRACE tells what a log lacks: unknown is not pass"))
+        lines.append(Text("inspect  drivelint inspect TRACE shows what a log lacks: unknown is not pass"))
     if out is None:
         lines.append(Text("keep     --out DIR writes a report, the tables and the logs with their verdicts", "dim"))
         return lines

@@ -50,7 +50,7 @@ def _copies(rows: pa.Table) -> list[Row]:
 
 
 def moment_ns(row: Row, rules: Mapping[str, Row]) -> int | None:
-    """Return the time by which a finding is told: of a contact when it began, else when it was worst."""
+    """Return the time that is printed for a finding: for a contact its beginning, else its worst step."""
     moment: int | None = row["t_start_ns"] if _began_before(row, rules) else row["t_worst_ns"]
     return moment
 

@@ -13,7 +13,7 @@ _NOT_XML: Final = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010f
 
 
 def replace_non_xml(text: str) -> str:
-    """Return text without the characters that XML cannot hold, and with those shown that nobody sees: a log's own words."""
+    """Return text of a log without characters that XML forbids, and with invisible ones shown as codes."""
     return escape_invisible(_NOT_XML.sub("\ufffd", text))
 
 

@@ -40,7 +40,7 @@ def render(result: Result) -> bytes:
     said, found = counts.group_rows(reasons, place), counts.group_rows(result.findings.to_pylist(), place)
     rules = result.rules.to_pylist()
     for drive in result.drives.to_pylist():
-        about = f"Rules of the road, held against the drive {drive['drive_id']}"
+        about = f"Rules of the road, checked on the drive {drive['drive_id']}"
         name = f"drivelint {drive['drive_id']}"  # ASAM's reader takes bundles of one name for one
         bundle = add(root, "CheckerBundle", build_date="", name=name, version=__version__, description=about)
         add(bundle, "Param", name="InputFile", value=drive["file_name"])

@@ -21,7 +21,7 @@ def certainty(finding: Mapping[str, Any], least_share: float = LEAST_SHARE) -> s
 
 
 def doubt(row: Mapping[str, Any]) -> str:
-    """Return, in words, that a finding is only possible; '' where it is sure or nobody looked, and for a verdict."""
+    """Return, in words, that a finding is only possible; '' if it is sure or was not examined, and for a verdict."""
     if row.get("n_copies") is None or certainty(row) == SURE:
         return ""
     return f"possible, in {row['n_stays']} of {row['n_copies']} copies with recording errors"

@@ -71,7 +71,7 @@ def _rule_row(rule: Rule, overrides: Mapping[str, object], profiles: Sequence[st
     values = {name: overrides.get(name, param.default) for name, param in rule.params.items()}
     same = (
         "pack", "pack_title", "title", "breach", "clause", "hypothesis", "kind", "subtype", "derivation", "severity", "legal", "status",
-        "sense", "unit", "observes", "near_margin",
+        "is_named", "sense", "unit", "observes", "near_margin",
     )  # fmt: skip
     window = values.get(rule.window_s) if isinstance(rule.window_s, str) else rule.window_s
     return {key: getattr(rule, key) for key in same} | {

@@ -25,12 +25,12 @@ class CompiledTemplates(BytecodeCache):
         self._kind = kind
 
     def load_bytecode(self, bucket: Bucket) -> None:
-        """Fill a bucket with what is kept."""
+        """Fill a bucket with the stored code."""
         if (known := _COMPILED.get(self._name(bucket))) is not None:
             bucket.bytecode_from_string(known)
 
     def dump_bytecode(self, bucket: Bucket) -> None:
-        """Keep what was compiled."""
+        """Store the compiled code."""
         _COMPILED.put(self._name(bucket), bucket.bytecode_to_string())
 
     def _name(self, bucket: Bucket) -> str:

@@ -68,12 +68,12 @@ def undecided(verdicts: pa.Table) -> pa.Table:
 
 
 def unrecorded(verdicts: pa.Table) -> pa.Table:
-    """Return the verdicts that are not applicable because the log has nothing of a signal: what they are about may have happened."""
+    """Return the verdicts that are not applicable because the log lacks a signal: their situation may have happened."""
     return verdicts.filter(pc.starts_with(verdicts["reason_code"], UNRECORDED_PREFIX))
 
 
 def one_per_event(findings: Iterable[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-    """Return one finding of each event, in the order of the rows, which is what counts of findings count.
+    """Return one finding of each event, in the order of the rows: these are counted as findings.
 
     Findings of one rule at the same time are one event if they are about one ego and object under several profiles, or if each of two
     egos is the object of the other. A sure one stands for it before one that is only possible, and an earlier row before a later one.

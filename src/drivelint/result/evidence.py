@@ -36,7 +36,7 @@ ORDER: Final = {
 }
 """Table of evidence in a result -> the order of its rows."""
 PATH_S: Final = 5.0
-"""How long before and after the moment the ways are kept."""
+"""The time before and after the moment for which paths are kept."""
 PATH_STEP_NS: Final = 200_000_000
 """A path has at most one point per time step of this length."""
 REACH_M: Final = (60.0, 300.0)

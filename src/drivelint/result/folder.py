@@ -44,7 +44,7 @@ def working_folder(
     foreign = sorted(present - written_files(out) - {MANIFEST})
     if foreign and not overwrite:
         raise UsageError(
-            f"--out {out}: has {listed(foreign, 3)}, which drivelint is not known to have written there ({MANIFEST} does not list it): "
+            f"--out {out}: has {listed(foreign, 3)}, which drivelint did not write there ({MANIFEST} does not list it): "
             "choose another folder, or replace it with --overwrite"
         )
     with _locked(out) as is_ours:
@@ -90,12 +90,12 @@ def _remove(out: Path, names: Sequence[str]) -> None:
 
 def _remove_empty(out: Path, names: Iterable[str]) -> None:
     for folder in {(out / name).parent for name in names} - {out}:
-        with suppress(OSError):  # somebody's file is there
+        with suppress(OSError):  # a foreign file is there
             folder.rmdir()
 
 
 def _identity(path: Path) -> tuple[int, int] | None:
-    """Return what tells a file from the one that replaces it; None: there is none."""
+    """Return an identity that distinguishes a file from its replacement; None: there is none."""
     try:
         said = path.stat()
     except OSError:
@@ -105,9 +105,9 @@ def _identity(path: Path) -> tuple[int, int] | None:
 
 @contextmanager
 def _locked(out: Path) -> Iterator[bool]:
-    """Hold a folder for this process alone; say whether that is so, which not every file system can tell.
+    """Hold a folder for this process alone; show whether that is so, which not every file system can.
 
-    The system ends a lock with its process. Numbers of processes would not tell: every container has a process 1.
+    The system ends a lock with its process. Numbers of processes would not show it: every container has a process 1.
     Errors: `UsageError` where another process has the folder.
     """
     try:
@@ -160,7 +160,7 @@ def replace(
         earlier,
         [*sorted(_result_files(earlier, patterns, overwrite=False)), *([MANIFEST] if written_files(earlier) else [])],
     )
-    with suppress(OSError):  # somebody's file is there, or there is none
+    with suppress(OSError):  # a foreign file is there, or there is none
         earlier.rmdir()
 
 
@@ -221,7 +221,7 @@ def _hashes(out: Path) -> dict[str, str]:
 
 
 def hashes_in(content: bytes) -> dict[str, str]:
-    """Return name -> sha256 of what `files.json` holds; nothing for one of an older version, or a damaged one."""
+    """Return name -> sha256 from `files.json`; nothing for one of an older version, or a damaged one."""
     try:
         return {str(name): str(said) for name, said in json.loads(content)[_HASHES].items()}
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError):

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 DIFF_STATUSES: Final = ("new", "changed", "unchanged", "fixed", "elsewhere", "unknown", "lost")
 """Of NEW's findings: new, changed, unchanged. Of BASE's that NEW has not: fixed (kept there, or never applicable), elsewhere (the rule
-fails there at another step or place), unknown (NEW cannot tell), lost (NEW did not look there). None of the last three is fixed."""
-NOT_FIXED: Final = {"unknown": "unknown now", "lost": "not looked at", "elsewhere": "still failing elsewhere"}
+fails there at another step or place), unknown (NEW cannot decide), lost (NEW did not judge it). None of the last three is fixed."""
+NOT_FIXED: Final = {"unknown": "unknown now", "lost": "not judged now", "elsewhere": "still failing elsewhere"}
 """Status of a finding that is gone but not fixed -> words."""
 GATE_VERSION: Final = 1
 """Version of the file: raised when a key changes its meaning or goes."""
@@ -136,7 +136,7 @@ class Waiver:
 class Gate:
     """The baseline and the waivers that keep a finding from failing a run.
 
-    `today`: the date that waivers were held against, None without waivers. `waived`: finding_id -> index of its waiver.
+    `today`: the date for the expiry of waivers, None without waivers. `waived`: finding_id -> index of its waiver.
     `confidence`: the share of its copies that must keep a finding that may fail a run; None: it is not asked. `possible`: the ids
     of findings of which fewer do.
     """
@@ -203,7 +203,7 @@ def render(gate: Gate) -> bytes:
 
 
 def load(folder: Path) -> Gate | None:
-    """Return what a result folder says of its gate; None: there was none. Errors: `UsageError` for a file of another kind."""
+    """Return the gate of a result folder; None: there was none. Errors: `UsageError` for a file of another kind."""
     path = folder / GATE_FILE
     try:
         found = msgspec.json.decode(path.read_bytes(), type=_File)

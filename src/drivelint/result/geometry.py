@@ -1,6 +1,7 @@
-"""Gives result files a geometry: the column `geom` of GeoParquet, made of the columns that hold coordinates.
+"""Adds geometries to result files: columns of GeoParquet that are made of the columns with coordinates.
 
-In the map's metres: x to the east, y to the north, without a coordinate reference system, since a map need not have one.
+`geom` is in the map's metres: x to the east, y to the north, without a coordinate reference system, since a map need not have one and
+a result may be of several maps. `geom_lonlat` is in degrees of longitude and latitude (WGS 84), where map or log give them.
 """
 
 from __future__ import annotations
@@ -22,11 +23,12 @@ if TYPE_CHECKING:
     Geometries = NDArray[np.object_]
 
 COLUMN: Final = "geom"
+EARTH_COLUMN: Final = "geom_lonlat"
 _RING_POINTS: Final = 4  # the last is the first again
 
 
 class Shape(NamedTuple):
-    """The geometry of a table: its type in GeoParquet, what it shows, and what makes it of the rows (None where there is none)."""
+    """A geometry of a table: its type in GeoParquet, its meaning, and the function that makes it from the rows (None if there is none)."""
 
     kind: str
     comment: str
@@ -34,28 +36,40 @@ class Shape(NamedTuple):
 
 
 def with_geometry(rows: pa.Table, table: str) -> pa.Table:
-    """Return the rows of a schema table with `geom` as WKB and what GeoParquet 1.1 says of it in the schema's metadata.
+    """Return the rows of a schema table with its geometries as WKB and with the metadata of GeoParquet 1.1 in the schema.
 
-    Tables that have no geometry come back as they are.
+    Tables that have none come back as they are.
     """
-    if table not in SHAPES:
+    if not (shapes := SHAPES.get(table)):
         return rows
-    shape = SHAPES[table]
-    wkb = pa.array(shapely.to_wkb(shape.make(rows), output_dimension=2, byte_order=1), pa.binary(), from_pandas=True)
-    about = {"encoding": "WKB", "geometry_types": [shape.kind], "crs": None}
-    geo = {"version": "1.1.0", "primary_column": COLUMN, "columns": {COLUMN: about}}
-    field = pa.field(COLUMN, pa.binary(), metadata={"comment": f"{shape.kind}: {shape.comment}"})
-    metadata = {**(rows.schema.metadata or {}), b"geo": json.dumps(geo, sort_keys=True).encode()}
-    return rows.append_column(field, wkb).replace_schema_metadata(metadata)
+    about: dict[str, dict[str, Any]] = {}
+    metadata = rows.schema.metadata or {}
+    for column, shape in shapes.items():
+        wkb = shapely.to_wkb(shape.make(rows), output_dimension=2, byte_order=1)
+        field = pa.field(column, pa.binary(), metadata={"comment": f"{shape.kind}: {shape.comment}"})
+        rows = rows.append_column(field, pa.array(wkb, pa.binary(), from_pandas=True))
+        # without the key, coordinates are longitude and latitude; with null, nothing is said of them
+        frame = {} if column == EARTH_COLUMN else {"crs": None}
+        about[column] = {"encoding": "WKB", "geometry_types": [shape.kind], **frame}
+    geo = {"version": "1.1.0", "primary_column": next(iter(shapes)), "columns": about}
+    return rows.replace_schema_metadata({**metadata, b"geo": json.dumps(geo, sort_keys=True).encode()})
 
 
 def without_geometry(rows: pa.Table) -> pa.Table:
     """Return rows as they were before `with_geometry`."""
-    return rows.drop_columns([COLUMN]) if COLUMN in rows.column_names else rows
+    return rows.drop_columns([name for name in (COLUMN, EARTH_COLUMN) if name in rows.column_names])
 
 
-def _points(rows: pa.Table) -> Geometries:
-    xy = np.column_stack([floats(rows["x_m"]), floats(rows["y_m"])])
+def _places(rows: pa.Table) -> Geometries:
+    return _points(rows, "x_m", "y_m")
+
+
+def _places_on_earth(rows: pa.Table) -> Geometries:
+    return _points(rows, "lon", "lat")
+
+
+def _points(rows: pa.Table, x: str, y: str) -> Geometries:
+    xy = np.column_stack([floats(rows[x]), floats(rows[y])])
     points = np.full(len(xy), None, object)
     known = np.isfinite(xy).all(axis=1)
     points[known] = shapely.points(xy[known])
@@ -155,12 +169,16 @@ def _row_of(offsets: NDArray[np.int64]) -> NDArray[np.int64]:
     return np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))
 
 
-SHAPES: Final[Mapping[str, Shape]] = {
-    "finding": Shape("Point", "the ego at the worst step", _points),
-    "scene": Shape("MultiPolygon", "the ground under the boxes of the actors at the moment", _boxes),
-    "lane_shape": Shape("Polygon", "the lane between its bounds", _lanes),
-    "danger_space": Shape("Polygon", "the danger space", _rings),
-    "track": Shape("LineString", "the way", _tracks),
-    "course": Shape("MultiPoint", "the ego at the judged steps", _moments),
+SHAPES: Final[Mapping[str, Mapping[str, Shape]]] = {
+    "finding": {
+        COLUMN: Shape("Point", "the ego at the worst step", _places),
+        EARTH_COLUMN: Shape("Point", "the same, in degrees of longitude and latitude (WGS 84)", _places_on_earth),
+    },
+    "drive": {EARTH_COLUMN: Shape("Point", "lon and lat", _places_on_earth)},
+    "scene": {COLUMN: Shape("MultiPolygon", "the ground under the boxes of the actors at the moment", _boxes)},
+    "lane_shape": {COLUMN: Shape("Polygon", "the lane between its bounds", _lanes)},
+    "danger_space": {COLUMN: Shape("Polygon", "the danger space", _rings)},
+    "track": {COLUMN: Shape("LineString", "the way", _tracks)},
+    "course": {COLUMN: Shape("MultiPoint", "the ego at the judged steps", _moments)},
 }
-"""Table of the schema -> its geometry in the file."""
+"""Table of the schema -> its geometries in the file, by column; a viewer shows the first."""

@@ -28,7 +28,7 @@ def load_result(folder: Path) -> Result:
     summary = _summary(folder)
     if left := left_by_killed_run(folder):
         raise UsageError(
-            f"{folder}: of an earlier run: the one that was to replace it was killed: check the drives again, or remove {left} to read it"
+            f"{folder}: of an earlier run: the run that should replace it was killed: check the drives again, or remove {left} to read it"
         )
     if summary.get("output_schema") != OUTPUT_VERSION:
         raise UsageError(
@@ -55,9 +55,7 @@ def load_result(folder: Path) -> Result:
     except DriveLintError as error:
         raise UsageError(f"{folder}: of another version of drivelint ({error}): check the drives again") from error
     if wrong := changed_files(folder):
-        raise UsageError(
-            f"{folder / wrong[0]}: is not as drivelint check wrote it with the others: check the drives again"
-        )
+        raise UsageError(f"{folder / wrong[0]}: was changed since drivelint check wrote it: check the drives again")
     return found
 
 

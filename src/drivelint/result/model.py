@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 MISFITS: Final = frozenset({"ego_not_a_vehicle", "seldom_on_lane", "often_against_lane", "far_from_centre_line"})
-"""Reasons for which the signal `registration` is missing that tell of a map which does not fit."""
+"""Reasons for which the signal `registration` is missing that mean a map which does not fit."""
 BEYOND_LIMITS: Final = ("rule_timeout", "out_of_memory")
 """Reason codes of errors that are no fault of a rule's SQL: it took too much time or memory. Another machine may judge by it."""
 
@@ -101,8 +101,8 @@ def exit_status(result: Result) -> ExitStatus:
     """Return the exit code of DESIGN.md, by its precedence 130 > 2 > 1 > 4 > 3 > 0, and why.
 
     Only stable rules gate: a draft's failure or unknown is shown, never an exit code. A rule that erred is always 2, and one that went
-    beyond its limits has not judged: 4. What failed does not hide what was not judged or was lost: whoever mends the one would meet the
-    other in the next run.
+    beyond its limits has not judged: 4. What failed does not hide what was not judged or was lost: after mending the one, the user would
+    meet the other in the next run.
     """
     status = next(_outcomes(result))
     hidden = next(chain(_not_judged(result), _lossy(result)), None) if status.code is ExitCode.FAILED else None
@@ -110,7 +110,7 @@ def exit_status(result: Result) -> ExitStatus:
 
 
 def _outcomes(result: Result) -> Iterator[ExitStatus]:
-    """Yield what the run comes to, weightiest first."""
+    """Yield the exit codes of the run with their reasons, the weightiest first."""
     if result.interrupted:
         yield ExitStatus(ExitCode.INTERRUPTED, partial_sentence(result.drives))
     if (erring := _erring(result, beyond_limits=False)).num_rows:
@@ -131,13 +131,13 @@ def _outcomes(result: Result) -> Iterator[ExitStatus]:
 
 
 def _not_judged(result: Result) -> Iterator[ExitStatus]:
-    """Yield what was not judged that should have been."""
+    """Yield the parts that should have been judged but were not."""
     if lost := int(pc.sum(pc.equal(result.drives["status"], "not_judged")).as_py() or 0):
         yield ExitStatus(
             ExitCode.NOT_JUDGED, f"{lost} of {plural(result.drives.num_rows, 'drive')} could not be judged"
         )
     if (limited := _erring(result, beyond_limits=True)).num_rows:
-        yield ExitStatus(ExitCode.NOT_JUDGED, f"{_in_error(limited)}: went beyond its limits: {_rules_of(limited)}")
+        yield ExitStatus(ExitCode.NOT_JUDGED, f"{_in_error(limited)}: exceeded its limits: {_rules_of(limited)}")
     off_map = [reason for drive in result.drives.to_pylist() if (reason := off_map_reason(drive)) is not None]
     if off_map:
         drives = plural(result.drives.num_rows, "drive")
@@ -168,7 +168,7 @@ def _rules_of(rows: pa.Table) -> str:
 
 
 def _lossy(result: Result) -> Iterator[ExitStatus]:
-    """Yield what was lost of the logs that were judged."""
+    """Yield the losses of the logs that were judged."""
     if result.lossy:
         judged = [drive for drive in result.drives.to_pylist() if drive["status"] == "judged"]
         absent = [words for drive in judged for words in ego_absences(drive)]
@@ -257,7 +257,7 @@ def _nothing_decided(result: Result) -> str | None:
     if not n or _count(result.verdicts, "unknown") + lacking != n:
         return None
     why = "the log lacks a signal for every rule" if lacking == n else "every verdict is unknown"
-    return f"nothing failed, as nothing could be decided: {why}"
+    return f"nothing failed, because nothing could be decided: {why}"
 
 
 def ego_absences(drive: Row) -> list[str]:
@@ -295,7 +295,7 @@ def _severities(result: Result) -> tuple[str, ...]:
 
 
 def _stopped(result: Result) -> str:
-    """Return what makes exit code 1, in words; '' for nothing."""
+    """Return the reason for exit code 1, in words; '' for none."""
     found, bare = (
         len(one_per_event(gating_findings(result).to_pylist())),
         _severe(result, failures_without_finding(result)).num_rows,

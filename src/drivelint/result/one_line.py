@@ -1,4 +1,4 @@
-"""A result for whoever reads lines: no word of a log or of a rule ends one, and so looks like a line of ours."""
+"""A result for line-based output: no word of a log or of a rule can end a line and imitate a line of drivelint."""
 
 from __future__ import annotations
 

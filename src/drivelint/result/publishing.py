@@ -40,10 +40,10 @@ def publish(
 ) -> None:
     """Write files into the folder `out`, all of them complete on disk before the first gets its name.
 
-    `contents`: name -> bytes; `finished_files`: name -> a finished file that is taken over, or None: what an earlier run left
-    under that name goes, because it is not of this run. Names are published in order, those of `finished_files` first. `mark`: the name
-    of the file that tells that the folder is whole: the earlier one goes before anything else changes.
-    Errors: `OutputError` when the folder cannot be written (exit 75).
+    `contents`: name -> bytes; `finished_files`: name -> a finished file that is taken over, or None: what an earlier run left under that
+    name goes, because it is not of this run. Names are published in order, those of `finished_files` first. `mark`: the name of the file
+    that shows that the folder is complete: the earlier one goes before anything else changes. Errors: `OutputError` when the folder
+    cannot be written (exit 75).
     """
     staged: list[tuple[Path, Path]] = []
     try:

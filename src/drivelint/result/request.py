@@ -52,7 +52,7 @@ class RunRequest(DriveInput):
     def from_options(
         cls, options: DriveInput, traces: dict[str, str], manifest_options: dict[str, DriveInput] | None = None
     ) -> RunRequest:
-        """Return what was asked with the options of `check`, of which all but the traces are kept as they are."""
+        """Return the request with the options of `check`, of which all but the traces are kept unchanged."""
         apart = {"traces", *_JSON_NAMES}
         kept = {each.name: getattr(options, each.name) for each in fields(cls) if each.name not in apart}
         relative_paths = {

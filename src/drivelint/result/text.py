@@ -24,7 +24,7 @@ def number(value: float | None, unit: str | None = None) -> str:
 
 
 def went_wrong(rule: Row) -> str:
-    """Return what happened where a rule is not kept, as a title. `rule`: its row of the table `rule`."""
+    """Return the title of a breach of a rule. `rule`: its row of the table `rule`."""
     return rule["breach"] or f"Not kept: {rule['title']}"
 
 
@@ -85,14 +85,14 @@ def comparison(row: Row) -> str:
 
 
 def tolerance(row: Row, rule: Row) -> float | None:
-    """Return how much of what was required is the rule's tolerance, in the row's unit; None: nothing, or all of it."""
+    """Return the part of the required value that is the rule's tolerance, in the row's unit; None: nothing, or all of it."""
     told = [p for p in rule["params"] if p["name"].startswith("tolerance_") and p["unit"] == row["unit"]]
     given = float(told[0]["value"]) if told else 0.0
     return None if not given or row["required"] is None or math.isclose(row["required"], given) else given
 
 
 def line(row: Row, when: str) -> str:
-    """Return a verdict or finding in one line: `when`, who, what was measured (once, if the reason tells it too), why, what is doubtful."""
+    """Return a verdict or finding in one line: `when`, who, the measure (once, if the reason states it too), the reason, the doubts."""
     measured = "" if row["reason_measures"] else comparison(row)
     parts = [f"{when}: {subject(row)}", measured, row["reason"], doubt(row)]
     return "; ".join(part for part in parts if part)

@@ -1,4 +1,4 @@
-"""The Jinja templates of what is text, not HTML: they lie beside the modules that fill them in.
+"""The Jinja templates for text, not HTML: they lie beside the modules that fill them in.
 
 They have the phrases of `drivelint.result.text` as filters.
 """
@@ -39,7 +39,7 @@ def text_template(
 
 
 def cell(value: Any) -> Any:
-    """Return what may stand in a cell of a table in Markdown, on one line; what is no text is returned as it is."""
+    """Return a value for a cell of a table in Markdown, on one line; values that are no text are returned unchanged."""
     return value.replace("|", "\\|").replace("\n", " ") if isinstance(value, str) else value
 
 

@@ -1,1 +1,1 @@
-"""The model of a road map: what a map reader returns, and what all map formats share."""
+"""The model of a road map: the output of a map reader, and code that all map formats share."""

@@ -151,7 +151,7 @@ def map_from_bounds(
     geo: GeoFrame | None = None,
     nation: str | None = None,
 ) -> MapTables:
-    """Return the map of lanes from `build_lanes` and of what is on and beside them: see `map_tables`."""
+    """Return the map of the lanes of `build_lanes` with their furniture: see `map_tables`."""
     by_id = {lane.lanelet_id: lane for lane in lanes}
     content: dict[str, Rows | dict[str, Any]] = {
         "lanelet": [_lanelet(lane) for lane in lanes],
@@ -232,7 +232,7 @@ def lane_points(lanes: Sequence[Any]) -> dict[str, Any]:
 def side_driven_on(lanes: Sequence[BoundedLane]) -> str | None:
     """Return lht or rht by the lanes beside each other that are driven in opposite directions; None: there are none.
 
-    Where the left is driven on, the oncoming lane is the one on the right. Where the map names none, its geometry tells.
+    Where the left is driven on, the oncoming lane is the one on the right. If the map names none, its geometry shows it.
     """
     one_way = {lane.lanelet_id: lane for lane in lanes if lane.drivable and not lane.bidirectional}
     left = sum(lane.left_against is True and lane.left_id in one_way for lane in one_way.values())

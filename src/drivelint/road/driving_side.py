@@ -1,7 +1,7 @@
-"""Finds the side driven on from lanes that run beside each other in opposite directions, and chooses among what says it.
+"""Finds the side driven on from lanes that run beside each other in opposite directions, and chooses among the sources.
 
-In right-hand traffic whoever comes towards a driver passes on the left, on a road with both directions as on two roads of one direction
-each. On a road of one direction alone nothing lies on either side, and its lanes' direction does not tell which side is driven on.
+In right-hand traffic, an oncoming vehicle passes on the left, on a road with both directions as on two roads of one direction
+each. On a road of one direction alone nothing lies on either side, and its lanes' direction does not show which side is driven on.
 """
 
 from __future__ import annotations
@@ -129,9 +129,9 @@ def opposite_side(side: str) -> str:
 
 
 def correction_hint(side: str, source: str) -> str:
-    """Return what the user must do for the opposite side; `source`: what chose `side`, such as option, attribute or lanes."""
+    """Return the remedy for the opposite side; `source`: the source of `side`, such as option, attribute or lanes."""
     return (
-        f"leave the option out, or give {opposite_side(side)}"
+        f"leave the option out, or set {opposite_side(side)}"
         if source == "option"
         else f"give --handedness {opposite_side(side)}"
     )
@@ -140,15 +140,15 @@ def correction_hint(side: str, source: str) -> str:
 def choose_side(
     statements: Iterable[tuple[str, str | None]], quality: MapQuality, where: str = "the map"
 ) -> tuple[str, str]:
-    """Return the side driven on and what says so: the first of (source, side) that has a side; report that others disagree."""
+    """Return the side driven on and its source: the first of (source, side) that has a side; report that others disagree."""
     stated_sides = [(source, side) for source, side in statements if side is not None]
     if not stated_sides:
-        message = f"nothing in {where} says which side is driven on: right-hand traffic is a guess; give --handedness"
+        message = f"{where} does not state which side is driven on: right-hand traffic is a guess; set --handedness"
         quality.add("handedness_default", "warning", None, message)
         return "rht", "default"
     source, side = stated_sides[0]
     if len({side for _, side in stated_sides}) > 1:
         opinions = ", ".join(f"{source}: {side}" for source, side in stated_sides)
-        message = f"{opinions}; the first is taken: if it is wrong, {correction_hint(side, source)}"
+        message = f"{opinions}; the first is used: if it is wrong, {correction_hint(side, source)}"
         quality.add("handedness_disagrees", "warning", None, message)
     return side, source

@@ -1,4 +1,4 @@
-"""Reads the geo reference of a map, compares it with that of a log, and tells whether it gives positions on the earth."""
+"""Reads the geo reference of a map, compares it with that of a log, and checks whether it yields positions on the earth."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def tangent_plane(latitude: float, longitude: float) -> GeoFrame:
 def why_unusable(frame: GeoFrame, x_m: float, y_m: float) -> str | None:
     """Return why the frame gives no positions on the earth, judged at one place of the map or log; None: it gives them.
 
-    A placeholder cannot be told from a true reference by its text alone: local coordinates near 0,0 of a projection that has its
+    A placeholder cannot be distinguished from a true reference by its text alone: local coordinates near 0,0 of a projection that has its
     origin on the equator or at a pole would be in the Gulf of Guinea or on the ice.
     """
     ((x, y),) = frame.project(np.array([[x_m, y_m]])).tolist()

@@ -86,11 +86,11 @@ def check_bounds(left: Floats, right: Floats) -> None:
     if len(left) < 2 or len(right) < 2:
         raise UnbuildableError("a bound has fewer than two points")
     if not all((np.abs(bound) < FARTHEST_M).all() for bound in (left, right)):
-        raise UnbuildableError("a bound has a coordinate that cannot be")
+        raise UnbuildableError("a bound has an impossible coordinate")
 
 
 def lane_geometry(left: Floats, right: Floats) -> LaneGeometry:
-    """Return the points of a lane. Errors: `UnbuildableError` saying what is wrong with it."""
+    """Return the points of a lane. Errors: `UnbuildableError` with its problem."""
     check_bounds(left, right)
     left, right = _paired(left, right)
     for keep_points in (_distinct, _forwards):

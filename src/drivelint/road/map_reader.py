@@ -1,4 +1,4 @@
-"""Defines what a map reader takes and returns, for all map formats."""
+"""Defines the input and the output of a map reader, for all map formats."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class MapSource:
-    """What is to be read: the bytes of a map, wherever they came from."""
+    """The input of a map reader: the bytes of a map, wherever they came from."""
 
     name: str  # file name, or the log it was embedded in
     content: bytes = field(repr=False)
@@ -43,7 +43,7 @@ class MapTables:
     """A map as rows: every table of `schemas/map.sql`, its columns and types exactly, rows totally ordered.
 
     `lanes`: the side (lht, rht) by whose rule the lanes' directions were read, which on roads of one direction alone need not be
-    the side that is driven on; None: the map gives each lane's direction. `lanes_source` tells how it was found, as
+    the side that is driven on; None: the map gives each lane's direction. `lanes_source` states how it was found, as
     `handedness_source` does; default: a guess that the traces may correct. `nation`: the country of all its roads, as two letters;
     None: the map does not say it.
     """

@@ -1,4 +1,4 @@
-"""What is wrong with a map, collected while it is read."""
+"""The problems of a map, collected while it is read."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from drivelint.sql.words import vocabularies
 SIGNS_UNMAPPED: Final = "signs_unmapped"
 """The check of a map that has no stop and give-way signs, whether they stand there or not."""
 _UNKNOWN_WORDS: Final = {
-    "lane_type": ("warning", "types of lanes", "vehicles are taken not to drive there"),
-    "road_type": ("info", "types of roads", "taken as not said"),
+    "lane_type": ("warning", "types of lanes", "vehicles are assumed not to drive there"),
+    "road_type": ("info", "types of roads", "treated as not stated"),
     "marking": ("info", "road marks", "whether they may be crossed is not known"),
-    "marking_color": ("info", "colors of road marks", "taken as not said"),
-    "lanes_changed": ("info", "lane changes over road marks", "taken as not said"),
+    "marking_color": ("info", "colors of road marks", "treated as not stated"),
+    "lanes_changed": ("info", "lane changes over road marks", "treated as not stated"),
 }
-"""Vocabulary -> severity, what has the words, and what follows where one is not known."""
+"""Vocabulary -> severity, the subject of its words, and the effect of an unknown word."""
 _NETCONVERT_STAND_IN_MPS: Final = 39.44
 """The limit that SUMO's netconvert 1.28 gives to roads with `maxspeed=none`, and to motorways without one: 142 km/h, which no sign says."""
 _ORDER = {"error": 0, "warning": 1, "info": 2}
@@ -66,11 +66,11 @@ class MapQuality:
         for vocabulary, words in self._unknown_words.items():
             severity, what, follows = _UNKNOWN_WORDS[vocabulary]
             counted = listed([f"{escape_invisible(word[:40])} ({n})" for word, n in sorted(words.items())])
-            message = f"{what} in words that are not known: {counted}: {follows}"
+            message = f"{what} in unknown words: {counted}: {follows}"
             if words:
                 rows.append(_row("unknown_word", severity, None, message, words.total()))
         if self._stand_ins:
-            message = f"{_NETCONVERT_STAND_IN_MPS:g} m/s is what netconvert writes for a road without a limit: taken as unknown"
+            message = f"{_NETCONVERT_STAND_IN_MPS:g} m/s is what netconvert writes for a road without a limit: treated as unknown"
             rows.append(_row("invalid_speed", "warning", None, message, self._stand_ins))
         if self._sides_by_number:
             message = "lane sections have lanes with numbers of the other side than that under which they stand: the numbers count"

@@ -53,12 +53,12 @@ def map_tables(
     a guess.
 
     `kind`: its format; `side`: the side that is driven on, and what says so; `geo`: how its own coordinates lie on the earth;
-    `lanes_reversed`: the lanes run the other way than its rule says, which the traces may have told; then the id ends in a tilde.
+    `lanes_reversed`: the lanes run the other way than its rule says, which the traces may have shown; then the id ends in a tilde.
     `nation`: the country of its roads, as two letters; None: it does not say it.
     """
     x, y = (float(v) + 0.0 for v in request.offset)
     shift = f"{x:+}{y:+}" if x or y else ""
-    # a side that is only the standard's default is marked: the traces of another drive may tell it for sure
+    # a side that is only the standard's default is marked: the traces of another drive may prove it
     marks = f"{'?' if side[1] == 'default' else ''}{'~' if lanes_reversed else ''}"
     name = f"{PurePath(source.name).stem}-{source.sha256[:8]}{shift}@{side[0]}{marks}"
     tables = {table: owned_table(table, name, rows, kind) for table, rows in content.items()}

@@ -1,4 +1,4 @@
-"""Scenes as data: a road, who drives on it and how, and the verdicts that a careful examiner gives, as YAML.
+"""Scenes as data: a road, the actors on it and their motion, and the verdicts of a careful examiner, as YAML.
 
 For authors of rules: `drivelint docs scenes`. A scene becomes a map and a log, and is judged as any log is.
 """

@@ -40,7 +40,7 @@ WITH_LIGHTS: Final = frozenset({"car", "van", "truck", "bus", "motorcycle", "veh
 BRAKING_MPS2: Final = 1.0
 """From here on the brake lights shine."""
 _SLOW_MPS: Final = 0.3
-"""Slower than this nobody turns: the heading stays that of the way."""
+"""Slower than this no actor turns: the heading stays that of the path."""
 
 
 class Motion(NamedTuple):
@@ -58,7 +58,7 @@ class Motion(NamedTuple):
 
 @dataclass(frozen=True)
 class Actor:
-    """Who it is, and how it moves."""
+    """An actor and its motion."""
 
     name: str
     text: ActorText
@@ -94,7 +94,7 @@ class Actor:
         times, x, y = np.array(self.text.track, float).T
         held = np.clip(t, times[0], times[-1])
         if len(times) < 2:
-            raise UsageError(f"actor {self.name}: a track has two points at least")
+            raise UsageError(f"actor {self.name}: a track needs at least two points")
         px, py = _smooth(times, x, held), _smooth(times, y, held)
         vx, vy = np.gradient(px, DT_S), np.gradient(py, DT_S)
         moving = np.hypot(vx, vy) > _SLOW_MPS
@@ -123,7 +123,7 @@ class Actor:
         if len(given) != 1:
             said = " and ".join(given) or "none"
             raise UsageError(
-                f"actor {self.name}: one of lane, route, path, track and place says where it is, and here {said} does"
+                f"actor {self.name}: one of lane, route, path, track and place must define its place, but here {said} does"
             )
         if text.place:
             x, y, heading = text.place
@@ -159,7 +159,7 @@ class Actor:
         t = np.arange(0.0, 600.0, DT_S)
         s = self.text.from_ + np.concatenate([[0.0], np.cumsum(np.interp(t, *_columns(speed))[1:] * DT_S)])
         if s[-1] < place:
-            raise UsageError(f"actor {self.name}: it never comes to {place:g} m")
+            raise UsageError(f"actor {self.name}: it never reaches {place:g} m")
         return float(t[int(np.argmax(s >= place))])
 
     def _with_speed(self, speed: Sequence[Sequence[float]], step: Step) -> Sequence[Sequence[float]]:
@@ -177,7 +177,9 @@ class Actor:
     def _beside(self, number: int) -> float:
         lanes = self._lanes()
         if not lanes:
-            raise UsageError(f"actor {self.name}: who follows no lane changes none: give an offset")
+            raise UsageError(
+                f"actor {self.name}: an actor that does not follow a lane cannot change lane: use an offset"
+            )
         road = self.roads[lanes[0][0]]
         here, there = road.aside(road.lane(lanes[0][1]), 0.0), road.aside(road.lane(number), 0.0)
         return (there - here) * (1 if lanes[0][1] > 0 else -1)

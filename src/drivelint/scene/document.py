@@ -1,7 +1,7 @@
 """Reads a file of scenes: YAML with roads by name, and scenes that name one of them.
 
-The whole vocabulary stands here; `drivelint docs scenes` explains it. Scenes are drawn as if the right were driven on, with x to
-the east and y to the north; where the left is driven on, the drawing is mirrored.
+The whole vocabulary is here; `drivelint docs scenes` explains it. Scenes are drawn as if the right were driven on, with x to the east and
+y to the north; where the left is driven on, the drawing is mirrored.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class LaneText(_Part, frozen=True):
 
 
 class Thing(_Part, frozen=True):
-    """What stands at or lies on a road: a light, a stop line, a crossing, or a sign."""
+    """A thing at or on a road: a light, a stop line, a crossing, or a sign."""
 
     kind: str = msgspec.field(name="what")
     """light NAME, stop line, zebra, signalled crossing, crossing, sign COUNTRY CODE, or sign NAME."""
@@ -91,7 +91,7 @@ class Crossing(_Part, frozen=True):
     """From the middle of the junction to where the arms begin, in metres."""
     road: RoadText = RoadText(line=[200.0], kind="town", limit="30 mph")
     things: dict[str, list[Thing]] = {}
-    """Arm -> what only it has."""
+    """Arm -> the things that only it has."""
 
 
 class Roundabout(_Part, frozen=True):
@@ -115,7 +115,7 @@ class Layout(_Part, frozen=True):
 
 
 class Step(_Part, frozen=True):
-    """What an actor does from a time or place on, in place of knots."""
+    """A step of an actor from a time or place on, instead of knots."""
 
     at: float | None = None
     """Second."""
@@ -135,7 +135,7 @@ class Step(_Part, frozen=True):
 
 
 class Faults(_Part, frozen=True):
-    """What the recorder does to the samples of one actor."""
+    """The faults of the recorder in the samples of one actor."""
 
     jitter: float = 0.0
     """Standard deviation of places, and of speeds in m/s; always the same draw."""
@@ -152,11 +152,11 @@ class Faults(_Part, frozen=True):
 
 
 class ActorText(_Part, frozen=True):
-    """Who moves, and how. One of `lane`, `route`, `path`, `track` and `place` says where."""
+    """An actor and its motion. One of `lane`, `route`, `path`, `track` and `place` says where."""
 
     kind: str | None = "car"
     size: list[float | None] | None = None
-    """Length, width and height; none: what its kind usually has."""
+    """Length, width and height; none: those usual for its kind."""
     lane: str | None = None
     """A road and the number of a lane: `main 1`."""
     route: list[str] = []
@@ -177,7 +177,7 @@ class ActorText(_Part, frozen=True):
     facing: Literal["ahead", "back"] = "ahead"
     """back: it is turned round, and what moves goes backwards."""
     heading: Knots | None = None
-    """Degrees, anticlockwise from the east as drawn, of one whose heading does not follow from how it moves."""
+    """Degrees, anticlockwise from the east as drawn, for an actor whose heading does not follow from its motion."""
     indicator: str | list[tuple[float, str]] = "off"
     """off, left, right, hazard or unknown, as drawn: left is the side to overtake on."""
     brake: str | list[tuple[float, str]] | None = None
@@ -190,13 +190,13 @@ class ActorText(_Part, frozen=True):
 
 
 class SceneText(_Part, frozen=True, kw_only=True):
-    """What happens, and what a careful examiner says of it."""
+    """A scene and the verdicts of a careful examiner."""
 
     name: str
     summary: str = msgspec.field(name="what")
     roads: str
     traffic: Side | None = None
-    """Instead of what the layout says."""
+    """Instead of the value of the layout."""
     seconds: float = 20.0
     rate: float = 10.0
     conditions: dict[str, str] = msgspec.field(default_factory=dict, name="given")
@@ -208,7 +208,7 @@ class SceneText(_Part, frozen=True, kw_only=True):
     expect: dict[str, str]
     """Rule -> verdict, a reason code in brackets, and why: `unknown (no_width): the log has no width`."""
     line: int = 0
-    """Where it stands in its file: filled in, never written."""
+    """Its line in the file: filled in, never written."""
 
 
 class SceneFile(_Part, frozen=True):

@@ -1,4 +1,4 @@
-"""Judges the scenes of a file in one run, and holds what comes out against what each expects."""
+"""Judges the scenes of a file in one run, and compares the verdicts with the expected ones."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _MET: Final = {
     "not fail": {"pass", "unknown", "not_applicable", NOT_JUDGED},
     "not pass": {"fail", "unknown", "not_applicable", NOT_JUDGED},
 }
-"""What may be expected -> the verdicts that meet it."""
+"""Expected words -> the verdicts that match them."""
 _EXPECTATION: Final = re.compile(
     r"(?P<verdict>[a-z_]+(?: [a-z]+)?)(?: \((?P<code>\w+)\))?(?:: (?P<why>.+))?", re.DOTALL
 )
@@ -125,7 +125,7 @@ def judge_scenes(
 
 
 def differences(scene: Scene, verdicts: Verdicts, gating: Container[str]) -> Iterator[str]:
-    """Yield what is not as the scene expects. `gating`: the rules of which every critical or major fail must be expected."""
+    """Yield the differences from the expectations of the scene. `gating`: rules whose critical and major fails must be expected."""
     expectations = {rule: expectation(text) for rule, text in scene.text.expect.items()}
     for rule, expected_verdict in expectations.items():
         key = scene.name, rule

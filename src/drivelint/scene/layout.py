@@ -120,7 +120,7 @@ def _road(name: str, text: RoadText, roads: Mapping[str, Road]) -> Road:
 
 
 def _refuse_strange(name: str, text: RoadText, lanes: Sequence[Lane]) -> None:
-    """Refuse words of things, lanes and marks that nobody would read. Errors: `UsageError`."""
+    """Refuse unknown words of things, lanes and marks. Errors: `UsageError`."""
     for thing in text.things:
         what, _, rest = thing.kind.partition(" ")
         if what in _FORM_WITH_NAME and not rest:

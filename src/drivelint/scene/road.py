@@ -68,7 +68,7 @@ class Road:
     after: str | None = None
     """The road that it continues."""
     turn: Turn | None = None
-    """Which lanes of a junction it joins; None: it is no part of one."""
+    """The lanes of a junction that it joins; None: it is not part of a junction."""
 
     @property
     def length(self) -> float:
@@ -194,7 +194,7 @@ def _in_frame(pose: Pose, x: float, y: float) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class Way:
-    """A line that somebody follows: points every STEP_M, stations from 0, straight on beyond both ends."""
+    """A line that an actor follows: points every STEP_M, stations from 0, straight on beyond both ends."""
 
     s: Floats
     x: Floats

@@ -1,4 +1,4 @@
-"""Tells which keys and words of a document its types do not know, and the nearest that they do."""
+"""Finds the keys and words of a document that its types do not know, and the nearest known ones."""
 
 from __future__ import annotations
 

@@ -98,7 +98,7 @@ def _reads(sql: str, where: str) -> _Reads:
     if mark := _OCCASION.search(sql):
         ctes = mark[1].split(", ")
         if not syntax.has_no_rows_without(tree, frozenset(ctes)):
-            raise DriveLintError(f"{where}: without rows in {mark[1]} there may be rows: take the line -- occasion out")
+            raise DriveLintError(f"{where}: without rows in {mark[1]} there may be rows: remove the line -- occasion")
         first = " UNION ALL ".join(f"SELECT 1 FROM {name}" for name in ctes)
         occasion = f"{sql[: mark.start()].rstrip().removesuffix(',')} {first} LIMIT 1"
     return syntax.tables_read(tree), syntax.tables_needing_rows(tree), occasion

@@ -50,7 +50,7 @@ def connect(
 
     Beyond `memory_limit` (80 % of the machine's by default) tables go to the folder `spill`; without one, DuckDB would put
     them where the user happens to be. Only a database that is kept in a file has the columns' comments: they take longer
-    than the tables, and in memory nobody reads them. Errors: `DriveLintError` when the pinned extension cannot be loaded.
+    than the tables, and in memory they are never read. Errors: `DriveLintError` when the pinned extension cannot be loaded.
     """
     con = open_as_is(path)
     con.execute("SET allow_community_extensions=false")
@@ -175,7 +175,7 @@ def one_thread(con: duckdb.DuckDBPyConnection) -> Iterator[None]:
 def lift_memory_limit(con: duckdb.DuckDBPyConnection) -> str:
     """Let a database take as much memory as DuckDB would by default, 80 % of the machine's; return how much that is."""
     con.execute("RESET memory_limit")
-    # RESET changes what the setting says, and only SET tells the buffer manager
+    # RESET changes only the value of the setting; SET also informs the buffer manager
     (most,) = con.execute("SELECT current_setting('memory_limit')").fetchall()[0]
     con.execute("SET memory_limit=?", [most])
     return str(most)
@@ -186,7 +186,7 @@ def release_memory(con: duckdb.DuckDBPyConnection) -> None:
 
     DuckDB keeps a record of every block that it has freed, 200 bytes each and scattered, until it has to evict blocks. A limit that
     it cannot keep makes it evict all it can: for a few milliseconds, with tables of some megabytes written to the spill folder.
-    The C library keeps the pages of what was freed, until it is told to return them.
+    The C library keeps the pages of what was freed, until it is requested to return them.
     """
     # an IOException: the disk is full, and the blocks stay
     with suppress(duckdb.OutOfMemoryException, duckdb.IOException):
@@ -200,9 +200,9 @@ def release_memory(con: duckdb.DuckDBPyConnection) -> None:
 def open_as_is(path: Path | None = None, *, read_only: bool = False) -> duckdb.DuckDBPyConnection:
     """Open a database without creating tables (None: an empty one in memory), with spatial loaded from its wheel.
 
-    Whether the extension is signed is not asked: that is a hash over its 80 MB each time, and the file was installed by
-    whoever installed duckdb itself, which nobody asks either. Any other must be signed from then on.
-    Errors: `DriveLintError` when the pinned extension cannot be loaded.
+    Whether the extension is signed is not asked: that is a hash over its 80 MB each time, and the file was installed together with duckdb
+    itself, which is not verified either. Any other must be signed from then on. Errors: `DriveLintError` when the pinned extension cannot
+    be loaded.
     """
     con = duckdb.connect(
         str(path) if path else ":memory:", read_only=read_only, config={"allow_unsigned_extensions": True}

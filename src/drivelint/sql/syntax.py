@@ -50,7 +50,7 @@ def with_values(sql: str, literals: Mapping[str, str]) -> str:
 
 
 def syntax_tree(sql: str) -> Node:
-    """Return what DuckDB makes of a SELECT: `error`, and `error_message` or `statements`."""
+    """Return DuckDB's tree of a SELECT: `error`, and `error_message` or `statements`."""
     try:
         tree: Node = msgspec.json.decode(parser().execute("SELECT json_serialize_sql(?)", [sql]).fetchall()[0][0])
     except msgspec.DecodeError:  # DuckDB writes infinity, which JSON has not
@@ -79,7 +79,7 @@ def tables_needing_rows(tree: Node) -> Names:
 
 
 def has_no_rows_without(tree: Node, ctes: Names) -> bool:
-    """Whether a SELECT has no rows if these CTEs have none; false where that cannot be told, or a name stands for several."""
+    """Whether a SELECT has no rows if these CTEs have none; false if that is not known, or a name means several."""
     n_named = Counter(_folded(entry["key"]) for node, _ in walk(tree) for entry in _ctes(node))
     if any(n_named[name] != 1 for name in ctes):
         return False

@@ -1,7 +1,7 @@
 """Finds words in SQL that a column can never have: `is_class(actor_class, 'cyclist')` is never true, and the rule never applies.
 
-DuckDB does not: even a column of an ENUM may be compared with a text that is none of its words. So the syntax tree is walked, and for each
-expression it is worked out what words it may be: by the tables' columns, through CTEs, joins, functions and macros. What cannot be worked
+DuckDB does not: even a column of an ENUM may be compared with a text that is none of its words. So the syntax tree is walked, and the
+possible words of each expression are computed: by the tables' columns, through CTEs, joins, functions and macros. What cannot be worked
 out may be anything.
 """
 
@@ -42,7 +42,7 @@ _LAMBDAS: Final = frozenset({"list_filter", "list_transform", "list_apply"})
 
 
 class CheckedQuery(NamedTuple):
-    """A query's columns, the wrong words in it, and what each parameter is compared with."""
+    """A query's columns, the wrong words in it, and the values that each parameter is compared with."""
 
     relation: Relation
     wrong: Sequence[WrongWord]
@@ -100,12 +100,12 @@ def _columns_of_words() -> dict[str, Type]:
 
 
 class _Walker:
-    """Walks trees: each method returns what its node may be, and keeps the wrong words in it."""
+    """Walks trees: each method returns the possible values of its node, and collects the wrong words in it."""
 
     def __init__(self, tables: Mapping[str, Relation]) -> None:
         self._tables = tables
         self._depth = 0
-        """How many macros are around what is walked."""
+        """The number of macros around the node that is walked."""
         self._call: int | None = None
         """Where the call of the outermost of them stands."""
         self._wrong: dict[tuple[str, int | None], WrongWord] = {}
@@ -232,7 +232,7 @@ class _Walker:
     # ---- expressions
 
     def of(self, node: Node, scope: Scope) -> Type:
-        """Return what an expression may be."""
+        """Return the possible values of an expression."""
         of_class = getattr(self, f"_{node['class'].lower()}", None)
         if of_class is not None:
             kind: Type = of_class(node, scope)
@@ -319,7 +319,7 @@ class _Walker:
         return value_of(name, kinds)
 
     def _items(self, name: str, node: Node, scope: Scope) -> Type:
-        """Return what a function with a lambda makes of a list."""
+        """Return the possible values of a function with a lambda on a list."""
         items, function = self.of(node["children"][0], scope), node["children"][1]
         left = function["lhs"]
         names = [column["column_names"][0].lower() for column in left.get("children") or [left]]
@@ -368,7 +368,7 @@ class _Walker:
 
 @cache
 def _of_macro(name: str) -> Type:
-    """Return what a macro may be, whatever its arguments are."""
+    """Return the possible values of a macro, whatever its arguments are."""
     return _Walker(_tables()).macro(name, None)
 
 

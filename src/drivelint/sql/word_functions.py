@@ -1,4 +1,4 @@
-"""What functions of DuckDB return and what they compare, as far as words go."""
+"""The words that functions of DuckDB return and compare."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ _VALUES: Final[Mapping[str, Callable[[Kinds], Type]]] = {
 
 
 def value_of(function: str, kinds: Kinds) -> Type:
-    """Return what a function returns that is called with these; None: nothing is known of it."""
+    """Return the possible values of a function that is called with these; None: not known."""
     return _VALUES[function](kinds) if function in _VALUES and kinds else None
 
 

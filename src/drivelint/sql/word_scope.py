@@ -1,4 +1,4 @@
-"""What the names in a SELECT stand for, as far as words go: columns of its sources, its aliases, what is around it."""
+"""The meaning of the names in a SELECT, as far as words go: columns of its sources, its aliases, and outer queries."""
 
 from __future__ import annotations
 

@@ -96,7 +96,7 @@ class WrongWord(NamedTuple):
 
 
 def of_column(column: WordColumn) -> Type:
-    """Return what a column of a table may be."""
+    """Return the possible values of a column of a table."""
     item: Type = Words(frozenset({column.vocabulary}))
     item = StructOf({column.field: item}) if column.field else item
     return ListOf(item) if column.is_list else item
@@ -108,7 +108,7 @@ def indirect(kind: Type) -> Type:
 
 
 def union(kinds: Iterable[Type]) -> Type:
-    """Return what an expression may be that is any of these; NULL adds nothing."""
+    """Return the possible values of an expression that is any of these; NULL adds nothing."""
     parts = [kind for kind in kinds if not (isinstance(kind, Words) and kind.is_null)]
     if len(parts) < 2:
         return parts[0] if parts else NULL
@@ -148,12 +148,12 @@ def field_of(kind: Type, names: Iterable[str]) -> Type:
 
 
 def item_of(kind: Type) -> Type:
-    """Return what an item of a list may be."""
+    """Return the possible values of an item of a list."""
     return kind.item if isinstance(kind, ListOf) else None
 
 
 def member_of(kind: Type, key: Type) -> Type:
-    """Return what stands under a key in brackets: an item of a list, or a field of a STRUCT."""
+    """Return the possible values under a key in brackets: an item of a list, or a field of a STRUCT."""
     return field_of(kind, map(str.lower, key.literals)) if isinstance(key, Words) else item_of(kind)
 
 

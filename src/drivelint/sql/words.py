@@ -1,7 +1,7 @@
 """The vocabularies of `schemas/words.toml`: which words the columns of the tables may hold, and the refusal of any other.
 
-A column's comment in `schemas/*.sql` names its vocabulary in brackets, with what it may hold besides: `[control + none]`; for a field of a
-STRUCT `[fit: light_fit]`.
+A column's comment in `schemas/*.sql` names its vocabulary in brackets, with further words: `[control + none]`; for a field of a STRUCT
+`[fit: light_fit]`.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _MISSPELLED: Final = 0.85
 
 
 Quantity = Literal["existence", "identity", "position", "heading", "velocity", "size", "class"]
-"""In what of an actor a log may be doubted."""
+"""The quantities of an actor that may be doubted."""
 
 
 class Vocabulary(NamedTuple):
@@ -65,7 +65,7 @@ class Vocabulary(NamedTuple):
         return next((known for known in self.words if known.casefold() == word.casefold()), None)
 
     def problem(self, word: str) -> str | None:
-        """Return what is wrong with a word, with the nearest good one; None: nothing."""
+        """Return the problem of a word, with the nearest good one; None: there is none."""
         return None if word in self else f"{word!r} is no {self.name.replace('_', ' ')}; {nearest(word, self.words)}"
 
 
@@ -95,7 +95,7 @@ def words(name: str) -> tuple[str, ...]:
 
 
 def word_column(kind: str, comment: str) -> WordColumn | None:
-    """Return what the mark of a column's comment says; None: the column, of this type, holds no words. Errors: `DriveLintError`."""
+    """Return the vocabulary in a column's comment; None: a column of this type has no words. Errors: `DriveLintError`."""
     mark = MARK.match(comment)
     if mark is None:
         return None

@@ -1,7 +1,7 @@
-"""Tells which findings of a window are new, and keeps those that were said.
+"""Finds which findings of a window are new, and stores those that were reported.
 
-Windows overlap, so a finding is seen again and again. It is the same where rule, profile, ego and object are, and its failing steps
-follow those that were said. A reference point that moved a little is the same, too.
+Windows overlap, so a finding is seen again and again. It is the same finding if rule, profile, ego and object are the same, and its
+failing steps follow those that were reported. A reference point that moved a little is the same, too.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Alarm:
     is_over: bool = False
     """Its rule is kept again."""
     withdrawn_ns: int | None = None
-    """The newest step that was known when a window did not show it any more: what came since told more of what was done."""
+    """The newest step that was known when a window did not show it any more."""
     finding_ids: list[str] = field(default_factory=list)
     """The findings of the whole log that it is of, once they are known."""
     is_early: bool = False
@@ -51,7 +51,7 @@ class Alarm:
 
     @property
     def latency_s(self) -> float:
-        """Seconds of log time from the first failing step to the step with which it was said."""
+        """Seconds of log time from the first failing step to the step at which it was reported."""
         return float((self.said_ns - self.row["t_start_ns"]) / 1e9)
 
     def is_seen_in(self, row: Row, gap_ns: int) -> bool:
@@ -65,7 +65,7 @@ class Alarm:
 
 @dataclass(frozen=True)
 class Change:
-    """What a window changed: alarms that are new, whose rule is kept again, and which it does not show any more."""
+    """The changes of a window: new alarms, alarms whose rule is kept again, and alarms that it does not show any more."""
 
     new: list[Alarm]
     over: list[Alarm]
@@ -73,7 +73,7 @@ class Change:
 
 
 def key_of(row: Row) -> Key:
-    """Return what two findings must have in common to be one."""
+    """Return the values that two findings must share to be one."""
     return row["rule_id"], row["ego_id"], row["profile"], row["object_id"]
 
 
@@ -90,7 +90,7 @@ class AlarmLog:
         self._standing: list[Alarm] = []
 
     def look(self, rows: Sequence[Row], now_ns: int) -> list[Alarm]:
-        """Take what was seen in the newest frames, up to the step at `now_ns`; return the alarms that are new."""
+        """Take the contacts in the newest frames, up to the step at `now_ns`; return the new alarms."""
         new: list[Alarm] = []
         for row in rows:
             same = [each for each in self._standing if self._is_same(each, row)]
@@ -104,7 +104,7 @@ class AlarmLog:
         return new
 
     def take(self, window: JudgedWindow, judged_until_ns: int | None, from_ns: int | None) -> Change:
-        """Take the findings of a window; return what they change.
+        """Take the findings of a window; return the changes.
 
         `judged_until_ns`: the last step of the window before; None: this is the first. `from_ns`: the window's own beginning, before which
         it may have single states that still hold; None: it begins where the log does.
@@ -174,7 +174,7 @@ class AlarmLog:
         return key_of(alarm.row) == key_of(row) and alarm.is_seen_in(row, self._gap_ns(alarm))
 
     def hold_against(self, findings: Sequence[Row], verdicts: pa.Table) -> list[Row]:
-        """Tell each alarm of which findings of the whole log it is; return the findings that no alarm is of.
+        """Assign to each alarm its findings of the whole log; return the findings without an alarm.
 
         Whether it was withdrawn does not matter here: what is a finding in the end was one.
         """

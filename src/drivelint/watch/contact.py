@@ -1,8 +1,8 @@
 """Looks at the newest frames for contacts, so that a contact is an alarm long before its window is judged.
 
-It reads the log as the windows are read, and takes the boxes' distance by the macro of the rules. It says only what needs no more than
-that: an actor that was never seen apart from the ego may be its trailer or another id of it, and is left to the window. The window that has
-the step confirms the alarm, or withdraws it.
+It reads the log as the windows are read, and takes the boxes' distance by the macro of the rules. It only reports contacts that need no
+more than that: an actor that was never seen apart from the ego may be its trailer or another id of it, and is left to the window. The
+window that has the step confirms the alarm, or withdraws it.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ class ContactLook:
         self._apart: set[tuple[str, str, str]] = set()
 
     def look(self, trace: Trace, since_ns: int | None) -> list[Row]:
-        """Return what breaks a rule at the steps after `since_ns`, None: at all; each as a row of `finding` that lasts one step.
+        """Return the breaches at the steps after `since_ns` (None: at all steps), each as a row of `finding` that lasts one step.
 
         `trace`: the newest steps and about `LOOK_NS` before them.
         """

@@ -1,4 +1,4 @@
-"""What follows the live part of a watch: the recording is checked, and what was said is held against the result."""
+"""What follows the live part of a watch: the recording is checked, and the alarms and verdicts are compared with the result."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def check_recording(
     progress: Progress,
     interruption: Interruption,
 ) -> Result:
-    """Check what was recorded as any log. `folder`: where a copy may lie. Errors: as `check`; `TraceError` for an empty recording."""
+    """Check the recording like any log. `folder`: where a copy may lie. Errors: as `check`; `TraceError` for an empty recording."""
     if not recording.exists() or (recording.is_file() and not recording.stat().st_size):
         raise TraceError(f"{options.source}: nothing was recorded: {watch.watched.broken or 'no frame came'}")
     try:
@@ -60,7 +60,7 @@ def check_recording(
 
 
 def conclude(result: Result, watch: Watch, emit: Callable[[Message], None]) -> str:
-    """Say what the check of the whole log made of the alarms, then its verdicts. Return the counts in one sentence."""
+    """Report the result of the check of the whole log for each alarm, then its verdicts. Return the counts in one sentence."""
     missed = watch.alarms.hold_against(result.findings.to_pylist(), result.verdicts)
     for alarm in watch.alarms.alarms:
         emit(messages.confirmed(alarm))

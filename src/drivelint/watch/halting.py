@@ -24,7 +24,7 @@ GRACE_S: Final = 5.0
 class Child:
     """A program and all that it starts, in a process group of its own. What it prints goes to stderr: stdout is for data.
 
-    It is told to end where this process dies, however that comes.
+    It is ended if this process dies, for whatever reason.
     """
 
     def __init__(self, command: Sequence[str]) -> None:
@@ -52,7 +52,7 @@ class Child:
         return None
 
     def end(self) -> None:
-        """Ask the group to end, and kill what is left of it after a while."""
+        """Request the group to end, and kill the remaining processes after a while."""
         self._signal(signal.SIGTERM)
         until = time.monotonic() + GRACE_S
         while self._is_there() and time.monotonic() < until:
@@ -62,7 +62,7 @@ class Child:
 
     def _is_there(self) -> bool:
         """Whether any process of the group runs: the program may be a shell that has ended before what it started."""
-        self._process.poll()  # a program that nobody waited for is there
+        self._process.poll()  # a program that was not waited for is there
         return self._signal(0)
 
     def _signal(self, number: int) -> bool:

@@ -15,10 +15,10 @@ class WatchInterruption:
         self._asked: Interruption | None = None
 
     def begin_check(self) -> None:
-        """From now on the check is what is interrupted, unless the watch was."""
+        """From now on an interruption ends the check, unless it has ended the watch."""
         self._running = self.of_check
 
     def request(self) -> None:
-        """Interrupt what goes on; to be called again until it has ended, as that of `Interruption`."""
+        """Interrupt the present part; to be called again until it has ended, as that of `Interruption`."""
         self._asked = self._asked or self._running
         self._asked.request()

@@ -13,6 +13,7 @@ from drivelint import catalogue
 from drivelint.arrays import with_columns
 from drivelint.engine.apart import judge_apart
 from drivelint.engine.batch import drive_with_map
+from drivelint.engine.default_rules import chosen_selectors
 from drivelint.engine.map_library import MapLibrary
 from drivelint.engine.memory import Memory
 from drivelint.engine.profiles import DEFAULT_PROFILES, load_profiles, profile_table
@@ -48,7 +49,7 @@ _LASTING_TABLES = frozenset({"profile", "environment", "map_quality"})
 class JudgedWindow:
     """What the rules say of a window: rows of `finding`, `verdict` and `course`, and from when to when it is.
 
-    `courses`: margins over time around findings and near misses; empty where nobody asks for them.
+    `courses`: margins over time around findings and near misses; empty if they are not requested.
     """
 
     t_start_ns: int
@@ -83,7 +84,10 @@ class WindowJudge:
 
     def __init__(self, options: WatchOptions) -> None:
         self._known = known = catalogue.load_rules(options.rules_dirs)
-        rules = catalogue.select_rules(known, options.rules, options.ignore)
+        self._library = MapLibrary(options)
+        self._library.load_given()
+        chosen = chosen_selectors(options.rules, options.rules_dirs, options, self._library)
+        rules = catalogue.select_rules(known, chosen, options.ignore)
         self.rules: dict[str, Rule] = {rule.id: rule for rule in rules}
         self._params = params = catalogue.parse_params(rules, options.params)
         profiles = load_profiles(options.rules_dirs)
@@ -98,8 +102,6 @@ class WindowJudge:
         self._con = self._stack.enter_context(store.workspace(options.memory, threads=1))
         store.insert(self._con, "profile", profile_table(profiles, sorted(asked)))
         self._memory = Memory(self._con, options.memory)
-        self._library = MapLibrary(options)
-        self._library.load_given()
         # courses are written for those who look at the tables before they are cleared
         observers = [_look] if options.warn or options.serve else []
         limits = RuleLimits(options.rule_timeout, task="windows")
@@ -109,7 +111,7 @@ class WindowJudge:
         self._n_passes = 0
 
     def contact_look(self) -> ContactLook | None:
-        """Return what looks for contacts in frames that no window was judged with; None: no rule of contacts is asked for."""
+        """Return the finder of contacts in frames that no window was judged with; None: no rule of contacts is selected."""
         asked = tuple(rule_id for rule_id in contact.RULES if rule_id in self.rules)
         if not asked:
             return None
@@ -168,4 +170,4 @@ def _as_of(trace: Trace, start_ns: int | None) -> Trace:
 
 
 def _look(con: duckdb.DuckDBPyConnection, _drives: object, /, **_part: bool) -> None:
-    """Look at nothing: that somebody looks is enough."""
+    """Do nothing: the call itself is enough."""

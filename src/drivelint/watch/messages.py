@@ -55,7 +55,7 @@ def over(alarm: Alarm, start_ns: int) -> Message:
 
 
 def withdrawn(alarm: Alarm, now_ns: int, start_ns: int) -> Message:
-    """Return the message that what is known now does not show an alarm any more."""
+    """Return the message that an alarm is withdrawn."""
     return {
         "type": "withdrawn",
         "alarm": alarm.number,
@@ -83,7 +83,7 @@ def note(text: str) -> Message:
 
 
 def confirmed(alarm: Alarm) -> Message:
-    """Return what the check of the whole log made of an alarm."""
+    """Return the message with the result of the check of the whole log for an alarm."""
     return {
         "type": "checked",
         "alarm": alarm.number,
@@ -94,7 +94,7 @@ def confirmed(alarm: Alarm) -> Message:
 
 
 def settled(row: Row, start_ns: int) -> Message:
-    """Return the message of a verdict that is said before the log's end."""
+    """Return the message of a verdict that is reported before the log's end."""
     said = {name: _plain(row[name]) for name in (*KEY, *VALUE_COLUMNS)}
     return {"type": "verdict", "t_s": _seconds(row["t_start_ns"], start_ns), **said}
 
@@ -105,7 +105,7 @@ def verdict(row: Row) -> Message:
 
 
 def revised(row: Row) -> Message:
-    """Return the message of a verdict of the whole log that is another than was said; `verdict` None: the whole log has none."""
+    """Return the message of a verdict of the whole log that differs from the reported one; `verdict` None: the whole log has none."""
     return {"type": "revised", **{name: _plain(value) for name, value in row.items()}}
 
 

@@ -18,7 +18,7 @@ class WatchOptions(JudgingOptions):
 
     source: str
     command: tuple[str, ...] = ()
-    """Arguments of a program to start, which writes what is watched; empty: it is started by somebody else."""
+    """Arguments of a program to start, which writes what is watched; empty: it is started elsewhere."""
     out: Path | None = None
     window_s: float = DEFAULT_WINDOW_S
     """Seconds of log time that are judged at a time."""
@@ -33,7 +33,7 @@ class WatchOptions(JudgingOptions):
     warn: bool = False
     advise: bool = False
     on: tuple[str, ...] = ()
-    """`SEL=COMMAND`: what is run when there is an alarm by one of these rules."""
+    """`SEL=COMMAND`: the command for an alarm of these rules."""
     serve: str | None = None
     """`HOST:PORT` of the watch's own WebSocket server for viewers."""
     allow_origin: tuple[str, ...] = ()

@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 READ_S: Final = 0.05
 """So long a source is waited for at a time."""
 FIRST_NS: Final = S
-"""The first window is judged so soon: it tells who the ego is, and what is wrong with the log or the map."""
+"""The first window is judged this soon: it shows the ego, and problems of the log or the map."""
 LOOK_PAUSE_S: Final = 0.05
 """So long there is no look at new frames after the last one: it would take as much as the windows do."""
 GIVES_WAY: Final = 3
@@ -95,7 +95,7 @@ def egos_of(trace: Trace) -> set[str]:
 
 
 class Watch:
-    """Watches one source. `emit` takes each message as it is said; `server` shows viewers what goes on.
+    """Watches one source. `emit` takes each message; `server` shows the watch to viewers.
 
     `judge`: one that was made before the source was opened; None: one is made here. It is closed with the watch.
     """
@@ -111,10 +111,10 @@ class Watch:
         judge: WindowJudge | None = None,
     ) -> None:
         if options.window_s * S <= 2 * WARM_UP_NS:
-            raise UsageError(f"--window {options.window_s:g}: give more than {2 * WARM_UP_NS / S:g} s")
+            raise UsageError(f"--window {options.window_s:g}: use more than {2 * WARM_UP_NS / S:g} s")
         if options.every_s * S > options.window_s * S - WARM_UP_NS:
             raise UsageError(
-                f"--every {options.every_s:g}: give at most {options.window_s - WARM_UP_NS / S:g} s, or a longer --window"
+                f"--every {options.every_s:g}: use at most {options.window_s - WARM_UP_NS / S:g} s, or a longer --window"
             )
         self._options = options
         self._source = source
@@ -218,7 +218,7 @@ class Watch:
         return self._interruption.requested or self.watched.halted is not None
 
     def _read(self) -> Sequence[Frame] | None:
-        """Return what the source gives, and say what it has to tell; a source that breaks has ended."""
+        """Return the next frames of the source, and report its notes; a source that breaks has ended."""
         try:
             frames = self._source.read(READ_S)
         except TraceError as error:
@@ -231,7 +231,7 @@ class Watch:
             since_ns, until_ns = self._window.jumps.pop(0)
             self._emit(
                 messages.note(
-                    f"the clock jumps from {since_ns / S:.3f} s to {until_ns / S:.3f} s: nothing is judged across"
+                    f"the clock jumps from {since_ns / S:.3f} s to {until_ns / S:.3f} s: nothing is judged across the jump"
                 )
             )
         return frames
@@ -241,7 +241,7 @@ class Watch:
         return round(self._options.window_s * S)
 
     def _look(self, frames: Sequence[Frame]) -> None:
-        """Say the contacts in frames that came, once it is known who the ego is."""
+        """Report the contacts in new frames, once the ego is known."""
         if self._contacts is None or self._start_ns is None:
             return
         latest = self._window.since(min(frame.t_ns for frame in frames) - contact.LOOK_NS)
@@ -251,16 +251,16 @@ class Watch:
                 return
             rows = self._contacts.look(trace, self._looked_until_ns)
         except DriveLintError:
-            return  # too little of a log, or none: the window tells what is wrong with it
+            return  # too little of a log, or none: the window reports the problem
         except Exception as error:  # noqa: BLE001 - the windows are still judged
             self._contacts = None
-            self._emit(messages.note(f"contacts are found by windows alone: {error}"))
+            self._emit(messages.note(f"contacts are only found in windows: {error}"))
             return
         now_ns = self._looked_until_ns = trace.tables["data_log"]["t_end_ns"][0].as_py()
         self._say(self.alarms.look(rows, now_ns), now_ns, self._start_ns)
 
     def _window_to_judge(self) -> Callable[[], _Pass]:
-        """Return what judges the window as it is now. It may be called in another thread, and raises nothing."""
+        """Return a function that judges the present window. It may be called in another thread, and raises nothing."""
         begun_s = time.perf_counter()
         frames, start_ns = self._window.frames, self._start_ns
 
@@ -281,7 +281,7 @@ class Watch:
         return judge
 
     def _conclude(self, window_pass: _Pass) -> None:
-        """Say what is new. A window that cannot be read or judged is told, and the watch goes on."""
+        """Report new results. A window that cannot be read or judged is reported, and the watch continues."""
         if isinstance(window_pass.outcome, DriveLintError):
             self._doubt_of(window_pass.outcome)
             return
@@ -304,7 +304,7 @@ class Watch:
             self._emit(messages.note(f"not judged yet: {text}"))
 
     def _take(self, judged_window: JudgedWindow) -> None:
-        """Say what is new in a window."""
+        """Report new results of a window."""
         if self._start_ns is None:
             self._start_ns = judged_window.t_start_ns
         for rule_id, reason in judged_window.errors():

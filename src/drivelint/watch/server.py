@@ -1,4 +1,4 @@
-"""The watch as it goes, for viewers: a Foxglove WebSocket server with the road users, the alarms and the margins.
+"""The running watch, for viewers: a Foxglove WebSocket server with the road users, the alarms and the margins.
 
 Topics and messages are those of annotated logs where these have them, so that the same layout shows both.
 """
@@ -37,7 +37,7 @@ _ALARM: Final = {
     "alarm": ("integer", "its number in this watch"),
     "title": ("string", "what the rule demands"),
     "t_s": ("number", "when the rule was broken, seconds since the log's first step"),
-    "said_s": ("number", "when it was said"),
+    "said_s": ("number", "when it was printed"),
     "latency_s": ("number", "seconds of the log between both"),
     "status": ("string", "that of the rule"),
 }
@@ -57,7 +57,7 @@ def open_server(
         return
     host, _, port = address.rpartition(":")
     if not port.isdecimal() or int(port) > 65535:
-        raise UsageError(f"--serve {address}: give a host and a port, such as 127.0.0.1:8765")
+        raise UsageError(f"--serve {address}: write a host and a port, such as 127.0.0.1:8765")
     server = LiveServer(host.strip("[]") or LOOPBACK, int(port), rule_ids, origins)
     try:
         yield server
@@ -68,7 +68,7 @@ def open_server(
 class LiveServer:
     """Serves viewers at `ws://host:port`. Port 0: any that is free. `rule_ids`: the rules that may have margins.
 
-    `origins`: of the pages that may watch. Errors: `UsageError` where the extra is missing, or where nothing can be served there.
+    `origins`: of the pages that may watch. Errors: `UsageError` where the extra is missing, or where the server cannot start there.
     """
 
     def __init__(self, host: str, port: int, rule_ids: Iterable[str] = (), origins: Sequence[str] = ()) -> None:
@@ -81,8 +81,10 @@ class LiveServer:
         try:
             self._server = ViewerServer(host, port, origins)
         except OSError as error:
-            raise UsageError(f"--serve {host}:{port}: nothing can be served there: {one_line(str(error))}") from error
-        self._notes = [] if is_loopback(host) else [f"--serve {host}:{port}: whoever reaches this address can watch"]
+            raise UsageError(f"--serve {host}:{port}: the server cannot start there: {one_line(str(error))}") from error
+        self._notes = (
+            [] if is_loopback(host) else [f"--serve {host}:{port}: every machine that reaches this address can connect"]
+        )
         self._channels: dict[str, int] = {}
         self._clock: LogClock | None = None
         scene, transform = foxglove_messages.schema("SceneUpdate"), foxglove_messages.schema("FrameTransform")
@@ -99,12 +101,12 @@ class LiveServer:
         return self._server.port
 
     def notes(self) -> list[str]:
-        """Return what is to be said of the address and of those who were refused, once."""
+        """Return notes on the address and on refused clients, once."""
         found, self._notes = self._notes, []
         return [*found, *self._server.notes()]
 
     def publish_scene(self, trace_window: Trace) -> None:
-        """Show the boxes of all who are there at the newest step of a window, instead of those shown before."""
+        """Show the boxes of all actors at the newest step of a window, instead of those shown before."""
         states = trace_window.tables["actor_state"]
         if not len(states):
             return

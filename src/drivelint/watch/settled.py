@@ -1,4 +1,4 @@
-"""Says verdicts whose windows have closed, and holds them against those of the whole log."""
+"""Reports verdicts whose windows have closed, and compares them with those of the whole log."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ Key = tuple[Any, ...]
 
 
 class SettledVerdicts:
-    """The verdicts that were said before the log's end, each once."""
+    """The verdicts that were reported before the log's end, each once."""
 
     def __init__(self) -> None:
         self._said: dict[Key, Row] = {}
 
     def take(self, window: JudgedWindow, known_from_ns: int) -> list[Row]:
-        """Return the verdicts of a window that have settled in it and were not said yet.
+        """Return the verdicts of a window that have settled in it and were not reported yet.
 
         `known_from_ns`: from then on the window knows all that the whole log does. An episode that may have begun before has no verdict
         yet, nor has one that may go on. An unknown is said at the end: what is missing may still come.
@@ -52,7 +52,7 @@ class SettledVerdicts:
         return len(self._said)
 
     def hold_against(self, verdicts: pa.Table) -> tuple[list[Row], list[Row]]:
-        """Return the verdicts of the whole log that were not said, and those that were said otherwise.
+        """Return the verdicts of the whole log that were not reported, and those that were reported differently.
 
         A verdict that was said and that the whole log does not have is among the latter, as it was said, its verdict None.
         """

@@ -1,4 +1,4 @@
-"""Tells where a margin shrinks although its rule is still kept, and when it would be used up."""
+"""Finds margins that shrink although the rule is still kept, and the time until they are 0."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ if TYPE_CHECKING:
     from drivelint.watch.judge import JudgedWindow
 
 SLOPE_NS: Final = 1_000_000_000
-"""The last second tells how fast a margin shrinks."""
+"""The last second shows how fast a margin shrinks."""
 
 MOST_S: Final = 60.0
 """A margin that would be used up later does not shrink: the numbers of a constant one differ in their last digits."""
 
 
 class ShrinkingMargins:
-    """The near misses of a watch that were told of; each again only after its rule was kept with room to spare."""
+    """The near misses of a watch that were reported; each again only after its rule was kept with a margin."""
 
     def __init__(self) -> None:
         self._open: dict[Key, int] = {}

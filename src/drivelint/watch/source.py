@@ -1,4 +1,4 @@
-"""What a source of a growing log has to do, whatever it comes from."""
+"""The interface of a source of a growing log."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Frame(NamedTuple):
-    """A piece of a log that came at one time: what it holds is known to its source alone.
+    """A piece of a log that came at one time: only its source knows its content.
 
     `t_ns`: its time on a clock of the log that advances as the drive does, in nanoseconds. `size`: about how many bytes it takes.
     What must be known of earlier frames, such as a map that only the first message has, its source adds to a window.
@@ -53,7 +53,7 @@ class Source(Protocol):
         ...
 
     def notes(self) -> Sequence[str]:
-        """Return what has to be told of the source since the last call, such as frames that were lost on the way."""
+        """Return notes on the source since the last call, such as lost frames."""
         ...
 
     def window(self, frames: Sequence[Frame], folder: Path, options: IngestOptions) -> Callable[[], Trace]:
@@ -85,7 +85,7 @@ class WrittenWindows(ABC):
 
     is_due = False
     window_name: str
-    """Name of the file of a window, which tells the format."""
+    """Name of the file of a window, which determines the format."""
 
     @abstractmethod
     def write_window(self, frames: Sequence[Frame], path: Path, *, latest: bool = False) -> None:

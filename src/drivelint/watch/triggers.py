@@ -1,4 +1,4 @@
-"""Runs commands of the user's when there are alarms."""
+"""Runs commands of the user at alarms."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Trigger:
     def pull(self, alarms: Sequence[Mapping[str, Any]]) -> str | None:
         """Start the command once for the alarms of its rules, unless it was started just now.
 
-        Return what has to be told: what went wrong, or how many alarms were left out before.
+        Return a note: an error, or the number of alarms that were left out before.
         """
         mine = [alarm for alarm in alarms if alarm["rule_id"] in self.rules]
         if not mine:
@@ -66,7 +66,7 @@ class Trigger:
         return self.left_out()
 
     def left_out(self) -> str | None:
-        """Return in words how many alarms were left out since that was told; None: none was."""
+        """Return in words how many alarms were left out since the last note; None: none."""
         n, self._n_told = self.n_left_out - self._n_told, self.n_left_out
         if not n:
             return None

@@ -1,7 +1,7 @@
-"""A Foxglove WebSocket server: announces channels, and sends their messages to those who subscribed to them.
+"""A Foxglove WebSocket server: announces channels, and sends their messages to the subscribers.
 
 Source: foxglove/ws-protocol, docs/spec.md; the subprotocol foxglove.sdk.v1 has the same messages. A page of another site is refused by its
-`Origin`, which Foxglove's own server does not look at; and nobody who is connected keeps the program from ending.
+`Origin`, which Foxglove's own server does not look at; and a connected client does not keep the program from ending.
 """
 
 from __future__ import annotations
@@ -36,20 +36,20 @@ FLUSH_S: Final = 0.5
 CLOSE_S: Final = 0.5
 """So long the end waits until viewers have what was published, and until they have said that they leave."""
 MOST_BYTES: Final = 1 << 16
-"""A viewer only subscribes; what is longer is no viewer's."""
+"""A viewer only subscribes; a longer message is not from a viewer."""
 _MESSAGE: Final = struct.Struct("<BIQ")
 _MESSAGE_DATA: Final = 1
 
 
 def _silent() -> logging.Logger:
-    """Return a logger that says nothing: who connects and leaves is nobody's matter, and stderr has our words only."""
+    """Return a silent logger: connections are not reported, and stderr has only our words."""
     logger = logging.getLogger("drivelint.viewers")
     logger.disabled = True
     return logger
 
 
 class _Viewer:
-    """One who is connected, and what waits for it."""
+    """A connected client, and its waiting messages."""
 
     def __init__(self, connection: ServerConnection) -> None:
         self.connection = connection
@@ -73,7 +73,7 @@ class _Viewer:
 class ViewerServer:
     """Serves viewers at `ws://host:port` in a thread of its own. Port 0: any that is free.
 
-    `allowed_origins`: origins of pages that may connect. Errors: `OSError` where nothing can be served there.
+    `allowed_origins`: origins of pages that may connect. Errors: `OSError` where the server cannot start there.
     """
 
     def __init__(self, host: str, port: int, allowed_origins: Sequence[str] = ()) -> None:
@@ -121,7 +121,7 @@ class ViewerServer:
         return sum(channel in viewer.subscriptions.values() for viewer in list(self._viewers))
 
     def notes(self) -> list[str]:
-        """Return what is to be said of those who tried to connect, once."""
+        """Return notes on clients that tried to connect, once."""
         found = list(self._notes)
         del self._notes[: len(found)]  # the thread may have added more
         return found
@@ -170,7 +170,7 @@ class ViewerServer:
             await asyncio.wait(left, timeout=CLOSE_S)
 
     def _refusal(self, connection: ServerConnection, request: Request) -> Response | None:
-        """Return the answer to a page of another site; None: whoever asks may connect. A program that is no page has no origin."""
+        """Return the answer to a page of another site; None: the client may connect. A program that is no page has no origin."""
         origins = request.headers.get_all("Origin")
         if all(origin.rstrip("/").casefold() in self._allowed for origin in origins):
             return None
@@ -199,7 +199,7 @@ class ViewerServer:
                 await sending
 
     def _understand(self, viewer: _Viewer, message: str | bytes) -> None:
-        """Do what a viewer asks for; what is none of its words is passed over."""
+        """Handle a request of a viewer; unknown words are ignored."""
         with suppress(ValueError, KeyError, TypeError):
             request = json.loads(message)
             if request["op"] == "subscribe":

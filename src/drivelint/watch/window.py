@@ -26,7 +26,7 @@ class _PlacedFrame(NamedTuple):
 class Window:
     """The frames of the last `length_ns` of a log, and those that wait.
 
-    Where the log's clock jumps by more than `length_ns`, forwards or back, the window begins anew: nothing is judged across.
+    Where the log's clock jumps by more than `length_ns`, forwards or back, the window begins anew: nothing is judged across the jump.
     Memory: the frames of the window and those that wait.
     """
 
@@ -42,7 +42,7 @@ class Window:
         self.is_whole = True
         """No frame of the log has left the window yet."""
         self.jumps: list[tuple[int, int]] = []
-        """From when to when the log's clock jumped; for whoever tells it."""
+        """The time before and after a jump of the log's clock, for the note about it."""
 
     def add(self, frames: Iterable[Frame]) -> None:
         """Take frames that came; they wait until `advance`."""
@@ -66,7 +66,7 @@ class Window:
         return max(0, self._latest_ns - since_ns)
 
     def advance(self, most_ns: int) -> bool:
-        """Move the window forward over what waits, by at most `most_ns`. Return whether it moved."""
+        """Move the window forward over waiting frames, by at most `most_ns`. Return whether it moved."""
         if not self._waiting:
             return False
         until_ns = most_ns + (self._waiting[0].at_ns if self._newest_ns is None else self._newest_ns)

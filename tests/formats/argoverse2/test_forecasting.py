@@ -77,7 +77,7 @@ def test_a_folder_has_its_map_and_city(tmp_path: Path) -> None:
     assert trace.notes == []
     alone = read(file)
     assert alone.embedded_map is None
-    assert alone.notes == ["its map log_map_archive_s.json lies beside it: give the folder, or --map"]
+    assert alone.notes == ["its map log_map_archive_s.json lies beside it: name the folder, or use --map"]
     assert [path.name for path in expand_traces([str(tmp_path)])] == ["s"]
 
 

@@ -162,7 +162,7 @@ def test_crossings_lie_across_lanes(turned: bool) -> None:
     [
         ({"successors": None}, "not iterable"),
         ({"left_lane_boundary": []}, "fewer than two points"),
-        ({"left_lane_boundary": points((0, 2), (math.nan, 2))}, "a coordinate that cannot be"),
+        ({"left_lane_boundary": points((0, 2), (math.nan, 2))}, "an impossible coordinate"),
         ({"left_lane_boundary": points((0, -6), (100, -6))}, "its left bound lies on the right"),
         ({"right_lane_boundary": [{"x": 1.0}, {"x": 2.0}]}, "it has no 'y'"),
         ({"id": "eleven"}, "eleven"),

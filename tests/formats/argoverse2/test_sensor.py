@@ -224,7 +224,7 @@ def test_a_flipped_byte_is_refused_or_unseen(tmp_path: Path, file: str) -> None:
 
 
 def test_a_log_without_annotations(tmp_path: Path) -> None:
-    with pytest.raises(TraceError, match=r"annotations\.feather: no annotations: .*give a log that is annotated"):
+    with pytest.raises(TraceError, match=r"annotations\.feather: no annotations: .*use a log with annotations"):
         read(sensor_log(tmp_path / "log", []))
 
 
@@ -261,7 +261,7 @@ def test_a_folder_of_logs_is_searched(tmp_path: Path) -> None:
 
 def test_a_single_file_of_a_log_names_the_folder(tmp_path: Path) -> None:
     folder = sensor_log(tmp_path / "log", [box(k) for k in range(N)])
-    with pytest.raises(TraceError, match=r"annotations\.feather: .*give the folder"):
+    with pytest.raises(TraceError, match=r"annotations\.feather: .*name the folder"):
         read(folder / "annotations.feather")
 
 

@@ -70,7 +70,7 @@ def test_kinds_of_lanes(tmp_path: Path) -> None:
         4: ("bus", True, None), 5: ("driving", True, None),
     }  # fmt: skip
     assert problems(environment, "unknown_word") == [
-        "type 5 of lanelet 5 is not known: it is taken as a lane for vehicles"
+        "type 5 of lanelet 5 is not known: it is treated as a lane for vehicles"
     ]
 
 

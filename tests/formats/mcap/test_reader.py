@@ -78,7 +78,8 @@ def test_chunk_bomb(whole: Path) -> None:
     at = next(at for opcode, at, _ in records(bytes(data)) if opcode == 6)
     struct.pack_into("<Q", data, at + 9 + 16, 2**40)
     with pytest.raises(
-        TraceError, match=rf"byte {at}: a chunk of \d+ bytes that says it unpacks to {2**40}, beyond 512 MiB"
+        TraceError,
+        match=rf"byte {at}: a chunk of \d+ bytes whose header states an unpacked size of {2**40}, beyond 512 MiB",
     ):
         read(put(whole, bytes(data)))
 
@@ -137,7 +138,7 @@ def test_chunk_that_unpacks_to_another_size(whole: Path, compression: Compressio
     at = next(at for opcode, at, _ in records(bytes(data)) if opcode == 6)
     (size,) = struct.unpack_from("<Q", data, at + 9 + 16)
     struct.pack_into("<Q", data, at + 9 + 16, size - 7)
-    with pytest.raises(TraceError, match=rf"says it unpacks to {size - 7} bytes .* at byte {at}"):
+    with pytest.raises(TraceError, match=rf"states an unpacked size of {size - 7} bytes .* at byte {at}"):
         messages(put(whole, bytes(data)))
 
 
@@ -172,7 +173,7 @@ def test_message_on_an_unknown_channel(whole: Path) -> None:
     data = bytearray(path.read_bytes())
     at = next(at for opcode, at, _ in records(bytes(data)) if opcode == 5)
     struct.pack_into("<H", data, at + 9, 77)
-    with pytest.raises(TraceError, match=rf"a message on channel 77, which was never announced, at byte {at}"):
+    with pytest.raises(TraceError, match=rf"a message on channel 77, which was never declared, at byte {at}"):
         messages(put(whole, bytes(data)))
 
 

@@ -40,7 +40,7 @@ def test_the_option_comes_first() -> None:
             {"handedness": "lht", "voted_handedness": "rht"},
             (
                 "--handedness says lht, the rule attribute of 1 road says rht, the traces fit rht: lht is taken. "
-                "If that is wrong, every direction is wrong: leave the option out, or give rht."
+                "If that is wrong, every direction is wrong: leave the option out, or set rht."
             ),
         ),
         (

@@ -188,7 +188,7 @@ def test_where_no_lane_can_be_driven_on_the_reason_is_told() -> None:
     road = two_way()
     for lane in road.truth.logical_lane:
         lane.move_direction = 0
-    with pytest.raises(MapError, match=r"none .* 3 lanes .*, 2 of them because its move_direction does not say"):
+    with pytest.raises(MapError, match=r"none .* 3 lanes .*, 2 of them because its move_direction does not state"):
         road.load()
 
 

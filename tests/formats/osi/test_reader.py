@@ -138,7 +138,7 @@ def test_host_unset(tmp_path: Path) -> None:
     path = write(tmp_path, frames)
     with pytest.raises(
         TraceError,
-        match=r"no ego: the log does not say which actor is the ego: use --ego ID or --ego all \(ids: 0, 1, 2\)",
+        match=r"no ego: the log does not name the ego: use --ego ID or --ego all \(ids: 0, 1, 2\)",
     ):
         read(path)
     assert actors(read(path, ego="0"))["0"]["is_ego"]

@@ -87,7 +87,7 @@ def test_two_parents(tmp_path: Path) -> None:
     objects = [ros.things(t_s, ros.thing(9, 30.0, 0.0), frame="base") for t_s in ticks()]
     trace = seen(tmp_path, [*ego(), *both, *objects])
     assert {row["x_m"] for row in states(trace, "9")} == {None}
-    assert "several frames say that they hold 'base'" in quality(trace)["frame_unresolved"]["message"]
+    assert "several frames have the child frame 'base'" in quality(trace)["frame_unresolved"]["message"]
 
 
 def test_a_loop_of_frames_leads_nowhere(tmp_path: Path) -> None:

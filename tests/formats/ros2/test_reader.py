@@ -179,7 +179,7 @@ def test_carlas_origins(tmp_path: Path) -> None:
     assert at(trace, "12", T0)["z_m"] == 0.0
     found = quality(trace)["reference_point"]
     assert found["severity"] == "info"
-    assert "taken as the centres of their boxes" in found["message"]
+    assert "used as the centres of their boxes" in found["message"]
     assert "reference_point" not in quality(seen(tmp_path, others(), ego="9"))
 
 
@@ -216,7 +216,7 @@ def test_ego_size(tmp_path: Path) -> None:
     assert math.hypot(state["x_m"], state["y_m"]) == pytest.approx(math.hypot(20, 1.4))
     assert math.hypot(state["vx_mps"], state["vy_mps"]) == pytest.approx(rate * math.hypot(20, 1.4))
     assert {"no_size", "velocity_mismatch", "reference_point", "twist_frame"}.isdisjoint(quality(trace))
-    assert quality(trace)["assumed_size"]["message"] == "size as --ego-size says, not recorded"
+    assert quality(trace)["assumed_size"]["message"] == "size from --ego-size, not recorded"
 
 
 @pytest.mark.parametrize("text", ["4.9", "4.9,0", "-4.9,1.9", "4.9,x", "nan,1.9", "4.9,1.9,1.4,2", ""])
@@ -238,5 +238,5 @@ def test_ego_size_reaches_the_log(tmp_path: Path, capsys: pytest.CaptureFixture[
 def test_ego_size_of_the_log_counts(tmp_path: Path) -> None:
     trace = seen(tmp_path, others(), ego="9", ego_size=EgoSize(4.9, 1.82))
     assert (actors(trace)["9"]["length_m"], actors(trace)["9"]["width_m"]) == (4.5, 1.8)
-    assert "length of 4.9 m, the log 4.5 m" in quality(trace)["ego_size"]["message"]
+    assert "length of 4.9 m, but the log states 4.5 m" in quality(trace)["ego_size"]["message"]
     assert "assumed_size" not in quality(trace)

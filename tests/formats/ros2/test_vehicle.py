@@ -98,7 +98,7 @@ def test_nodes_that_agree(tmp_path: Path) -> None:
     trace = seen(tmp_path, [*axle(), *parameters("/a", T0 - 1.0), *parameters("/b", T0 - 1.0), *changed])
     assert size(trace) == (None, None, None)
     found = quality(trace)["ego_size"]
-    assert found["message"] == "/a, /b give the ego different sizes, and none is used: say it with --ego-size"
+    assert found["message"] == "/a, /b give the ego different sizes, and none is used: set it with --ego-size"
 
 
 def test_nodes_that_say_only_a_part(tmp_path: Path) -> None:
@@ -162,7 +162,7 @@ def test_the_log_counts_before_the_option(tmp_path: Path) -> None:
     assert size(trace) == SIZE
     assert at(trace, "ego", T0)["x_m"] == pytest.approx(AHEAD * math.cos(TURN))
     assert [row["message"] for row in trace.tables["quality"].to_pylist() if row["check_id"] == "ego_size"] == [
-        "--ego-size puts the centre of the ego's box 0.7 m ahead of base_link, the log 1.345 m, which counts",
+        "--ego-size puts the centre of the ego's box 0.7 m ahead of base_link, but the log states 1.345 m, which is used",
         "--ego-size gives ego a length of 3 m, the log 4.89 m, which counts",
     ]
 

@@ -87,7 +87,7 @@ def test_the_lines_that_a_lane_refers_to_give_its_bounds() -> None:
     assert a["left_y_m"] == pytest.approx(1.8, abs=1e-5)
     assert a["right_y_m"] == pytest.approx(-1.6, abs=1e-5)
     (message,) = checks(found, "assumed_width")
-    assert re.match(r"along (29|30)% of the lanes' sides \(1 of 1 lanes\) nothing says where the lane ends", message)
+    assert re.match(r"along (29|30)% of the lanes' sides \(1 of 1 lanes\) the edge of the lane is not known", message)
 
 
 def test_a_far_edge_is_no_bound() -> None:
@@ -461,7 +461,7 @@ def test_an_offset_moves_everything() -> None:
 @pytest.mark.parametrize(
     ("content", "says"),
     [
-        (b"\x80\x04}\x94.", "holds no scenario of ScenarioNet"),
+        (b"\x80\x04}\x94.", "has no scenario of ScenarioNet"),
         (b"\x80\x04\x95", "cut off or damaged"),
         (
             pickle.dumps(scenario({"ego": track(straight(3, 1.0))}), 4),

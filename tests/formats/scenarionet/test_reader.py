@@ -317,7 +317,7 @@ def test_the_ego_of_nuscenes_is_put_where_it_was_at_the_steps(tmp_path: Path, be
     assert column(trace, "ego", "z_m") == pytest.approx(np.full(len(at), 0.78))
     (row,) = checks(trace, "ego_clock")
     assert "4 of its messages are lost, and the steps over them are 0.02 s longer each" in row["message"]
-    assert f"tell that it begins {begins_s:.2f} s after these".replace("-0.00", "0.00") in row["message"]
+    assert f"show that it begins {begins_s:.2f} s after these".replace("-0.00", "0.00") in row["message"]
     assert len(at) >= 118
 
 
@@ -368,7 +368,7 @@ def test_light_states(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("content", "says"),
     [
-        ({"a": 1}, "holds no scenario of ScenarioNet, which has a dict 'metadata'"),
+        ({"a": 1}, "has no scenario of ScenarioNet, which has a dict 'metadata'"),
         ({"metadata": {}, "tracks": {}, "dynamic_map_states": {}}, "has a dict 'map_features'"),
         (scenario({"ego": track(straight(5, 1.0))}, ts=None), "metadata['ts'] is no array of numbers"),
         (scenario({"ego": track(straight(5, 1.0))}, ts=np.array([np.nan] * 5)), "metadata['ts'] is no list of times in seconds"),
@@ -406,7 +406,7 @@ def test_a_file_that_is_no_pickle(tmp_path: Path) -> None:
     with pytest.raises(TraceError, match=r"not pkl: it should begin b'\\x80' and begins"):
         read(path)
     put(tmp_path, [1, 2], name="sd_1.pkl")
-    with pytest.raises(TraceError, match="holds no scenario of ScenarioNet"):
+    with pytest.raises(TraceError, match="has no scenario of ScenarioNet"):
         read(path)
 
 
@@ -464,5 +464,5 @@ def test_a_folder_is_searched_for_scenarios_only(tmp_path: Path) -> None:
     assert expand_traces([str(tmp_path / "*" / "[ds]*.pkl")]) == scenarios[1:]
     summary = tmp_path / "nuscenes_0" / "dataset_summary.pkl"
     assert expand_traces([str(summary)]) == [summary]
-    with pytest.raises(TraceError, match="holds no scenario of ScenarioNet"):
+    with pytest.raises(TraceError, match="has no scenario of ScenarioNet"):
         read(summary)

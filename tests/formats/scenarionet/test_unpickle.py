@@ -105,7 +105,7 @@ class _Evil:
 def test_any_other_name_is_refused(value: Any, name: str, protocol: int, capsys: pytest.CaptureFixture[str]) -> None:
     content = pickle.dumps({"a": value}, protocol)
     with pytest.raises(
-        PickleError, match=rf"calls for '[\w.]*({name})[\w]*', which is refused: only numpy arrays and plain values"
+        PickleError, match=rf"requests '[\w.]*({name})[\w]*', which is refused: only numpy arrays and plain values"
     ):
         load(content)
     assert capsys.readouterr().out == ""

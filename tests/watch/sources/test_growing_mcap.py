@@ -190,7 +190,7 @@ def test_what_is_no_record_ends_it(tmp_path: Path) -> None:
     path.write_bytes(whole[: len(whole) // 2] + bytes(4000))
     source = McapFile(path, idle_s=None)
     assert drained(source)
-    assert [note for note in source.notes() if "nothing behind it is watched" in note]
+    assert [note for note in source.notes() if "nothing after it is watched" in note]
 
 
 def test_each_byte_is_read_once(tmp_path: Path) -> None:

@@ -139,7 +139,7 @@ def test_what_the_system_drops_of_a_sender_on_this_machine() -> None:
     behind = [Datagram(each.data, each.sender, 0, PARTS, local=True) for each in datagrams[11 * PARTS + 1 :]]
     found, assembler = assembled(datagrams[: 10 * PARTS + 1] + behind)
     assert found == MESSAGES[:10] + MESSAGES[13:]
-    assert f"{PARTS} datagrams that found no room" in assembler.losses.summary_text()
+    assert f"{PARTS} datagrams for which the buffer had no room" in assembler.losses.summary_text()
 
 
 def test_another_sender_is_another_drive() -> None:

@@ -90,7 +90,7 @@ def test_what_is_no_message_ends_it(tmp_path: Path) -> None:
     path.write_bytes(WHOLE + b"\xff" * 1000)
     source = osi.open_file(path, idle_s=None)
     assert times(drained(source)) == TIMES
-    assert "nothing behind that is read" in source.notes()[0]
+    assert "nothing after that is read" in source.notes()[0]
 
 
 @pytest.mark.parametrize("name", ["acc-test", "alks_cut-in", "highway_merge", "pedestrian"])

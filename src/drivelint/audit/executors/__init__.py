@@ -1,4 +1,4 @@
-"""Where tasks run: one small protocol, and an adapter for each engine that implements it."""
+"""The executors of tasks: one small protocol, and an adapter for each engine that implements it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class Outcome(NamedTuple):
-    """What became of a task: its receipts; or the error that it raised; or why its worker was lost (died, hung, out of memory)."""
+    """The outcome of a task: its receipts, or the error that it raised, or why its worker was lost (died, hung, out of memory)."""
 
     task: Task
     receipts: Sequence[Receipt] = ()
@@ -26,7 +26,7 @@ class Executor(Protocol):
 
     @property
     def capacity(self) -> int:
-        """How many tasks run at a time."""
+        """The number of tasks that run at a time."""
         ...
 
     def submit(self, task: Task) -> None:

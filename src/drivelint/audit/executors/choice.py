@@ -1,4 +1,4 @@
-"""Chooses the executor that the command line names."""
+"""Chooses the executor named on the command line."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from drivelint.audit.executors import Executor
 
 _HOST_AND_PORT: Final = re.compile(r"[\w.-]+:\d+")
-"""How Ray names a cluster to a process that runs on one of its nodes."""
+"""Ray's name of the cluster for a process on one of its nodes."""
 
 
 def open_executor(cluster: str | None, *, workers: int | None, memory: int | None, timeout_s: float | None) -> Executor:

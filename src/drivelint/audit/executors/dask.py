@@ -96,7 +96,7 @@ class DaskCluster:
         except Exception as error:
             if future.status != "error":  # the task has not failed: its result cannot be fetched
                 raise self._scheduler_error("a result could not be fetched") from error
-            return Outcome(task, error=error)  # the driver tells them apart
+            return Outcome(task, error=error)  # the driver distinguishes them
 
     def _require_workers(self) -> None:
         try:
@@ -110,10 +110,10 @@ class DaskCluster:
             self._workerless_since = now
         elif now - self._workerless_since >= WORKERLESS_S:
             raise ClusterError(
-                f"--cluster {self._address}: no worker for {WORKERLESS_S:.0f} s: start some and give the same command"
+                f"--cluster {self._address}: no worker for {WORKERLESS_S:.0f} s: start some and run the same command again"
             )
 
     def _scheduler_error(self, why: str) -> ClusterError:
         return ClusterError(
-            f"--cluster {self._address}: the scheduler is gone ({why}): start it and give the same command"
+            f"--cluster {self._address}: the scheduler is gone ({why}): start it and run the same command again"
         )

@@ -1,4 +1,4 @@
-"""A pool of processes on this machine: one warm worker per core, each held to an amount of memory and of computing time."""
+"""A pool of processes on this machine: one warm worker per core, each with limits of memory and computing time."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ TASKS_PER_WORKER: Final = 500
 """After so many tasks a worker is replaced, so that nothing that a library keeps can add up."""
 _LOOK_S: Final = 0.1
 _BEGUN: Final = "begun"
-"""What a worker sends when it has opened its database, from where on its time counts."""
+"""The message of a worker that has opened its database; its time counts from then on."""
 
 
 class LocalPool:
@@ -117,7 +117,7 @@ class _Worker:
             self.pipe.send(task)
 
     def hear(self) -> Outcome | None:
-        """Return what came of the task; None: it has only begun."""
+        """Return the outcome of the task; None: it has only begun."""
         try:
             told: str | list[Receipt] | Exception = self.pipe.recv()
         except (EOFError, OSError):
@@ -134,7 +134,7 @@ class _Worker:
         """Return that the worker was lost if it takes too much; then it is ended."""
         if self._memory is not None and (taken := resident_bytes(self._process.pid)) > self._memory:
             return self._lost_outcome(
-                f"the worker took {taken / 1e6:.0f} MB of memory, and may take {self._memory / 1e6:.0f} MB"
+                f"the worker took {taken / 1e6:.0f} MB of memory, but the limit is {self._memory / 1e6:.0f} MB"
             )
         if self._timeout_s is None or self._begun_s is None or self.task is None:
             return None
@@ -229,7 +229,7 @@ def cores() -> int:
 
 
 def computed_s(process: int | None) -> float:
-    """Return for how many seconds a process has computed; where the system does not tell, the time of day does for it."""
+    """Return for how many seconds a process has computed; if the system does not report it, the time of day is used."""
     try:
         told = Path(f"/proc/{process}/stat").read_text(encoding="ascii", errors="replace").rpartition(")")[2].split()
         return (int(told[11]) + int(told[12])) / os.sysconf("SC_CLK_TCK")  # utime and stime, of all its threads

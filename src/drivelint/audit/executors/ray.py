@@ -53,7 +53,7 @@ class RayCluster:
         try:
             ended, _ = ray.wait(list(self._running), num_returns=1)
         except (exceptions.RaySystemError, ConnectionError) as error:
-            raise ClusterError(f"the Ray cluster is gone ({error}): start it and give the same command") from error
+            raise ClusterError(f"the Ray cluster is gone ({error}): start it and run the same command again") from error
         return [_outcome(future, self._running.pop(future)) for future in ended]
 
     def close(self) -> None:

@@ -1,1 +1,1 @@
-"""Doubts what no road user does, and tracks that are no body of their own."""
+"""Doubts motion that no road user makes, and tracks that are not separate bodies."""

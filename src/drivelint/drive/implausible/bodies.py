@@ -1,4 +1,4 @@
-"""Doubts tracks that are no body of their own: one body in two tracks, a track that begins elsewhere, one that is held at its end.
+"""Doubts tracks that are not separate bodies: one body in two tracks, a track that begins elsewhere, or one that is held at its end.
 
 A tracker may keep a second track of a long vehicle, and a data set may have a rider and the bicycle. Two boxes that lie deep in each
 other from the first sample that both have, at the same velocity, are one body: vehicles that collide were apart before. So are two that
@@ -37,7 +37,7 @@ FARTHEST_REACH_M: Final = 100.0
 FARTHEST_CELL: Final = 10**10
 """Cells of places that cannot be are one: their number times that of the times is a whole number of 64 bits."""
 PAIRS_PER_PART: Final = 1_000_000
-"""So many pairs of boxes are held in memory at once."""
+"""Most pairs of boxes in memory at once."""
 ENTRY_SAMPLES: Final = 3
 """A track that begins somewhere else comes to its place within so many samples."""
 ENTRY_LEAST_MPS: Final = 5.0
@@ -50,7 +50,7 @@ COUPLED_MPS: Final = 5.0
 COUPLED_LEAST: Final = 10
 SUNK_M: Final = 0.3
 """In at least so many samples two boxes keep so near behind each other, in line, at more than this speed, and overlap by so much in the
-end: one body. Nobody follows so near for a second."""
+end: one body. No vehicle follows so near for a second."""
 
 
 class _Boxes(NamedTuple):
@@ -64,7 +64,7 @@ class _Boxes(NamedTuple):
 
 BEGIN_M: Final = 0.3
 BEGIN_MPS: Final = 2.0
-"""Boxes of two that move overlap by so much from the first sample that both have: nobody saw them touch, and their places are in doubt."""
+"""Boxes of two moving actors overlap by this much from the first common sample: no touch was seen, and their places are doubted."""
 BESIDE_M: Final = 0.3
 """Places and headings of tracks tremble by so much."""
 BESIDE_SHARE: Final = 2 / 3
@@ -74,7 +74,7 @@ HIT_MPS: Final = 1.5
 HELD_NS: Final = 2_000_000_000
 ARRIVAL_NS: Final = 1_000_000_000
 LEAVING_MPS2: Final = 4.0
-"""Whoever stands as its track ends can have gone from there with this, and is not where another one is at once: it was not there before."""
+"""An actor that stands as its track ends can leave with this acceleration; if another actor is there sooner, it was not there before."""
 
 
 def same_bodies(states: States, actors: Actors, egos: Collection[str]) -> list[QualityFinding]:
@@ -99,14 +99,14 @@ def same_bodies(states: States, actors: Actors, egos: Collection[str]) -> list[Q
         kept, left = (states.ids[i] for i in order)
         rows[(rows_a if states.ids[a] == left else rows_b)[deep]] = True
         pairs.append(f"{left} is the same body as {kept}")
-    text = f"{listed(pairs)}, in {{n}} of {{of}} states: it is not believed" if pairs else ""
+    text = f"{listed(pairs)}, in {{n}} of {{of}} states: it is not used" if pairs else ""
     findings = states.findings(rows, "same_body", "warning", text, quantity="identity")
     text = "boxes of moving actors overlap from their first sample, in {n} of {of} states ({ids}): their places are not exact"
     return findings + states.findings(begun, "begin_overlap", "warning", text, quantity="position")
 
 
 def false_entries(states: States, step: Steps) -> list[QualityFinding]:
-    """Return a finding on the first samples of tracks that come to their place by a step that nobody makes."""
+    """Return a finding on the first samples of tracks that reach their place by an impossible step."""
     n = len(states)
     rows = np.zeros(n, np.bool_)
     starts = track_starts(states.actor)
@@ -120,7 +120,7 @@ def false_entries(states: States, step: Steps) -> list[QualityFinding]:
         faster = np.hypot(*moved[:, first]) > np.hypot(*moved[:, first + 1])
         for at in first[hard & faster]:
             rows[at - k : at + 1] = True
-    text = "tracks begin elsewhere than they go on, as no motion explains, in {n} of {of} states ({ids})"
+    text = "tracks begin at one place and continue at another, which no motion explains, in {n} of {of} states ({ids})"
     return states.findings(rows, "false_entry", "warning", text, quantity="existence")
 
 
@@ -157,7 +157,8 @@ def held_tracks(states: States, actors: Actors) -> list[QualityFinding]:
         if (depth > BEGIN_M + LEAVING_MPS2 / 2.0 * since_s**2).any():
             rows[first : last + 1] |= states.t_ns[first : last + 1] >= states.t_ns[last] - HELD_NS
     text = (
-        "tracks stand at their end where another vehicle goes on at once, in {n} of {of} states ({ids}): they are held"
+        "tracks stand still at their end, at a place from which another vehicle continues at once, in {n} of "
+        "{of} states ({ids}): they are repeated positions"
     )
     return states.findings(rows, "held_track", "warning", text, quantity="existence")
 

@@ -1,7 +1,7 @@
-"""Doubts what no road user does: a jolt there and back, a step aside and back, a turn on the spot, a pedestrian as fast as a car.
+"""Doubts motion that no road user makes: a jolt and back, a step aside and back, a turn on the spot, a pedestrian as fast as a car.
 
-What is doubted stays as it is recorded; the table `doubt` says of whom, of what and when, and no verdict rests on it. `states` are in
-order, with their velocities completed.
+What is doubted stays as it is recorded; the table `doubt` has the actor, the quantity and the time, and no verdict depends on it.
+`states` are in order, with their velocities completed.
 """
 
 from __future__ import annotations
@@ -42,12 +42,12 @@ SPIN_WINDOW_S: Final = 1.0
 SPIN_MPS: Final = 1.0
 """A vehicle turns by no more than its way within a second divided by 3 m, which no turning circle undercuts, and a detector's noise."""
 FASTEST_MPS: Final = {"pedestrian": 12.5, "animal": 30.0, "bicycle": 30.0}
-"""Class -> the fastest that anybody of it is: a sprinter's record, a galloping horse, a descent of racers."""
+"""Class -> its highest possible speed: a sprinter's record, a galloping horse, a descent of racers."""
 LEAST_FAST_SAMPLES: Final = 3
 
 
 def implausible_motion(states: States, step: Steps, actors: Actors, *, derived: bool) -> list[QualityFinding]:
-    """Return findings, with their doubts, on what nobody does. `derived`: velocities come from the positions and do not contradict them."""
+    """Return findings and doubts on impossible motion. `derived`: velocities come from the positions and do not contradict them."""
     if len(states) < 3:
         return []
     jolt = _jolts(states, step)
@@ -55,21 +55,24 @@ def implausible_motion(states: States, step: Steps, actors: Actors, *, derived: 
         jolt,
         "velocity_jolt",
         "warning",
-        "velocity jumps there and back as no tyre can in {n} of {of} states ({ids})",
+        "velocity jumps and returns, faster than any tyre can, in {n} of {of} states ({ids})",
         quantity="velocity",
     )
-    text = "velocities of most actors change alike at once, and back, in {n} of {of} states ({ids}): the times or places of the log do"
+    text = (
+        "velocities of most actors change alike at the same time, and change back, in {n} of {of} states "
+        "({ids}): the times or positions of the log are wrong"
+    )
     findings += states.findings(common_jolts(states, step), "common_jolt", "warning", text, quantity="velocity")
     if not derived:
         aside = _displaced(states, step)
-        text = "position steps aside, which the velocity does not, in {n} of {of} states ({ids})"
+        text = "position steps aside, but the velocity does not, in {n} of {of} states ({ids})"
         findings += states.findings(aside, "position_step", "warning", text, quantity="position")
     spin = _spins(states, step, actors)
     text = "heading turns on the spot, as no vehicle can, in {n} of {of} states ({ids})"
     findings += states.findings(spin, "heading_spin", "warning", text, quantity="heading")
     fast = _too_fast(states, actors)
     return findings + states.findings(
-        fast, "class_implausible", "warning", "faster than anybody of their class: {ids}", quantity="class"
+        fast, "class_implausible", "warning", "faster than any actor of their class: {ids}", quantity="class"
     )
 
 
@@ -88,7 +91,7 @@ def _jolts(states: States, step: Steps) -> Mask:
         for i in range(width + 1):
             whole &= step.continuous[i : len(step.continuous) - width + i]
         against = np.sum(change[:, to] * change[:, away], axis=0) < 0.0
-        # what is left of both changes is what somebody can have done meanwhile
+        # the rest of both changes is a motion that an actor can make in that time
         span_s = sum(step.dt_s[i : len(step.dt_s) - width + i] for i in range(width + 1))
         goes_on = np.hypot(*(v[:, width + 1 :] - v[:, : -width - 1])) <= TYRE_MPS2 * span_s
         first = np.flatnonzero(hard[to] & hard[away] & whole & against & goes_on)
@@ -114,7 +117,7 @@ def _displaced(states: States, step: Steps) -> Mask:
     limit = np.maximum(limit, STEP_SIGMAS * np.sqrt(2.0) * sigma[:-1])
     # a step stands alone: where the steps beside it are off alike, it is the velocity that is wrong
     alone = size > 2.0 * np.maximum(_shifted(off, size, 1), _shifted(off, size, -1))
-    # an impact moves whom it hits, and changes its velocity
+    # an impact moves the actor that it hits, and changes its velocity
     hit = np.hypot(*np.diff(states.velocity)) > TYRE_MPS2 * step.dt_s
     at = np.flatnonzero((size > limit) & alone & ~hit)
     aside[at] = aside[at + 1] = True
@@ -159,7 +162,7 @@ def _spins(states: States, step: Steps, actors: Actors) -> Mask:
 
 
 def _too_fast(states: States, actors: Actors) -> Mask:
-    """Return all samples of the actors that are faster than anybody of their class in at least three samples."""
+    """Return all samples of the actors that are faster than possible for their class in at least three samples."""
     kinds = dict(zip(actors.ids, actors.classes, strict=True))
     limits = np.array([FASTEST_MPS.get(kinds.get(name) or "", np.inf) for name in states.ids])
     over = np.hypot(*states.velocity) > limits[states.actor]

@@ -8,7 +8,7 @@ A draw depends on the seed, the actor's id and the copy's number only. So a part
 drive in another file, under another name, has the same errors.
 
 Copies come in blocks. In a block, the errors of one kind are one from each of as many equally probable ranges (a Latin hypercube sample):
-small and large errors occur as often as they should, so that fewer copies tell how many of all would keep a finding.
+small and large errors occur as often as they should, so that fewer copies show in how many of all a finding would stay.
 """
 
 from __future__ import annotations

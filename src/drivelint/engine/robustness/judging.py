@@ -9,10 +9,10 @@ passes loses the stretch. Where the first window has only a part of the stretch 
 unless so few copies keep the finding that it is only possible anyway.
 
 Of a rule that an ego breaks several times, the gravest finding is judged, and those that are as near to the threshold as the errors are
-large. Where the gravest is only possible, the others are judged too. Whoever asks for them gets the copies of all findings.
+large. Where the gravest is only possible, the others are judged too. On request, the copies of all findings are judged.
 
 100 copies are judged, 32 where all of these keep the finding, or 20 where their margins are far from 0, too. Fewer are enough where so
-many of them lose it that it is only possible, whatever the others would tell.
+many of them lose it that it is only possible, whatever the others would show.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ SAME_REFERENCE_NS: Final = 2_000_000_000
 HASTY_STATES: Final = 10_000
 """So many copied states cost a quarter of what a pass over none costs, which most runs do not need."""
 _DERIVED: Final = ("clock", "step", "ego_state", "pair", "ego_condition")
-"""What the evaluation reads itself, without what it reads for verdicts that are unknown."""
+"""Tables that the evaluation reads itself, without those that it reads for unknown verdicts."""
 _HANDED_OVER: Final = frozenset({"capability", "registration"})
 
 
@@ -95,7 +95,7 @@ class Robustness:
 
     @property
     def n_waiting(self) -> int:
-        """How many drives wait."""
+        """The number of waiting drives."""
         return len(self._waiting)
 
     def n_asked(self) -> int:
@@ -162,7 +162,7 @@ class Robustness:
                 question.take(window.numbers, outcome.margins, outcome.passes)
 
     def _stays(self, chunk: Sequence[Window]) -> list[dict[int, Outcome]]:
-        """Return for each window: question -> what its copies tell."""
+        """Return for each window: question -> the result of its copies."""
         made = [copies(window.part(f"{no:05}"), self._errors, window.numbers) for no, window in enumerate(chunk)]
         asked = [(no, question) for no, window in enumerate(chunk) for question in window.questions]
         rules = {question.rule.id: question.rule for _, question in asked}
@@ -180,7 +180,7 @@ class Robustness:
             evaluate(self._con, judged, params, may_retry=True, limits=self._limits)
             erred = "SELECT rule_id FROM verdict v SEMI JOIN _copy c ON v.drive_id = c.copy_id WHERE verdict = 'error' LIMIT 1"
             if len(chunk) > 1 and (row := self._con.execute(erred).fetchone()):
-                raise RuleError(f"{row[0]} erred on copies of {len(chunk)} windows")
+                raise RuleError(f"{row[0]} failed on copies of {len(chunk)} windows")
             stays = self._con.execute(
                 statement("robustness/stays"), {"same_reference_ns": SAME_REFERENCE_NS}
             ).fetchall()

@@ -1,4 +1,4 @@
-"""Findings that copies are judged for: how many copies each needs, and what these tell."""
+"""Findings for which copies are judged: how many copies each needs, and the result of these."""
 
 from __future__ import annotations
 
@@ -33,17 +33,17 @@ NOT_FAR: Final = 10.0
 
 @dataclass
 class Question:
-    """A finding, and what its copies have told so far."""
+    """A finding, and the result of its copies so far."""
 
     finding: dict[str, Any]
     rule: Rule
     size: int = 0
-    """Which size of window is tried."""
+    """The size of the present window."""
     ends_early: bool = True
     """It ends as soon as it is only possible; whoever gives a confidence of their own needs the share of all copies."""
     n_copies: int = 0
     n_stays: int = 0
-    """How many of them keep it."""
+    """The number of copies that keep it."""
     margins: list[float | None] = field(default_factory=list)
     """The margins in those that keep it."""
     is_doubtful: bool = False
@@ -102,7 +102,7 @@ class Question:
         return self.n_copies > 0 and self.is_settled and self.n_stays >= LEAST_SHARE * self.n_copies
 
     def take(self, numbers: Sequence[int], margins: Mapping[int, float | None], passes: Collection[int] = ()) -> None:
-        """Learn which of these copies of a window keep the finding, with what margins; the first is the one without errors.
+        """Take the copies of a window in which the finding stays, with their margins; the first copy is the one without errors.
 
         `passes`: copies in which the rule is kept at the finding's worst step.
         """
@@ -128,7 +128,7 @@ class Question:
         return self.size > 0 or self.finding["t_ref_ns"] is not None or whole
 
     def _is_decided(self, numbers: Sequence[int], conclusive_copies: Collection[int], n_stays: int) -> bool:
-        """Whether copies that do not tell can be counted as lost: there are none, or the finding is only possible anyway."""
+        """Whether undecided copies can be counted as lost: there are none, or the finding is only possible anyway."""
         may_stay = self.n_stays + n_stays + len(set(numbers) - set(conclusive_copies)) + N_COPIES[-1] - numbers[-1]
         return set(conclusive_copies) >= set(numbers) or may_stay < LEAST_SHARE * N_COPIES[-1]
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from drivelint.engine.batch import Drive
 
 SIZES: Final = 3
-"""The sizes of window: 0, the seconds around the worst step, and two larger ones for what these do not show."""
+"""The sizes of a window: 0, the seconds around the worst step, and two larger ones if these seconds are not enough."""
 NEAR_M: Final = (10.0, 25.0, 100.0)
 """For each size: actors that stay farther away from the ego, along x or y, are left out."""
 SHORT_NS: Final = 3_000_000_000
@@ -111,7 +111,7 @@ class Window:
         return replace(part, trace=replace(part.trace, tables={**part.trace.tables, "actor": actors}))
 
     def part(self, name: str) -> Drive:
-        """Return what is copied, as a drive with this name behind that of the whole."""
+        """Return the copied part as a drive, with this suffix after the name of the whole."""
         return replace(self._part, trace=renamed(self._part.trace, f"{self.drive_id}~{name}"))
 
     @property

@@ -1,4 +1,4 @@
-"""What Argoverse 2 calls an annotated object, and the actor class that it is.
+"""The categories of annotated objects in Argoverse 2, and their actor classes.
 
 Source: the taxonomies of the sensor and the motion forecasting dataset (Argoverse user guide; av2-api, `AnnotationCategories` and
 `ObjectType`).
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 EGO_CATEGORY: Final = "EGO_VEHICLE"
 """A category that is not Argoverse's: tools write the recording vehicle itself under it, as a box whose centre is the rear axle."""
 SENSOR_CLASSES: Final = {
-    "REGULAR_VEHICLE": "car",  # a passenger car, van, pickup or SUV: no rule tells these of others apart
+    "REGULAR_VEHICLE": "car",  # a passenger car, van, pickup or SUV: no rule distinguishes these
     "LARGE_VEHICLE": "vehicle",  # what has no category of its own: a camper van, a fire engine, ...
     "TRUCK": "truck", "BOX_TRUCK": "truck", "TRUCK_CAB": "truck",
     "BUS": "bus", "SCHOOL_BUS": "bus", "ARTICULATED_BUS": "bus",
@@ -57,5 +57,5 @@ def class_codes(words: pa.Array, classes: dict[str, str | None]) -> tuple[Codes,
         return -1 if name is None else ACTOR_CLASSES.index(name)
 
     codes = coded(words, code_of)
-    note = f"categories that Argoverse does not have, whose class is not known: {listed(sorted(foreign))}"
+    note = f"categories that are not Argoverse's, so the class is not known: {listed(sorted(foreign))}"
     return codes, [note] if foreign else []

@@ -50,7 +50,7 @@ def integers(path: Path, table: pa.Table, name: str) -> tuple[Times, Mask]:
 def without_nameless(
     path: Path, rows: pa.Table, name: str, t_ns: Times, timed: Mask
 ) -> tuple[Mask, list[QualityFinding], list[LostTime]]:
-    """Say which rows have a track (`name`) and a time (`timed`), and tell of the others: what they are, and when they were recorded."""
+    """Say which rows have a track (`name`) and a time (`timed`), and report the others: their kind, and when they were recorded."""
     ids = cast(path, rows, name, pa.string())
     lost_rows = ~timed | pc.equal(pc.fill_null(ids, ""), "").to_numpy(zero_copy_only=False)
     n = int(lost_rows.sum())

@@ -1,4 +1,4 @@
-"""Where the six cities of Argoverse 2 lie: their coordinates are UTM's, moved to an origin in each city.
+"""The places of the six cities of Argoverse 2: their coordinates are UTM's, moved to an origin in each city.
 
 Source: av2-api, `geometry/utm.py`, which gives latitude and longitude of the origins and the zones.
 """

@@ -1,11 +1,11 @@
 """Motion forecasting scenarios of Argoverse 2: one Parquet table of tracks at ten steps a second, and the map beside it.
 
-The track AV is the vehicle that records. The guide says that positions are box centres. Those of AV are not, as measured on a published
+The track AV is the vehicle that records. The guide states that positions are box centres. Those of AV are not, as measured on a published
 scenario: where it turns, its point moves along its heading, as only the rear axle does (-0.3 m ahead of it, give or take 0.2 m; the
 middle is 1.3 m ahead), and as the egovehicle frame of the sensor logs does. It is moved to the middle of the vehicle.
 
-Nobody has a size, so gaps to the others are not known. Tracks come from the vehicle's own tracker, in fragments of ten steps and more,
-and no range is documented within which everybody has a track.
+The others have no size, so gaps to them are not known. Tracks come from the vehicle's own tracker, in fragments of ten steps and more,
+and no range is documented within which every actor has a track.
 
 Source: Argoverse user guide ("Motion Forecasting Dataset"); av2-api, `data_schema` and `scenario_serialization`.
 """
@@ -112,7 +112,7 @@ def _rows(path: Path) -> pa.Table:
     optional = [name for name in (*_CLOCK, "city", "scenario_id") if name in has]
     rows = parquet.table(path, [*_REQUIRED, *optional])
     if len(names := _distinct(path, rows, "scenario_id")) > 1:
-        raise TraceError(f"{path}: holds {len(names)} scenarios: write one file per scenario")
+        raise TraceError(f"{path}: has {len(names)} scenarios: write one file per scenario")
     return rows
 
 
@@ -154,7 +154,7 @@ def _add_map(recording: Recording, path: Path) -> None:
         name = path.name.removeprefix("scenario_").removesuffix(".parquet")
         own = [file for file in files if name in file.name]
         if own:
-            recording.notes.append(f"its map {own[0].name} lies beside it: give the folder, or --map")
+            recording.notes.append(f"its map {own[0].name} lies beside it: name the folder, or use --map")
     elif len(files) > 1:
         names = listed([file.name for file in files])
         message = f"the scenario has {len(files)} maps ({names}), and none is used: keep one"

@@ -5,8 +5,8 @@ does not say: its bounds do. Only the successors link lanes, as some releases le
 way of the vehicle, across lanes. It has no speed limit, no sign, no traffic light and no stop line. All six cities are in the United
 States.
 
-Source: Argoverse user guide ("HD Maps"); av2-api, `LaneSegment`, `LaneMarkType`, `PedestrianCrossing`, and `rendering/map.py`, which tells
-that of a double line the nearer one is named first.
+Source: Argoverse user guide ("HD Maps"); av2-api, `LaneSegment`, `LaneMarkType`, `PedestrianCrossing`, and `rendering/map.py`, which
+shows that of a double line the nearer one is named first.
 """
 
 from __future__ import annotations

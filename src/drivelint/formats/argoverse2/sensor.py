@@ -1,9 +1,9 @@
 """Sensor logs of Argoverse 2: a folder with the annotated boxes, the poses of the recording vehicle, and its map.
 
 Boxes are given in the frame of the recording vehicle at exactly their time stamp (quaternion w first, centre of the box); the poses bring
-them into the frame of the city. The steps of the ego are the time stamps of the annotations, ten a second: only then is it known who was
-around it. Its poses are ten times denser, irregular, and in part repeated one nanosecond later, as each sensor's time has one; those
-between the annotations are not read.
+them into the frame of the city. The steps of the ego are the time stamps of the annotations, ten a second: only then are the actors
+around it known. Its poses are ten times denser, irregular, and in part repeated one nanosecond later, as each sensor's time has one;
+those between the annotations are not read.
 
 Time stamps are nanoseconds on a clock whose zero is not documented: by 1970 these drives of 2020 would be of January 1980. There is no
 date, no velocity, no indicator and no state of a traffic light in a log.
@@ -66,7 +66,7 @@ def read(probe: Probe) -> Recording:
     steps, step = np.unique(t_ns, return_inverse=True)
     if not len(steps):
         raise TraceError(
-            f"{file}: no annotations: nothing says who was around the vehicle: give a log that is annotated"
+            f"{file}: no annotations: the actors around the vehicle are not known: use a log with annotations"
         )
     rear_axle = _poses_at(probe.path / POSES_FILE, steps)
     findings += [vehicle.assumed_size(EGO_ID), *_unplaced(steps, rear_axle, np.bincount(step, minlength=len(steps)))]
@@ -107,7 +107,7 @@ def _poses_at(path: Path, t_ns: Times) -> Poses:
 
 
 def _unplaced(steps: Times, rear_axle: Poses, n_boxes: Indices) -> list[QualityFinding]:
-    """Return the finding on time stamps without a pose: whoever is annotated there, and the ego, is present and not placed."""
+    """Return the finding on time stamps without a pose: the annotated actors and the ego are present there, but not placed."""
     missing = np.isnan(rear_axle.place[:, 0]) | np.isnan(rear_axle.turn[:, 0])
     if not missing.any():
         return []
@@ -139,7 +139,7 @@ def _annotated_states(path: Path, rows: pa.Table, t_ns: Times, rear_axle: Poses)
     names = ids.dictionary.to_pylist()
     if riders:
         who = listed([names[i] for i in riders])
-        notes.append(f"riders and what they ride are one road user each, with the box around both: {who}")
+        notes.append(f"each rider and vehicle are one road user, with the box around both: {who}")
     if is_ego.any():
         notes.append(f"the boxes of category {EGO_CATEGORY} are the ego itself: they are not read")
     states = States([EGO_ID, *names], actor + np.int32(1), t_ns, boxes, {"actor_class": classes}, odd)

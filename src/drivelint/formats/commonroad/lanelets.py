@@ -149,7 +149,7 @@ def _without_towns(root: etree._Element, lanes: Sequence[BoundedLane], quality: 
     if towns and tags & {"highway", "interstate"} and "urban" not in tags:
         for lane in towns:
             lane.road_type = None
-        message = "lanelets are urban and the scenario's tags say highway: of what kind the road is, is not known"
+        message = "lanelets are urban and the scenario's tags say highway: the kind of the road is not known"
         quality.add("road_type_contradicted", "warning", None, message, len(towns))
 
 

@@ -86,5 +86,5 @@ def _colours(light: etree._Element) -> list[str]:
 
 
 def _child_text(light: etree._Element, name: str) -> str:
-    """Return what a light says, or its cycle: writers differ in where they put it."""
+    """Return an element of a light, or of its cycle: writers put it in different places."""
     return (light.findtext(name) or light.findtext(f"cycle/{name}") or "").strip()

@@ -1,7 +1,7 @@
 """CommonRoad scenarios (XML, 2018b and 2020a): their obstacles and lights as a drive, the file itself as its map.
 
-A scenario has no ego but the start of a planning problem: say who it is with --ego. The place of a state is that of the shape's origin,
-which need not be the centre of the box (see `shapes`). What a state gives as an area or an interval is not known. Environment obstacles
+A scenario has no ego but the start of a planning problem: name it with --ego. The place of a state is that of the shape's origin, which
+need not be the centre of the box (see `shapes`). What a state gives as an area or an interval is not known. Environment obstacles
 (buildings, pillars) and phantom obstacles have no states: they are not read.
 """
 
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from drivelint.formats.probe import Probe
 
 
-formats: Final = {"commonroad": ("CommonRoad scenario", "said with --ego")}
+formats: Final = {"commonroad": ("CommonRoad scenario", "named with --ego")}
 takes_mapping: Final = False
 _CLASSES = {
     "car": "car", "taxi": "car", "truck": "truck", "bus": "bus", "motorcycle": "motorcycle", "bicycle": "bicycle",
@@ -61,7 +61,7 @@ def accepts(probe: Probe) -> bool:
 
 
 def has_obstacles(path: Path, head: bytes) -> bool:
-    """Whether the file is a scenario with somebody in it, and no map alone."""
+    """Return whether the file is a scenario with actors, not only a map."""
     return _ROOT in head and _OBSTACLE.search(path.read_bytes()) is not None
 
 
@@ -79,7 +79,7 @@ def read(probe: Probe) -> Recording:
         )
     obstacles = [*root.findall("dynamicObstacle"), *root.findall("staticObstacle"), *root.findall("obstacle")]
     if not obstacles:
-        raise TraceError(f"{path}: the scenario has no obstacles: there is nobody to judge")
+        raise TraceError(f"{path}: the scenario has no obstacles: there is no actor to judge")
     ids = [str(o.get("id")) for o in obstacles]
     if len(set(ids)) < len(ids):
         twice = listed(sorted({i for i in ids if ids.count(i) > 1}))
@@ -139,7 +139,7 @@ def _to_box_centres(states: States, recorded_yaw_rate: Floats, offset: Floats, t
 
 
 def _unread(root: etree._Element, obstacles: Sequence[etree._Element]) -> list[QualityFinding]:
-    """Report what is said of obstacles and is not read: areas and intervals, and obstacles that have no states."""
+    """Report the parts of obstacles that are not read: areas and intervals, and obstacles that have no states."""
     uncertain = sum(int(float(str(o.xpath(_NOT_EXACT)))) for o in obstacles)
     sets = [str(o.get("id")) for o in obstacles if o.find("occupancySet") is not None]
     still = [str(o.get("id")) for kind in ("environmentObstacle", "phantomObstacle") for o in root.findall(kind)]
@@ -148,11 +148,11 @@ def _unread(root: etree._Element, obstacles: Sequence[etree._Element]) -> list[Q
         message = f"values of obstacles given as intervals or areas: {uncertain}: they are not known"
         findings.append(QualityFinding("uncertain_value", "warning", message, uncertain))
     if sets:
-        message = f"of {listed(sets)} only the initial state is known: what follows is a set of areas where it may be"
+        message = f"of {listed(sets)} only the initial state is known: after it, there is only a set of areas where the actor may be"
         findings.append(QualityFinding.of_actors("uncertain_value", "warning", message, sets))
     if still:
         message = (
-            f"environment and phantom obstacles are not read: {listed(still)}: a contact with them is not looked for"
+            f"environment and phantom obstacles are not read: {listed(still)}: a contact with them is not detected"
         )
         findings.append(QualityFinding("unread_obstacle", "warning", message, len(still)))
     return findings

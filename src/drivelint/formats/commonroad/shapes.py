@@ -1,6 +1,6 @@
 """The shapes of CommonRoad obstacles: their boxes, and where these lie against the place that a state gives.
 
-A state gives the place of the shape's origin. Where the centre of the box lies against it is said in two ways:
+A state gives the place of the shape's origin. The offset of the box centre from it is given in two ways:
 
 * `originXShift` of a rectangle or truck (written by commonroad-io 2026.1): how far the origin lies ahead of the centre, along the obstacle.
 * `center` and `orientation` of a rectangle or circle (2018b, 2020a; read by commonroad-io 2024.3): the centre and the turn of the box in
@@ -102,7 +102,7 @@ def _middle(polygon: etree._Element) -> tuple[float, float]:
 
 
 def _number(parent: etree._Element, name: str) -> float:
-    """Return the number of a child element, 0 without one; NaN for what is no number."""
+    """Return the number of a child element, 0 without one; NaN if it is not a number."""
     text = parent.findtext(name)
     return 0.0 if text is None else safe_xml.number(text)
 

@@ -1,8 +1,7 @@
-"""Signs, lights and stop lines of a CommonRoad map: what they are, the lanelets that refer to them, the limits they give.
+"""Signs, lights and stop lines of a CommonRoad map: their kinds, the lanelets that refer to them, and their limits.
 
-A sign or light holds for the lanelets that refer to it, on their whole length. Codes of signs depend on the country:
-commonroad-io lists MUTCD codes for the USA, those of its traffic law for Spain, and StVO numbers for Germany and, as a
-stand-in, for every other country.
+A sign or light applies to the lanelets that refer to it, on their whole length. Codes of signs depend on the country: commonroad-io lists
+MUTCD codes for the USA, those of its traffic law for Spain, and StVO numbers for Germany and, as a stand-in, for every other country.
 """
 
 from __future__ import annotations
@@ -53,7 +52,7 @@ class SignElement(NamedTuple):
 
 @dataclass
 class Signs:
-    """The signs of a map by their id; what cannot be read of them is a row of `quality`.
+    """The signs of a map by their id; unreadable parts are rows of `quality`.
 
     `codes`: the list that their codes are from, as in `traffic_signal`.
     """
@@ -97,7 +96,7 @@ class Signs:
             self.quality.add("missing_signal", "warning", None, message, lost.total())
         held = {ref for lanelet in lanelets for ref in signal_refs(lanelet)}
         if idle := sorted(known_ids - held):
-            message = f"signs and lights to which no lanelet refers hold for no lane: {', '.join(idle)}"
+            message = f"signs and lights to which no lanelet refers apply to no lane: {', '.join(idle)}"
             self.quality.add("signal_without_lane", "info", None, message, len(idle))
 
     def _report_codes(self) -> None:
@@ -121,7 +120,9 @@ class Signs:
                     continue
                 trouble = "it has no number" if element.value is None else _implausible(element.value)
                 if trouble is None and any(_restricts(e) for e in on_post):
-                    trouble = f"it holds only as its plates say ({', '.join(e.code for e in on_post if _restricts(e))})"
+                    trouble = (
+                        f"it applies only as its plates state ({', '.join(e.code for e in on_post if _restricts(e))})"
+                    )
                 if trouble:
                     self.quality.add(
                         "invalid_speed", "warning", None, f"the limit of sign {name} is not taken: {trouble}"
@@ -231,7 +232,7 @@ def points(parent: etree._Element | None) -> Floats:
     both = np.array([[safe_xml.number(p.findtext(axis)) for axis in "xy"] for p in found], np.float64).reshape(-1, 2)
     bad = np.flatnonzero(~(np.abs(both) < FARTHEST_M).all(axis=1))
     if len(bad):
-        raise ValueError(f"the point in line {found[bad[0]].sourceline} has no x and y that can be")
+        raise ValueError(f"the point in line {found[bad[0]].sourceline} has impossible values of x and y")
     return both
 
 
@@ -250,7 +251,7 @@ def _implausible(limit_mps: float) -> str | None:
 
 
 def _restricts(element: SignElement) -> bool:
-    """Tell whether an additional plate (StVO, 1000 to 1099) says when, where or for whom the sign above it holds."""
+    """Return whether an additional plate (StVO, 1000 to 1099) restricts the time, place or vehicles of the sign above it."""
     number = element.code.partition("-")[0]
     return element.kind is None and bool(re.fullmatch(r"10\d\d", number)) and number not in _PLATES
 

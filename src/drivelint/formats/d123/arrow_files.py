@@ -30,7 +30,7 @@ METADATA_KEY: Final = b"metadata"
 
 
 class LogInfo(NamedTuple):
-    """What a log says of itself: data set, place (None: it does not say) and version of py123d."""
+    """The metadata of a log: data set, place (None: not stated) and version of py123d."""
 
     dataset: str
     location: str | None
@@ -72,7 +72,7 @@ def modality(folder: Path, name: str, types: Mapping[str, pa.DataType]) -> Modal
 
 
 def sync_table(folder: Path) -> tuple[dict[str, pa.Array], LogInfo]:
-    """Return the columns of the table of frames, and what the log says of itself.
+    """Return the columns of the table of frames, and the metadata of the log.
 
     The columns are `timestamp_us` and, for each other file that there is, the number of its row, NULL: it has none in that frame.
     Errors: as `modality`, and for a version that is not read.
@@ -96,7 +96,7 @@ def log_info(path: Path | str, entries: Mapping[str, Any]) -> LogInfo:
 
 
 def metadata(path: Path | str, schema: pa.Schema) -> dict[str, Any]:
-    """Return what a schema says beside its columns. Errors: `TraceError` where that is missing or not readable."""
+    """Return the metadata of a schema. Errors: `TraceError` where that is missing or not readable."""
     packed = (schema.metadata or {}).get(METADATA_KEY)
     if packed is None:
         raise TraceError(f"{path}: its schema has no {METADATA_KEY.decode()!r}: it was not written by py123d")

@@ -90,10 +90,10 @@ def box_states(
     )
     if on_something:
         who = listed([states.ids[i] for i in on_something])
-        notes.append(f"riders and what they ride are one road user each, with the box around both: {who}")
+        notes.append(f"each rider and vehicle are one road user, with the box around both: {who}")
     if not about.box_velocities_global:
         _forget_velocities(states, np.ones(len(states), np.bool_))
-        notes.append("velocities of boxes are not read: this data set's are along the boxes' own axes in 123D")
+        notes.append("velocities of boxes are not read: in this data set they are along the boxes' own axes in 123D")
     else:
         findings += _without_untold_velocities(states, frame)
     return (states.take(~inside) if inside.any() else states), findings, notes
@@ -135,7 +135,7 @@ def _classes(boxes: Modality, numbers: Any) -> tuple[Codes, list[QualityFinding]
 
 
 def _without_untold_velocities(states: States, frame: Indices) -> list[QualityFinding]:
-    """Forget velocities that nobody measured: a zero that stands for none, and the way from box to box.
+    """Forget velocities that nobody measured: a zero that means that there is no velocity, and the way from box to box.
 
     Converters write zero for "none", in a whole log or where a box has no neighbour in time, and may fill velocities in from
     the boxes before and after. States in the order of the frames; changed in place.
@@ -150,10 +150,12 @@ def _without_untold_velocities(states: States, frame: Indices) -> list[QualityFi
         return []
     if zero[has_velocity].all():
         if not _moves(states):
-            return []  # whoever is recorded stands: zero is what it says
-        why = "velocity (0, 0, 0) of all {n} boxes, though they move, stands for none"
+            return []  # every recorded actor stands: zero is correct
+        why = "velocity (0, 0, 0) of all {n} boxes, although they move, means that there is no velocity"
     elif _way_between_boxes(states, frame, has_velocity):
-        why = "velocities of {n} boxes are the way between the boxes before and after, filled in by the converter: they are not read"
+        why = (
+            "velocities of {n} boxes were computed by the converter from the boxes before and after: they are not read"
+        )
     else:
         return []
     findings = states.findings(has_velocity, "velocity_not_recorded", "info", why)

@@ -32,7 +32,7 @@ class Clock(NamedTuple):
 
     @property
     def notes(self) -> list[str]:
-        """What the user should know."""
+        """Notes for the user."""
         if not self.zero_us:
             return []
         return [
@@ -41,7 +41,7 @@ class Clock(NamedTuple):
 
 
 def clock(folder: Path, columns: Iterable[pa.Array], *, utc: bool) -> Clock:
-    """Return the clock of a log whose columns of times these are. Errors: `TraceError` for times that cannot be.
+    """Return the clock of a log with these columns of times. Errors: `TraceError` for times that cannot be.
 
     Times as large as those of UTC are taken for UTC everywhere, so that others have to count from the log's first.
     """

@@ -71,13 +71,13 @@ def ego_box(ego: Modality, about: facts.Dataset, name: str, forward_m: float) ->
         sizes[:] = np.nan
         centre[0] += forward_m
         message = (
-            "the metadata put the middle of the ego's box on its rear axle: where its box lies is not known: say its size, and how far "
+            "the metadata put the middle of the ego's box on its rear axle: the place of its box is not known: set its size, and how far "
             "its middle is ahead of the recorded place: --ego-size LENGTH,WIDTH,AHEAD"
         )
         findings.append(QualityFinding("reference_point", "warning", message, actor_id=name))
     elif not about.ego_size_recorded and not np.isnan(sizes[:2]).any():
         model = entries.get("vehicle_name") or "its model"
-        message = f"the ego's size is the one that 123D has for {model}, not recorded"
+        message = f"the ego's size is that of 123D for {model}, not recorded"
         findings.append(QualityFinding(ASSUMED_SIZE, "info", message, actor_id=name))
     return EgoBox(centre[:3], centre[[4, 5, 6, 3]], sizes), findings
 

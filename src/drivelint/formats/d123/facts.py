@@ -1,4 +1,4 @@
-"""What 123D's numbers and data sets mean, as `facts.toml` has it."""
+"""The meaning of 123D's numbers and data sets, from `facts.toml`."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ EGO_LABEL: Final = "EGO"
 class Dataset(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What holds for a data set; the defaults hold for one that is not known.
 
-    `sensor_range_m`: how far it is documented to have whoever is there.
+    `sensor_range_m`: the range in which it is documented to have every actor.
     `utc`: times count from 1970 in UTC.
     `ego_class`: of the vehicle that recorded.
     `ego_size_recorded`: its size is that of this vehicle, not of its model.
@@ -44,11 +44,11 @@ class Dataset(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     nations: dict[str, str] = msgspec.field(default_factory=dict)
 
     def nation_of(self, location: str | None) -> str | None:
-        """Return the country where the location tells it."""
+        """Return the country if the location shows it."""
         return self.nations.get(location or "", self.nations.get("*"))
 
     def side_driven_on(self, location: str | None) -> str | None:
-        """Return lht or rht where the location tells it."""
+        """Return lht or rht if the location shows it."""
         nation = self.nation_of(location)
         return None if nation is None else side_of_nation(nation)
 
@@ -78,7 +78,7 @@ def is_read(version: str) -> bool:
 
 
 def dataset(name: str) -> Dataset:
-    """Return what holds for a data set."""
+    """Return the facts about a data set."""
     return DATASETS.get(name, UNKNOWN_DATASET)
 
 

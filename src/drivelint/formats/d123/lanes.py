@@ -57,7 +57,7 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     if not any(lane.drivable for lane in built):
         first = next((row["message"] for row in quality.rows if row["check_id"] == "invalid_lane"), "it has no lane")
         raise MapError(
-            f"map {source.name} has no lane for vehicles that can be built: {first}: give another with --map"
+            f"map {source.name} has no lane for vehicles that can be built: {first}: use another one with --map"
         )
     if layers.header.get("map_has_z"):
         _set_heights(built, lanes, request.offset)
@@ -133,7 +133,7 @@ def _bounded(
     """Return a lane as it is built."""
     kind, road_type = facts.LANE_TYPES.get(lane.lane_type, ("driving", None))
     if lane.lane_type not in facts.LANE_TYPES:
-        message = f"type {lane.lane_type} of lanelet {name} is not known: it is taken as a lane for vehicles"
+        message = f"type {lane.lane_type} of lanelet {name} is not known: it is treated as a lane for vehicles"
         quality.add("unknown_word", "warning", str(name), message)
     limits, limit_source = _limits(name, lane.speed_limit_mps, quality)
     beside = [
@@ -150,12 +150,12 @@ def _bounded(
 
 
 def _limits(name: int, limit_mps: float | None, quality: MapQuality) -> tuple[tuple[SpeedLimitSpan, ...], str]:
-    """Return the limit of a lane, if the map says one, and what says it."""
+    """Return the limit of a lane, if the map has one, and its source."""
     if limit_mps is None or math.isnan(limit_mps):
         return (), "lane"
     if 0.0 < limit_mps <= _FASTEST_MPS:
         return ((0.0, 1.0, limit_mps),), "lane"
-    quality.add("invalid_speed", "warning", str(name), f"{limit_mps:g} m/s is no speed limit: taken as unknown")
+    quality.add("invalid_speed", "warning", str(name), f"{limit_mps:g} m/s is not a speed limit: treated as unknown")
     return ((0.0, 1.0, None),), "unread"
 
 

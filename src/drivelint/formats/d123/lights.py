@@ -91,7 +91,8 @@ def _without_doubtful_colours(codes: Codes, light: Indices, n: int) -> tuple[Cod
     if not doubtful.any():
         return codes, []
     message = (
-        f"traffic lights that are red or amber in all of the log: {int(doubtful.sum())}: they may flash, which 123D writes alike: their "
+        f"traffic lights that are red or amber in all of the log: {int(doubtful.sum())}: they may be "
+        "flashing, which 123D does not distinguish: their "
         "state is not known"
     )
     finding = QualityFinding("flashing_or_steady", "warning", message, int(doubtful.sum()))

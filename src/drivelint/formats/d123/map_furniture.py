@@ -1,4 +1,4 @@
-"""What lies on and beside the lanes of a 123D map: lights, crossings, road lines, and what of it is not read."""
+"""The furniture of a 123D map: lights, crossings, road lines, and the layers that are not read."""
 
 from __future__ import annotations
 
@@ -77,8 +77,8 @@ def _on_level(row: dict[str, Any], lane: BoundedLane, height_m: float) -> bool:
 
 
 def report_unread(layers: Layers, about: facts.Dataset, quality: MapQuality) -> None:
-    """Report what a map of 123D does not say, the layers that are not read, and what of the lanes the converter estimates."""
-    message = "a map of 123D has no signs: what governs a way into a junction without a light is not known"
+    """Report the gaps of a map of 123D: missing facts, layers that are not read, and estimated parts of lanes."""
+    message = "a map of 123D has no signs: the right of way at a junction without a light is not known"
     quality.add(SIGNS_UNMAPPED, "info", None, message)
     counts = {name: layers.count(name) for name in facts.LAYERS if name not in _READ_LAYERS}
     unread = [f"{n} of {name.lower().replace('_', ' ')}" for name, n in counts.items() if n]
@@ -89,5 +89,5 @@ def report_unread(layers: Layers, about: facts.Dataset, quality: MapQuality) -> 
         message = f"layers that 123D does not have: {', '.join(map(str, layers.unknown))}: their objects are not read"
         quality.add("unknown_word", "warning", None, message, len(layers.unknown))
     if about.estimated_bounds:
-        message = f"the converter estimates bounds {about.estimated_bounds}: whoever is beside them may be within, and the other way round"
+        message = f"the converter estimates bounds {about.estimated_bounds}: an actor beside them may be within, or the other way round"
         quality.add("estimated_bounds", "warning", None, message)

@@ -60,7 +60,7 @@ class Line(msgspec.Struct):
 
 
 class Layers:
-    """The rows of a map, and what it says of itself. `name`: the map's, for errors."""
+    """The rows and the metadata of a map. `name`: the map's, for errors."""
 
     def __init__(self, name: str, rows: pa.Table) -> None:
         """Take a table with the columns `COLUMNS`. Errors: `TraceError` where it is none of 123D's, or of a version that is not read."""
@@ -102,7 +102,7 @@ class Layers:
         return sorted(set(self._layer.tolist()) - set(facts.LAYERS.values()))
 
     def features(self, layer: str, kind: type[T], quality: MapQuality) -> dict[int, T]:
-        """Return what is said of each object of a layer, in the order of the map; one that cannot be read is reported and left out."""
+        """Return the features of each object of a layer, in the order of the map; unreadable objects are reported and left out."""
         some = self._of(layer)
         feature_by_id: dict[int, T] = {}
         decoder = msgspec.msgpack.Decoder(kind)

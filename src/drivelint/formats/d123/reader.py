@@ -1,7 +1,7 @@
-"""Reads a log of 123D, a folder of Arrow files: the ego's states, the boxes of whoever is around it, lights, and its map.
+"""Reads a log of 123D, a folder of Arrow files: the ego's states, the boxes of the actors around it, lights, and its map.
 
-A log has a table of frames (`sync.arrow`), which says which row of each file belongs to which frame. The ego's poses may be far denser than
-the boxes; the ego's steps are the frames that have both, as nobody knows who is around it in between. Positions are those of the
+A log has a table of frames (`sync.arrow`), which links the rows of each file to the frames. The ego's poses may be far denser than the
+boxes; the ego's steps are the frames that have both, because the actors around it are not known in between. Positions are those of the
 box centres; the ego's pose is its IMU's, and is moved to its box centre.
 """
 
@@ -40,9 +40,9 @@ takes_mapping: Final = False
 _NO_ROAD_USERS: Final = QualityFinding(
     "no_road_users",
     "warning",
-    f"the log has no {BOXES}.arrow: who is around the ego is not recorded: rules that look at others than the ego are unknown",
+    f"the log has no {BOXES}.arrow: the actors around the ego are not recorded: rules about other actors are unknown",
 )
-_ROUNDED_US: Final = 10  # in which nobody moves by a millimetre
+_ROUNDED_US: Final = 10  # in which no actor moves by a millimetre
 _MALFORMED: Final = (
     "frames whose lists of boxes differ in length or lack a track, or that point to rows that are not there"
 )
@@ -128,7 +128,7 @@ def _frames(folder: Path, sync: Mapping[str, pa.Array], ego: Modality, boxes: Mo
     if boxes is not None:
         if n := int((whole & (box_rows < 0)).sum()):
             notes.append(
-                f"{n} of {int(whole.sum())} frames have no boxes: they are not read, as nobody knows who was there"
+                f"{n} of {int(whole.sum())} frames have no boxes: they are not read, because the other actors are not known there"
             )
         if n := boxes.n - len(np.unique(box_rows[(box_rows >= 0) & (box_rows < boxes.n)])):
             notes.append(f"{n} of {boxes.n} rows of boxes belong to no frame of {SYNC}.arrow: they are not read")

@@ -1,1 +1,1 @@
-"""Filmed drives: what was detected in each frame."""
+"""Filmed drives: the detections in each frame."""

@@ -1,6 +1,6 @@
 """This module converts two-dimensional boxes (`vision_msgs/Detection2DArray`) into distances ahead.
 
-A box of w pixels of somebody W metres wide is s = c W / w metres ahead, c being the camera's focal constant in pixels.
+A box of w pixels of an actor W metres wide is s = c W / w metres ahead, c being the camera's focal constant in pixels.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def read(path: Path, film: VideoMapping) -> Sightings:
             "a film's boxes need [camera] focal_px in the mapping: the distance at which 1 m is 1 pixel wide"
         )
     if unsaid := [actor.id for actor in film.actor if actor.box is None]:
-        raise UsageError(f"mapping: actor {unsaid[0]} has no 'box', the id of his detections")
+        raise UsageError(f"mapping: actor {unsaid[0]} has no 'box', the id of its detections")
     times: list[Times] = []
     boxes: list[tuple[Times, list[str], Floats]] = []
     for file in bag.mcap_files(path):

@@ -1,13 +1,12 @@
-"""Mappings of filmed drives: which numbers of a frame are distances ahead, and what is assumed of all that is not measured.
+"""Mappings of filmed drives: the numbers of a frame that are distances ahead, and the assumptions about everything else.
 
 A film gives no positions. The drive is laid on a straight road with one lane each way: the ego moves along it at its
-assumed speed, and whoever is detected is placed at his measured distance ahead, in the middle of his lane.
+assumed speed, and a detected actor is placed at its measured distance ahead, in the middle of its lane.
 """
 
 from __future__ import annotations
 
 import os
-import tomllib
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal
 
@@ -16,6 +15,7 @@ import msgspec
 from drivelint.errors import UsageError
 from drivelint.formats.tables.mapping import UNITS, read_toml
 from drivelint.phrases import hint
+from drivelint.toml_text import parse_toml
 
 MAPPINGS_FOLDER: Final = Path(__file__).parent / "mappings"
 Metres = Annotated[float, msgspec.Meta(gt=0.0, lt=1000.0)]
@@ -73,7 +73,7 @@ class OvertakeStages(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class DetectedActor(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """Somebody who is detected: the column with his distance ahead (of a table), or the id and width of his box (of an MCAP)."""
+    """A detected actor: the column with its distance ahead (in a table), or the id and width of its box (in an MCAP)."""
 
     id: str
     lane: Literal["own", "opposing"]
@@ -120,9 +120,9 @@ def is_video_mapping(name: str) -> bool:
     if not os.path.isfile(name):  # noqa: PTH113 - also of a name that is too long for a file
         return False
     try:
-        raw = tomllib.loads(Path(name).read_text(encoding="utf-8"))
+        raw = parse_toml(Path(name).read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError):
-        return False  # whoever reads it as another mapping says what is wrong with it
+        return False  # reading it as another mapping reports the problem
     return "frames" in raw or raw.get("extends") in shipped_mappings()
 
 
@@ -144,7 +144,7 @@ def load(name: str) -> tuple[str, VideoMapping]:
 
 
 def _merge_tables(base: dict[str, Any], override: dict[str, Any]) -> dict[str, Any]:
-    """Return `base` with what `override` says otherwise; tables are merged, lists replaced."""
+    """Return `base` with the changes of `override`; tables are merged, lists replaced."""
     both = {
         key: _merge_tables(base[key], value) if isinstance(value, dict) and isinstance(base.get(key), dict) else value
         for key, value in override.items()

@@ -1,7 +1,7 @@
-"""Filmed drives: what was detected in each frame, laid on a straight road as its mapping assumes it.
+"""Filmed drives: the detections in each frame, placed on a straight road as the mapping assumes it.
 
-Distances ahead are from bumper to bumper along the road. Where somebody is not detected in a frame he is there without a
-place; before he is first detected and after the last time nothing is claimed but the range of the detector.
+Distances ahead are from bumper to bumper along the road. An actor that is not detected in a frame is there without a place; before he is
+first detected and after the last time nothing is claimed but the range of the detector.
 
 Places are box centres: half a length behind the front bumper.
 """
@@ -80,9 +80,11 @@ def read(probe: Probe) -> Recording:
     t_ns = np.rint((film.frames.start_s + frames / film.frames.rate_hz) * 1e9).astype(np.int64)
     states, egos_x = _states(film, frames, t_ns, [ahead[judged] for ahead in detections.ahead_m])
     assumed = "speeds, lanes and the ego's way across them"
-    message = f"mapping {stem!r} assumes {assumed}; only distances ahead are measured: rules about anything else judge what is assumed"
+    message = (
+        f"mapping {stem!r} assumes {assumed}; only distances ahead are measured: all other rules judge assumed values"
+    )
     findings.append(QualityFinding(ASSUMED_MOTION, "warning", message))
-    findings.append(QualityFinding(ASSUMED_SIZE, "info", f"size as the mapping {stem!r} says, not recorded"))
+    findings.append(QualityFinding(ASSUMED_SIZE, "info", f"size from the mapping {stem!r}, not recorded"))
     recording = Recording(stem, states, ego_ids=[film.ego.id], findings=findings)
     recording.embedded_map = _road(film, egos_x)
     recording.sensor_range_m = film.sensor_range_m
@@ -102,14 +104,14 @@ def _table(path: Path, name: str, film: VideoMapping, findings: list[QualityFind
             f"{path}: no column {missing[0]!r}, which mapping {name!r} needs: it has {', '.join(sheet.names)}"
         )
     if unsaid := [actor.id for actor in film.actor if actor.ahead is None]:
-        raise UsageError(f"mapping {name!r}: actor {unsaid[0]} has no 'ahead', the column with his distance")
+        raise UsageError(f"mapping {name!r}: actor {unsaid[0]} has no 'ahead', the column with its distance")
     sheet.load(columns)
     number, bad = sheet.number(film.frames.column)
     bad |= ~(np.abs(number) < MOST_FRAMES) | (number != np.floor(number))
     rows = np.flatnonzero(~bad)
     frames, first = np.unique(number[rows].astype(np.int64), return_index=True)
     if not len(frames):
-        raise TraceError(f"{path}: column {film.frames.column!r} holds no frame numbers")
+        raise TraceError(f"{path}: column {film.frames.column!r} has no frame numbers")
     whole = np.arange(frames[0], frames[-1] + 1)
     at = np.searchsorted(whole, frames)
     ahead = []
@@ -127,9 +129,7 @@ def _table(path: Path, name: str, film: VideoMapping, findings: list[QualityFind
     if lost or bad.any():
         n = len(lost) + int(bad.sum())
         where = describe_places("line", lost, len(lost)) if lost else sheet.describe_rows(np.flatnonzero(bad))
-        message = (
-            f"{path.name}, {where}: not the {len(sheet.names)} cells of the header: nobody has a place in these frames"
-        )
+        message = f"{path.name}, {where}: not the {len(sheet.names)} cells of the header: no actor has a place in these frames"
         findings.append(QualityFinding("malformed_row", "warning", message, n))
     return Sightings(whole, ahead)
 
@@ -137,7 +137,7 @@ def _table(path: Path, name: str, film: VideoMapping, findings: list[QualityFind
 def _states(
     film: VideoMapping, frames: NDArray[np.int64], t_ns: Times, ahead: list[Floats]
 ) -> tuple[States, tuple[float, float]]:
-    """Return everybody's states, and where the ego's way begins and ends along the road (x)."""
+    """Return the states of all actors, and where the ego's path begins and ends along the road (x)."""
     own = 1.0 if film.road.driven_on == "left" else -1.0  # its lane is to the left of the centre line, or to the right
     middle = own * film.road.lane_width / 2
     ego_x = film.ego.speed.mps * (t_ns - t_ns[0]) / 1e9
@@ -147,7 +147,7 @@ def _states(
     front = ego_x + film.ego.length / 2
     tracks = [(t_ns, ego_x, ego_y, 0.0, film.ego.speed.mps)]
     for actor, distance in zip(film.actor, ahead, strict=True):
-        seen = np.flatnonzero(~np.isnan(distance))  # infinite: somebody is there, nobody knows where
+        seen = np.flatnonzero(~np.isnan(distance))  # infinite: an actor is there, but its place is not known
         there = slice(seen[0], seen[-1] + 1) if len(seen) else slice(0, 0)
         along = actor.lane == "own"
         x = (front + np.where(np.isfinite(distance), distance, np.nan) + actor.length / 2)[there]
@@ -157,7 +157,7 @@ def _states(
     actor_index = np.repeat(np.arange(len(tracks), dtype=np.int32), [len(track[0]) for track in tracks])
     times, x, y = (np.concatenate([track[k] for track in tracks]) for k in range(3))
     actors: list[EgoCar | DetectedActor] = [film.ego, *film.actor]
-    # where somebody has no place, nothing else is known
+    # if an actor has no place, nothing else is known
     motions = {
         "yaw_rad": [track[3] for track in tracks],
         "vx_mps": [track[4] for track in tracks],

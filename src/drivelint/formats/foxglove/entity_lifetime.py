@@ -1,7 +1,7 @@
-"""How long the entities of a scene are there: until they are replaced, deleted or expired.
+"""The lifetime of the entities of a scene: until they are replaced, deleted or expired.
 
-Who is still there without a message of its own has states too. One that stood still is where it was; of one that moved
-nobody knows where it is now: it is there but not placed.
+An actor that is still there without a message of its own has states too. If it stood still, it is where it
+was. If it moved, its place is not known: it is there but not placed.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import Severity
 
 MAX_PERSISTED: Final = 20_000_000
-"""More states than this are not made up: nobody records so many road users that stand still."""
+"""More states than this are not made up: no log has so many road users that stand still."""
 STALE_NS: Final = 500_000_000
 """An entity that moves and is not updated for so long is not placed: until then its last state speaks for it."""
 _NEVER: Final = np.iinfo(np.int64).max
@@ -33,7 +33,7 @@ def with_persisted(
 ) -> RecordedPoses:
     """Add the states of entities that are there without an update: where they were if they stood still, else not placed.
 
-    `deletions`: times of deletions, and the ids of whom they delete, None: of all. Who was updated at that time or later stays.
+    `deletions`: times of deletions, and the ids that they delete, None: all. An entity that was updated at that time or later stays.
     """
     unique, actor = distinct(rows.ids)
     number = {name: i for i, name in enumerate(unique)}
@@ -65,7 +65,7 @@ def _persisted(
 ) -> tuple[Indices, Times, Mask]:
     """Return the states between updates: which update each goes back to, its time, and whether the entity stood still.
 
-    `actor`: the index of each update's entity; `deletions`: times, and indices of whom they delete, -1: of all.
+    `actor`: the index of each update's entity; `deletions`: times, and indices that they delete, -1: all.
     """
     n = len(updates)
     order = np.lexsort((np.arange(n), updates.t_ns, actor))

@@ -1,4 +1,4 @@
-"""This module reads Foxglove scenes in MCAP; the first cube of an entity is the road user's box. No velocities, no ego: both are said
+"""This module reads Foxglove scenes in MCAP; the first cube of an entity is the road user's box. No velocities, no ego: both come from
 elsewhere.
 
 The pose of a cube is the centre of its box, in the entity's frame.
@@ -56,13 +56,13 @@ if TYPE_CHECKING:
     from drivelint.arrays import Codes, Mask, Times
 
 KIND_KEYS: Final = ("class", "type", "classification", "category", "label", "object_class", "object_type")
-"""Keys of the metadata that say what an entity is, where the value is a word that is known."""
+"""Keys of the metadata with the class of an entity, if the value is a known word."""
 DELETE_ALL: Final = 1
 
 
 @dataclass
 class _Scene:
-    """What was read of one topic."""
+    """The content of one topic."""
 
     rows: list[RecordedPoses] = field(default_factory=list)
     deletions: list[tuple[Times, Mask, Times, list[str | None]]] = field(default_factory=list)
@@ -167,7 +167,7 @@ def _bytes(entities: pa.Array, name: str) -> NDArray[np.bytes_]:
 
 
 def _classes(entities: pa.Array) -> Codes:
-    """Return what the metadata say an entity is, by the first key that says it in a word that is known."""
+    """Return the class of an entity by the first key of the metadata whose value is a known word."""
     codes = np.full(len(entities), -1, np.int8)
     pairs, parent = list_items(entities, "metadata")
     if not len(pairs):
@@ -196,7 +196,7 @@ def _recording(
     if not len(rows):
         raise TraceError(f"{path}: no entity on {topic!r} has a cube and an id: nothing can be judged")
     if scene.without_box:
-        message = f"{topic}: entities without a cube: {scene.without_box}: they are taken for no road users"
+        message = f"{topic}: entities without a cube: {scene.without_box}: they are not treated as road users"
         findings.append(QualityFinding("no_box", "info", message, scene.without_box))
     own_times = choose_clock({topic: rows}, findings)
     frames = _frames(transforms, own_times=own_times)

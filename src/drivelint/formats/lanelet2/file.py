@@ -23,7 +23,7 @@ _EARTH_M = 6_378_137.0
 
 
 def load(source: MapSource, request: MapOptions, quality: MapQuality) -> tuple[Any, bool]:
-    """Return the library's map, read robustly, and whether its coordinates are local: what it complains of is in `quality`.
+    """Return the library's map, read robustly, and whether its coordinates are local; its complaints are in `quality`.
 
     Errors: `MapError` where the library is not installed, the file is none of Lanelet2's, or nothing says where the
     log's frame lies on the globe.
@@ -39,11 +39,11 @@ def load(source: MapSource, request: MapOptions, quality: MapQuality) -> tuple[A
     if local:
         _place_locally(root, quality)
         if request.origin is not None:
-            message = "the map has local coordinates, which are taken: --map-origin is not used"
+            message = "the map has local coordinates, which are used: --map-origin is not"
             quality.add("map_origin_unused", "info", None, message)
     elif request.origin is None:
         raise MapError(
-            f"map {source.name} is in latitude and longitude: say which point is 0,0 in the log with --map-origin LAT,LON"
+            f"map {source.name} is in latitude and longitude: set the point that is 0,0 in the log with --map-origin LAT,LON"
         )
     latitude, longitude = (0.0, 0.0) if local or request.origin is None else request.origin
     origin = lanelet2.io.Origin(latitude, longitude)
@@ -62,8 +62,8 @@ def load(source: MapSource, request: MapOptions, quality: MapQuality) -> tuple[A
 def _place_locally(root: etree._Element, quality: MapQuality) -> None:
     """Give every node a latitude and longitude that say where its local coordinates are.
 
-    In maps of Autoware these are empty or of another frame, and the library tells by them which bound of a lane is the
-    left one and which way it runs. A node without local coordinates has no place.
+    In maps of Autoware these are empty or of another frame, and the library uses them to decide which bound of a lane is the left one and
+    which way it runs. A node without local coordinates has no place.
     """
     n_lost = 0
     first: tuple[float, float] | None = None

@@ -1,4 +1,4 @@
-"""What lies on or beside the lanes of a Lanelet2 map: lights, signs, stop lines and crossings."""
+"""The furniture of a Lanelet2 map: lights, signs, stop lines and crossings."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def _where(element: Any, lane: BoundedLane, offset: tuple[float, float]) -> floa
 
 
 def _kinds(element: Any, lanelet: Any) -> list[str]:
-    """Return what a regulatory element means for a lanelet, each kind once."""
+    """Return the meaning of a regulatory element for a lanelet, each kind once."""
     subtype = attribute(element, "subtype")
     if subtype == "right_of_way":
         yields = {x.id for x in _parameter(element, "yield")}

@@ -1,7 +1,7 @@
-"""Who may use a lanelet, which way, and how fast: what the library of Lanelet2 says by its German rules, the only ones that it has.
+"""The participants, directions and speeds that a lanelet allows, by the German rules of the library of Lanelet2, the only ones that it has.
 
-By those rules a tag `participant:*` replaces everybody whom the subtype lets in, and a tag `one_way:*` counts for a kind of road user where
-there is no tag `one_way` for all.
+By these rules, a tag `participant:*` replaces all participants that the subtype allows. A tag `one_way:*` counts for its kind of road user
+if there is no tag `one_way` for all.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _SUBTYPES: Final[Mapping[str, str]] = {
     "emergency_lane": "stop", "bicycle_lane": "biking", "walkway": "sidewalk", "shared_walkway": "sidewalk",
     "stairs": "sidewalk", "pedestrian_lane": "sidewalk", "road_shoulder": "shoulder", "rail": "rail",
 }  # fmt: skip
-"""Subtypes as our lane types, where nothing else is said."""
+"""Subtypes as our lane types, by default."""
 _ROADSIDE: Final = frozenset({"road_shoulder", "pedestrian_lane"})
 """Autoware's subtypes of lanes to stop on beside the road, which the library does not know: no tag makes them lanes of the road."""
 _DRIVERS: Final = {
@@ -58,7 +58,7 @@ class TrafficRules:
         }
 
     def access(self, lanelet: Any) -> Access | None:
-        """Return who may use a lanelet; None for one that is no lane of a road, such as a crosswalk."""
+        """Return the participants that may use a lanelet; None if it is no lane of a road, such as a crosswalk."""
         subtype = attribute(lanelet, "subtype")
         of_subtype = _SUBTYPES.get(subtype)
         if subtype in _ROADSIDE:

@@ -25,7 +25,7 @@ FOXGLOVE_ROLES: Final = {
     "foxglove.FrameTransform": "frames",
     "foxglove.FrameTransforms": "frames",
 }
-"""Schema, of ROS as `message_kind` names it, -> what is read from its messages."""
+"""Schema (for ROS as `message_kind` names it) -> what its messages are read as."""
 
 
 def mcap_files(path: Path) -> list[Path]:
@@ -111,7 +111,7 @@ def _counted_topics(information: Any) -> Iterator[tuple[str, str, int]]:
 
 
 def message_family(path: Path) -> str:
-    """Return what kind of messages a drive's log holds: `osi`, `ros2`, `foxglove`, or `none` of them.
+    """Return the kind of messages in a drive's log: `osi`, `ros2`, `foxglove`, or `none` of them.
 
     The index at the end of the file is asked first, the whole file only where that says nothing: each reader then finds
     out for itself whether it was right to ask. A log may hold several: OSI counts first, it is the truth.

@@ -1,4 +1,4 @@
-"""Tells the folder of a bag, as `ros2 bag record` leaves it, without reading its logs."""
+"""Recognises the folder of a bag, as `ros2 bag record` leaves it, without reading its logs."""
 
 from __future__ import annotations
 

@@ -38,7 +38,7 @@ class ChunkHead(NamedTuple):
 
 
 class Work:
-    """Counts what a file asks for, and refuses one that asks for too much for its size: some kilobytes could keep a reader for hours."""
+    """Counts the work that a file causes, and refuses one that causes too much for its size: a small file could keep a reader for hours."""
 
     def __init__(self) -> None:
         self._packed = self._unpacked = self._records = 0
@@ -65,7 +65,7 @@ class Work:
 
 
 def chunk_head(body: memoryview) -> ChunkHead:
-    """Return what a chunk record declares. Errors: `ChunkError` where its lengths do not fit."""
+    """Return the declaration of a chunk record. Errors: `ChunkError` where its lengths do not fit."""
     if len(body) < _CHUNK.size:
         raise ChunkError("a chunk record without its header", framed=False)
     _, _, size, crc, name_length = _CHUNK.unpack_from(body)
@@ -87,7 +87,7 @@ def chunk_records(head: ChunkHead, where: str) -> bytes:
     """
     if head.size > MAX_CHUNK_BYTES:
         raise TraceError(
-            f"{where}: a chunk of {len(head.packed)} bytes that says it unpacks to {head.size}, beyond "
+            f"{where}: a chunk of {len(head.packed)} bytes whose header states an unpacked size of {head.size}, beyond "
             f"{MAX_CHUNK_BYTES // 2**20} MiB: record or copy the log again"
         )
     if head.compression not in COMPRESSIONS:
@@ -110,7 +110,9 @@ def _unpacked(head: ChunkHead) -> bytes:
             declared = zstandard.get_frame_parameters(packed).content_size
             # the library believes the frame's own size rather than the limit given to it
             if declared not in {size, zstandard.CONTENTSIZE_UNKNOWN}:
-                raise ChunkError(f"a chunk that says it unpacks to {size} bytes and then to {declared},")
+                raise ChunkError(
+                    f"a chunk whose header states an unpacked size of {size} bytes and then of {declared},"
+                )
             records = zstandard.ZstdDecompressor().decompress(packed, max_output_size=max(size, 1))
         else:
             import lz4.frame  # type: ignore[import-untyped]
@@ -120,5 +122,5 @@ def _unpacked(head: ChunkHead) -> bytes:
         raise ChunkError(f"a chunk that cannot be unpacked ({error})") from error
     if len(records) != size:
         found = len(records) if head.compression else len(packed)
-        raise ChunkError(f"a chunk that says it unpacks to {size} bytes and unpacks to {found}")
+        raise ChunkError(f"a chunk whose header states an unpacked size of {size} bytes, but which unpacks to {found}")
     return records

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def copy_original(original: Original, sink: Sink) -> None:
-    """Copy the data into a sink, fresh or with earlier parts of the log, and tell its index what was copied.
+    """Copy the data into a sink, fresh or with earlier parts of the log, and add the copied records to its index.
 
     Errors: `TraceError`; `ChangedLogError` for a file that is not as it was.
     """

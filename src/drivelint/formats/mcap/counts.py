@@ -1,4 +1,4 @@
-"""Counts the messages of an MCAP file, and compares with that what its own indexes count."""
+"""Counts the messages of an MCAP file, and compares the counts with those of its own indexes."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _MOST_CONTRADICTIONS: Final = 3
 
 @dataclass
 class MessageCounts:
-    """Channel -> number of its messages. `unused`: channels of whose messages none is used: what is missing there is no loss."""
+    """Channel -> number of its messages. `unused`: channels of whose messages none is used: missing messages there are no loss."""
 
     of_channels: Counter[int] = field(default_factory=Counter)
     unused: set[int] = field(default_factory=set)
@@ -46,7 +46,7 @@ class MessageCounts:
     def missing_from_chunk(self, index: memoryview) -> list[int]:
         """Return the log times of the messages that the index of a channel, behind a chunk, names and the chunk does not hold.
 
-        They count as found: whoever asks says that they are lost.
+        They count as found: the caller reports that they are lost.
         """
         channel, length = MESSAGE_INDEX_HEAD.unpack_from(index)
         found = None if self._last_chunk is None else self._last_chunk.get(channel, [])

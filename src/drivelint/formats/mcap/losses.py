@@ -1,4 +1,4 @@
-"""What was lost of an MCAP file: bytes, and the log times of the messages that may have been in them."""
+"""The losses of an MCAP file: bytes, and the log times of the messages that may have been in them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 MOST_BACKWARD_NS: Final = 1_000_000_000
-"""Log times that go back further do not follow the file: what lies between two messages may be of any time."""
+"""If log times go back further, they do not follow the file: data between two messages may be of any time."""
 
 
 @dataclass(frozen=True)
@@ -99,7 +99,7 @@ class Losses:
                 self.lost_bytes[k] = replace(each, since_ns=since, until_ns=until, timed=True)
 
     def times(self, path: Path) -> list[LostTime]:
-        """Return what was lost as stretches of log time, each with the sentence that tells it."""
+        """Return what was lost as stretches of log time, each with its sentence."""
         lost_times = []
         for loss in self.lost_bytes:
             since, until = loss.since_ns, loss.until_ns
@@ -116,7 +116,7 @@ class Losses:
 
 
 def times_of_parts(parts: Sequence[tuple[Path, Losses]]) -> list[LostTime]:
-    """Return what was lost of a log in several files, in their order: what its neighbours have bounds a file's beginning and end."""
+    """Return the losses of a log in several files, in their order: the neighbours of a file bound its beginning and end."""
     lost_times = []
     for k, (path, losses) in enumerate(parts):
         before = max((each.last_ns for _, each in parts[:k] if each.last_ns is not None), default=None)

@@ -15,13 +15,13 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 MOST_MALFORMED_SHARE: Final = 0.1
-"""Where more of the messages cannot be decoded, the log's schema is not theirs, and what the others say is chance."""
+"""Where more of the messages cannot be decoded, the log's schema is not theirs, and the content of the others is chance."""
 
 
 def decode_readable(
     container: Container, packets: list[Packet], decode: Callable[[list[Packet]], T]
 ) -> tuple[T | None, list[Packet]]:
-    """Decode a batch without its malformed messages, which are lost; return what was decoded (None: nothing) and of what.
+    """Decode a batch without its malformed messages, which are lost; return the decoded data (None: none) and the messages that were read.
 
     Errors: that of the first malformed message, where more than a tenth of the batch is malformed.
     """
@@ -41,7 +41,7 @@ def decode_readable(
 def decode_others(
     packets: list[Packet], decode: Callable[[list[Packet]], T]
 ) -> tuple[T | None, dict[int, MessageError]]:
-    """Decode a batch without its malformed messages; return what was decoded (None: nothing), and their places and errors.
+    """Decode a batch without its malformed messages; return the decoded data (None: none), and the places and errors of the malformed ones.
 
     Errors: that of the first malformed message, where more than a tenth of the batch is malformed.
     """

@@ -90,7 +90,7 @@ class Original:
 
     @contextmanager
     def parsing(self, record: Record) -> Iterator[None]:
-        """Turn what the library raises of a record that cannot be understood into a `TraceError`."""
+        """Turn the library's error about an unreadable record into a `TraceError`."""
         try:
             yield
         except (McapError, struct.error, ValueError) as error:

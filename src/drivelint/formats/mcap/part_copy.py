@@ -1,8 +1,8 @@
 """This module copies the data of one MCAP file behind those of others, and adds the indexes that it lacks.
 
-Chunks are copied as they are. Two things are added where a log lacks them, because readers seek by them: message indexes
-behind a chunk, and a chunk around messages that stand outside of any. Where a part of a split log gives a number to another channel
-or schema than the parts before it, its records get new numbers; what a message says stays the same bytes.
+Chunks are copied as they are. Two things are added where a log lacks them, because readers seek by them: message indexes behind a chunk,
+and a chunk around messages that stand outside of any. Where a part of a split log gives a number to another channel or schema than the
+parts before it, its records get new numbers; the bytes of a message stay the same.
 """
 
 from __future__ import annotations
@@ -168,7 +168,7 @@ class PartCopy:
         return self._sink.offset + at - self._from
 
     def _note(self, record: Record) -> None:
-        """Tell the index of a record that will be copied."""
+        """Add a record that will be copied to the index."""
         start, length = self._place(record.at), record.end - record.at
         head = self._original.stream(record, _HEAD_BYTES)
         if record.opcode == Opcode.CHUNK:
@@ -210,7 +210,7 @@ class PartCopy:
         self._sink.index_chunk(index, self._original.chunk_message_index(record))
 
     def _end_loose(self) -> None:
-        """Put messages outside of chunks, and what was announced between them, into a chunk; announcements alone stay."""
+        """Put messages outside of chunks, and declarations between them, into a chunk; declarations without messages stay."""
         if not self._loose:
             return
         loose, self._loose = self._loose, []

@@ -1,7 +1,7 @@
-"""The MCAP container, read from front to back with every CRC checked and every length bounded before it is believed.
+"""The MCAP container, read from front to back with every CRC checked and every length bounded before it is used.
 
-What counts is the data: the index at the end of the file is only asked what is missing. Each record's byte offset is known, so that
-damage is named by its place. A reader that asks for it gets what is left of a damaged file, and what was lost.
+What counts is the data: the index at the end of the file only shows what is missing. Each record's byte offset is known, so that damage
+is named by its place. On request, a reader gets the readable part of a damaged file, and the losses.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ _LENGTHS = {Opcode.FOOTER: 20, Opcode.DATA_END: 4, Opcode.SUMMARY_OFFSET: 17}
 """Records whose length is always the same."""
 _OPCODES = frozenset(Opcode)
 _PRIVATE = 0x80
-"""Opcodes from here on belong to applications: what they hold is no part of the log."""
+"""Opcodes from here on belong to applications: their records are no part of the log."""
 _MAGIC = re.compile(re.escape(MAGIC))
 
 
@@ -68,7 +68,7 @@ class Packet:
     offset: int
 
     def error(self, path: Path, problem: str) -> MessageError:
-        """Return the error for this message: where it is, and what is wrong with it."""
+        """Return the error for this message: its place and its problem."""
         where = f"topic {self.channel.topic!r}, log time {self.log_time_ns} ns, record at byte {self.offset}"
         return MessageError(f"{path}: {where}: {problem}: record or copy the log again")
 
@@ -77,7 +77,7 @@ class Packet:
 class Container:
     """An MCAP file. All but its path is complete once `packets` is exhausted.
 
-    `salvage`: of a damaged file, what can be read is read, and `losses` tells what cannot; else damage is an error.
+    `salvage`: of a damaged file, the readable part is read, and `losses` has the rest; else damage is an error.
     `metadata`: name of a metadata record -> its texts; of several with one name, the first. `library`: what wrote the file.
     """
 
@@ -102,8 +102,8 @@ class Container:
     def packets(self) -> Iterator[Packet]:
         """Yield every message in the order of the file.
 
-        Errors: `DamageError` naming what is damaged, at which byte; with `salvage` only where nothing is left, or where what
-        is left cannot be told from what is not. `TraceError` for what is no single MCAP file, or asks for too much memory.
+        Errors: `DamageError` naming what is damaged, at which byte; with `salvage` only where nothing is left, or if the remaining part
+        cannot be distinguished from the lost one. `TraceError` for what is no single MCAP file, or asks for too much memory.
         """
         with self.path.open("rb") as file:
             if not self.path.stat().st_size:
@@ -135,7 +135,7 @@ class Container:
                 if index is None:
                     index = self._index_of_damaged(view, error)
                 if error.resume is None and not self._messages and not index.chunks:
-                    raise  # what describes the log stands there, and nobody knows whether it is still whole
+                    raise  # the description of the log is there, and it is not known whether it is still complete
                 resume = error.resume or self._resume(view, at)
                 self._refuse_second_file_within(view, at + 1, resume)
                 self.losses.add(at, resume, str(error))
@@ -186,10 +186,10 @@ class Container:
 
     def _refuse_second_file(self, view: memoryview, at: int) -> None:
         if bytes(view[at : at + len(MAGIC)]) == MAGIC:
-            raise TraceError(f"{self.path}: a second MCAP file begins at byte {at}: split the two, give each by itself")
+            raise TraceError(f"{self.path}: a second MCAP file begins at byte {at}: split the two, use each by itself")
 
     def _refuse_second_file_within(self, view: memoryview, start: int, end: int) -> None:
-        """Refuse a file of which lost bytes hold the beginning of another: what comes then may be of another drive."""
+        """Refuse a file whose lost bytes contain the beginning of another file: the data after it may be of another drive."""
         match = _MAGIC.search(view[: end + len(MAGIC)], start)
         if match and match.start() < len(view) - len(MAGIC):
             self._refuse_second_file(view, match.start())
@@ -239,7 +239,7 @@ class Container:
                 raise self._damaged(at, "a message record without its header", end)
             number, _, log_time, _ = _MESSAGE.unpack_from(body)
             if number not in self.channels:
-                raise self._damaged(at, f"a message on channel {number}, which was never announced,", end)
+                raise self._damaged(at, f"a message on channel {number}, which was never declared,", end)
             self._messages += 1
             self.counts.add(number, log_time)
             self.losses.message(log_time)
@@ -250,7 +250,7 @@ class Container:
         elif opcode == Opcode.CHANNEL:
             channel = self._parsed(Channel.read, body, at)
             if channel.schema_id and channel.schema_id not in self.schemas:
-                raise self._damaged(at, f"channel {channel.topic!r} with a schema that was never announced,", end)
+                raise self._damaged(at, f"channel {channel.topic!r} with a schema that was never declared,", end)
             self.channels[channel.id] = channel
 
     def _chunk(self, body: memoryview, at: int, end: int) -> Iterator[Packet]:
@@ -292,7 +292,7 @@ class Container:
         raise self._damaged(at, "a chunk that ends within a record", end)
 
     def _index_of_damaged(self, view: memoryview, error: DamageError) -> Summary:
-        """Take what the index announces, which the lost bytes may have announced. Errors: the damage, without salvage."""
+        """Take the declarations of the index, which the lost bytes may have contained. Errors: the damage, without salvage."""
         if not self.salvage:
             raise error
         index = read_summary(view)
@@ -341,7 +341,7 @@ class Container:
             self.findings.append(QualityFinding("no_footer", "warning", message))
 
     def _check_index(self, index: Summary) -> None:
-        """Ask an index with a right CRC what is missing among the data."""
+        """Find messages that an index with a right CRC has and the data lack."""
         for offset, (length, since, until) in sorted(index.chunks.items()):
             if offset not in self._places and not self.losses.covers(offset):
                 error = self._damaged(offset, "no chunk, where the index has one,")
@@ -358,13 +358,13 @@ class Container:
             is_damaged = any(each.check_id == "index_damaged" for each in self.findings)
             told = self.counts.contradiction(self._statistics, self.channels, is_damaged=is_damaged)
             if told is not None:
-                message = f"the index counts {told}: these are read, and what is missing is lost"
+                message = f"the index counts {told}: these are read, and missing messages are lost"
                 self.findings.append(QualityFinding("index_mismatch", "error", message))
         if self._unprotected:
-            message = f"chunks without a CRC: {self._unprotected}: flipped bits in them cannot be seen"
+            message = f"chunks without a CRC: {self._unprotected}: flipped bits in them go undetected"
             self.findings.append(QualityFinding("unprotected", "info", message, self._unprotected))
         elif self._loose and not self._data_crc:
-            message = f"messages outside of chunks, without a CRC: {self._loose}: flipped bits in them cannot be seen"
+            message = f"messages outside of chunks, without a CRC: {self._loose}: flipped bits in them go undetected"
             self.findings.append(QualityFinding("unprotected", "info", message, self._loose))
 
 

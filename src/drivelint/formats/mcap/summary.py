@@ -1,4 +1,4 @@
-"""What the index at the end of an MCAP file says is in it, where a CRC shows that it is as it was written."""
+"""The contents of an MCAP file by the index at its end, if a CRC shows that the index is unchanged."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Summary:
 
 
 def read_index(file: Path) -> Summary:
-    """Return what the index of a file says, though no CRC protects it; nothing where it is not there or damaged."""
+    """Return the content of the index of a file, although no CRC protects it; nothing if it is missing or damaged."""
     with (
         file.open("rb") as stream,
         mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as data,
@@ -48,7 +48,7 @@ def read_index(file: Path) -> Summary:
 
 
 def read_summary(view: memoryview, *, unprotected: bool = False) -> Summary:
-    """Return what the index says; nothing where there is none with a right CRC, or (`unprotected`) with none."""
+    """Return the content of the index; nothing if there is none with a right CRC, or (`unprotected`) with none."""
     end = len(view) - len(MAGIC)
     at = end - _FOOTER_BYTES - _RECORD.size
     if at < len(MAGIC) or bytes(view[end:]) != MAGIC or _RECORD.unpack_from(view, at) != (Opcode.FOOTER, _FOOTER_BYTES):

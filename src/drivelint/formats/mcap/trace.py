@@ -1,6 +1,6 @@
 """MCAP, a file or a folder of rosbag2: ASAM OSI ground truth, ROS 2 messages or Foxglove scenes.
 
-Each of their readers says where its places are: all hand over box centres.
+Each of their readers states its reference point: all hand over box centres.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 formats: Final[dict[str, tuple[str, str]]] = {
     "osi-mcap": ("ASAM OSI in MCAP", "the log's host vehicle"),
     "ros2-mcap": ("ROS 2 in MCAP", "the odometry's vehicle"),
-    "foxglove-mcap": ("Foxglove scene in MCAP", "said with --ego"),
+    "foxglove-mcap": ("Foxglove scene in MCAP", "named with --ego"),
 }
 takes_mapping: Final = False
 
@@ -28,7 +28,7 @@ def accepts(probe: Probe) -> bool:
 
 
 def read(probe: Probe) -> Recording:
-    """Read what the log holds, OSI before the others."""
+    """Read the messages of the log, OSI before the others."""
     from drivelint.formats.mcap import bag
     from drivelint.formats.osi import reader as osi
 

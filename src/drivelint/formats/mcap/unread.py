@@ -1,4 +1,4 @@
-"""Topics that would be read if their messages were in another encoding: what they hold is not known, which is told."""
+"""Topics whose messages are in an encoding that is not read: their content is not known, which is reported."""
 
 from __future__ import annotations
 
@@ -29,19 +29,19 @@ class UnreadTopics:
     def findings(self) -> list[QualityFinding]:
         """Return a finding for each topic."""
         return [
-            QualityFinding("unread_topic", "error", f"{_topic_text(topic, *what)}: what it says is unknown", what[2])
+            QualityFinding("unread_topic", "error", f"{_topic_text(topic, *what)}: its content is unknown", what[2])
             for topic, what in sorted(self.topics.items())
         ]
 
     def refuse(self, path: Path, kinds: Collection[str], read_topics: Collection[str]) -> None:
-        """Refuse a log with a topic of these kinds, of road users: who is on it is not known.
+        """Refuse a log with a topic of road users of these kinds: its actors are not known.
 
         `read_topics`: topics of theirs that are read, which may be chosen. Errors: `TraceError`.
         """
         for topic, what in sorted(self.topics.items()):
             if what[0] in kinds:
                 choice = f", or judge without it: --topic {min(read_topics)}" if read_topics else ""
-                raise TraceError(f"{path}: {_topic_text(topic, *what)}: who is on it is unknown: convert it{choice}")
+                raise TraceError(f"{path}: {_topic_text(topic, *what)}: its actors are unknown: convert it{choice}")
 
 
 def _topic_text(topic: str, kind: str, encoding: str, n: int) -> str:

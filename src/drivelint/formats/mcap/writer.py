@@ -28,7 +28,7 @@ _BLOCK: Final = 4 << 20
 
 
 class Sink:
-    """Writes one MCAP file. What was copied into it is told to its index too, so that the summary speaks of everything.
+    """Writes one MCAP file. Its index also has everything that was copied into it, so that the summary is complete.
 
     `offset` is where the next byte goes. The summary holds schemas, channels, statistics, chunk, attachment and metadata
     indexes and their offsets, with a CRC; the data section has one too.
@@ -192,7 +192,7 @@ class Sink:
 
 
 def free_id(used_ids: Mapping[int, object], least: int, kind: str) -> int:
-    """Return the id after the highest one, or the lowest that nobody has."""
+    """Return the id after the highest one, or the lowest unused one."""
     after = max(used_ids, default=least - 1) + 1
     if after < ID_LIMIT:
         return max(after, least)

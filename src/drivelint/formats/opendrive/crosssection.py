@@ -116,7 +116,7 @@ def _divide(s: Floats, parts: Floats) -> Floats:
     """Return the stations with each interval cut into equal parts."""
     count = np.maximum(parts, 1).astype(np.int64)
     if count.sum() > MAX_POINTS:
-        raise MalformedError(f"its edges need {count.sum()} points: its numbers make no sense")
+        raise MalformedError(f"its edges need {count.sum()} points: its numbers are not plausible")
     first = np.repeat(s[:-1], count)
     place = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
     return np.append(first + place * np.repeat(np.diff(s) / count, count), s[-1])

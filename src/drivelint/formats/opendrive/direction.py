@@ -1,4 +1,4 @@
-"""Which side of the road is driven on, and which way each lane goes."""
+"""Finds the side of the road that is driven on, and the direction of each lane."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ class DrivingSideStatements:
 
         `side_by_lanes`: the side that is driven on by the lanes beside each other, if the lanes with negative numbers run along the
         reference line. lht: each direction is a road of its own, and they lie the other way round than on one road, as SUMO writes its
-        left-hand nets; None: no lane has an opposing one beside it, so the lanes' direction does not tell the side that is driven on.
+        left-hand nets; None: no lane has an opposing one beside it, so the lanes' direction does not show the side that is driven on.
         """
         if len(self.rules) > 1:
             counts = ", ".join(f"{side} {n}" for side, n in sorted(self.rules.items()))
@@ -103,9 +103,7 @@ class DrivingSideStatements:
             else self._with_side_by_lanes(side_by_lanes, quality)
         )
         if direction.source == "default":
-            message = (
-                "nothing in the map says which side is driven on: right-hand traffic is a guess; give --handedness"
-            )
+            message = "the map does not state which side is driven on: right-hand traffic is a guess; set --handedness"
             if side_by_lanes is None and direction.forward_source != "default":
                 message = (
                     f"which way the lanes run is known by {direction.forward_source}, but none has one of the other direction beside it: "
@@ -141,9 +139,7 @@ class DrivingSideStatements:
         ways += [w for w in self.statements if w.of_lanes]
         way = ways[0] if ways else side
         if side is None:  # then no option says anything of the lanes' direction
-            _disagreements(
-                self.statements, quality, "every direction", "give a map whose roads have the rule attribute"
-            )
+            _disagreements(self.statements, quality, "every direction", "use a map whose roads have the rule attribute")
         else:
             _disagreements(
                 self.statements, quality, "the side for overtaking" if way and way.of_lanes else "every direction"
@@ -166,7 +162,7 @@ class DrivingSideStatements:
 def _disagreements(
     statements: Sequence[DrivingSideStatement], quality: MapQuality, wrong: str, advice: str | None = None
 ) -> None:
-    """Report statements that disagree. `wrong`: what is wrong if the first one is; `advice`: what to do if no given side helps."""
+    """Report statements that disagree. `wrong`: the effect if the first one is wrong; `advice`: the remedy if no given side helps."""
     if len({w.side for w in statements}) > 1:
         first, second = statements[:2]
         # if the second statement agrees with the option, leaving out the option changes nothing

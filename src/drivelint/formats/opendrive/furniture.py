@@ -1,4 +1,4 @@
-"""What lies on or beside the lanes: signals, stop lines, objects and crossings, laid over the lanelets."""
+"""The furniture of a map: signals, stop lines, objects and crossings, laid over the lanelets."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One lane of one lane section, evaluated, and what holds along it: road type, speed limits, road marks."""
+"""One lane of one lane section, evaluated, with the facts along it: road type, speed limits, road marks."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def lanelet_id(key: LaneKey) -> str:
 
 @dataclass(eq=False)
 class Lanelet:
-    """A lane of a section in the direction of travel: its points `line`, and as arrays (n,) what else they are."""
+    """A lane of a section in the direction of travel: its points `line`, and their attributes as arrays (n,)."""
 
     key: LaneKey
     lane: Lane

@@ -55,9 +55,7 @@ def _check_plan(road: Road, quality: MapQuality) -> None:
         message = f"{name} turn on the spot by up to {float(np.degrees(kink.max())):.1f} degrees"
         quality.add("reference_kink", "warning", road.road_id, message, int((kink > 0.05).sum()))
     if abs(road.plan.end - road.said_length_m) > 0.01:
-        message = (
-            f"{name} are {road.plan.end:.2f} m long, the road says {road.said_length_m:.2f} m: the shorter one holds"
-        )
+        message = f"{name} are {road.plan.end:.2f} m long, the road states {road.said_length_m:.2f} m: the shorter one is used"
         quality.add("length_mismatch", "warning", road.road_id, message)
 
 
@@ -98,7 +96,7 @@ class _StripBuilder:
         for number, low in sorted(evaluator.negative_m.items()):
             if low < -0.01:
                 lane_id = lanelet_id((road.road_id, strip.section, number))
-                message = f"the width of lane {lane_id} falls to {low:.2f} m: taken as 0 there"
+                message = f"the width of lane {lane_id} falls to {low:.2f} m: treated as 0 there"
                 self.quality.add("negative_width", "warning", lane_id, message)
 
     def _cut(self, evaluator: Evaluator, edges: Edges, s: Floats) -> None:

@@ -1,4 +1,4 @@
-"""Which lanelet continues which, in the direction of travel.
+"""Links between lanelets, in the direction of travel.
 
 Every link that the file declares, from either lane, a road's end or a junction, is the same thing: two lane ends that
 touch. Directions are applied once, to the touching ends; so it does not matter which side declared a link, or if both.
@@ -72,7 +72,7 @@ def _declared_contacts(net: Network, quality: MapQuality) -> Iterator[tuple[Lane
 def _contacts_at(
     net: Network, road: Road, at: LaneEnd, targets: tuple[int, ...], beside: LaneSection | None, *, quality: MapQuality
 ) -> Iterator[tuple[LaneEnd, LaneEnd]]:
-    """Yield what a lane's end touches: in the next section of its road, or in the next road."""
+    """Yield the lanes that a lane's end touches: in the next section of its road, or in the next road."""
     key, end = at
     if beside is not None:
         for target in targets:
@@ -89,7 +89,7 @@ def _contacts_at(
     contact = join.contact or (back[0] if len(back) == 1 else None)
     if contact is None:
         name = lanelet_id(key)
-        message = f"lane {name} goes on in road {join.element_id}, but the file does not say at which end"
+        message = f"lane {name} goes on in road {join.element_id}, but the file does not state at which end"
         quality.add("missing_link", "error", name, message)
         return
     for target in targets:
@@ -134,7 +134,7 @@ def _road_end(road: Road, end: str) -> np.ndarray:
 
 
 def _through_short(touching: set[tuple[LaneEnd, LaneEnd]], short: set[LaneKey]) -> set[tuple[LaneEnd, LaneEnd]]:
-    """Join what touches the two ends of a section that was left out as too short."""
+    """Join the lanes that touch the two ends of a section that was left out as too short."""
     result = set(touching)
     for key in sorted(short):
         beside: dict[str, set[LaneEnd]] = {START: set(), END: set()}

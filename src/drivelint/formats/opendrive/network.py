@@ -85,7 +85,7 @@ class LaneSection:
 
 @dataclass(frozen=True)
 class RoadLink:
-    """What a road joins at one of its ends."""
+    """The road or junction at one end of a road."""
 
     is_junction: bool
     element_id: str
@@ -340,7 +340,7 @@ def _speeds(
             speeds.append(SpeedLimit(start, posted, is_stated=True, readable=posted is not None))
             if limit is None:
                 said = f"{word[:20]} {speed.get('unit', 'm/s')[:20]}"
-                message = f"line {speed.sourceline}: {said} is no speed limit: taken as unknown"
+                message = f"line {speed.sourceline}: {said} is not a speed limit: treated as unknown"
                 quality.add("invalid_speed", "warning", None, message)
     return tuple(sorted(speeds, key=lambda s: s.start_m))
 

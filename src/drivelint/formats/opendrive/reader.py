@@ -106,5 +106,5 @@ def _lanelet_row(lane: Lanelet) -> dict[str, Any]:
 
 
 def _against(lane: Lanelet, beside: Lanelet | None) -> bool | None:
-    """Tell whether the lane beside is driven the other way; one that is driven both ways is."""
+    """Return whether the lane beside is driven the other way, as a lane that is driven both ways is."""
     return None if beside is None else beside.along != lane.along or beside.bidirectional

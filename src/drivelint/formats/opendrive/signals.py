@@ -1,4 +1,4 @@
-"""Signs, lights and painted signals: one row for every lanelet that each holds for."""
+"""Signs, lights and painted signals: one row for every lanelet that each applies to."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def _unique(rows: Rows, key: tuple[str, ...]) -> Rows:
 
 
 class _Reader:
-    """Collects signals; what cannot be placed is a row of `quality`."""
+    """Collects signals; a signal that cannot be placed is a row of `quality`."""
 
     def __init__(self, net: Network, offset: tuple[float, float], quality: MapQuality) -> None:
         self.offset, self.quality = offset, quality
@@ -154,7 +154,7 @@ class _Reader:
         placed = {row["signal_id"] for row in self.signals}
         for name, (road, _) in self.defined.items():
             if name not in placed:
-                message = f"signal {name} of road {road.road_id} holds for no lane that vehicles drive on"
+                message = f"signal {name} of road {road.road_id} applies to no lane that vehicles drive on"
                 self.quality.add("signal_without_lane", "info", road.road_id, message)
 
 
@@ -168,6 +168,6 @@ def _position(road: Road, signal: etree._Element, offset: tuple[float, float]) -
 
 
 def _at(lane: Lanelet, s: float) -> bool:
-    """Tell whether the lanelet holds a road station; of two that meet there the later one does."""
+    """Return whether the lanelet contains a road station; of two that meet there the later one does."""
     end = lane.strip.end_m
     return lane.strip.start_m <= s < end or (s >= end >= lane.road.length_m - 1e-3)

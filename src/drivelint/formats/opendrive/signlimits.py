@@ -1,12 +1,12 @@
 """Speed limits of lanelets: those of signs before those that the lane or the road records.
 
-OpenDRIVE calls the speed of a road type the default, lets that of a lane go before it, and says that limits derived from signals have
-preference over both. A sign holds from where it stands, along its lane, to the next sign or junction. On roads that follow, it holds
-while they record nothing, or what the road of the sign records: another record is a new default. Beyond a junction nothing is known:
-nations differ in whether the limit goes on there.
+In OpenDRIVE, the speed of a road type is the default, that of a lane takes precedence over it, and limits from signals take precedence
+over both. A sign applies from its position, along its lane, to the next sign or junction. On roads that follow, it holds while they
+record nothing, or what the road of the sign records: another record is a new default. Beyond a junction nothing is known: nations differ
+in whether the limit continues there.
 
-A sign that cannot be read (no number or unit, or one that changes) makes the default of the road type unknown. What the lane itself records
-is then the limit: it says what the sign may say.
+A sign that cannot be read (no number or unit, or one that changes) makes the default of the road type unknown. What the lane itself
+records is then the limit: it has the limit that the sign may have.
 """
 
 from __future__ import annotations
@@ -63,7 +63,10 @@ def speed_limits(
         if any(_contradict(sign, lane) for sign in sign_rows for lane in of_lane):
             contradicted.append(name)
     if contradicted:
-        message = f"signs give other limits than the lanes that they hold for, the first {contradicted[0]}: those of the signs count"
+        message = (
+            f"signs state other limits than the lanes that they apply to, the first {contradicted[0]}: the limits "
+            "of the signs are used"
+        )
         quality.add("limit_contradicted", "info", contradicted[0], message, len(contradicted))
     return sorted(rows, key=lambda r: (r["lanelet_id"], r["s_start_m"], r["s_end_m"], r["limit_mps"] or 0.0))
 
@@ -107,7 +110,7 @@ def _sign_rows(
 
 
 def _same_record(before: Rows, behind: Rows) -> bool:
-    """Tell whether a lanelet records no limit at its start, or the one that the lanelet before it records at its end."""
+    """Return whether a lanelet records no limit at its start, or the one that the lanelet before it records at its end."""
     last, first = (
         (row["limit_mps"], row["source"]) if row is not None else None
         for row in (

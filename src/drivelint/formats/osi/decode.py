@@ -176,7 +176,7 @@ def read_first_message(data: bytes, name: str) -> FirstMessage:
     """Return lanes and geo reference (a PROJ string, with x, y and yaw) of a ground truth, or of the one in a sensor view.
 
     The lanes go with their boundaries, signs, lights and road markings. Lanes without boundaries have no width, and nothing can be
-    placed on them: they are told, and make no map.
+    placed on them: they are reported, and make no map.
     """
     try:
         outer = message_class(name.removeprefix("osi3.")).FromString(data)
@@ -215,7 +215,7 @@ def _inner(fields: pa.DataType | None, name: str) -> pa.DataType | None:
 
 
 def _coordinate(vector: pa.Array, name: str) -> tuple[Floats, Mask]:
-    """Return a coordinate, NaN where it is not said or not finite, and where it is said."""
+    """Return a coordinate, NaN where it is missing or not finite, and where it is present."""
     values = struct_field(vector, name).cast(pa.float64())
     said = values.is_valid().to_numpy(zero_copy_only=False)
     numbers = pc.fill_null(values, float("nan")).to_numpy(zero_copy_only=False)

@@ -20,7 +20,7 @@ def forget_copied_heights(states: States) -> QualityFinding | None:
         return None
     states.numbers["height_m"] = np.full(len(states), np.nan)
     message = (
-        "every height of an object is its width, as omega-prime 0.3.7 writes an MCAP file of its Parquet: heights are taken as unknown; "
-        "give the Parquet file, or write the log anew"
+        "every height of an object is its width, as omega-prime 0.3.7 writes an MCAP file of its Parquet: heights are treated as unknown; "
+        "use the Parquet file, or write the log again"
     )
     return QualityFinding("copied_height", "warning", message, int(has_height.sum()))

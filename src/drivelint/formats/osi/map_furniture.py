@@ -46,7 +46,7 @@ def read(
             continue
         symbol = classification.traffic_main_sign_type if classification.type == kinds.SYMBOL_MARKING else None
         if not np.isfinite(_outline(mark, road)).all():
-            message = f"road marking {mark.id.value} is left out: the log does not say where it lies"
+            message = f"road marking {mark.id.value} is left out: the log does not state where it lies"
             quality.add("road_marking_without_place", "warning", None, message)
         elif symbol == kinds.ZEBRA:
             crossings += _zebra(mark, road)
@@ -105,7 +105,7 @@ def _once(lanes: list[BoundedLane]) -> list[BoundedLane]:
 
 
 def _facing(base: Any, lanes: list[BoundedLane]) -> list[BoundedLane]:
-    """Return the lanes whose traffic sees the front of a sign, if there are any: its x axis points towards who reads it."""
+    """Return the lanes whose traffic sees the front of a sign, if there are any: its x axis points towards the reader."""
     if not np.isfinite([base.orientation.roll, base.orientation.pitch, base.orientation.yaw]).all():
         return lanes
     normal = rotation(base)[:2, 0]
@@ -183,7 +183,7 @@ def _signal_rows(
 ) -> Iterable[Row]:
     """Return the rows of a signal for its lanes; where it stands is the lane's end if the log does not say it."""
     if not lanes:
-        message = f"{description} is assigned to no lane of the map: nobody knows for whom it holds"
+        message = f"{description} is assigned to no lane of the map: it is not known to which lanes it applies"
         quality.add("signal_without_lane", "warning", None, message)
     if place is None:
         return [signal_row(lane, float(lane.line.s[-1]), lane.line.centre[-1], **row) for lane in lanes]

@@ -1,7 +1,6 @@
 """Lanes that an OSI trace carries itself, in its first ground truth: logical lanes, and physical lanes where there are none.
 
-OSI says left and right along the points of lines, which may run against the traffic; here all is turned into the direction of
-travel.
+In OSI, left and right are along the points of lines, which may run against the traffic; here all is turned into the direction of travel.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Logical lanes of an OSI trace (OSI 3.5 and later): lanes by their two bounds along a reference line.
 
-OSI says left, right, begin and end along the reference line; here all is turned into the direction of travel.
+In OSI, left, right, begin and end are along the reference line; here all is turned into the direction of travel.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ class LogicalLane:
 
 
 def read(truth: Any, quality: MapQuality) -> dict[int, LogicalLane]:
-    """Return the logical lanes that have a shape and a direction, by id; what is wrong with the others goes to `quality`."""
+    """Return the logical lanes that have a shape and a direction, by id; problems of the others go to `quality`."""
     bounds = {bound.id.value: bound for bound in truth.logical_lane_boundary}
     lanes: dict[int, LogicalLane] = {}
     for message in truth.logical_lane:
@@ -91,7 +91,7 @@ def _lane(message: Any, bounds: Mapping[int, Any]) -> LogicalLane:
     driven = kinds.LANE_KINDS.get(message.type) in kinds.DRIVABLE
     way = message.move_direction
     if driven and way not in {kinds.INCREASING, kinds.DECREASING, kinds.BOTH}:
-        raise UnbuildableError("its move_direction does not say in which direction it is driven")
+        raise UnbuildableError("its move_direction does not state in which direction it is driven")
     left, right = _side(message.left_boundary_id, bounds, "left"), _side(message.right_boundary_id, bounds, "right")
     begin, end = message.start_s, message.end_s
     low, high = max(left[0, 3], right[0, 3]), min(left[-1, 3], right[-1, 3])
@@ -138,7 +138,7 @@ def _side(ids: Iterable[Any], bounds: Mapping[int, Any], word: str) -> Floats:
 
 
 def _sides(lane: LogicalLane, field: str) -> tuple[Any, Any]:
-    """Return what the message says on the driver's left and right."""
+    """Return the elements of the message on the driver's left and right."""
     both = getattr(lane.message, f"left_{field}"), getattr(lane.message, f"right_{field}")
     return both if lane.along > 0 else both[::-1]
 

@@ -42,7 +42,7 @@ class PhysicalLane:
 
 
 def read(truth: Any, quality: MapQuality) -> dict[int, PhysicalLane]:
-    """Return the lanes that have a shape and a direction, by id; what is wrong with the others goes to `quality`.
+    """Return the lanes that have a shape and a direction, by id; problems of the others go to `quality`.
 
     Areas of intersections are not among them.
     """
@@ -64,14 +64,14 @@ def read(truth: Any, quality: MapQuality) -> dict[int, PhysicalLane]:
 
 
 def _ascending(classification: Any, *, drops: bool) -> bool:
-    """Say whether a lane is driven in the order of its points. Errors: `UnbuildableError` where nobody knows."""
+    """Return whether a lane is driven in the order of its points. Errors: `UnbuildableError` if it is not known."""
     if classification.HasField(_DIRECTION):
         return bool(classification.centerline_is_driving_direction)
     if drops:
         return False
     if _kind(classification)[1]:
         raise UnbuildableError(
-            "nothing says in which direction it is driven (centerline_is_driving_direction is not set)"
+            "the direction in which it is driven is not known (centerline_is_driving_direction is not set)"
         )
     return True
 
@@ -92,7 +92,7 @@ def _turned(lane: Any, bounds: Mapping[int, Any], *, drops: bool) -> PhysicalLan
         raise UnbuildableError(f"it has {lacks}, and so no width")
     centre = _xyz(classification.centerline)
     if not all((np.abs(points) < FARTHEST_M).all() for points in (centre, *lines[0], *lines[1])):
-        raise UnbuildableError("a point of it has a coordinate that cannot be")
+        raise UnbuildableError("a point of it has an impossible coordinate")
     if len(centre) < 2:
         if any(i.value not in bounds for side in ids for i in side):
             raise UnbuildableError("it has no centre line, and not all of its boundaries are in the log")

@@ -1,9 +1,9 @@
-"""What OSI has no field for, carried in a converted log beside its messages, written and read here.
+"""Data without a field in OSI: written beside the messages of a converted log, and read from there.
 
-Two MCAP metadata records. `drivelint.trace`: where the log is from, the map offset and sensor range that its mapping said, the
-projection of its coordinates, what holds in the drive, what was found when it was read. `drivelint.actors`: OSI id -> the row of
-`actor` in JSON, since OSI's ids are numbers and its classes and hosts are fewer than ours. One channel of JSON messages,
-`drivelint.DeclaredEvent`, for declared events.
+Two MCAP metadata records. `drivelint.trace`: the source of the log, the map offset and sensor range of its mapping, the projection of its
+coordinates, the conditions of the drive, the findings from reading it. `drivelint.actors`: OSI id -> the row of `actor` in JSON, since
+OSI's ids are numbers and its classes and hosts are fewer than ours. One channel of JSON messages, `drivelint.DeclaredEvent`, for declared
+events.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ TRACE_RECORD: Final = "drivelint.trace"
 ACTORS_RECORD: Final = "drivelint.actors"
 EVENT_MESSAGE: Final = "drivelint.DeclaredEvent"
 EGO_CHECK_IDS: Final = frozenset({"no_ego", "ego_count", "no_indicator", "no_brake_light"})
-"""Findings about whoever was the ego: found anew for whoever is, and so not carried."""
+"""Findings about the ego of the original log: they are found again for the present ego, and so not carried."""
 OPTIONAL_COORDINATES: Final = ("z_m",)
 """Coordinates that OSI has no way to leave out of a vector; named in the record where no state has them."""
 
@@ -108,7 +108,7 @@ def ego_independent_quality(trace: Trace) -> pa.Table:
 
 
 def apply_metadata(path: Path, metadata: Mapping[str, Mapping[str, str]], recording: Recording) -> None:
-    """Add what the metadata records say to a recording of OSI messages. Errors: `TraceError` where they do not fit it."""
+    """Add the content of the metadata records to a recording of OSI messages. Errors: `TraceError` where they do not fit it."""
     if TRACE_RECORD in metadata:
         _apply_trace(path, _read(path, TRACE_RECORD, metadata[TRACE_RECORD], _TraceFacts), recording)
     if ACTORS_RECORD in metadata:

@@ -115,7 +115,7 @@ def _refuse_lost_end_of_converted(container: Container) -> None:
     """Refuse a log of `drivelint convert` that lost its end: its declared events, of any time, stand there."""
     if container.library == metadata.LIBRARY and any(each.until_ns is None for each in container.losses.lost_bytes):
         raise TraceError(
-            f"{container.path}: the end of this converted log is lost, where its declared events stand "
+            f"{container.path}: the end of this converted log, with its declared events, is lost "
             f"({container.losses.last.cause}): convert it again"
         )
 
@@ -165,7 +165,7 @@ def _check_topics(container: Container, truths: list[str], topic: str | None) ->
 
 
 def _foreign_content(container: Container) -> str:
-    """Say what an MCAP file without OSI messages holds instead: other kinds of messages, or a topic without any."""
+    """Describe the content of an MCAP file without OSI messages: other kinds of messages, or a topic without any."""
     names = {0: "no schema", **{number: schema.name for number, schema in container.schemas.items()}}
     kinds = {f"{names[c.schema_id]} in {c.message_encoding or 'no encoding'}" for c in container.channels.values()}
     needed = f"{GROUND_TRUTH} or {SENSOR_VIEW} in protobuf is needed"
@@ -175,7 +175,7 @@ def _foreign_content(container: Container) -> str:
 
 
 def read(probe: Probe) -> Recording:
-    """Read a trace of `osi3.GroundTruth` or `osi3.SensorView` messages: which of the two, the first messages tell.
+    """Read a trace of `osi3.GroundTruth` or `osi3.SensorView` messages: the first messages show which of the two.
 
     Errors: `TraceError` with the byte where no message can be read, for messages that are neither kind, or without time stamps.
     """

@@ -58,7 +58,7 @@ def _file(*parts: str) -> descriptor_pb2.FileDescriptorProto:
 
 @cache
 def descriptor_set(*more: str) -> bytes:
-    """Return the serialised `FileDescriptorSet` of what is written, for an MCAP schema record; with "read" of what is read, too."""
+    """Return the serialised `FileDescriptorSet` of the written messages, for an MCAP schema record; with "read" also of those read."""
     return descriptor_pb2.FileDescriptorSet(file=[_file("written", *more)]).SerializeToString(deterministic=True)
 
 

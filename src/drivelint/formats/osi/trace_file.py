@@ -1,6 +1,6 @@
-"""Cuts an OSI trace file into its messages, each of which stands behind its length; of a damaged file, those before the damage.
+"""Cuts an OSI trace file into its messages, each of which follows its length; of a damaged file, those before the damage.
 
-Nothing marks the beginning of a message but the length of the one before. Where a length cannot be right, all that follows is lost:
+Nothing marks the beginning of a message but the length of the one before. If a length is impossible, everything after it is lost:
 whatever looks like another message there may be the inside of one.
 """
 
@@ -39,9 +39,9 @@ def is_osi_trace(head: bytes, size: int) -> bool:
 
 
 def message_batches(channel: Channel, content: mmap.mmap, losses: Losses) -> Iterator[list[Packet]]:
-    """Yield the messages up to the damage, some tens of megabytes at a time; then, to `losses`, add what is lost behind them.
+    """Yield the messages up to the damage, some tens of megabytes at a time; then add the loss after them to `losses`.
 
-    The caller tells `losses` the times of the messages that it has read before it asks for more.
+    The caller adds the times of the messages that it has read to `losses` before it takes more.
     """
     waiting: list[Packet] = []
     at = size = 0
@@ -91,7 +91,7 @@ def _begins(content: mmap.mmap, at: int) -> bool:
 
 
 def lost_times(path: Path, losses: Losses, t_ns: Times) -> list[LostTime]:
-    """Return what was lost in the clock of the messages that were read, whose times in the order of the file are `t_ns`.
+    """Return the losses in the clock of the messages that were read, whose times in the order of the file are `t_ns`.
 
     Where their clock goes back, messages come late: a lost one may have come as late. A clock that stands still bounds nothing.
     """

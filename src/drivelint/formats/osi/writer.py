@@ -33,7 +33,7 @@ _MAX_ID: Final = (1 << 64) - 1
 
 
 def write(sink: BinaryIO, trace: Trace, road: MapSource | None, *, as_recorded: bool = False) -> int:
-    """Write the log and return the number of ground-truth messages: one per time stamp of any actor or signal, and per frame of nobody.
+    """Write the log and return the number of ground-truth messages: one per time stamp of any actor or signal, and per empty frame.
 
     The same trace and map give the same bytes. `road` must be UTF-8, as OSI's text fields are. A vector of which x or y is
     not known is left out as a whole.

@@ -74,7 +74,7 @@ class Types:
     enums: dict[str, EnumDescriptorProto] = field(default_factory=dict)
 
     def add(self, scope: str, messages: Iterable[DescriptorProto], enums: Iterable[EnumDescriptorProto]) -> None:
-        """Add messages, enumerations and, below them, what is nested."""
+        """Add messages, enumerations and nested declarations."""
         self.enums.update({f"{scope}.{enum.name}": enum for enum in enums})
         for message in messages:
             name = f"{scope}.{message.name}"

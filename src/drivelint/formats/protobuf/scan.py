@@ -1,4 +1,4 @@
-"""This module finds the fields of a protobuf message without decoding what is in them."""
+"""This module finds the fields of a protobuf message without decoding their content."""
 
 from __future__ import annotations
 

@@ -96,5 +96,5 @@ def join_columns(n: int, *parts: bytes | Bytes) -> Bytes:
 
 
 def tag(number: int, kind: int) -> bytes:
-    """Return what stands before a field: its number and kind."""
+    """Return the tag of a field: its number and kind."""
     return varint(number << 3 | kind)

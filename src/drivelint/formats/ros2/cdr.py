@@ -1,9 +1,9 @@
 """CDR messages (ROS 2) to columns: a batch of messages is read in step, each by a cursor of its own.
 
-A message definition is compiled into a few steps; numpy takes every step for all messages at once, and within a sequence
-for its first items, then its second ones, and so on. So strings and sequences may be of any length, and no message is
-read by itself. The steps only find where everything stands; what is kept is then read for all items at once. Rules of
-alignment: CDR of the OMG (XCDR1), positions counted behind the four bytes of the header.
+A message definition is compiled into a few steps; numpy takes every step for all messages at once, and within a sequence for its first
+items, then its second ones, and so on. So strings and sequences may be of any length, and no message is read by itself. The steps only
+find the place of each value; the kept values are then read for all items at once. Rules of alignment: CDR of the OMG (XCDR1), positions
+counted behind the four bytes of the header.
 """
 
 from __future__ import annotations
@@ -295,7 +295,7 @@ class _Batch:
         return parts or [self._run(step.program, cursor[:0].copy(), message[:0])[1]]
 
     def _read(self, program: list[Any], walk: _Walk) -> Table:
-        """Read what is kept, at the places that a walk found."""
+        """Read the kept fields, at the places that a walk found."""
         table = Table(walk.n, parent=walk.parent, where=f"{self._path}: the definition of {self._name}")
         for i, step in enumerate(program):
             if isinstance(step, _Block):
@@ -347,7 +347,7 @@ class _Batch:
 
 
 def _stacked(parts: list[_Walk], offsets: Sequence[int], place: NDArray[np.intp]) -> _Walk:
-    """Put the first, second, ... items of all sequences, and what is in them, into the order of their sequences.
+    """Put the first, second, ... items of all sequences, with their content, into the order of their sequences.
 
     `offsets`: how many rows above belong to earlier parts; `place`: where each row above has gone.
     """

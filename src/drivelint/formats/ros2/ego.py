@@ -1,4 +1,4 @@
-"""The messages of ROS 2 about the ego and its surroundings: odometry, transforms, its lights, who drives."""
+"""The messages of ROS 2 about the ego and its surroundings: odometry, transforms, its lights, whether the system drives."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def add_transforms(frames: TransformTree, table: Table, log_ns: Times, *, static
 def indicators(t_ns: Times, reports: dict[str, tuple[Times, NDArray[Any]]]) -> Codes:
     """Return the ego's indicator at given times, by the last reports no older than `STALE_NS`; -1 where not known.
 
-    Hazard lights count before a side; a hazard report alone does not tell that no side is on.
+    Hazard lights count before a side; a hazard report alone does not show that no side is on.
     """
     side, hazard = (_last(t_ns, reports.get(name)) for name in (TURN_INDICATORS, HAZARD_LIGHTS))
     result = np.full(len(t_ns), -1, np.int8)
@@ -110,9 +110,9 @@ def _last(t_ns: Times, reports: tuple[Times, NDArray[Any]] | None) -> Times:
 
 
 def engagement(reports: dict[str, tuple[Times, NDArray[Any]]], ego: str) -> pa.Table | None:
-    """Return who drives as declared events `engaged` on and off, where it changes; None where nobody says.
+    """Return whether the system drives, as declared events `engaged` on and off, where it changes; None if it is not known.
 
-    What the vehicle reports counts before what it was told to do. Only full automation is engaged.
+    The report of the vehicle takes precedence over the command to it. Only full automation is engaged.
     """
     if CONTROL_MODE in reports:
         t_ns, on = reports[CONTROL_MODE][0], reports[CONTROL_MODE][1] == _AUTONOMOUS

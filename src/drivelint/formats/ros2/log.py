@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 LIGHTS: Final = (LIGHT_GROUPS, OLD_LIGHT_GROUPS)
 _CARLA = "carla_msgs/"
 Topics = dict[str, list[Any]]
-"""Topic -> what was read of each batch of its messages."""
+"""Topic -> the content of each batch of its messages."""
 
 
 class Log:
@@ -99,12 +99,12 @@ class Log:
         return kind
 
     def refuse_unknown_topics(self) -> None:
-        """Refuse what was chosen and is not read. Errors: `TraceError`."""
+        """Refuse chosen topics that are not read. Errors: `TraceError`."""
         read_topics = {topic for topics in self.topics.values() for topic in topics}
         for topic in self.requested_topics:
             if topic in self.detections:
                 raise TraceError(
-                    f"{self.path}: the detections on topic {topic!r} have no ids, so they are nobody's track: choose a topic of "
+                    f"{self.path}: the detections on topic {topic!r} have no ids, so they form no tracks: choose a topic of "
                     f"{' or '.join(SAME_BODIES)}"
                 )
             if topic not in read_topics:
@@ -113,13 +113,13 @@ class Log:
                 )
 
     def frames(self, topics: Iterable[str], *, own_times: bool) -> Times:
-        """Return the times of the messages of some topics of poses, those in which nobody is among them."""
+        """Return the times of the messages of some topics of poses, including messages without objects."""
         parts = [part for topic in topics for part in self._times.get(topic, ())]
         times = [stamp_ns[stamped & (stamp_ns != 0)] if own_times else log_ns for stamp_ns, stamped, log_ns in parts]
         return np.concatenate([np.zeros(0, np.int64), *times])
 
     def silences(self, objects: Iterable[str], odometry: Iterable[str]) -> Iterator[LostTime]:
-        """Yield when a topic of road users is silent that also sends where nobody is."""
+        """Yield the times in which a topic of road users is silent that also sends messages without objects."""
         steady = {topic for kind in SENT_WHERE_NOBODY_IS for topic in self.topics.get(kind, ())}
         for topic in sorted(steady.intersection(objects)):
             sent_ns, own_ns = (self.frames(topics, own_times=False) for topics in ([topic], odometry))
@@ -152,7 +152,7 @@ class Log:
 
 
 def _part(kind: str, decoder: Decoder, table: Table, log_ns: Times) -> Any:
-    """Return what is kept of a batch: of road users and lights what they say, of others their fields and times."""
+    """Return the kept part of a batch: for road users and lights their rows, for others their fields and times."""
     if kind in LIGHTS:
         return traffic_lights.group_states(table, log_ns, decoder.constants)
     if kind not in OBJECT_ROWS:
@@ -163,7 +163,7 @@ def _part(kind: str, decoder: Decoder, table: Table, log_ns: Times) -> Any:
 
 
 def _usual(of_kind: dict[str, Topics]) -> str | None:
-    """Return the topic that counts where nobody chose: the only one of its type, or the usual one; None where that is not plain."""
+    """Return the topic that counts by default: the only one of its type, or the usual one; None if there is no such topic."""
     bodies = len(of_kind.keys() & set(SAME_BODIES))
     if len(of_kind) > max(bodies, 1):
         return None

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 FORMAT = "ros2-mcap"
 DEFAULT_EGO_ID = "ego"
-"""What the odometry's vehicle is called where nobody gives it an id."""
+"""The id of the odometry's vehicle if no message has one."""
 
 
 def merge_ego(
@@ -48,8 +48,8 @@ def merge_ego(
         ego.ids = ids_in_objects[:1] or [_free_id(names[0] if names else DEFAULT_EGO_ID, object_states.ids)]
     if not carla and not is_centre:
         message = (
-            f"{odometry[0]}: the ego's place is that of the odometry's child frame, taken as the centre of its box: where "
-            "that frame is at the rear axle, say how far ahead of it the centre is: --ego-size LENGTH,WIDTH,AHEAD"
+            f"{odometry[0]}: the ego's place is that of the odometry's child frame, used as the centre of its box: if "
+            "that frame is at the rear axle, set how far ahead of it the centre is: --ego-size LENGTH,WIDTH,AHEAD"
         )
         first = int(ego.t_ns.min())
         findings.append(QualityFinding("reference_point", "warning", message, len(ego), first, ego.ids[0]))
@@ -105,12 +105,12 @@ def _carla_ego_ids(ego_by_topic: Mapping[str, str], odometry: tuple[str, States]
 
 
 def _carla_origins(topic: str, states: States, findings: list[QualityFinding]) -> None:
-    """Say what CARLA's origins mean, and lift those of vehicles from the ground to the middle of the box."""
+    """Report the meaning of CARLA's origins, and lift those of vehicles from the ground to the middle of the box."""
     walks = states.codes["actor_class"] == ACTOR_CLASSES.index("pedestrian")
     lift = np.where(walks, 0.0, np.nan_to_num(0.5 * states.numbers["height_m"]))
     states.numbers["z_m"] = states.numbers["z_m"] + lift
     message = (
-        f"{topic}: places are the origins of CARLA's actors, taken as the centres of their boxes: by the model of the vehicle "
+        f"{topic}: places are the origins of CARLA's actors, used as the centres of their boxes: by the model of the vehicle "
         "these lie up to a few decimetres ahead or behind; vehicles are lifted by half their height"
     )
     findings.append(QualityFinding("reference_point", "info", message, len(states), int(states.t_ns.min())))

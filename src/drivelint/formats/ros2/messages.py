@@ -1,6 +1,6 @@
-"""The messages of ROS 2 that are read: what each is read as, on which topic it usually is, and which fields are read of it.
+"""The messages of ROS 2 that are read: their roles, usual topics and fields that are read.
 
-The guide to traces lists them; a test holds its table against this one.
+The guide to traces lists them; a test compares its table with this one.
 """
 
 from __future__ import annotations
@@ -147,4 +147,4 @@ MESSAGES: Final[dict[str, MessageType]] = {
     EGO_INFO: MessageType("ego", "/carla/<role name>/vehicle_info", {"id": None, "rolename": None}),
     WORLD_INFO: MessageType("map", "/carla/world_info", {"map_name": None, "opendrive": None}),
 }  # fmt: skip
-"""Message type, as `message_kind` names it, -> what is read of it."""
+"""Message type, as `message_kind` names it -> the fields that are read."""

@@ -108,7 +108,7 @@ def _autoware(top: Table, prefix: str = "") -> RecordedPoses:
     """Return Autoware's road users.
 
     Twist and acceleration are along the body's own axes: so multi_object_tracker writes them, and planners read them. The paths of a
-    prediction are no states. A detection has no id, so it is nobody's state, and its messages are not read.
+    prediction are no states. A detection has no id, so it belongs to no track, and its messages are not read.
     """
     items = top.items("objects")
     ids = np.ascontiguousarray(items.column("object_id.uuid")).view("V16").reshape(-1)

@@ -1,8 +1,8 @@
 """ROS 2 logs in MCAP: road users, odometry, transforms and the rest, each found by its schema's name, never by its topic.
 
 Places are the centres of the boxes: of Autoware's tracks and of vision's detections by their definition, of the CARLA bridge's objects by
-assumption (see `merge`). The odometry's place is that of its child frame, from where `--ego-size` says how far ahead the centre of the
-ego's box lies, as from the rear axle. Shapes have their origin in that place.
+assumption (see `merge`). The odometry's place is that of its child frame, `--ego-size` states how far ahead of it the centre of the ego's
+box lies, as from the rear axle. Shapes have their origin in that place.
 """
 
 from __future__ import annotations
@@ -168,20 +168,20 @@ def _other_centre(box: VehicleBox, ahead_m: float) -> list[QualityFinding]:
     said = box.centre[0]
     if ahead_m == 0.0 or abs(ahead_m - said) <= SIZE_DIFFERENCE_M:
         return []
-    message = f"--ego-size puts the centre of the ego's box {ahead_m:g} m ahead of base_link, the log {said:g} m, which counts"
+    message = f"--ego-size puts the centre of the ego's box {ahead_m:g} m ahead of base_link, but the log states {said:g} m, which is used"
     return [QualityFinding("ego_size", "warning", message)]
 
 
 def _no_road_users(log: Log) -> QualityFinding:
-    """Return the finding that nobody else is known: a detection without an id may be the one before it, or somebody else."""
+    """Return the finding that no other actor is known: a detection without an id may be the one before it, or another actor."""
     n = sum(log.detections.values())
     cause = "no topic of this log has road users"
     if n:
         cause = (
-            f"the only road users of this log, on {listed(sorted(log.detections))}, are detections without ids, so nobody's track: "
+            f"the only road users of this log, on {listed(sorted(log.detections))}, are detections without ids, which form no tracks: "
             f"record {' or '.join(SAME_BODIES)} too"
         )
-    message = f"{cause}: rules that look at others than the ego are unknown"
+    message = f"{cause}: rules about other actors are unknown"
     return QualityFinding("no_road_users", "warning", message, max(n, 1))
 
 

@@ -29,7 +29,7 @@ MAX_FIT_ERROR_MPS = 0.5
 SAMPLED_ACTORS = 8
 """Of so many actors, those that move most."""
 MIN_SAMPLES = 20
-"""So many moving samples tell in which frame velocities are."""
+"""This many moving samples show in which frame velocities are."""
 
 
 @dataclass
@@ -163,7 +163,7 @@ def states_in_fixed_frame(
 
 def _unresolved_frame(topic: str, frame: str, fixed: str, frames: TransformTree, t_ns: Times) -> QualityFinding:
     if frame in frames.ambiguous:
-        why = f"several frames say that they hold {frame!r}"
+        why = f"several frames have the child frame {frame!r}"
     elif frames.chain(frame, fixed) is None:
         why = f"no transform leads from {frame!r} to {fixed!r}"
     else:
@@ -201,7 +201,7 @@ def _other_frame(states: States, swapped: Vectors, along: Mask, topic: str) -> l
     given, is_ = ways if bool(along[0]) else reversed(ways)
     message = (
         f"{topic}: velocities should be given {given} and then miss the positions' changes by {off:.2f} m/s (median); "
-        f"they are {is_} ({fit:.2f} m/s), and are read so"
+        f"they are {is_} ({fit:.2f} m/s), and are read in this way"
     )
     return [QualityFinding("twist_frame", "warning", message, len(states), int(states.t_ns.min()))]
 

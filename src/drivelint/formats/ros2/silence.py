@@ -1,4 +1,4 @@
-"""Finds the time in which a topic of road users is silent while the ego's odometry goes on: who was there then is not known."""
+"""Finds the time in which a topic of road users is silent while the ego's odometry continues: the actors in that time are not known."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 SENT_WHERE_NOBODY_IS: Final = frozenset({
     "autoware_perception_msgs/PredictedObjects", "autoware_perception_msgs/TrackedObjects", "derived_object_msgs/ObjectArray",
 })  # fmt: skip
-"""Messages that come all the time, without objects where nobody is. A detector may send nothing where it sees nobody."""
+"""Messages that come all the time, without objects if no actor is there. A detector may send nothing if it sees no actor."""
 LEAST_SILENCE_NS: Final = 1_000_000_000
 """Topics of one recording begin and end within a second of each other."""
 

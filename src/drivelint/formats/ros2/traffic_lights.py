@@ -50,7 +50,7 @@ class GroupStates(NamedTuple):
 
 
 def group_states(table: Table, log_ns: Times, constants: Mapping[str, Mapping[str, int]]) -> GroupStates:
-    """Return what the groups of messages show, codes into `SIGNAL_STATES`, -1 where not known. `constants`: those of the definition."""
+    """Return the states of the groups of messages, codes into `SIGNAL_STATES`, -1 where not known. `constants`: those of the definition."""
     path, name = next((pair for pair in _GROUPS if pair[0] in table.children), _GROUPS[0])
     groups = table.items(path)
     state = _states(groups, _element_numbers(constants))
@@ -82,11 +82,11 @@ def _states(groups: Table, number: Mapping[str, int]) -> Codes:
 
 
 def _state(bits: int) -> int:
-    """Return the state for everybody at a light, whatever their turn; -1 where it is not one for all.
+    """Return the state of a light that applies to every turn; -1 if turns differ.
 
-    The map's light does not say for which turns an arrow of it holds. So an arrow that shows another colour than the full lamp
-    decides nothing: red with a green arrow is neither red, for it lets some go, nor green, for it holds the others. Of arrows alone
-    nobody else knows whether they may go.
+    The map's light does not say for which turns an arrow of it holds. So an arrow that shows another colour than the full lamp decides
+    nothing: red with a green arrow is neither red, for it lets some go, nor green, for it holds the others. Arrows alone do not show
+    whether other turns may go.
     """
     full, dark, arrows = bits & _ALL_COLOURS, bits // _DARK & _ALL_COLOURS, bits // _ARROW & _ALL_COLOURS
     word = None
@@ -107,7 +107,7 @@ _STATE_OF_BITS: Final = np.array([_state(bits) for bits in range(2 * _DOUBT)], n
 def signal_states(
     batches: Sequence[GroupStates], span_ns: tuple[int, int], topic: str, *, own_times: bool
 ) -> tuple[pa.Table | None, list[QualityFinding]]:
-    """Return `signal_id`, `t_ns` and `state` of all groups, and what cannot be used.
+    """Return `signal_id`, `t_ns` and `state` of all groups, and findings on unusable messages.
 
     `span_ns`: first and last time of the drive. A row without a state ends what a group showed: where the next message does not
     list it, or none comes.
@@ -119,7 +119,7 @@ def signal_states(
     since, until = span_ns
     usable = (t_ns != 0) | (until < LEAST_UTC_NS)
     if not usable.any() or t_ns[usable].min() > until or t_ns[usable].max() + LONGEST_HOLD_NS < since:
-        why = f"{topic}: the messages are of another time than the states of the drive: what the lights show is unknown"
+        why = f"{topic}: the messages are of another time than the states of the drive: the states of the lights are unknown"
         return None, [QualityFinding("signal_clock", "warning", why, len(t_ns))]
     keep = usable[message]
     message, group, state = message[keep], group[keep], state[keep]
@@ -140,7 +140,10 @@ def signal_states(
     }
     findings = []
     if not usable.all():
-        why = f"{topic}: {int((~usable).sum())} messages without a time stamp are left out: what the lights show then is unknown"
+        why = (
+            f"{topic}: {int((~usable).sum())} messages without a time stamp are left out: the states of the "
+            "lights at their time are unknown"
+        )
         findings.append(QualityFinding("signal_clock", "warning", why, int((~usable).sum())))
     return (pa.table(rows) if len(ids) else None), findings
 

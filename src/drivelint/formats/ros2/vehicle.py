@@ -63,7 +63,7 @@ def at_axle(frames: NDArray[Any]) -> Mask:
 def vehicle_box(
     parameters: Iterable[Table], dimensions: Iterable[tuple[str, Table]]
 ) -> tuple[VehicleBox | None, list[QualityFinding]]:
-    """Return the box that the nodes' parameters and recorded dimensions agree on, None where nobody gives one, or they differ.
+    """Return the box on which the nodes' parameters and recorded dimensions agree; None if there is none, or they differ.
 
     A node that gives only some of the lengths gives no box: another node may mean another vehicle.
     """
@@ -73,7 +73,7 @@ def vehicle_box(
         return None, []
     measures = np.array([[*box.size[:2], *box.centre[:2]] for box in boxes])
     if (np.ptp(measures, axis=0) > _SAME_M).any():
-        message = f"{listed([box.source for box in boxes])} give the ego different sizes, and none is used: say it with --ego-size"
+        message = f"{listed([box.source for box in boxes])} give the ego different sizes, and none is used: set it with --ego-size"
         return None, [QualityFinding("ego_size", "warning", message, len(boxes))]
     return boxes[0], []
 

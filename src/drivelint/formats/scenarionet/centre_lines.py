@@ -1,6 +1,6 @@
-"""The lanes of a scenario as centre lines with what lies beside them: how far it is to either side, where the scenario tells it.
+"""The lanes of a scenario as centre lines with their sides: the distance to either side, if the scenario states it.
 
-A lane's outline tells both sides; where no lane has one, the lines and edges that the lane refers to do, or where no lane refers to any,
+A lane's outline shows both sides; where no lane has one, the lines and edges that the lane refers to do, or where no lane refers to any,
 those that lie beside it; else the middle between two lanes that run beside each other.
 """
 
@@ -27,7 +27,7 @@ KINDS: Final = {
     "LANE_SURFACE_STREET": "driving", "LANE_SURFACE_UNSTRUCTURE": "driving", "LANE_FREEWAY": "driving", "LANE_UNKNOWN": "driving",
     "LANE_BIKE_LANE": "biking",
 }  # fmt: skip
-"""Type of a feature -> lane type. What an unknown lane is for, nobody says: it counts as one for driving."""
+"""Type of a feature -> lane type. The purpose of an unknown lane is not known: it counts as a lane for driving."""
 _SPACING_M: Final = 4.0
 _LONGEST_M: Final = 10_000.0
 _SHAPE_M: Final = 0.02  # a centre line keeps the points without which it would be off by more
@@ -107,7 +107,7 @@ def _centre_line(name: str, feature: Mapping[str, Any], kind: str, line: Floats,
     at = np.column_stack([np.interp(s, line_stations, column) for column in line.T])
     apart = np.r_[
         True, np.hypot(*np.diff(at[:, :2], axis=0).T) > 1e-3
-    ]  # of far coordinates the digits may not tell two points
+    ]  # with far coordinates, the digits may not distinguish two points
     s, at = s[apart], at[apart]
     if len(s) < 2:
         raise PickleError("its centre line has fewer than two points")
@@ -208,7 +208,7 @@ def _nearer(lane: CentreLine, side: int, at: Mask, line: Any, *, least_m: float)
 
 
 def _of_parallel_lanes(lanes: Sequence[CentreLine], all_lanes: Sequence[CentreLine]) -> None:
-    """Take the middle between two lanes that run beside each other, whichever way, for the bound of which nobody tells.
+    """Take the middle between two lanes that run beside each other, in any direction, as their unknown bound.
 
     Lanes that fork or join run beside each other, too, but share ground.
     """
@@ -232,7 +232,7 @@ def _of_parallel_lanes(lanes: Sequence[CentreLine], all_lanes: Sequence[CentreLi
 
 
 def fill_unknown_sides(lanes: Mapping[str, CentreLine]) -> dict[str, float]:
-    """Give the sides of which nobody tells the width of what the lane joins, in place; return lane -> share of its sides that is so found.
+    """Give unknown sides the width of the lanes that the lane joins, in place; return lane -> share of its sides found in this way.
 
     At its ends a lane is as wide as those that it continues or leads to, and between it widens evenly. One side of which nothing is known
     is as far from the middle as the other.

@@ -1,9 +1,9 @@
-"""Where the ego was when, of a data set that counts the messages of a stream instead of timing them.
+"""The times of the ego's positions, in a data set that counts the messages of a stream instead of timing them.
 
-The messages come with one period, and every few of them is a step. Where some were lost, a step takes longer than it says, and the ego
-seems to leap: with every fifth message of 50 Hz, a lost one makes a step of 0.1 s one of 0.12 s and the speed over it a fifth too high.
-The steps over lost messages get their time back. At the end of the drive, where messages run short, the ego's last places are those of
-the annotated frames, as everybody else's are: they tell how the stream's clock lies to that of the frames.
+The messages come with one period, and every few of them is a step. If some were lost, a step takes longer than stated, and the ego seems
+to leap: with every fifth message of 50 Hz, a lost one makes a step of 0.1 s one of 0.12 s and the speed over it a fifth too high. The
+steps over lost messages get their time back. At the end of the drive, where messages run short, the ego's last places are those of the
+annotated frames, like those of all others: they show how the stream's clock differs from that of the frames.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What stands beside and lies across the lanes of a scenario: its lights, stop signs and crossings."""
+"""The furniture of a scenario: its lights, stop signs and crossings."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _STANDS_FAR_M: Final = 30.0  # a stop sign farther from its lane's middle is ano
 def furniture(
     scenario: Scenario, lanes: Sequence[BoundedLane], offset: tuple[float, float], quality: MapQuality
 ) -> dict[str, Rows]:
-    """Return rows of `traffic_signal`, `stop_line` and `crossing`; report in `quality` what holds for no lane."""
+    """Return rows of `traffic_signal`, `stop_line` and `crossing`; report in `quality` those that apply to no lane."""
     by_id = {lane.lanelet_id: lane for lane in lanes}
     signals = [*_lights(scenario, by_id, offset, quality), *_stop_signs(scenario, by_id, offset, quality)]
     return {
@@ -80,7 +80,7 @@ def _far(lane: BoundedLane, place: Floats) -> float:
 
 
 def _place(value: Any, offset: tuple[float, float]) -> Floats | None:
-    """Return x and y of a place, moved by the map's offset; None: it is not said, or cannot be."""
+    """Return x and y of a place, moved by the map's offset; None: it is missing or impossible."""
     try:
         place = numbers(value, "a place").reshape(-1)[:2]
     except PickleError:

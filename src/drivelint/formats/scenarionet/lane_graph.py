@@ -1,4 +1,4 @@
-"""How the lanes of a scenario follow one another and lie side by side, as it says or as their shapes tell."""
+"""How the lanes of a scenario follow one another and lie side by side, as it states or as their shapes show."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _LEVEL_M: Final = 3.0
 
 
 def link(lanes: Mapping[str, CentreLine]) -> None:
-    """Give each lane what comes before and after it, in place: what the scenario says, else the lanes whose ends meet its own."""
+    """Give each lane its predecessors and successors, in place: those of the scenario, else the lanes whose ends meet its own."""
     after: dict[str, dict[str, None]] = defaultdict(dict)
     said = any(lane.feature.get("exit_lanes") or lane.feature.get("entry_lanes") for lane in lanes.values())
     if said:
@@ -111,7 +111,7 @@ def _beside(
 
 
 def _mutual(name: str, neighbours: Mapping[str, Neighbours]) -> Neighbours:
-    """Return the neighbours of a lane that have it or nobody on that side: a short lane is beside a long one, but not its neighbour."""
+    """Return the neighbours of a lane that have it or no lane on that side: a short lane is beside a long one, but not its neighbour."""
     mutual_neighbours = neighbours[name]
     for side, opposite in (("left", "right"), ("right", "left")):
         other = neighbours.get(getattr(mutual_neighbours, f"{side}_id") or "")

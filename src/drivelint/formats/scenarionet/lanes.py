@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 _MARKINGS: Final = {
     "BROKEN_SINGLE": "broken", "SOLID_SINGLE": "solid", "SOLID_DOUBLE": "solid_solid", "BROKEN_DOUBLE": "broken_broken",
 }  # fmt: skip
-"""What stands between ROAD_LINE_ and the colour -> marking; of a double line that may be passed from one side, nobody says which."""
+"""What stands between ROAD_LINE_ and the colour -> marking; for a double line that may be crossed from one side, the side is not known."""
 _OVERLAP_SHARE: Final = 0.1  # of the smaller lane's ground: less is the inaccuracy of bounds
 _CROSSING_RAD: Final = float(np.radians(25.0))  # lanes at a smaller angle split or merge
 _MPH: Final = 0.44704
@@ -75,7 +75,7 @@ def _stations_on(centre: CentreLine, places: Floats) -> Floats:
 
 
 def _bounded(centres: Mapping[str, CentreLine], scenario: Scenario, quality: MapQuality) -> list[BoundedLane]:
-    """Return the lanes with their bounds; report in `quality` those of which nothing tells the width."""
+    """Return the lanes with their bounds; report in `quality` those without a known width."""
     bounded_lanes, beside = [], find_neighbours(centres)
     for name, lane in centres.items():
         if np.isnan(lane.half).any():
@@ -140,7 +140,7 @@ def _report_guessed(centres: Mapping[str, CentreLine], guessed: Mapping[str, flo
         whole = sum(float(lane.s[-1]) for lane in centres.values())
         part = sum(share * float(centres[name].s[-1]) for name, share in of.items())
         message = (
-            f"along {part / whole:.0%} of the lanes' sides ({len(of)} of {len(centres)} lanes) nothing says where the lane ends: "
-            "it is taken to be as wide as the lanes that it joins, or as on its other side"
+            f"along {part / whole:.0%} of the lanes' sides ({len(of)} of {len(centres)} lanes) the edge of the lane is not known: "
+            "the lane is assumed to be as wide as the lanes that it joins, or as on its other side"
         )
         quality.add("assumed_width", "info", None, message, len(of))

@@ -26,11 +26,11 @@ _NAMES: Final = {
     **{(module, name): "type" for module in _BUILTINS for name in ("int", "long", "float", "bool", "str", "unicode")},
     **{(module, "dict"): "dict" for module in _BUILTINS},
 }
-"""(module, name) in a file -> what it stands for here; a set is a list of its members, in the order of the file."""
+"""(module, name) in a file -> its meaning here; a set is a list of its members, in the order of the file."""
 _KINDS: Final = "biufUS"
 """Kinds of numpy types that are read: numbers and texts."""
 _EMPTY: Final[dict[str, Callable[[], Any]]] = {"dict": dict, "list": list, "bytes": bytes}
-_OBJECTS: Final = "it holds an array of Python objects, which is refused: write numbers"
+_OBJECTS: Final = "it has an array of Python objects, which is refused: write numbers"
 
 
 class PickleError(ValueError):
@@ -44,11 +44,11 @@ class Name(NamedTuple):
 
 
 def name_of(module: Any, name: Any) -> Name:
-    """Return what a name of the file stands for. Errors: `PickleError` for one that is refused."""
+    """Return the meaning of a name in the file. Errors: `PickleError` for one that is refused."""
     meaning = _NAMES.get((module, name)) if isinstance(module, str) and isinstance(name, str) else None
     if meaning is None:
         what = f"{str(module)[:100]}.{str(name)[:100]}"
-        raise PickleError(f"it calls for {what!r}, which is refused: only numpy arrays and plain values are read")
+        raise PickleError(f"it requests {what!r}, which is refused: only numpy arrays and plain values are read")
     return Name(meaning)
 
 
@@ -83,7 +83,7 @@ def array_of(state: Any) -> np.ndarray[Any, Any]:
 
 
 def build_value(meaning: str, arguments: tuple[Any, ...]) -> Any:
-    """Return what a name with these arguments stands for, but for arrays without content and bytes from texts."""
+    """Return the value of a name with these arguments, except arrays without content and bytes from texts."""
     if meaning == "number type":
         return NumberType(arguments[0])
     if meaning == "scalar":

@@ -108,10 +108,10 @@ def _of_clock(ego: str, lost_messages: int, shift_s: float, message_s: float) ->
     parts = [steps] if lost_messages else []
     if np.isfinite(shift_s):
         parts.append(
-            f"its last positions, which are of the annotated frames, tell that it begins {round(shift_s, 2) + 0.0:.2f} s after these"
+            f"its last positions, which are of the annotated frames, show that it begins {round(shift_s, 2) + 0.0:.2f} s after these"
         )
     message = (
-        f"the positions of {ego} are counted messages of a stream, not timed: {'; '.join(parts)}: it is put where it was at the steps, "
+        f"the positions of {ego} are counted messages of a stream, not timed: {'; '.join(parts)}: it is moved to its places at the steps, "
         "which are known to about 0.1 s against the others'"
     )
     return [QualityFinding("ego_clock", "warning", message, max(lost_messages, 1), actor_id=ego)]

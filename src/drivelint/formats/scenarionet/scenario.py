@@ -1,4 +1,4 @@
-"""A scenario as ScenarioNet defines it (MetaDrive's `ScenarioDescription`): its parts, checked, and what is known of its data set."""
+"""A scenario as ScenarioNet defines it (MetaDrive's `ScenarioDescription`): its parts, checked, and the facts about its data set."""
 
 from __future__ import annotations
 
@@ -25,10 +25,11 @@ _LONGEST_S: Final = 1e9
 
 
 class Dataset(NamedTuple):
-    """What is known of a data set; the defaults are for one of which nothing is. See datasets.toml.
+    """The facts about a data set; the defaults are for an unknown one. See datasets.toml.
 
-    `sensor_range_m`: how far the recorder sees everybody. `steps_per_keyframe`: boxes are interpolated between every so many steps (0:
-    they are not). `ego_message_s`: the ego's positions are every few messages of a stream with this period, counted and not timed.
+    `sensor_range_m`: the range in which the recorder sees every actor. `steps_per_keyframe`: boxes are interpolated between keyframes
+    this many steps apart (0: they are not). `ego_message_s`: the ego's positions are every few messages of a stream with this period,
+    counted and not timed.
     `ego_ahead_m`: the middle of the ego's box ahead of its position. `ego_box_m`: the ego's length and width. The others: whether what
     the scenarios have of it was in the data set, and is no constant of the converter.
     """
@@ -100,7 +101,7 @@ def _n_points(feature: Mapping[str, Any]) -> int:
 
 def _part(content: Any, name: str) -> dict[str, Any]:
     if not isinstance(content, dict) or not isinstance(content.get(name), dict):
-        raise PickleError(f"it holds no scenario of ScenarioNet, which has a dict {name!r}: give a file sd_*.pkl")
+        raise PickleError(f"it has no scenario of ScenarioNet, which has a dict {name!r}: give a file sd_*.pkl")
     return dict(content[name])
 
 

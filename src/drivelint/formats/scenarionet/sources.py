@@ -1,8 +1,8 @@
-"""What data sets write of a motion that is no measurement of it, told by the numbers themselves wherever they tell it.
+"""Values of motion in data sets that are no measurements, recognised by the numbers themselves wherever possible.
 
-Velocities that are differences of the positions, one step apart, are those of half a step before or after, and one of them is 0
-at an end of the track. Boxes that were annotated now and then and interpolated have no acceleration. A box whose length and width are
-in each other's place moves along its short side.
+Velocities that are differences of the positions, one step apart, are those of half a step before or after, and one of them is 0 at an end
+of the track. Boxes that were annotated now and then and interpolated have no acceleration. A box whose length and width are exchanged
+moves along its short side.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def drop_differences(tracks: Tracks) -> list[QualityFinding]:
         tracks.velocity[group] = np.nan
         message = (
             f"velocities of {owner} are differences of the positions, half a step {when} and 0 or repeated at an end of the track: "
-            "they are derived anew"
+            "they are derived again"
         )
         findings.append(QualityFinding("velocity_dropped", "warning", message, n))
     return findings
@@ -57,7 +57,7 @@ def drop_differences(tracks: Tracks) -> list[QualityFinding]:
 def _difference(tracks: Tracks, group: Mask) -> str | None:
     """Return early or late where the velocities of these actors are differences of the positions; None: they are not.
 
-    Only where somebody speeds up, brakes or turns do the steps before and after differ from each other and from the velocity between.
+    Only when an actor speeds up, brakes or turns do the steps before and after differ from each other and from the velocity between.
     """
     steps = tracks.steps_m[group] / np.diff(tracks.t_s)[:, None]
     before, after, velocity = steps[:, :-1], steps[:, 1:], tracks.velocity[group][:, 1:-1]
@@ -99,7 +99,7 @@ def interpolated(tracks: Tracks, dataset: Dataset) -> Mask:
 
 
 def give_keyframe_velocities(tracks: Tracks, rows: Mask, every: int) -> list[QualityFinding]:
-    """Give these actors the velocities that their keyframes tell, in place, and say that their accelerations are not known.
+    """Give these actors the velocities of their keyframes, in place, and report that their accelerations are not known.
 
     At a keyframe it is the mean from the keyframe before to the one after, as nuScenes' own `box_velocity` has it, and between two it
     changes evenly.
@@ -132,7 +132,7 @@ def give_keyframe_velocities(tracks: Tracks, rows: Mask, every: int) -> list[Qua
         f"the positions of {{}} are known every {period_s:g} s and interpolated between: velocities are means over {2 * period_s:g} s, "
         "accelerations are not known"
     )
-    # the check velocity_filtered, one for each actor, is what tells that an acceleration is not known
+    # the check velocity_filtered, one for each actor, shows that an acceleration is not known
     return [
         QualityFinding.of_actors("interpolated", "warning", text.format(listed(moving_ids)), moving_ids),
         *(QualityFinding("velocity_filtered", "info", text.format(name), actor_id=name) for name in moving_ids),
@@ -150,7 +150,7 @@ def _spread_m(tracks: Tracks) -> Floats:
 def turn_boxes(tracks: Tracks, dataset: Dataset) -> list[QualityFinding]:
     """Exchange length and width, in place, of long kinds of actors that move along their short side.
 
-    So are the ego's, if they are those that the data set is known to exchange. Where nothing tells, they are unknown.
+    So are the ego's, if they are those that the data set is known to exchange. If nothing shows it, they are unknown.
     """
     long_kind = np.isin(tracks.kinds, list(_LONG_KINDS))
     n = np.maximum(tracks.present.sum(axis=1), 1)
@@ -158,9 +158,9 @@ def turn_boxes(tracks: Tracks, dataset: Dataset) -> list[QualityFinding]:
     ids_by_reason: dict[str, list[str]] = {}
     for i in np.flatnonzero(long_kind & (width > _WIDER * length)):
         if _moves_ahead(tracks, int(i)):
-            why = "length and width of {} are in each other's place, as its motion along the short side shows: they are exchanged"
+            why = "length and width of {} are exchanged, as its motion along the short side shows: they are exchanged"
         elif i == tracks.ego and np.allclose((width[i], length[i]), dataset.ego_box_m or (0.0, 0.0), atol=0.01):
-            why = "length and width of {} are in each other's place, as always in this data set: they are exchanged"
+            why = "length and width of {} are exchanged, as always in this data set: they are exchanged"
         else:
             why = "wider than long, and no motion tells which side is the length: {}: the size is unknown"
         tracks.size[i, :, :2] = np.nan if why.endswith("unknown") else tracks.size[i, :, 1::-1]

@@ -1,4 +1,4 @@
-"""The tracks of a scenario as arrays over actors and steps: what is not valid is not there, whatever numbers stand in its place."""
+"""The tracks of a scenario as arrays over actors and steps: an invalid state is absent, whatever numbers it has."""
 
 from __future__ import annotations
 

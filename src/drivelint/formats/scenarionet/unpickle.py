@@ -39,7 +39,7 @@ class _EndError(Exception):
 
 
 def load(content: bytes) -> Any:
-    """Return what a pickle holds: dicts, lists (also for sets), tuples, texts, numbers, None and numpy arrays, which are read-only.
+    """Return the content of a pickle: dicts, lists (also for sets), tuples, texts, numbers, None and numpy arrays, which are read-only.
 
     A list of points may be `Points`. Errors: `PickleError` with the byte and what is wrong there.
     """
@@ -55,7 +55,7 @@ def load(content: bytes) -> Any:
 
 
 class _Machine:
-    """A pickle that is decoded: its bytes, the stack with its marks, and what the file refers to by number.
+    """A pickle that is decoded: its bytes, the stack with its marks, and the objects that the file refers to by number.
 
     Each operation is a method that takes the place behind its code and returns the place behind its argument.
     """
@@ -166,7 +166,7 @@ class _Machine:
         return end
 
     def _span_after_length(self, at: int, width: int) -> tuple[int, int]:
-        """Return begin and end of what a length of `width` bytes stands before."""
+        """Return begin and end of the bytes that follow a length of `width` bytes."""
         begin = at + width
         end = begin + int.from_bytes(self._part(at, width), "little")
         if end > len(self.content):

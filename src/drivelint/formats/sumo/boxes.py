@@ -1,7 +1,7 @@
 """Classes, sizes and box centres of SUMO's road users: a position is the middle of the front bumper, the centre half a length behind it.
 
-One track has one reference point. Without a length the centre is not known: who has none in the whole log stays at its bumper, and a
-finding says so; who has none in a part of it, or another, has no place there.
+One track has one reference point. Without a length the centre is not known: an actor without a length in the whole log stays at its
+bumper, and a finding reports it; an actor without a length in a part of it, or with another length, has no place there.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class Boxes(NamedTuple):
 
 
 def boxes_of(tracks: Tracks, types: Mapping[str, VehicleType], options: IngestOptions) -> Boxes:
-    """Return the boxes, by what is known of the `types` and what the user says of the ego."""
+    """Return the boxes, from the known `types` and the user's size of the ego."""
     types_with_originals = [type_of(name, types, frozenset(tracks.ids)) for name in tracks.type_names]
     vehicle_types = [kind for kind, _ in types_with_originals]
     classes = np.array(
@@ -118,8 +118,8 @@ def _findings(tracks: Tracks, changing: Mask, sizeless: Mask) -> list[QualityFin
     if changing.any():
         ids = [tracks.ids[i] for i in np.unique(tracks.actor[changing])]
         message = (
-            f"the type of {listed(ids)} changes to {_types(tracks, changing)}, of which the length is another or not known: the log has "
-            "their front bumper, and where their box is then is not known"
+            f"the type of {listed(ids)} changes to {_types(tracks, changing)}, whose length is different or not known: the log has "
+            "their front bumper, so the place of their box is then not known"
         )
         findings.append(QualityFinding("size_changes", "warning", message, int(changing.sum())))
     return findings

@@ -1,9 +1,9 @@
 """Positions in longitude and latitude (`--fcd-output.geo`), brought back into the metres of the simulated net.
 
-SUMO transforms the positions and leaves the angles as they are: those of the net's grid, not of the true north. So the net is
-needed for both. How the data are written stands in XML alone, and not in every file. What anybody's motion shows counts more: as metres,
-degrees are a drive in which all move by less than 2 mm/s, at a hundred-thousandth of the speeds that are recorded.
-Source: SUMO's documentation of "Simulation/Output/FCDOutput" and "Geo-Coordinates".
+SUMO transforms the positions and leaves the angles as they are: those of the net's grid, not of the true north. So the net is needed for
+both. Only XML states how the data are written, and not in every file. The motion of any actor takes precedence: as metres, degrees are a
+drive in which all move by less than 2 mm/s, at a hundred-thousandth of the speeds that are recorded. Source: SUMO's documentation of
+"Simulation/Output/FCDOutput" and "Geo-Coordinates".
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _FARTHEST: Final = np.array([180.0, 90.0])
 _LEAST_MOTION: Final = 1e-7
 """Less is no motion: a centimetre in degrees, a rounding error in metres."""
 _SLOW_PER_S: Final = 0.01
-"""Nobody drives 0.01 degrees in a second; who moves by less than 0.01 metres in a second stands."""
+"""No vehicle drives 0.01 degrees in a second; an actor that moves by less than 0.01 metres in a second stands."""
 _RATIO: Final = 1000.0
 """A speed in m/s is 38,000 (at 70 degrees of latitude) to 111,000 times the one in degrees, and 1 time the one in metres."""
 _DEGREE_M: Final = 111_195.0
@@ -80,7 +80,7 @@ def _are_degrees(path: Path, rows: Rows, xy: Floats, actor: NDArray[np.int32], n
         )
     if moves is not None or rows.geo_option is not None:
         return bool(rows.geo_option if moves is None else moves)
-    # nobody moves, and nothing says what the numbers are: the net tells
+    # no actor moves, and the unit of the numbers is not stated: the net shows it
     location = None if net is None else read_location(net)
     frame = None if location is None else location.frame()
     if location is None or frame is None or location.trouble():
@@ -89,7 +89,7 @@ def _are_degrees(path: Path, rows: Rows, xy: Floats, actor: NDArray[np.int32], n
 
 
 def _moves_in_degrees(rows: Rows, xy: Floats, actor: NDArray[np.int32]) -> bool | None:
-    """Say whether those who move do so in degrees; None: nobody moves."""
+    """Return whether moving actors move in degrees; None: no actor moves."""
     order = np.argsort(actor, kind="stable")
     same = np.diff(actor[order]) == 0
     dt = np.diff(rows.numbers("time")[order])

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from drivelint.formats.sumo.vehicle_types import VehicleType
 
 
-formats: Final = {"sumo-fcd": ("SUMO floating car data", "said with --ego")}
+formats: Final = {"sumo-fcd": ("SUMO floating car data", "named with --ego")}
 takes_mapping: Final = True
 HEAD_BYTES = 65536
 _LONGEST_S = 9e9  # beyond it nanoseconds do not fit into 64 bits
@@ -80,7 +80,7 @@ def read(probe: Probe) -> Recording:
     path = probe.path
     rows = _rows(path)
     nameless = pc.equal(rows.table["id"], "").to_numpy()
-    # a step at which nobody is there is a row with its time alone
+    # a step without actors is a row with its time alone
     filled = np.any([np.isfinite(rows.numbers(name)) for name in ("x", "y", "angle", "speed")], axis=0)
     dropped = int((nameless & filled).sum())
     lost_times = _lost_times(rows.numbers("time"), nameless & filled, f"{path.name}: rows without an id")
@@ -146,7 +146,7 @@ def _t_ns(rows: Rows) -> Times:
 
 
 def _kinds_by_type(rows: Rows, types: Mapping[str, VehicleType]) -> Codes:
-    """Return the kinds, of a table's rows as far as their type tells them: its columns are named after what it has first."""
+    """Return the kinds, of a table's rows as far as their type shows them: its columns are named after what it has first."""
     open_ = np.isin(rows.kind, (UNKNOWN, CARRIED))
     if not open_.any():
         return rows.kind
@@ -156,7 +156,7 @@ def _kinds_by_type(rows: Rows, types: Mapping[str, VehicleType]) -> Codes:
     by_type = np.array([_KIND_OF_CLASS.get(kind.actor_class, VEHICLE) for kind in said], np.int8)[
         names.indices.to_numpy()
     ]
-    # somebody who is carried stays so whatever vehicle class his type has
+    # a carried person stays a person whatever vehicle class its type has
     told = open_ & (by_type != UNKNOWN) & ~((rows.kind == CARRIED) & (by_type == VEHICLE))
     return np.where(told, by_type, rows.kind)
 

@@ -131,9 +131,9 @@ def _of_one_group(
 
 
 def _kinds_by_lane(n: int, columns: Mapping[str, pa.ChunkedArray | pa.Array]) -> Codes:
-    """Return the kinds as far as the place in the net tells them: a vehicle is on a lane, a person or container on an edge.
+    """Return the kinds as far as the place in the net shows them: a vehicle is on a lane, a person or container on an edge.
 
-    In a mesoscopic simulation nobody is on a lane, and that tells nothing.
+    In a mesoscopic simulation no actor is on a lane, which shows nothing.
     """
     lane, edge = (_filled(columns[name]) if name in columns else np.zeros(n, np.bool_) for name in ("lane", "edge"))
     carried = edge & ~lane & lane.any()

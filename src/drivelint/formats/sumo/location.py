@@ -1,4 +1,4 @@
-"""Where a SUMO net lies on the earth: its `location` element."""
+"""The place of a SUMO net on the earth: its `location` element."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class Location(NamedTuple):
 
 
 def location_of(element: etree._Element | None) -> Location:
-    """Return what a `location` element says; without one a net has no projection."""
+    """Return the content of a `location` element; without one a net has no projection."""
     if element is None:
         return Location(NO_PROJECTION, None, None, None)
     offset, boundary = (_numbers(element.get(name)) for name in ("netOffset", "convBoundary"))

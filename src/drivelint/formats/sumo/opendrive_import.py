@@ -1,4 +1,4 @@
-"""Nets that netconvert made of OpenDRIVE files: what is lost on the way.
+"""Nets that netconvert made of OpenDRIVE files, and the facts that are lost in the conversion.
 
 Seen with netconvert 1.28.0: of roads with `rule="LHT"` it makes a net without `lefthand`, whose lanes run for right-hand traffic, and it
 does not read the limit of a road's type. A lane without a limit of its own has the default speed of its `type`.
@@ -34,7 +34,7 @@ class OpenDriveImport(NamedTuple):
 
 
 def opendrive_import(content: bytes, root: etree._Element, quality: MapQuality) -> OpenDriveImport | None:
-    """Return of what the net was made, by the configuration in its first comment, and warn of it; None: not of OpenDRIVE."""
+    """Return the source of the net, from the configuration in its first comment, with a warning; None: not OpenDRIVE."""
     found = _SOURCE.search(content[:_HEAD_BYTES].partition(b"-->")[0])
     if found is None:
         return None

@@ -1,7 +1,7 @@
-"""Which persons and containers of floating car data ride: SUMO writes them at the place of their vehicle.
+"""Finds the persons and containers of floating car data that ride in a vehicle: SUMO writes them at the place of their vehicle.
 
-The attribute `vehicle` names it; a log that was written without that attribute shows it by the place. Whoever has the place, the angle and
-the speed of a vehicle to the last digit is in it: two bodies are never in one place.
+The attribute `vehicle` names the vehicle. In a log without that attribute, the place shows it: a person with exactly the place, the angle
+and the speed of a vehicle is in it, because two bodies are never in one place.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def riding(rows: Rows) -> Mask:
-    """Say of each row (n) whether it is of somebody who rides in a vehicle.
+    """Return for each row (n) whether its person or container rides in a vehicle.
 
     Of several in one place whose kind is not known, all but the first ride: SUMO writes a vehicle before its passengers.
     """

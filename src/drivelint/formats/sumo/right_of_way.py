@@ -1,8 +1,7 @@
 """This module reads the right of way in a SUMO network: lights by connection, signs by junction.
 
-A connection's `state` says which of two that meet goes first: M (major) or m (minor), also of those who turn across oncoming traffic on
-a major road. Only an edge none of whose ways on is major is a lesser road, with signs.
-Source: SUMO's documentation of "SUMO Road Networks".
+A connection's `state` states the right of way: M (major) or m (minor), also of those who turn across oncoming traffic on a major road.
+Only an edge none of whose ways on is major is a lesser road, with signs. Source: SUMO's documentation of "SUMO Road Networks".
 """
 
 from __future__ import annotations
@@ -24,7 +23,7 @@ _TURNS: Final = {
     "s": ("straight",), "l": ("left",), "r": ("right",), "t": ("u_turn",), "L": ("left", "straight"), "R": ("right", "straight"),
 }  # fmt: skip
 _SIGNED: Final = frozenset({"priority", "priority_stop", "allway_stop"})
-"""Types of junctions with signs on the lesser roads; at others right goes before left, or lights or nobody say who goes first."""
+"""Types of junctions with signs on the lesser roads; at others right goes before left, or lights decide, or it is not known."""
 _SIGNS: Final = {"s": "stop", "w": "stop", "m": "give_way"}
 _TURNED_ROUND: Final = "t"
 

@@ -45,7 +45,7 @@ UNKNOWN_TYPE: Final = VehicleType()
 
 
 def type_of(name: str, types: Mapping[str, VehicleType], ids: Collection[str]) -> tuple[VehicleType, str | None]:
-    """Return what is known of a type, and the type of which it is taken to be a copy.
+    """Return the facts about a type, and the type of which it is assumed to be a copy.
 
     Where a parameter of a single vehicle is changed while SUMO runs, its type is from then on a copy that is called BASE@ID, with
     the `ids` of the log for ID. No route file has it. Source: SUMO's documentation of "TraCI/Change Vehicle State".
@@ -63,7 +63,7 @@ def type_of(name: str, types: Mapping[str, VehicleType], ids: Collection[str]) -
 
 
 def types_for(log: Path, types_file: str | None) -> tuple[dict[str, VehicleType], list[str]]:
-    """Return vType id -> what it says, and notes on where from: `types_file`, the user's file, else the files beside the log.
+    """Return vType id -> its attributes, and notes on their source: `types_file`, the user's file, else the files beside the log.
 
     Errors: `UsageError` for a given file that has no vType.
     """

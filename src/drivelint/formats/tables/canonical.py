@@ -84,7 +84,7 @@ def read(probe: Probe) -> Recording:
     if (path / "data_log.parquet").is_file():
         log = (parquet.table(path / "data_log.parquet").to_pylist() or [{}])[0]
         counted, found = log.get("n_states"), len(states) + sum(f.n for f in findings if f.check_id == "dropped_row")
-        if counted is not None and counted != found:  # nobody knows who is missing, and when
+        if counted is not None and counted != found:  # it is not known which actor is missing, and when
             raise TraceError(
                 f"{path / 'actor_state.parquet'}: {found} rows, and data_log.parquet counts {counted} states: copy or "
                 "convert the folder again"
@@ -112,7 +112,7 @@ def _offset(path: Path, offset: tuple[object, object]) -> tuple[float, float]:
 
 
 def _quality(path: Path) -> list[QualityFinding]:
-    """Read what was found when the log was converted, and cannot be seen any more."""
+    """Read the findings from when the log was converted that cannot be found any more."""
     if not path.is_file():
         return []
     rows = parquet.table(path)
@@ -150,7 +150,7 @@ def _need(path: Path, table: pa.Table, names: tuple[str, ...]) -> None:
 
 
 def _states(path: Path) -> Recording:
-    """Read the states. A row with a time and nothing else is a frame in which nobody is."""
+    """Read the states. A row with a time and nothing else is a frame without actors."""
     table = parquet.table(path)
     _need(path, table, REQUIRED_COLUMNS)
     ids = _column(path, table, "actor_id", pa.string())
@@ -189,7 +189,7 @@ def _states(path: Path) -> Recording:
 
 
 def with_frames_of_nobody(states: pa.Table, trace: Trace) -> pa.Table:
-    """Return states with a row for each frame in which nobody is, such as `_states` reads."""
+    """Return states with a row for each frame without actors, as `_states` reads it."""
     n = len(trace.nobody_ns)
     if not n:
         return states
@@ -199,7 +199,7 @@ def with_frames_of_nobody(states: pa.Table, trace: Trace) -> pa.Table:
 
 
 def _nothing_else(table: pa.Table, n: int) -> Mask:
-    """Say which rows of a table have a value in none of the columns that tell of an actor."""
+    """Return which rows of a table have no value in any column about an actor."""
     columns = set(table.schema.names) & {*STATE_COLUMNS, *SIZE_COLUMNS, *_OF_A_STATE, "is_ego"}
     empty = [table[name].is_null().to_numpy() for name in sorted(columns)]
     nothing: Mask = np.logical_and.reduce([np.ones(n, np.bool_), *empty])

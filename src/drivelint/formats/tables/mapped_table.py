@@ -1,7 +1,7 @@
 """Any CSV or Parquet table through a mapping: long (a row per actor and step) or wide (a column group per actor).
 
-Where the places are, the mapping says (`[reference]`): the box centre, the rear axle or the front bumper; `geometry` brings them to the box
-centre.
+The mapping states the reference point of the positions (`[reference]`): the box centre, the rear axle or the front bumper. `geometry`
+converts them to the box centre.
 """
 
 from __future__ import annotations
@@ -80,20 +80,20 @@ def read(probe: Probe) -> Recording:
 
 
 def _assumptions(name: str, mapping: Mapping) -> list[QualityFinding]:
-    """Return what the mapping says in place of the log: sizes, and that the log's frame is left-handed."""
+    """Return findings about facts from the mapping instead of the log: sizes, and a left-handed frame."""
     findings = []
     given = mappings.fields(mapping)
     if any(side in given and given[side].value is not None for side in ("length", "width")):
-        findings.append(QualityFinding(ASSUMED_SIZE, "info", f"size as the mapping {name!r} says, not recorded"))
+        findings.append(QualityFinding(ASSUMED_SIZE, "info", f"size from the mapping {name!r}, not recorded"))
     turns = {"y": mapping.frame.flip_y, "heading": mapping.frame.flip_yaw}
     if turned := [what for what, is_turned in turns.items() if is_turned]:
-        message = f"{' and '.join(turned)} turned, as the mapping {name!r} says: the log's frame is left-handed"
+        message = f"{' and '.join(turned)} turned, as the mapping {name!r} states: the log's frame is left-handed"
         findings.append(QualityFinding(TURNED_FRAME, "info", message))
     return findings
 
 
 def _refuse_misread(path: Path, name: str, recording: Recording) -> None:
-    """Refuse a table of which the mapping cannot read most rows: it is of another kind, and what is left of it misleads.
+    """Refuse a table if the mapping cannot read most of its rows: it is of another kind, and the rest would mislead.
 
     Errors: `TraceError`.
     """
@@ -121,7 +121,7 @@ def _fitting(path: Path) -> tuple[str, Mapping, Sheet]:
             sheet = open_sheet(path, mapping)
             _groups(path, name, mapping, sheet)
         except TraceError:
-            continue  # it is not this table; if none fits, the user is told
+            continue  # it is not this table; if none fits, there is an error
         fits.append((name, mapping, sheet))
     if len(fits) == 1:
         return fits[0]
@@ -195,7 +195,7 @@ class _Body:
             ego_ids=self._egos(states),
             findings=self.findings,
             lost_times=self._lost_times(t_ns, ~bad_time, lost_rows),
-            # a row of a wide table is a frame, whoever is in it
+            # a row of a wide table is a frame, whatever actors it has
             frames_ns=t_ns[~bad_time] if self.groups != [""] else None,
             embedded_map=self.sheet.metadata.get(b"xodr"),
             strict_units=True,
@@ -254,7 +254,7 @@ class _Body:
         return (values * factor if factor != 1.0 else values), odd
 
     def _refuse_degrees(self, column: str, values: Floats) -> None:
-        """Refuse a heading beyond two turns: nobody writes that in radians. Errors: `TraceError`."""
+        """Refuse a heading beyond two turns: it cannot be in radians. Errors: `TraceError`."""
         largest = float(np.nanmax(np.abs(values), initial=0.0))
         if largest > MAX_HEADING_RAD:
             raise TraceError(

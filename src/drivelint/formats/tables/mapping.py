@@ -20,6 +20,7 @@ from drivelint.errors import UsageError
 from drivelint.formats.search import is_pipe_or_device
 from drivelint.phrases import hint
 from drivelint.sql.words import nearest
+from drivelint.toml_text import parse_toml
 
 if TYPE_CHECKING:
     from collections.abc import Set as AbstractSet
@@ -173,7 +174,7 @@ def refuse_if_none(name: str) -> None:
     """Refuse a name that is neither a file's nor a shipped mapping's. Errors: `UsageError` with the nearest."""
     known = sorted(file.stem for file in MAPPINGS_FOLDER.parents[1].glob("*/mappings/*.toml"))  # those of films too
     if is_pipe_or_device(name):
-        raise UsageError(f"mapping {name}: a pipe or a device: write what it gives to a file, and name that")
+        raise UsageError(f"mapping {name}: a pipe or a device: write its output to a file, and name that file")
     if not os.path.isfile(name) and name not in known:  # noqa: PTH113 - also of a name that is too long for a file
         raise UsageError(f"mapping {name!r}: neither a file nor a shipped mapping: {hint(name, known)}")
 
@@ -198,9 +199,9 @@ def load(name: str) -> tuple[str, Mapping]:
 
 
 def read_toml(path: Path) -> dict[str, Any]:
-    """Return what a mapping file says. Errors: `UsageError` where it cannot be read or is no TOML."""
+    """Return the content of a mapping file. Errors: `UsageError` where it cannot be read or is no TOML."""
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        return parse_toml(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise UsageError(f"mapping {path}: cannot be read: {error.strerror or error}") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
@@ -255,7 +256,7 @@ def _parts(kind: Any) -> tuple[Any, ...]:
 
 
 def _validate(path: Path, mapping: Mapping) -> None:
-    """Refuse what the types let through. Errors: `UsageError`."""
+    """Refuse errors that the types do not detect. Errors: `UsageError`."""
     if len(mapping.table.separator) != 1 or mapping.table.skip_rows < 0:
         raise UsageError(f"mapping {path}: table.separator must be one character and table.skip_rows not negative")
     for name, spec in fields(mapping).items():
@@ -278,7 +279,7 @@ def _validate_field(path: Path, name: str, spec: Field) -> None:
 
 
 def _contradictions(mapping: Mapping, names: AbstractSet[str]) -> list[tuple[bool, str]]:
-    """List what cannot go together, each with whether it is so here. `names`: the fields that the mapping gives."""
+    """List contradictions, each with whether it is present here. `names`: the fields that the mapping gives."""
     point = mapping.reference.point
     heading = "speed" in names or mapping.frame.velocity == "vehicle" or point != "centre"
     has_groups = any(GROUP_PLACEHOLDER in name for name in needed_columns(mapping))

@@ -64,7 +64,7 @@ class CsvSheet:
         return header, following
 
     def _check_text(self) -> None:
-        """Refuse what is not UTF-8, naming the byte: the CSV parser itself would pass over it in broken lines."""
+        """Refuse bytes that are not UTF-8, naming the place: the CSV parser itself would ignore them in broken lines."""
         decoder, at = codecs.getincrementaldecoder("utf-8")(), 0
         with self._path.open("rb") as file:
             while True:

@@ -1,4 +1,4 @@
-"""Evidence packs of audits: all tables, a statement about every drive, and what gives the worst findings again."""
+"""Evidence packs of audits: all tables, a statement about every drive, and the data that reproduce the worst findings."""
 
 from __future__ import annotations
 

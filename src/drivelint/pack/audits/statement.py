@@ -1,4 +1,4 @@
-"""The in-toto statement about an audit: every drive with its log, its map, its status and what its verdicts come to.
+"""The in-toto statement about an audit: every drive with its log, its map, its status and its verdicts by kind.
 
 A test is a drive. It has passed if it was judged whole and on a map that fits, and nothing about it failed, is unknown or only just held.
 """

@@ -47,9 +47,9 @@ if TYPE_CHECKING:
 AUDIT: Final = f"{DATA}/audit"
 FILES: Final = (AUDIT_FILE, SUMMARY_FILE, RULES_FILE)
 FINDING_KEYS: Final = ("key", *SAID_OF_FINDINGS)
-"""What `evidence.json` says of a finding of an audit: its drive is known by its key."""
+"""The entry of `evidence.json` for a finding of an audit; its drive is identified by its key."""
 _OF_RUN: Final = frozenset({"reused", "n_asked", "n_absent"})
-"""What `summary.json` says of the run that wrote it; no table tells it."""
+"""The facts in `summary.json` about the run that wrote it; no table has them."""
 
 
 class PackedDrive(NamedTuple):
@@ -77,7 +77,7 @@ def names(results: ResultStore) -> list[str]:
 
 
 def facts(folder: Path, con: duckdb.DuckDBPyConnection, audit: Audit, rules: Sequence[Row]) -> dict[str, Any]:
-    """Return what follows from the tables in the pack `folder`, and must be said as it is in `evidence.json`."""
+    """Return the values of `evidence.json` that follow from the tables in the pack `folder`."""
     counted = summed(con, 0)
     fail_on = str(audit.audit_json["fail_on"])
     # of the tables, which have those of copies and both of a touch of two egos
@@ -96,7 +96,7 @@ def facts(folder: Path, con: duckdb.DuckDBPyConnection, audit: Audit, rules: Seq
 
 
 def unlike_summary(con: duckdb.DuckDBPyConnection, audit: Audit, packed_summary: dict[str, Any]) -> list[str]:
-    """Return the keys of `summary.json` that do not say what the tables say."""
+    """Return the keys of `summary.json` that contradict the tables."""
     counted = summed(con, 0).plain() | {"robust": bool(audit.settings["robustness"])}
     return sorted(
         key for key in (counted.keys() | packed_summary.keys()) - _OF_RUN if packed_summary.get(key) != counted.get(key)
@@ -104,7 +104,7 @@ def unlike_summary(con: duckdb.DuckDBPyConnection, audit: Audit, packed_summary:
 
 
 def unlike_receipts(results: ResultStore, rules: pa.Table, *, same_libraries: bool) -> Iterator[Problem]:
-    """Yield in what receipts do not say what the rows of their drives say, chunk by chunk.
+    """Yield the differences between receipts and the rows of their drives, chunk by chunk.
 
     `same_libraries`: the hash of the rows, which is one of Parquet, is compared, too.
     """
@@ -123,14 +123,16 @@ def unlike_receipts(results: ResultStore, rules: pa.Table, *, same_libraries: bo
             is_one = len(receipts.get(key, ())) == rows_of_key["drives"].num_rows == 1 and key not in seen
             seen.add(key)
             if not is_one:
-                yield Problem("receipts do not fit the tables", f"{key}: a drive has one receipt and one row in drives")
+                yield Problem(
+                    "receipts do not match the tables", f"{key}: a drive has one receipt and one row in drives"
+                )
                 continue
             for what in _unlike(receipts[key][0], said_of_rows(rows_of_key, stable), same_libraries=same_libraries):
-                yield Problem("receipts do not fit the tables", f"{receipts[key][0]['drive_id']} ({key}): {what}")
+                yield Problem("receipts do not match the tables", f"{receipts[key][0]['drive_id']} ({key}): {what}")
 
 
 def _unlike(receipt: Row, due: dict[str, Any], *, same_libraries: bool) -> list[str]:
-    """Return in what a receipt does not say what follows from its rows."""
+    """Return the differences between a receipt and its rows."""
     told = {name: dict(value) if isinstance(due.get(name), dict) else value for name, value in receipt.items()}
     if told["status"] == "quarantined" and due["status"] == "refused":
         due |= {"status": "quarantined"}
@@ -179,7 +181,7 @@ def packed_drives(
 
 
 def asked_of(audit: Audit, receipt: Row | None, rules_dirs: tuple[Path, ...]) -> RunRequest:
-    """Return what a check of a drive would be asked for the same; None: of no drive."""
+    """Return the request of a check of a drive with the same result; None: of no drive."""
     options = msgspec.json.decode(
         (receipt or {}).get("options") or "{}", type=DriveInput, dec_hook=lambda kind, value: kind(value)
     )
@@ -197,7 +199,7 @@ def asked_of(audit: Audit, receipt: Row | None, rules_dirs: tuple[Path, ...]) ->
 
 
 def settings_of(audit: Audit) -> JudgeSettings:
-    """Return what decided the verdicts of an audit, with the folders of rules where they were."""
+    """Return the settings that decided the verdicts of an audit, with the folders of rules where they were."""
     return msgspec.convert(audit.settings, JudgeSettings, dec_hook=lambda kind, value: kind(value))
 
 
@@ -216,7 +218,7 @@ def logs_of(con: duckdb.DuckDBPyConnection, findings: Sequence[Row], log_paths: 
     likely = [path for path in there if path.is_dir() or path.stat().st_size in sizes]
     found = {digest: path for path in likely if (digest := identify(path).sha256) in wanted}
     if not found:
-        raise UsageError(f"--trace {log_paths[0]}: no log there is of a drive with a finding in the pack")
+        raise UsageError(f"--trace {log_paths[0]}: no log there belongs to a drive with a finding in the pack")
     return found
 
 

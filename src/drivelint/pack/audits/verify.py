@@ -1,4 +1,4 @@
-"""Verifies the pack of an audit: its tables, what it says of them, and the drives whose logs are at hand."""
+"""Verifies the pack of an audit: its tables, its statements about them, and the drives whose logs are available."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ _NOT_FACTS: Final = frozenset({
 
 @dataclass
 class _Pack:
-    """The pack of an audit that was opened, and what was done with its findings so far.
+    """The opened pack of an audit, and the progress with its findings.
 
     `rules_by_id`: the rules that judged; None: this drivelint has others. `packed_by`: the version of drivelint that wrote the pack.
     `n_judged`: drives that were judged again; `n_alone`: drives without a log, of which the SQL was run; `n_run`: their findings.
@@ -70,7 +70,7 @@ class _Pack:
 
 
 def verified(request: VerifyRequest) -> tuple[list[Problem], str, str, list[str]]:
-    """Return what is wrong, what was judged again in words, what the pack states, and what was not looked at.
+    """Return the problems, the drives judged again in words, the statements of the pack, and what was not examined.
 
     Errors: `UsageError` for logs or a map that were given and are of no drive in the pack.
     """
@@ -101,24 +101,24 @@ def verified(request: VerifyRequest) -> tuple[list[Problem], str, str, list[str]
 
 
 def _of_tables(pack: _Pack) -> Iterator[Problem]:
-    """Yield in what the tables, receipts, rules and summary of the audit do not agree."""
+    """Yield the contradictions between the tables, receipts, rules and summary of the audit."""
     place = pack.folder / tables.AUDIT
     told = pack.audit.audit_json
     said = json.loads((place / SUMMARY_FILE).read_bytes())
     for key in tables.unlike_summary(pack.con, pack.audit, said):
-        yield Problem("summary.json does not fit the tables", key)
+        yield Problem("summary.json does not match the tables", key)
     yield from tables.unlike_receipts(LocalFolder(place), pack.rules, same_libraries=_same_libraries(pack))
     if pack.rules_by_id is not None:
         check_request = tables.asked_of(pack.audit, None, pack.rules_dirs)
         if why := consistency.unlike_rules(list(pack.rules_by_id.values()), pack.rules, check_request):
-            yield Problem("audit.json does not fit the result", why)
+            yield Problem("audit.json does not match the result", why)
     settings = replace(tables.settings_of(pack.audit), rules_dirs=pack.rules_dirs)
     if told["versions"] == versions() and told["run_id"] != run_id(settings):
-        yield Problem("audit.json does not fit the result", "run_id")
+        yield Problem("audit.json does not match the result", "run_id")
 
 
 def _of_evidence(pack: _Pack, findings: Sequence[Row]) -> Iterator[Problem]:
-    """Yield in what `evidence.json` does not say what the tables say, and the files that nothing names."""
+    """Yield the contradictions between `evidence.json` and the tables, and the files that nothing names."""
     folder, evidence = pack.folder, pack.evidence
     due = tables.facts(folder, pack.con, pack.audit, pack.rules.to_pylist())
     due["findings_left_out"] = due["n_findings"] - len(findings)
@@ -129,7 +129,7 @@ def _of_evidence(pack: _Pack, findings: Sequence[Row]) -> Iterator[Problem]:
     if evidence["inputs"] is not None and inputs["traces"].keys() != of_findings:
         keys.append("inputs")
     for key in [*keys, *sorted(evidence.keys() - due.keys() - _NOT_FACTS)]:
-        yield Problem("evidence.json does not fit the result", key)
+        yield Problem("evidence.json does not match the result", key)
     named = {EVIDENCE, *due["outputs"], *(rule["file"] for rule in evidence["rules"])}
     places = [
         *evidence["rules_dirs"],
@@ -168,7 +168,7 @@ def _of_drive(pack: _Pack, drive: tables.PackedDrive, log: Path | None, map_: Pa
     except UsageError as error:
         if log is not None:
             raise
-        return [Problem("inputs do not fit the result", str(error))]
+        return [Problem("inputs do not match the result", str(error))]
     pack.n_judged += 1
     try:
         fresh = again.check_again(drive.result, check_request, None, evidence=False)
@@ -194,7 +194,7 @@ def _of_drive(pack: _Pack, drive: tables.PackedDrive, log: Path | None, map_: Pa
 
 
 def _request_with_pack_paths(pack: _Pack, drive: tables.PackedDrive) -> RunRequest:
-    """Return the check of a drive with the paths of what is in the pack. Errors: `ValueError` for a path that leads out of it."""
+    """Return the check of a drive with the paths of the files in the pack. Errors: `ValueError` for a path that leads out of it."""
     check_request = drive.check_request
     if drive.key in pack.evidence["mappings"]:
         check_request = replace(check_request, mapping=str(inside(pack.folder, pack.evidence["mappings"][drive.key])))
@@ -227,7 +227,7 @@ def _rules_by_id(rules: pa.Table, rules_dirs: tuple[Path, ...]) -> dict[str, Rul
 
 
 def _same_rows(pack: _Pack, drive: tables.PackedDrive, fresh: Result) -> bool:
-    """Tell whether a drive that was judged again has the rows of the audit."""
+    """Return whether a drive that was judged again has the rows of the audit."""
     rows = {table: with_key(getattr(fresh, table), drive.key, None) for table in TABLES}
     if rows_sha256(rows) == drive.receipt["rows_sha256"]:
         return True
@@ -258,7 +258,7 @@ def _judging(pack: _Pack) -> str:
 
 
 def _notes(pack: _Pack) -> list[str]:
-    """Return what was not held against the logs, and what is not drivelint's own."""
+    """Return notes on results that were not compared with the logs, and on rules that are not drivelint's own."""
     notes, evidence, told = [], pack.evidence, pack.audit.audit_json["versions"]
     if pack.n_alone:
         ran = (

@@ -1,4 +1,4 @@
-"""What goes into the pack of an audit: its tables, the rules, and what gives its worst findings again."""
+"""The content of the pack of an audit: its tables, the rules, and the data that reproduce its worst findings."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 def content(request: PackRequest) -> Content:
-    """Return what makes a pack of an audit. Errors: `UsageError` for one that has not ended."""
+    """Return the function that packs an audit. Errors: `UsageError` for one that has not ended."""
     with open_audits(str(request.folder)) as (_, audit, _):
         if audit.warning:
             raise UsageError(audit.warning)
@@ -37,7 +37,7 @@ def content(request: PackRequest) -> Content:
 
 
 def _payload(work: Path, request: PackRequest) -> dict[str, Any]:
-    """Copy the tables; then judge the drives of the worst findings again, one by one. Return what `evidence.json` says."""
+    """Copy the tables; then judge the drives of the worst findings again, one by one. Return the content of `evidence.json`."""
     results = LocalFolder(request.folder)
     names = tables.names(results)
     for name in names:
@@ -79,7 +79,7 @@ def _payload(work: Path, request: PackRequest) -> dict[str, Any]:
 def _findings(
     work: Path, drive: tables.PackedDrive, check_request: RunRequest, loaded_rules: Sequence[Rule]
 ) -> list[dict[str, Any]]:
-    """Write what gives the findings of a drive again; return what `evidence.json` says of them."""
+    """Write the data that reproduce the findings of a drive; return their entries for `evidence.json`."""
     place = f"{contents.FINDINGS}/{drive.key}"
     evidence = again.finding_evidence(drive.result, check_request, loaded_rules=loaded_rules)
     for name, files in evidence.items():
@@ -100,7 +100,7 @@ class _Inputs:
         self.maps: dict[str, str] = {}
 
     def add(self, key: str, check_request: RunRequest) -> None:
-        """Copy what a drive was judged from and on; `check_request` says where it is now."""
+        """Copy the log and the map of a drive; `check_request` has their present paths."""
         if (
             check_request.mapping is not None and Path(check_request.mapping).is_file()
         ):  # else the name of a shipped one

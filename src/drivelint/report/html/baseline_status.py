@@ -15,7 +15,7 @@ MAX_LISTED: Final = 40
 """Findings of the earlier result that are listed of each kind."""
 _FOLDED_STATUSES: Final = ("changed", *NOT_FIXED, "fixed")
 _STATES: Final = {"expired": "expired", "unmatched": "no such finding", "active": "in force"}
-"""State of a waiver -> words, those that need somebody to act first."""
+"""State of a waiver -> words; states that need action come first."""
 _LABELS: Final = {"new": "new", "open": "not waived", "known": "known", "waived": "waived", "possible": "only possible"}
 
 
@@ -60,7 +60,7 @@ def _label(gate: Gate, kind: str) -> str:
 
 
 def gate_summary(gate: Gate | None, finding_ids: list[str]) -> dict[str, Any] | None:
-    """Return what the page says of the gate; None without a gate.
+    """Return the part of the page about the gate; None without a gate.
 
     `since`: the earlier result's name; `counts`: kind, label and number of findings; `waivers`: each with its state in words and
     what it is about; `gone`: the baseline's findings by standing, their number and the first of them as text.

@@ -1,4 +1,4 @@
-"""How fast two road users were just before they touched: at the contact itself they may have stopped each other already."""
+"""The speeds of two road users just before they touched: at the contact itself they may have stopped each other already."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ if TYPE_CHECKING:
     from drivelint.result.text import Row
 
 MOST_BEFORE_NS: Final = 1_000_000_000
-"""Speeds longer before the contact do not tell how fast it was."""
+"""Speeds longer before the contact do not show the speed at the contact."""
 
 
 def before_contact(scene: Row, contact: Row, start_ns: int) -> dict[str, Any] | None:
     """Return the speeds at the last recorded point of both ways before the first step of a contact; None: there is none.
 
-    `contact`: a finding, whose own closing speed is told.
+    `contact`: a finding, whose own closing speed is used.
     """
     ways = {actor["actor_id"]: actor["path"] or [] for actor in scene["actors"]}
     if contact["object_id"] not in ways:

@@ -74,7 +74,7 @@ def _policy(styles: str, script: str) -> str:
 
 
 def visible(value: Any) -> Any:
-    """Return what a template fills in so that everything in it is seen: no character turns the order of what is read.
+    """Return a value for a template with all characters visible: none reverses the reading order.
 
     The unit of an acceleration, alone or after a number, is typeset.
     """

@@ -1,4 +1,4 @@
-"""What the page explains beside its verdicts: technical words, and published logs for which it differs from what their authors say."""
+"""Explanations on the page: technical words, and published logs for which the verdicts differ from those of their authors."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def glossary_entries(texts: Iterable[str]) -> list[tuple[str, str]]:
-    """Return the words of `glossary.toml` that occur in any of the texts, each with what it means."""
+    """Return the words of `glossary.toml` that occur in any of the texts, each with its meaning."""
     said = " ".join(texts).lower()
     entries = toml_beside(__file__, "glossary.toml")["word"]
     return [(entry["word"], entry["means"]) for entry in entries if entry["sign"] in said]

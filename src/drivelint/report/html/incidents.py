@@ -1,4 +1,4 @@
-"""Incidents: what failed or nearly failed at one time of one ego, with its plan view and the measured values, and who was involved."""
+"""Incidents: findings and near misses at one time of one ego, with the plan view, the measured values, and the actors."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ MAX_INCIDENTS_IN_SUMMARY: Final = 6
 class FindingLine(NamedTuple):
     """One finding (`fail`) or near miss (`near`) as the page shows it, in the table and in its incident.
 
-    `time`: of its picture, when it was worst; `when`: by what it is told, see `worst_first.when`.
+    `time`: of its picture, when it was worst; `when`: the time that is printed, see `worst_first.when`.
     """
 
     row: Row
@@ -105,7 +105,7 @@ def finding_line(
 
 
 def _measurement_sentence(row: Row, rule: Row, required: str) -> str:
-    """Return in a sentence what was measured, what had to be, and what the rule itself says of it."""
+    """Return in a sentence the observed value, the required value, and the rule's own reason."""
     quantity = f"{rule['observes']} " if rule["observes"] else ""
     sentence = f"{quantity}{measure(row['observed'], row['unit'])}, must be {required}"
     return sentence if row["reason_measures"] else f"{sentence} ({row['reason']})"
@@ -147,7 +147,7 @@ def incidents(lines: Sequence[FindingLine], pictures: Mapping[Key, dict[str, Any
     """Return the incidents of one drive, in time order, from its findings and near misses.
 
     Each has the findings and near misses of one ego at one time, `cards` by rule, and their plan view, if there is one. `t`: hundredths
-    of a second since the drive's start; `leading`: it is among those that tell what happened, `rank` (0: the worst) of these;
+    of a second since the drive's start; `leading`: it is among the findings of the story, `rank` (0: the worst) of these;
     `on_earth`: a finding whose longitude and latitude are known, None for none; `t_utc`: the time in UTC, None: the log does not say.
     `drive`: its row. `cameras`, `pictured`: no pictures from cameras yet, see `add_pictures`.
     """
@@ -213,7 +213,7 @@ def _weight(item: tuple[str, Sequence[FindingLine]]) -> tuple[bool, int, str]:
 
 
 def _gauge(observed: float | None, required: float | None) -> dict[str, str] | None:
-    """Return the bar from zero to what was observed, and where what was required lies, as percentages of its width."""
+    """Return the bar from zero to the observed value, and the place of the required value, as percentages of its width."""
     if observed is None or required is None or not max(abs(observed), abs(required)) < float("inf"):
         return None
     low, high = min(0.0, observed, required), max(0.0, observed, required)

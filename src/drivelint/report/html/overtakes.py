@@ -38,7 +38,7 @@ _LABELS: Final = 10
 _NOT_COMPUTED: Final = {"zone": None, "sda_m": None, "spare_m": None, "reason": "not computed"}
 _TIMES: Final = ("t0_ns", "t1_ns", "t2_ns", "t3_ns")
 FAR_M: Final = 2000.0
-"""A safe distance ahead beyond this is of an ego hardly faster than whom it passes: the number says no more than that."""
+"""A safe distance ahead beyond this means only that the ego was hardly faster than the vehicle that it passed."""
 _BARS_W, _BARS_H = 560, 230
 _BINS: Final = 12
 _PREFERRED: Final = "nominal"
@@ -92,7 +92,7 @@ def _overtake(row: Row, profiles: Sequence[str], start_ns: int) -> dict[str, Any
 
 
 def _cell(p: Row) -> Row:
-    """Return what a profile asks for, `is_far` if that is further than makes sense to tell."""
+    """Return the requirement of a profile, `is_far` if it is too far to be printed."""
     return {**p, "is_far": p["sda_m"] is not None and p["sda_m"] > FAR_M}
 
 

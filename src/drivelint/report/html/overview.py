@@ -32,9 +32,9 @@ def page_headline(result: Result) -> tuple[str, str, str]:
 
 
 def contacts(result: Result, lines: Sequence[FindingLine], rules: Mapping[str, Row]) -> dict[str, Any] | None:
-    """Return who touched whom and when, from all findings (`lines`: those of the page); None if no finding is a contact.
+    """Return the contacts and their times, from all findings (`lines`: those of the page); None if no finding is a contact.
 
-    `named`: contacts of the boxes, or told by the speeds, in words, each with the link to its surest finding; `n_more`: those that are
+    `named`: contacts of the boxes, or found from the speeds, in words, each with the link to its surest finding; `n_more`: those that are
     not named; `sure`: no contact is only possible.
     """
     starts = result.start_times
@@ -140,7 +140,7 @@ def verdict_shares(verdicts: Mapping[str, int]) -> list[dict[str, Any]]:
 
 
 def drive_summaries(sections: Sequence[Mapping[str, Any]], n_drives: int) -> list[dict[str, Any]]:
-    """Return what happened in each drive, in time order; none if there are too many drives for the first page.
+    """Return the events of each drive, in time order; none if there are too many drives for the first page.
 
     `who`: the vehicles and people that the findings are about.
     """
@@ -161,7 +161,7 @@ def drive_summaries(sections: Sequence[Mapping[str, Any]], n_drives: int) -> lis
 def first_page_texts(
     rules: Sequence[Mapping[str, Any]], summaries: Sequence[Mapping[str, Any]], lines: Sequence[FindingLine]
 ) -> list[str]:
-    """Return what the first page says of rules and findings, to be searched for words that need to be explained."""
+    """Return the words of the first page about rules and findings, to be searched for words that need an explanation."""
     worst = [b["worst"] for b in rules if b["worst"] is not None]
     leading = [
         line for story in summaries for moment in story["moments"] for _, lines_ in moment["cards"] for line in lines_

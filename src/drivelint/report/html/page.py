@@ -1,4 +1,4 @@
-"""What the page says, as plain values for the template: nothing here knows about markup."""
+"""The content of the page, as plain values for the template: nothing here knows about markup."""
 
 from __future__ import annotations
 
@@ -226,7 +226,7 @@ def _rows_by_drive(rows: pa.Table, drives: set[str]) -> dict[str, list[Row]]:
 
 
 def _filters(lines: Sequence[FindingLine], rules: Mapping[str, Row]) -> dict[str, list[tuple[str, str]]]:
-    """Return what can be chosen in the filters: value and label."""
+    """Return the choices of the filters: value and label."""
     severities = {rule["severity"] for rule in rules.values()}
     drives = sorted({line.row["drive_id"] for line in lines})
     return {
@@ -311,7 +311,7 @@ def _rule_groups(result: Result, rules: Mapping[str, Row]) -> list[dict[str, Any
 
 
 def _said_of_idle(verdict_counts: Mapping[str, int]) -> str:
-    """Return what is said of a rule that was judged nowhere: for some egos it may not have applied, and be unknown for others."""
+    """Return the words about a rule that was judged nowhere: for some egos it may not have applied, and be unknown for others."""
     if not verdict_counts["unknown"]:
         return "never applied"
     return "not applicable or not judged" if verdict_counts["not_applicable"] else "not judged"

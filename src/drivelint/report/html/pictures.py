@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 Moment = tuple[str, int]
 _MINUS: Final = "\u2212"
 _SAME_NS: Final = 5_000_000
-"""A frame that is nearer to the moment is of the moment: times are told in hundredths of a second."""
+"""A frame that is nearer to the moment counts as that of the moment: times are printed in hundredths of a second."""
 
 
 def pictures_by_moment(pictures: pa.Table) -> dict[Moment, list[dict[str, Any]]]:
@@ -34,7 +34,7 @@ def pictures_by_moment(pictures: pa.Table) -> dict[Moment, list[dict[str, Any]]]
 def add_pictures(
     worst: dict[str, Any] | None, sections: Sequence[dict[str, Any]], cameras: Mapping[Moment, list[dict[str, Any]]]
 ) -> None:
-    """Give each moment of a page its pictures: the worst one first, and each once: what comes later links there."""
+    """Give each moment of a page its pictures, the worst moment first, and each picture once; later moments link to it."""
     anchors: dict[Moment, str] = {}
     if worst is not None:
         row = worst["line"].row

@@ -94,7 +94,7 @@ def plan_view(scene: Row, road: Road, concerned: Collection[str], spaces: Sequen
         "spaces": [(_kind(who, ego, concerned), polygon(np.rint(lanes.to_units(ring)))) for who, ring in rings],
         "bodies": [
             _body(a, _kind(a["actor_id"], ego, concerned), lanes, scene["t_ns"])
-            for a in sorted((*others, ego), key=_area, reverse=True)  # whoever is under a larger one is still seen
+            for a in sorted((*others, ego), key=_area, reverse=True)  # an actor under a larger one is still seen
             if a is ego or a in met or view.holds(a, _BESIDE)
         ],
         "gaps": gaps,
@@ -189,7 +189,7 @@ def _body(actor: Row, kind: str, lanes: Lanes, t_ns: int) -> dict[str, str]:
 
 
 def _way(way: Sequence[Row], lanes: Lanes, t_ns: int) -> tuple[str, str, str]:
-    """Return the paths before and after a moment and of the points at full seconds from it; nothing for who stands."""
+    """Return the paths before and after a moment and the points at full seconds from it; nothing for a standing actor."""
     xy = lanes.to_units(np.array([(p["x_m"], p["y_m"]) for p in way])) if way else np.empty((0, 2))
     if not len(xy) or np.ptp(xy, axis=0).sum() < UNITS_PER_M:
         return "", "", ""
@@ -245,7 +245,7 @@ def _brief(actor_id: str) -> str:
 
 
 def _label(actor: Row, ego: Row, met: Sequence[Row], view: _View) -> dict[str, str]:
-    """Return an actor's name, on the side of its box that faces away from whom it met."""
+    """Return an actor's name, on the side of its box that faces away from the other actor."""
     box = view(corners(actor))
     middle = box.mean(axis=0)
     partner = met[0] if actor is ego and met else ego

@@ -1,4 +1,4 @@
-"""Why something could not be judged, in one line per reason: first what can be provided, then what the logs did not tell."""
+"""Reasons why something could not be judged, one per line: first what can be provided, then what the logs did not show."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def summarise_reasons(reasons_given: Iterable[VerdictReason]) -> str:
 
 
 def can_be_provided(code: str) -> bool:
-    """Whether a log, a map or an option could tell what was missing: a signal, or a condition of the drive."""
+    """Whether a log, a map or an option could provide the missing signal or condition."""
     return code not in _OF_THE_MOMENT and (code.startswith("missing_") or code.endswith("_unknown"))
 
 

@@ -116,7 +116,7 @@ class Lanes:
         """Return each bound once: tile, solid, broken or edge (a kerb or a bound that the map does not describe), path."""
         seen: set[frozenset[tuple[float, float]]] = set()
         marks = []
-        # a bound inside a junction is only where somebody could drive: nothing is painted there
+        # a bound inside a junction only limits where vehicles may drive: nothing is painted there
         for lane in (lane for lane in self._lanes if not lane["in_junction"]):
             for side in ("left", "right"):
                 line: Points = lane[side]

@@ -1,4 +1,4 @@
-"""Strips under the plan view of the worst moment: what was recorded around it, on one time axis, one strip per quantity."""
+"""Charts under the plan view of the worst moment: the recording around it, on one time axis, one chart per quantity."""
 
 from __future__ import annotations
 
@@ -140,7 +140,7 @@ def _in(x: Axis, t_ns: int) -> bool:
 
 
 def _deciding(lines: Sequence[Series], course: Row | None, worst_ns: int) -> list[float]:
-    """Return the values that decide whether a rule was kept: those at the worst step, and what was required where it was not."""
+    """Return the values that decide whether a rule was kept: those at the worst step, and the required values where it failed."""
     if course is None:
         return []
     at = min(range(len(course["t_ns"])), key=lambda i: abs(course["t_ns"][i] - worst_ns))

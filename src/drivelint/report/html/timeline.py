@@ -1,4 +1,4 @@
-"""The timeline of one ego in one drive: a row per rule and profile, what was judged when, and the findings on it.
+"""The timeline of one ego in one drive: a row per rule and profile with the judged times and the findings.
 
 Places along the time axis are percentages, so that the drawing fits any width without losing the shape of its marks.
 """
@@ -27,7 +27,7 @@ _THIN: Final = 0.35  # percent: a shorter stretch is drawn as a mark
 
 
 class TimelineRow(NamedTuple):
-    """One row of a timeline: a rule and profile, its worst verdict, and what is drawn.
+    """One row of a timeline: a rule and profile, its worst verdict, and its bars.
 
     `bands`: judged stretches, or moments (`w` empty); `marks`: findings, with their anchors, and near misses.
     """

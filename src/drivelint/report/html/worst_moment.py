@@ -87,7 +87,7 @@ def _name(row: Row) -> str:
 
 
 def _files(row: Row, folder: Path | None) -> list[tuple[str, str]]:
-    """Return what lies beside the page about a finding: words and link."""
+    """Return the files beside the page about a finding: words and link."""
     if folder is None:
         return []
     beside = [("log with the verdicts in it, for a viewer", f"annotated/{row['drive_id']}.mcap")]

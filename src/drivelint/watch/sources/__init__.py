@@ -28,7 +28,7 @@ class SourceOptions(NamedTuple):
 
 
 class Opener(NamedTuple):
-    """A kind of source: the pattern of its names, in small letters, how they are told to a user, and what opens one."""
+    """A kind of source: the pattern of its names, in small letters, their description for a user, and the function that opens one."""
 
     pattern: str
     label: str
@@ -50,7 +50,7 @@ def open_source(name: str, folder: Path, *, idle_s: float | None, every_s: float
         if opener.accepts(name):
             return opener.open(name, SourceOptions(folder, idle_s, every_s))
     known = ", ".join(opener.label for opener in OPENERS)
-    raise UsageError(f"{name}: no source of this kind is known: give {known}")
+    raise UsageError(f"{name}: no source of this kind is known: use {known}")
 
 
 def _mcap(name: str, options: SourceOptions) -> Source:
@@ -106,10 +106,10 @@ def _address(name: str, usual_port: int | None) -> tuple[str, int]:
         port = usual_port if parts.port is None else parts.port
     except ValueError as error:
         raise UsageError(
-            f"{name}: no address ({error}): give a host and a port, such as tcp://127.0.0.1:9000"
+            f"{name}: no address ({error}): write a host and a port, such as tcp://127.0.0.1:9000"
         ) from error
     if port is None or parts.path or parts.query:
-        raise UsageError(f"{name}: no address: give a host and a port, such as tcp://127.0.0.1:9000")
+        raise UsageError(f"{name}: no address: write a host and a port, such as tcp://127.0.0.1:9000")
     return parts.hostname or "", port
 
 

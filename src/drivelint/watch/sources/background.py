@@ -1,4 +1,4 @@
-"""This module reads a socket or a pipe in a thread of its own, so that nothing is lost while nobody asks."""
+"""This module reads a socket or a pipe in a thread of its own, so that nothing is lost between two reads."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 MOST_WAITING_BYTES: Final = 256 << 20
-"""Where more waits to be taken, no more is read. Then the writer waits, or drops what is oldest."""
+"""If more than this is waiting, no more is read. Then the writer waits, or drops the oldest."""
 TICK_S: Final = 0.1
-"""So often whoever waits for a socket looks whether it shall stop."""
+"""The interval at which a wait for a socket checks whether to stop."""
 
 
 class BackgroundReader(Generic[T]):
-    """Goes through a generator in a thread, and keeps what came until it is taken.
+    """Runs a generator in a thread, and keeps its items until they are taken.
 
-    The generator yields something empty at least every `TICK_S`, so that it can be stopped. `size` tells how many bytes an item has.
+    The generator yields something empty at least every `TICK_S`, so that it can be stopped. `size` returns the number of bytes of an item.
     """
 
     def __init__(
@@ -54,7 +54,7 @@ class BackgroundReader(Generic[T]):
             return None if self._ended else []
 
     def rest(self) -> list[T]:
-        """Return what waits, whatever ended the thread."""
+        """Return the waiting items, whatever ended the thread."""
         with self._changed:
             return self._take_waiting()
 
@@ -86,7 +86,7 @@ class BackgroundReader(Generic[T]):
                 self._changed.notify_all()
 
     def _put(self, item: T) -> bool:
-        """Keep what came, wait while there is too much, and say whether to go on."""
+        """Keep an item, wait while there are too many, and return whether to continue."""
         with self._changed:
             if item:
                 self._waiting.append(item)

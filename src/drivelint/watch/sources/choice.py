@@ -39,7 +39,7 @@ def open_source(options: WatchOptions, progress: Progress) -> Iterator[Source]:
             if source is not None:
                 source.close()
             if not is_done and options.out is None and any(home.iterdir()):
-                progress.note(f"what was recorded is kept: {home}")
+                progress.note(f"the recording is kept: {home}")
                 keep(home)
 
 
@@ -55,12 +55,12 @@ def _open_source(options: WatchOptions, folder: Path) -> Source:
 
 
 def _refuse_with_command(options: WatchOptions) -> None:
-    """Refuse what a program that is started with the watch cannot be the source of. Errors: `UsageError`."""
+    """Refuse sources that a program started with the watch cannot write. Errors: `UsageError`."""
     if not options.command:
         return
     if options.source == "-":
-        raise UsageError("-: is there before the program behind -- is started: start that by itself")
+        raise UsageError("-: stdin exists before the program after -- is started: start that program separately")
     if "://" not in options.source and Path(options.source).exists():
         raise UsageError(
-            f"{options.source}: is there already: the program behind -- must write a new file: remove it, or name another"
+            f"{options.source}: exists already: the program after -- must write a new file: remove it, or name another"
         )

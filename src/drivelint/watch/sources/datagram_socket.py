@@ -1,4 +1,4 @@
-"""Receives datagrams with what tells that others were lost: when each came, and how many the system dropped by then."""
+"""Receives datagrams with signs of lost ones: the time of each, and how many the system had dropped by then."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ MOST_BYTES: Final = 65535
 
 
 def ask_for_losses(receiver: socket.socket) -> None:
-    """Let the system keep many datagrams, and tell with each what it knows of it."""
+    """Let the system keep many datagrams, and report its facts about each."""
     receiver.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, ROOM)
     receiver.settimeout(TICK_S)
     if _LINUX:

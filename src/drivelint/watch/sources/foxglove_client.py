@@ -65,13 +65,13 @@ class FoxgloveClient:
         return None if found is None else [message for messages in found for message in messages]
 
     def notes(self) -> list[str]:
-        """Return what the server said of itself, which of its channels are not read, and that it is waited for, once."""
+        """Return notes on the server: its status, its unread channels, and that it is waited for, once."""
         found = list(self._notes)
         del self._notes[: len(found)]  # the thread may have added more
         return found
 
     def close(self) -> list[LiveMessage]:
-        """Leave the server. Return what came and nobody took. May be called twice."""
+        """Leave the server. Return the items that were not taken. May be called twice."""
         self._reader.stop()
         return [message for messages in self._reader.rest() for message in messages]
 
@@ -118,7 +118,7 @@ class FoxgloveClient:
                     why = one_line(str(error)) or "timed out"
                     raise TraceError(f"{self._uri}: no Foxglove WebSocket server answers: {why}") from error
                 if not is_told:
-                    self._notes.append(f"{self._uri}: no server answers yet: it is waited for")
+                    self._notes.append(f"{self._uri}: no server answers yet: waiting for it")
                     is_told = True
                 yield []
                 time.sleep(RETRY_S)
@@ -128,7 +128,7 @@ class FoxgloveClient:
             return ws
 
     def _understood(self, ws: ClientConnection, data: str | bytes) -> list[LiveMessage]:
-        """Do what the server's own words ask for; return a message of one of its channels, if it is one."""
+        """Handle a message of the server itself; return a message of one of its channels, if it is one."""
         if isinstance(data, bytes):
             if len(data) < _MESSAGE.size or data[0] != _MESSAGE_DATA:
                 return []
@@ -147,7 +147,7 @@ class FoxgloveClient:
                 self._notes.append(f"{self._uri} says: {one_line(str(message['message']))}")
         except (ValueError, KeyError, TypeError, binascii.Error) as error:
             self._notes.append(
-                f"{self._uri}: a message of the server that cannot be understood ({error!r}): it is passed over"
+                f"{self._uri}: a message of the server that cannot be understood ({error!r}): it is ignored"
             )
         return []
 
@@ -195,4 +195,4 @@ def _refuse_what_is_no_address(uri: str) -> None:
     try:
         parse_uri(uri)
     except InvalidURI as error:
-        raise UsageError(f"{uri}: no address of a WebSocket: give ws://HOST:PORT") from error
+        raise UsageError(f"{uri}: no address of a WebSocket: write ws://HOST:PORT") from error

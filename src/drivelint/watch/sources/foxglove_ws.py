@@ -63,7 +63,7 @@ class FoxgloveWebSocket(WrittenWindows):
             self._writer.add(messages)
 
     def notes(self) -> Sequence[str]:
-        """Return what the server said of itself, which of its channels are not read, and that it is waited for, once."""
+        """Return notes on the server: its status, its unread channels, and that it is waited for, once."""
         return [*self._client.notes(), *self._reader.notes()]
 
     def write_window(self, frames: Sequence[Frame], path: Path, *, latest: bool = False) -> None:
@@ -76,7 +76,7 @@ class FoxgloveWebSocket(WrittenWindows):
         """See `Source`. Who sends the messages cannot be ended from here."""
 
     def close(self) -> None:
-        """Leave the server and finish the recording, with what came and nobody asked for."""
+        """Leave the server and finish the recording, with the messages that were not taken."""
         rest = self._client.close()
         if self._closed:
             return

@@ -183,7 +183,7 @@ class _WindowWriter:
             self._flush()
 
     def add_damaged(self, chunk: DamagedChunk) -> None:
-        """Write a chunk that cannot be read: what it held is lost in the window, too."""
+        """Write a chunk that cannot be read: its content is lost in the window, too."""
         self._flush()
         self._sink.write(chunk.record)
 

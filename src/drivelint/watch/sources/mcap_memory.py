@@ -1,4 +1,4 @@
-"""What of the messages before a window still holds in it, by what their channel is for.
+"""The messages from before a window that still apply in it, by the purpose of their channel.
 
 Road users and odometry hold at their time alone, traffic lights until the next message. Transforms, maps, parameters, reports
 and declared events are rare or hold for a while: the first ones of a channel are kept, and the last. Entities of a scene hold until
@@ -58,7 +58,7 @@ def is_watched(schema: str) -> bool:
 
 
 def memory_for(channel: Channel, schema: str) -> Memory:
-    """Return what keeps the messages of a channel whose schema has this name."""
+    """Return the memory for the messages of a channel whose schema has this name."""
     kind = message_kind(schema)
     if kind == SCENE:
         return SceneMemory(channel.message_encoding)

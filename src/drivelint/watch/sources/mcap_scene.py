@@ -126,7 +126,7 @@ class _Protobuf:
         return spans.get(_ID, b""), _time(spans.get(_TIMESTAMP, b"")), _time(spans.get(_LIFETIME, b""))
 
     def deleted(self, deletion: bytes) -> tuple[bytes | None, int]:
-        """Return whom a deletion deletes (None: all), and its time."""
+        """Return the ids that a deletion deletes (None: all), and its time."""
         found = {each.number: each for each in fields(deletion)}
         spans = {number: deletion[each.start : each.end] for number, each in found.items()}
         every = 2 in found and found[2].value == _DELETE_ALL
@@ -157,7 +157,7 @@ class _Json:
         return entity.get("id") or "", _json_time(entity.get("timestamp")), _json_time(entity.get("lifetime"))
 
     def deleted(self, deletion: Any) -> tuple[str | None, int]:
-        """Return whom a deletion deletes (None: all), and its time."""
+        """Return the ids that a deletion deletes (None: all), and its time."""
         every = deletion.get("type") in {_DELETE_ALL, "ALL"}
         return None if every else deletion.get("id") or "", _json_time(deletion.get("timestamp"))
 

@@ -113,7 +113,7 @@ class McapStream:
 
     def _stop(self, at: int, reason: str) -> None:
         self.ended = True
-        self.notes.append(f"{self._where}: {reason} at byte {at}: nothing behind it is watched")
+        self.notes.append(f"{self._where}: {reason} at byte {at}: nothing after it is watched")
 
     def _next_record(self) -> bytes | None:
         """Return the next record that is read, once it is whole; None: nothing yet, or never again."""
@@ -165,7 +165,7 @@ class McapStream:
             if not error.framed:
                 self._stop(at, str(error))
                 return
-            self.notes.append(f"{self._where}: {error} at byte {at}: what it held is lost")
+            self.notes.append(f"{self._where}: {error} at byte {at}: its content is lost")
             yield DamagedChunk(record)
             return
         place = 0
@@ -188,7 +188,7 @@ class McapStream:
                 yield Message(number, log_ns, record)
             else:
                 self.notes.append(
-                    f"{self._where}: a message on channel {number}, which was never announced, at byte {at}"
+                    f"{self._where}: a message on channel {number}, which was never declared, at byte {at}"
                 )
         elif opcode == Opcode.SCHEMA:
             schema = Schema.read(_stream(record[RECORD.size :]))

@@ -35,7 +35,7 @@ class Receiver(Protocol):
         ...
 
     def notes(self) -> list[str]:
-        """Return what was lost since the last call."""
+        """Return the losses since the last call."""
         ...
 
     def close(self) -> None:
@@ -124,7 +124,7 @@ class FileReceiver:
         data = self._file.read(timeout_s)
         found = self._cutter.cut(data or b"", ended=data is None)
         if self._cutter.trouble is not None:
-            self._notes.append(f"{self._path}: {self._cutter.trouble}: nothing behind that is read")
+            self._notes.append(f"{self._path}: {self._cutter.trouble}: nothing after that is read")
         self._ended = data is None or self._cutter.trouble is not None
         return found or (None if self._ended else [])
 
@@ -156,7 +156,7 @@ class StreamReceiver:
         blocks = self._reader.take(timeout_s)
         found = self._cutter.cut(b"".join(blocks or ()), ended=blocks is None)
         if self._cutter.trouble is not None:
-            self._notes.append(f"{self._cutter.trouble}: nothing behind that is read")
+            self._notes.append(f"{self._cutter.trouble}: nothing after that is read")
         self._ended = blocks is None or self._cutter.trouble is not None
         return found or (None if self._ended else [])
 
@@ -222,7 +222,7 @@ class DatagramReceiver:
         return found
 
     def notes(self) -> list[str]:
-        """See `Receiver`. Losses are told when there are twice as many as were told, and in the end."""
+        """See `Receiver`. Losses are reported when there are twice as many as were reported, and at the end."""
         found, self._notes = [f"{self._where}: {note}" for note in self._notes], []
         losses = self._assembler.losses
         if losses.total >= max(2 * self._told, 1) or (self._ended and losses.total > self._told):

@@ -2,10 +2,10 @@
 
 A datagram is a header of a signed and an unsigned 32-bit integer, counter and size, and `size` bytes of the message, at most 8192.
 The datagrams of a message count 1, 2, 3, ...; the counter of the last one is negative: a message of three has 1, 2, -3, a message of
-one -1. A receiver cannot tell to which message a datagram belongs but by its place: nothing in the header names the message. Source:
+one -1. Only its place shows a receiver to which message a datagram belongs: nothing in the header names the message. Source:
 `OSIReporter::UpdateOSIGroundTruth` and `osi_udp_buf` in esmini's EnvironmentSimulator/Modules/ScenarioEngine/SourceFiles/OSIReporter.cpp,
 received by `OSIReceiver` in its scripts/udp_driver/udp_osi_common.py (https://github.com/esmini/esmini). Before that, it counted from 0
-and ended each message with -1, so that a lost datagram cannot be told: such a stream is refused.
+and ended each message with -1, so that a lost datagram cannot be detected: such a stream is refused.
 """
 
 from __future__ import annotations
@@ -64,8 +64,8 @@ class Losses:
         """Return the counts that are not 0, in words."""
         counts = {
             f"datagrams missing or out of order in {plural(self.gaps, 'place')}": self.gaps,
-            f"{plural(self.dropped, 'datagram')} that found no room": self.dropped,
-            f"{plural(self.distrusted, 'message')} left out behind them": self.distrusted,
+            f"{plural(self.dropped, 'datagram')} for which the buffer had no room": self.dropped,
+            f"{plural(self.distrusted, 'message')} left out after them": self.distrusted,
             f"{plural(self.strange, 'datagram')} of no OSI message": self.strange,
             f"{plural(self.foreign, 'datagram')} of another sender": self.foreign,
         }
@@ -110,7 +110,7 @@ class Assembler:
             return None
         if counter == 0:
             raise TraceError(
-                f"{self._where}: the datagrams are counted from 0, as an old esmini does: one that is lost could not be told: "
+                f"{self._where}: the datagrams are counted from 0, as an old esmini does: a lost one could not be detected: "
                 "use a newer one, or let it write a file (--osi_file) and watch that"
             )
         if self._is_interrupted(datagram) and self._parts:
@@ -123,7 +123,7 @@ class Assembler:
         return self._finished(datagram.sender) if counter < 0 and self._parts else None
 
     def _is_next(self, counter: int, data: bytes) -> bool:
-        """Say whether a datagram is the one that is waited for; if not, what came of its message is left out."""
+        """Return whether a datagram is the expected one; if not, the parts of its message are left out."""
         # the first part of a message has its time in it: none of another message is the same
         if counter == 1 and [data] == self._parts:
             return False

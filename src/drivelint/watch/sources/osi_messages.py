@@ -25,7 +25,7 @@ class MessageCutter:
         self._at = 0  # the byte of the stream at which the buffer begins
 
     def cut(self, data: bytes, *, ended: bool = False) -> list[bytes]:
-        """Return the messages that are whole now. `ended`: nothing more comes, and what is left over is told as trouble."""
+        """Return the messages that are whole now. `ended`: nothing more comes, and a remainder is reported as trouble."""
         self._buffer += data
         found: list[bytes] = []
         place = 0
@@ -42,7 +42,7 @@ class MessageCutter:
                 break
             sure = _begins(self._buffer, place)
             if not sure and not ended and len(self._buffer) < end + LENGTH + 1:
-                break  # what follows tells whether the length was right
+                break  # the following bytes show whether the length was right
             if not sure and len(self._buffer) > end and not _begins(self._buffer, end):
                 self._stop(place, f"no message of {length} bytes and another one behind it begin")
                 break

@@ -1,4 +1,4 @@
-"""What only the first OSI message of a drive says, and what of it is put into a part of the drive that begins later."""
+"""The content that only the first OSI message of a drive has, and the part of it that is copied into a later part of the drive."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def _copy(source: Any, target: Any, field: str) -> None:
 
 
 def _complete(bulb: Any, first: Any) -> None:
-    """Give a bulb that only says what it shows the place and the lanes that the first message gave it."""
+    """Give a bulb that has only its state the place and the lanes from the first message."""
     shown = type(bulb).FromString(bulb.SerializeToString())
     bulb.CopyFrom(first)
     for field in _LIGHT_STATE_FIELDS:

@@ -27,7 +27,7 @@ _MOST_NUMBERS: Final = 1 << 32
 
 @contextmanager
 def writing(path: Path) -> Iterator[None]:
-    """Write a recording within. Errors: `TraceError` for what the system says, such as a full disk."""
+    """Write a recording within. Errors: `TraceError` for errors of the system, such as a full disk."""
     try:
         yield
     except OSError as error:

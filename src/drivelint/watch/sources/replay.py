@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 FIRST_NS: Final = 1_000_000_000
-"""The first steps are given for a window of their own, which tells early who the ego is."""
+"""The first steps are given for a window of their own, which shows the ego early."""
 
 
 class Replay:

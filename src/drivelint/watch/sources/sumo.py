@@ -1,6 +1,7 @@
 """A simulation in SUMO, stepped from here: it waits while a window is judged.
 
-The recording is SUMO's floating car data, with what its reader looks for beside it: the sizes of the vehicles, and the states of lights.
+The recording is SUMO's floating car data, with the files that its reader needs beside it: the sizes of the vehicles, and the states of
+lights.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ _LEAVES_OUT: Final = (
     "person-fcd-output", "fcd-output.filter-edges.input-file", "fcd-output.filter-shapes", "device.fcd.probability",
     "device.fcd.explicit", "device.fcd.radius", "person-device.fcd.probability", "person-device.fcd.explicit",
 )  # fmt: skip
-"""Options of a configuration after which SUMO does not write everybody."""
+"""Options of a configuration with which SUMO does not write every actor."""
 
 
 def open(name: str, folder: Path, *, span_s: float = DEFAULT_SPAN_S, until_s: float | None = None) -> SumoSimulation:  # noqa: A001
@@ -64,7 +65,9 @@ class SumoSimulation(WrittenWindows):
         options = _options(config)
         found = [name for name in _LEAVES_OUT if any(each.tag == name for each in options.iter())]
         self._notes = (
-            [f"{config.name}: {listed(found)}: whom SUMO does not write after that is not judged"] if found else []
+            [f"{config.name}: {listed(found)}: actors that SUMO does not write after that are not judged"]
+            if found
+            else []
         )
         base = config.stem.replace(".", "-")  # the reader knows the lights' file by the part before the first dot
         own = next(each for n in count(1) if not (each := folder / (base if n == 1 else f"{base}-{n}")).exists())
@@ -100,7 +103,7 @@ class SumoSimulation(WrittenWindows):
         return frames or None
 
     def notes(self) -> Sequence[str]:
-        """Return what the configuration leaves out of the recording, once."""
+        """Return notes on actors that the configuration leaves out of the recording, once."""
         found, self._notes = self._notes, []
         return found
 
@@ -135,7 +138,7 @@ class SumoSimulation(WrittenWindows):
             self._append(_beside(self.recording, "tls"), _LIGHTS_BEGIN, _lights(step), _LIGHTS_END)
         new = set(_TYPE.findall(step.xml)) - self._types.keys()
         if new:
-            # while somebody of it is there: types of single vehicles end with them
+            # while a vehicle of it is there: types of single vehicles end with them
             self._types |= {name: self._sumo.vehicle_type(unescape(name.decode())) for name in sorted(new)}
             _beside(self.recording, "vtypes").write_bytes(self._vtypes(self._types))
 

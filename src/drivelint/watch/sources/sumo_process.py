@@ -33,7 +33,7 @@ _STEP_S: Final = 10.0
 _RETRY_S: Final = 0.02
 _STARTS: Final = 3
 _IN_USE: Final = "bind"
-"""In SUMO's message where somebody else took the port in the meantime."""
+"""Words in SUMO's message if another program took the port in the meantime."""
 _NO_SUMO: Final = "SUMO is not installed: pip install 'drivelint[sumo]'"
 _OPTIONS: Final = (
     ("fcd-output.attributes", "id,x,y,z,angle,type,speed,pos,lane,edge,slope,signals,acceleration,vehicle"),
@@ -102,7 +102,7 @@ class SumoProcess:
             self._begin(precision)
             with self._guarded_connection() as con:
                 self.step_s = float(con.simulation.getDeltaT())
-                end_s = float(con.simulation.getEndTime())  # less than 0: until everybody has arrived
+                end_s = float(con.simulation.getEndTime())  # less than 0: until all have arrived
                 for light in con.trafficlight.getIDList():
                     con.trafficlight.subscribe(light, (self._light_state,))
             undo.pop_all()
@@ -133,7 +133,7 @@ class SumoProcess:
             return float(con.simulation.getTime()) >= self._end_s - self.step_s / 2
 
     def vehicle_type(self, name: str) -> VehicleType | None:
-        """Return what is known of a vType; None: SUMO does not know it any more."""
+        """Return the facts about a vType; None: SUMO does not know it any more."""
         # one that was changed for a single vehicle is called BASE@ID, after the one that it was
         parts = name.split("@")
         with self._guarded_connection() as con:
@@ -165,7 +165,7 @@ class SumoProcess:
         process.wait()
 
     def _begin(self, precision: int) -> None:
-        """Start SUMO and connect to it; again at another port where somebody else took the first."""
+        """Start SUMO and connect to it; again at another port if another program took the first."""
         found, home = program()
         environment = {**os.environ, **({"SUMO_HOME": home} if home else {})}
         for start in range(_STARTS):

@@ -44,7 +44,7 @@ class StepReader:
             return self._found.popleft() if self._found else None
 
     def close(self) -> None:
-        """Listen no more. What SUMO still writes is read until it ends, which it must have been told before."""
+        """Listen no more. What SUMO still writes is read until it ends, which must have been requested before."""
         self._ended = True
         self._thread.join()
 

@@ -37,7 +37,7 @@ def open_to_others(host: str) -> list[str]:
 
 
 class Patience:
-    """Tells when nothing has come for `idle_s` seconds; None: it waits for ever."""
+    """Reports when nothing has come for `idle_s` seconds; None: it waits for ever."""
 
     def __init__(self, idle_s: float | None) -> None:
         self._idle_s = idle_s
@@ -54,7 +54,7 @@ class Patience:
 
 
 def from_descriptor(number: int, idle_s: float | None) -> Generator[bytes, None, None]:
-    """Yield what comes from an open file descriptor, such as standard input, up to its end."""
+    """Yield the bytes of an open file descriptor, such as standard input, up to its end."""
     patience = Patience(idle_s)
     while not patience.is_over:
         if not select.select([number], [], [], TICK_S)[0]:
@@ -71,7 +71,7 @@ def from_descriptor(number: int, idle_s: float | None) -> Generator[bytes, None,
 
 
 def from_socket(connection: socket.socket, idle_s: float | None, notes: list[str]) -> Generator[bytes, None, None]:
-    """Yield what comes from a TCP connection until its peer closes it; that it broke is told in `notes`, and ends it, too."""
+    """Yield the bytes of a TCP connection until its peer closes it; a broken connection is reported in `notes`, and ends it, too."""
     patience = Patience(idle_s)
     with connection:
         connection.settimeout(TICK_S)

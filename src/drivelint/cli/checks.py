@@ -1,0 +1,79 @@
+"""What reads the result of a check: `report` and `diff` for a folder that `check --out` wrote."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import typer
+
+from drivelint.cli.console import run_interruptible
+from drivelint.errors import UsageError
+from drivelint.phrases import inert, inert_json, inert_line, listed
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from drivelint.incident import IncidentRequest
+    from drivelint.result.model import Result
+
+
+def report_check(folder: Path, to: str, base_url: str | None) -> None:
+    """Write a report of a check into its folder, and print its name."""
+    from drivelint.report import markdown
+    from drivelint.report.outputs import REPORT_FORMATS
+    from drivelint.result.folder import add
+    from drivelint.result.load import load_result
+
+    if base_url is not None and to != "markdown":
+        raise UsageError("--base-url is for --to markdown: other reports have no links to the report")
+    name, render = REPORT_FORMATS[to]
+    result = load_result(folder)
+    warn_of_partial(folder, result)
+    add(folder, name, render(result) if base_url is None else markdown.render(result, base_url))
+    typer.echo(inert_line(str(folder / name)))
+
+
+def write_incident_sheet(request: IncidentRequest) -> None:
+    """Write the incident sheet of a finding, print the names of its files, and say on stderr in which other drives the rule has one."""
+    from drivelint.incident import other_drives, write_incident
+
+    for path in run_interruptible(lambda: write_incident(request)):
+        typer.echo(inert_line(str(path)))
+    if others := other_drives(request):
+        name = request.name
+        message = (
+            f"{name} is a finding in {listed(others)}, too: the sheet is about the worst; name another by {name}@DRIVE"
+        )
+        typer.echo(f"drivelint: {inert_line(message)}", err=True)
+
+
+def diff_checks(base: Path, new: Path, format_: str, fail_on: str | None) -> None:
+    """Print the difference of two checks, and exit by it."""
+    from drivelint.gate import compare_results, descriptions
+    from drivelint.result.load import load_result
+    from drivelint.result.one_line import on_one_line
+
+    earlier, later = load_result(base), load_result(new)
+    if format_ == "text":
+        earlier, later = on_one_line(earlier), on_one_line(later)
+    warn_of_partial(base, earlier)
+    warn_of_partial(new, later)
+    least = later.fail_on if fail_on is None else fail_on
+    difference, failing = compare_results(earlier, later, (base.resolve().name, new.resolve().name), least)
+    if format_ == "json":
+        typer.echo(inert_json(descriptions.to_json(difference, failing, least)))
+    elif format_ == "markdown":
+        from drivelint.report import markdown
+
+        typer.echo(markdown.difference(difference, failing, least, later.gate))
+    else:
+        typer.echo(inert(descriptions.difference_text(difference, failing, least, later.gate)))
+    raise typer.Exit(int(descriptions.exit_code(difference, failing, least)))
+
+
+def warn_of_partial(folder: Path, result: Result) -> None:
+    """Say on stderr that a result is of an interrupted run."""
+    if result.interrupted:
+        from drivelint.result.model import partial_sentence
+
+        typer.echo(f"drivelint: {inert_line(str(folder))}: {partial_sentence(result.drives)}", err=True)

@@ -1,0 +1,53 @@
+"""The search of the site: an index of its sections as a script, because a page that was opened from a file may fetch nothing."""
+
+from __future__ import annotations
+
+import json
+import re
+from itertools import pairwise
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+from drivelint.guide import html
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from markdown_it.token import Token
+
+SCRIPT: Final = "search.js"
+INDEX: Final = "search-index.js"
+_WORD: Final = re.compile(r"\w+(?:[.\-]+\w+)*")
+
+
+class Section(NamedTuple):
+    """A heading of a page and what stands under it. `words`: each once, in lower case."""
+
+    anchor: str
+    heading: str
+    words: str
+
+
+def index(pages: Mapping[str, Sequence[Token]]) -> bytes:
+    """Return the script that `search.js` loads: (name, sections) of every page, as `html.parse` read it."""
+    entries = [[name, list(sections(tokens))] for name, tokens in pages.items()]
+    return f"drivelintPages({json.dumps(entries, ensure_ascii=False, separators=(',', ':'))});\n".encode()
+
+
+def sections(tokens: Sequence[Token]) -> Iterator[Section]:
+    """Yield the sections of a page in its order."""
+    anchor, heading = "", ""
+    texts: list[str] = []
+    for before, token in pairwise(tokens):
+        if before.type == "heading_open":
+            if heading:
+                yield _section(anchor, heading, texts)
+            anchor, heading, texts = str(before.attrGet("id")), html.words(token), []
+        if token.type == "inline":
+            texts.append(html.words(token))
+        elif token.type in {"fence", "code_block"}:
+            texts.append(token.content)
+    yield _section(anchor, heading, texts)
+
+
+def _section(anchor: str, heading: str, texts: Sequence[str]) -> Section:
+    return Section(anchor, heading, " ".join(sorted(set(_WORD.findall(" ".join(texts).lower())))))
