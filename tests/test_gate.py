@@ -188,7 +188,7 @@ def test_waivers_in_the_settings_and_in_a_file_until_their_day(ran: Ran) -> None
     assert ran(*check, "--today", "2027-03-31")[0] == 0
     code, out, _ = ran(*check, "--today", "2027-04-01")
     assert code == 1
-    assert "drivelint.toml:2: expired 2027-03-31 (jo): it waives nothing; 1 finding like that" in out
+    assert "drivelint.toml:2: expired 2027-03-31 (jo): it has no effect; 1 finding like that" in out
     Path("more.toml").write_text(f"# ours\n{text.replace('162', '126')}", encoding="utf-8")
     code, out, _ = ran(*check, "--today", "2027-01-01", "--waivers", "more.toml", "--format", "json")
     told = json.loads(out)["gate"]
@@ -226,7 +226,7 @@ def test_diff_of_two_results(results: dict[str, Path], ran: Ran) -> None:
     base, new = str(results["base"]), str(results["new"])
     code, out, err = ran("diff", base, new)
     assert (code, err) == (1, "")
-    assert "1 new, 0 changed (0 worse), 1 unchanged, 0 fixed" in out
+    assert "1 new, 1 unchanged" in out
     assert out.endswith("exit 1: 1 new finding at or above severity critical\n")
     assert ran("diff", base, new, "--fail-on", "never")[0] == 0
     assert ran("diff", base, base)[0] == 0

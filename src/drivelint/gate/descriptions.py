@@ -66,16 +66,18 @@ def since_baseline(difference: Difference) -> str:
 
 
 def counts_sentence(n: Mapping[str, int], worse: int, fixed: tuple[int, int]) -> str:
-    """Return diff status -> number of an earlier result's findings as a sentence.
+    """Return diff status -> number of an earlier result's findings as a sentence without zeros.
 
     `worse`: of the changed; `fixed`: those that pass now, and those whose rule does not apply any more.
     """
-    text = f"{n['changed']} changed ({worse} worse), {n['unchanged']} unchanged, "
-    text += f"{n['fixed']} fixed ({fixed[0]} now pass, {fixed[1]} now not applicable)"
-    if any(n[status] for status in NOT_FIXED):
-        told = (f"{n[status]} {words}" for status, words in NOT_FIXED.items() if n[status] or status != "elsewhere")
-        text += f"; gone but not fixed: {', '.join(told)}"
-    return text
+    passes, idle = (f"{k} now {words}" if k else "" for k, words in zip(fixed, ("pass", "not applicable"), strict=True))
+    said = [f"{n['changed']} changed{f' ({worse} worse)' if worse else ''}"] if n["changed"] else []
+    said += [f"{n['unchanged']} unchanged"] if n["unchanged"] else []
+    said += [f"{n['fixed']} fixed ({', '.join(filter(None, (passes, idle)))})"] if n["fixed"] else []
+    gone = [f"{n[status]} {words}" for status, words in NOT_FIXED.items() if n[status]]
+    parts = [", ".join(said)] if said else []
+    parts += [f"gone but not fixed: {', '.join(gone)}"] if gone else []
+    return "; ".join(parts) or "no earlier finding"
 
 
 def judged_otherwise(difference: Difference) -> str:
@@ -199,9 +201,12 @@ def waiver_warnings(gate: Gate) -> Iterator[str]:
     for waiver in gate.waivers:
         if waiver.state == "expired":
             like_that = plural(waiver.findings, "finding") if waiver.findings else "no finding is"
-            like_that += " like that"
+            like_that = waiver.unknown_rule or f"{like_that} like that"
             yield f"{waiver.where}: expired {waiver.expires} ({waiver.owner}): it has no effect; {like_that}"
         elif waiver.state == "unmatched":
+            if waiver.unknown_rule:
+                yield f"{waiver.where}: {waiver.rule} ({waiver.owner}): {waiver.unknown_rule}"
+                continue
             yield f"{waiver.where}: no finding matches {waiver_scope(waiver)} ({waiver.owner}); correct or remove it"
 
 

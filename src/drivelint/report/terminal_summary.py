@@ -312,7 +312,7 @@ def _end(result: Result, findings: list[Row], out: str | None) -> list[Text]:
     lines = [Text(f"exit {int(end.code)}: {end.why}{alone}", style)]
     if gate is not None and gate.baseline is not None:
         changes = descriptions.since_baseline(gate.baseline)
-        lines.append(Text(f"baseline of its findings {changes}"))
+        lines.append(Text(f"baseline: {changes}"))
     if gate is not None:
         lines += [Text(f"waiver   {line}", "yellow") for line in descriptions.waiver_warnings(gate)]
     if counts.total(result.verdicts)["unknown"] or counts.unrecorded(result.verdicts).num_rows:

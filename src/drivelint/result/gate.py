@@ -150,6 +150,8 @@ class Waiver:
     to_s: float | None = None
     state: str = "active"
     findings: int = 0
+    unknown_rule: str = ""
+    """That no rule has its id, and which one is meant; '': one has, or rules of other packs may have."""
 
 
 @dataclass(frozen=True)
