@@ -7,14 +7,10 @@ from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple
 
-import click
 import typer
-from click.core import ParameterSource
 
 from drivelint import option_values
 from drivelint.cli import completion
-from drivelint.errors import UsageError
-from drivelint.settings import find_settings
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -202,15 +198,6 @@ DRIVE_OPTIONS = {
 }
 
 
-def _require_map_of_settings(path: Path | None) -> None:
-    """Refuse a map that the settings file names and that does not exist. Errors: `UsageError` with the name of that file."""
-    context = click.get_current_context(silent=True)
-    if context is None or path is None or context.get_parameter_source("map") is not ParameterSource.DEFAULT_MAP:
-        return
-    if not path.exists():
-        raise UsageError(f"{find_settings()}: map = {str(path)!r}: does not exist: correct it, or give --map")
-
-
 def takes_drive_input(command: Callable[..., None]) -> Callable[..., None]:
     """Replace the parameter `drive` of a command by the command line options of `DriveInput`."""
     signature = inspect.signature(command, eval_str=True)
@@ -218,7 +205,6 @@ def takes_drive_input(command: Callable[..., None]) -> Callable[..., None]:
     @wraps(command)
     def wrapped(**values: Any) -> None:
         drive = {name: each.parse(values.pop(name)) for name, each in DRIVE_OPTIONS.items()}
-        _require_map_of_settings(drive["map"])
         command(**values, drive=drive)
 
     parameters: list[inspect.Parameter] = []
