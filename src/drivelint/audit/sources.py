@@ -69,9 +69,9 @@ def with_manifests(
 ) -> tuple[tuple[str, ...], dict[Path, DriveInput]]:
     """Return the logs that `check` is to judge, those that manifests among `traces` name in their place, and the options of the latter.
 
-    `note` hears of columns that may be misspelt. A manifest is one Parquet or CSV file whose column `log` names a log: a table of states may
-    have any columns. Errors: `UsageError` as of `drives`, and for a log that two rows name with other options: a check has one result of
-    each log.
+    `note` hears of columns that may be misspelt. A manifest is one Parquet or CSV file whose column `log` names a log: a table of states
+    may have any columns. Errors: `UsageError` as of `drives`, and for a log that two rows name with other options: a check has one result
+    of each log.
     """
     plain = DriveInput(**{each.name: getattr(options, each.name) for each in fields(DriveInput)})
     logs: list[str] = []
