@@ -209,7 +209,9 @@ def test_no_pass_without_the_oncoming_vehicle(judged: Judged, what: str, span: s
             rows = [row for row in rows if row["verdict"] != "fail"]
         assert {(row["verdict"], row["reason_code"]) for row in rows} == {("unknown", "null_value")}
         for row in rows:
-            assert f"actor {OV} " in row["reason"] or "angles are not known" in row["reason"], row["reason"]
+            assert f"actor {OV} " in row["reason"] or "observed pull-out and cut-in angles" in row["reason"], row[
+                "reason"
+            ]
         for row in judged.of(case, *SPACES_OV):
             assert row["verdict"] != "pass" or not touches(row, SPANS[span]), row
         for row in judged.of(case, "ukhc.overtake-zone"):

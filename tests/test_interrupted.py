@@ -271,6 +271,33 @@ def test_a_second_ctrl_c_leaves_no_temporary_folder(tmp_path: Path, scratch: Pat
     assert not list(scratch.iterdir())
 
 
+LOST = """
+import os, signal
+from drivelint.cli import watching
+class Collected:
+    def __del__(self):
+        os.kill(os.getpid(), signal.SIGTERM)
+        sum(range(1000))
+def bar(quiet, before=watching.bar):
+    Collected()
+    return before(quiet)
+watching.bar = bar
+"""
+"""A signal comes while Python collects an object: what is raised there is printed, and nobody gets it."""
+
+
+@pytest.mark.ci
+def test_a_signal_whose_interrupt_is_lost_ends_a_watch_all_the_same(tmp_path: Path) -> None:
+    with run(LOST, "watch", str(tmp_path / "never.mcap"), "--idle", "0", "--rules", "ukhc.no-collision") as process:
+        try:
+            _, err = process.communicate(timeout=120)
+        finally:
+            process.kill()
+    assert "Exception ignored" in err
+    assert "drivelint: interrupted: stops" in err
+    assert process.returncode == 4, err
+
+
 class Watcher(Silent):
     """Notes what a person who waits is told."""
 

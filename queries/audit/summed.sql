@@ -1,4 +1,4 @@
--- The sums over all drives that have a receipt, each counted by itself. Which count once is told of a whole audit: see `fleet/totals.sql`.
+-- The sums over all drives that have a receipt, each counted by itself. Only a whole audit counts each log once: see `fleet/totals.sql`.
 SELECT
     count(*) AS n_drives,
     count(*) FILTER (status = 'judged') AS n_judged,

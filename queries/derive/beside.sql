@@ -53,7 +53,7 @@ object_on_cycle_lane AS (
     GROUP BY ALL
 ),
 -- The drivable lanelets, and the lanelets beside them with no kerb or verge between: people ride there, too. A border may be a kerb, and
--- nobody drives over restricted ground. Whether a lanelet beyond a border or beyond restricted ground belongs to the road is not known
+-- no vehicle drives over restricted ground. Whether a lanelet beyond a border or beyond restricted ground belongs to the road is not known
 -- (is_certain is false).
 rideable_lanelet AS (
     SELECT environment_id, lanelet_id, lane_type, true AS is_certain FROM lanelet WHERE drivable

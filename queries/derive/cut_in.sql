@@ -1,7 +1,7 @@
 -- A vehicle cuts in if it comes from beside into the running lane ahead of the ego: from at most 0.05 m inside the lane to more than 0.3 m,
 -- along the lane (within 45 degrees), at most 150 m ahead. A vehicle that gets into the lane because the ego changes lanes does not cut in.
 -- If the vehicle is not seen in between, t_ns is the first step at which it is seen in the lane. A vehicle that overtakes the ego, and is
--- over the line already when it gets ahead, cuts in at the step at which it becomes the nearest vehicle ahead. If it cannot be told for a
+-- over the line already when it gets ahead, cuts in at the step at which it becomes the nearest vehicle ahead. If it is not known for a
 -- second which vehicle is ahead, some vehicle may have cut in.
 WITH ahead AS (
     SELECT
@@ -68,7 +68,7 @@ free_lane AS (
     )
     GROUP BY ALL
 ),
--- Stretches of a second or longer in which it cannot be told which vehicle is ahead.
+-- Stretches of a second or longer in which it is not known which vehicle is ahead.
 blind_stretch AS (
     SELECT
         drive_id, ego_id, min(t_ns) AS t_ns, max(t_ns) AS t_to_ns,

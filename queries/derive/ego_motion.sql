@@ -16,7 +16,7 @@
 -- The *_error columns say how far off a value may be: three times the mean standard error of the slopes of two seconds, by how far the
 -- samples lie off their lines (where the motion changes they do for a moment, in noise always), or twice the greatest one nearby, and
 -- no less than by how much another reading of the same motion contradicts it: of the acceleration that by the places, of the yaw rate that
--- by the course. They are NULL where there are too few samples to tell. Of an ego that the sensors of somebody else measured they are at least
+-- by the course. They are NULL if there are too few samples. For an ego that the sensors of another vehicle measured they are at least
 -- what a place that is off by a decimetre makes of it, or a speed that is not that of the places; such an ego does not gain speed faster
 -- than engines let it, and is not believed within a second of a change that no tyre makes, or of sliding sideways against its heading.
 --

@@ -2,9 +2,9 @@
 -- table lead has the nearest vehicle of them. For an ego that is out of its lane, an object beside the lane that faces the ego and is in
 -- its way is ahead, too (`outside`).
 --
--- Without a map the running lane is the ego's own way. Beyond the end of what it drove, the ego may bend otherwise than it did: who is then
--- in its way only perhaps has no class here, as one of whom nothing can be told. So has one whom the ego would hit within two seconds, both
--- on the bend that it holds and straight on, although its way passes by: nobody knows whether the road bends there, or whether the ego swerves.
+-- Without a map the running lane is the ego's recorded path. Beyond the end of that path, the ego may take another bend. An actor that is only
+-- perhaps in its way there has no class here, because nothing is known about it. The same holds for an actor that the ego would hit within two
+-- seconds, both on its present bend and straight on, although its path passes by: it is not known whether the road bends there, or the ego swerves.
 WITH
 own_way_end AS (
     SELECT drive_id, ego_id, seg AS chain_id, min(driven_m) AS driven_m
@@ -51,7 +51,7 @@ object_ahead AS (
         AND (p.rear_s_m >= e.front_s_m OR abs(p.d_m - e.d_m) < p.lat_half_m + e.lat_half_m)
         AND (c.t_ns IS NULL AND (n.driven_m IS NULL OR abs(p.heading_diff_rad) > 3 * pi() / 4) OR abs(p.heading_diff_rad) < pi() / 4 OR p.speed_mps <= standing_mps())
 ),
--- Without a map: whom the bend that the ego holds, or held a moment before, would hit soon, although its way passes by.
+-- Without a map: actors that the present bend of the ego, or that of a moment before, would hit soon, although its path passes by.
 on_course AS (
     SELECT
         p.drive_id, p.ego_id, p.t_ns, p.object_id, f.dx - e.length_m / 2 - box_half_across_m(p.width_m, p.length_m, f.turn_rad) AS gap_m, along_lane_mps(p.speed_mps, f.turn_rad) AS speed_mps,

@@ -121,7 +121,7 @@ possible_pass AS (
             AND (h.ahead IS NOT DISTINCT FROM false OR coalesce(v.vehicle_lane_m >= passing_before_m(n.speed_mps), false))
         )
 ),
--- Steps near the vehicle that the ego overtakes, or may overtake, or near somebody on foot in its lane. If that vehicle is lost meanwhile,
+-- Steps near the vehicle that the ego overtakes, or may overtake, or near a pedestrian in its lane. If that vehicle is lost meanwhile,
 -- it is not known whether it was passed.
 step_near_passed AS (
     SELECT n.drive_id, n.ego_id, n.t_ns, bool_or(CASE WHEN r.passed AND d.is_near THEN true END) AS overtaking

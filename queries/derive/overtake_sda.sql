@@ -131,7 +131,7 @@ SELECT
     ov_id IS NULL AND n_unplaced = 0 AS nobody,
     sda_m, da_m - sda_m AS spare_m, (da_m - sda_m) / nullif(v_av_mps + v_ov_mps, 0) AS spare_s,
     -- Without an OV, a zone is given only if every vehicle is placed and the sight line is longer than SDA. With an OV and a vehicle that
-    -- is not placed, only zone A can be told: that vehicle may leave even less.
+    -- is not placed, only zone A is certain: that vehicle may leave even less.
     CASE WHEN is_known AND NOT has_sped_up AND CASE WHEN ov_id IS NULL THEN n_unplaced = 0 AND da_m > sda_m ELSE n_unplaced = 0 OR da_m <= sda_m END THEN overtake_zone(da_m - sda_m, (da_m - sda_m) / nullif(v_av_mps + v_ov_mps, 0)) END AS zone,
     CASE
         WHEN NOT begin_seen THEN why('overtake_begin_unseen')

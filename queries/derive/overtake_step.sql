@@ -62,7 +62,7 @@ worst_ov AS (
 )
 SELECT
     s.drive_id, s.ego_id, s.occurrence, s.t_ns, s.stage, s.vbp_id, s.sure, w.o.id AS ov_id,
-    -- That nobody comes is known only as far as is seen: an unseen vehicle at the limit (70 mph if the map has none) must be out of reach.
+    -- That no vehicle comes is known only within the visible range: an unseen vehicle at the limit (70 mph if the map has none) must be out of reach.
     coalesce(n.n_unplaced = 0 AND (n.object_id IS NOT NULL OR n.free_m > s.sd_av_m + danger_space_m(coalesce(s.limit_mps, 31.3))), false) AS ov_known,
     CASE WHEN n.t_ns IS NULL THEN CASE WHEN s.ego_lack IS NULL THEN why('oncoming_side_unknown') ELSE why('oncoming_unknown', {'lack': s.ego_lack}) END
         WHEN n.n_unplaced > 0 THEN why('record_actor', {'lack': n.unplaced_reason})

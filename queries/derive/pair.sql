@@ -164,7 +164,7 @@ object_place AS (
     UNION ALL
     SELECT pair_no, p.s_m, p.d_m, p.half_width_m, p.lane_heading_diff_rad, p.over_width_m, p.over_against, p.lanelet_id FROM nearest_place
 ),
--- ---- levels: objects whose box lies in plan over the running lane or one lane's width beside it, if heights or the map can tell the level
+-- ---- levels: objects whose box lies in plan over the running lane or one lane's width beside it, if heights or the map show the level
 drive_with_overpass AS (SELECT DISTINCT g.drive_id FROM data_log g SEMI JOIN lane_apart l ON l.environment_id = g.environment_id),
 pair_over_road AS MATERIALIZED (
     SELECT a.pair_no, a.drive_id, a.ego_id, a.chain_id, a.object_id, a.t_sample_ns, p.lane_heading_diff_rad, p.lanelet_id
@@ -221,7 +221,7 @@ height_difference AS MATERIALIZED (
 pair_off_level AS (
     SELECT pair_no FROM height_difference SEMI JOIN pair_over_road USING (pair_no) WHERE is_apart
     UNION
-    -- The object is in a lane over or under the ego's, as far as the map tells, unless it heads along the ego's lane and not along that
+    -- The object is in a lane over or under the ego's, as far as the map shows, unless it heads along the ego's lane and not along that
     -- other one.
     SELECT v.pair_no
     FROM pair_over_road v

@@ -21,7 +21,7 @@ encounter AS (
                 + e.width_m / 2 * abs(sin(e.yaw_rad - s.yaw_rad)) > -s.length_m / 2,
             true
         )) AS is_driven,
-        -- The other turns into the ego's road behind the ego, sooner than rules ask of who comes across.
+        -- The other turns into the ego's road behind the ego, sooner than rules demand of crossing vehicles.
         coalesce(c.pet_s >= merging_s() AND c.pet_s < least_junction_s() AND abs(wrap_rad(b.yaw_rad - o.yaw_rad)) < pi() / 4, false) AS merges
     FROM passage p
     JOIN conflict c ON c.drive_id = p.drive_id AND c.ego_id = p.ego_id

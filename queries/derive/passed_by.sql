@@ -1,13 +1,13 @@
 -- Vehicles ahead that the map's lane puts into the ego's lane, although the ego's own way, as it was driven from here on, passes beside
--- them. A lane of a map may be wide, cut a corner, or run where nobody drives. The ego follows nobody whom its box does not meet on its
+-- them. A lane of a map may be wide, cut a corner, or run where no vehicle drives. The ego does not follow a vehicle that its box does not meet on its
 -- way. Two kinds are listed: a vehicle that stands and leaves the middle of the lane free, and one that moves, not towards that way, is not
 -- in front of the ego's box, and has no room beside it in one lane, so that the two are in two lanes.
 --
--- Where sensors measured the places, who is met by less than `measured_meeting_m` is listed as well, as one of whom that is not sure.
+-- Where sensors measured the places, a vehicle that is met by less than `measured_meeting_m` is listed as well, as not sure.
 --
 -- A vehicle that stands in the ego's way, and that the ego swerves round at the last moment, is not listed at any step: the ego's lane and the bend that it
 -- drove, both held, led into that vehicle less than `late_s` before it, and the ego got off that course faster than in a change of lane. Beyond the end of what
--- the ego drove, it is taken to hold its bend, and passes beside only whom it would pass if it bent otherwise.
+-- the ego drove, it is assumed to keep its bend, and passes beside only those that it would also pass on another bend.
 WITH candidate AS (
     SELECT
         p.drive_id, p.ego_id, p.t_ns, st.seg, p.object_id, p.x_m, p.y_m, p.yaw_rad, p.speed_mps, p.length_m, p.width_m, e.length_m AS ego_length_m, e.width_m AS ego_width_m,
@@ -85,6 +85,6 @@ beside_way AS (
 SELECT b.drive_id, b.ego_id, b.t_ns, b.object_id, b.is_sure
 FROM beside_way b
 ANTI JOIN (FROM beside_way WHERE is_course_held AND is_sure) h ON h.drive_id = b.drive_id AND h.ego_id = b.ego_id AND h.object_id = b.object_id
--- Nor does the ego pass by whom it overtakes on the side of the oncoming traffic: until it pulls out it is behind that vehicle.
+-- Nor does the ego pass by a vehicle that it overtakes on the side of the oncoming traffic: until it pulls out it is behind that vehicle.
 ANTI JOIN (FROM excursion WHERE overtaking AND begin_seen AND over_against AND max_out_m >= surely_out_m()) x
     ON x.drive_id = b.drive_id AND x.ego_id = b.ego_id AND x.t0_ns <= coalesce(b.t_there_ns, 9223372036854775807) AND x.t_end_ns >= b.t_ns

@@ -5,7 +5,7 @@
 -- one lane, 100 % of the steps are still on a lane); the median is taken outside such an overtake if enough steps lie outside one. The map
 -- also fits if at least three quarters of the other vehicles drive with their lanes, and the ego was against its own lane for longer than an
 -- overtake takes: then the ego is on the wrong side. On a one-way road there is no overtaking in the opposing lane: there the ego is on the
--- wrong way if the map states its hand and nobody else contradicts the map. The ego may be off the lanes or far from their middle for a while. The map still fits
+-- wrong way if the map states the side that is driven on and no other vehicle contradicts the map. The ego may be off the lanes or far from their middle for a while. The map still fits
 -- if the ego keeps to the middle of a lane before and after that time, on a road of the same direction or on two roads that cross: the map
 -- fits there, and a log is not shifted against its map for a while only.
 WITH opposing_step AS (
@@ -14,7 +14,7 @@ WITH opposing_step AS (
     JOIN step st ON st.drive_id = x.drive_id AND st.ego_id = x.ego_id AND st.t_ns >= x.t0_ns AND st.t_ns <= x.t_end_ns
     WHERE x.over_against
 ),
--- Lanes with a lane of the other direction beside them. On any other lane outside a junction nobody is on the opposing side: it is one-way.
+-- Lanes with a lane of the other direction beside them. On any other lane outside a junction, no vehicle can be on the opposing side: it is one-way.
 two_way_lane AS (SELECT DISTINCT environment_id, lanelet_id FROM lane_beside WHERE drivable AND against),
 ego_place AS (
     SELECT
@@ -29,7 +29,7 @@ step_count AS (
         min(s.actor_class) AS actor_class,
         count(s.x_m) AS n_steps,
         count(e.lanelet_id) AS n_on_lane,
-        -- A step without a heading does not tell whether the ego drives with the traffic.
+        -- A step without a heading does not show whether the ego drives with the traffic.
         count(*) FILTER (e.with_traffic IS NOT NULL AND s.speed_mps > 1 AND x.t_ns IS NULL) AS n_moving,
         count(*) FILTER (e.with_traffic AND s.speed_mps > 1 AND x.t_ns IS NULL) AS n_with_direction,
         sum(st.dt_ns) FILTER (NOT e.with_traffic AND s.speed_mps > 1 AND x.t_ns IS NULL) AS against_ns,
@@ -41,7 +41,7 @@ step_count AS (
         CASE WHEN outside_decides THEN quantile_disc(e.off_m, 0.5) FILTER (s.speed_mps > 1 AND x.t_ns IS NULL)
             -- An ego that waits at the kerb says nothing about the map while it stands.
             ELSE coalesce(quantile_disc(e.off_m, 0.5) FILTER (s.speed_mps > 1), quantile_disc(e.off_m, 0.5)) END AS lateral_median_m,
-        -- A log that is nothing but an overtake, or in which the ego stands at the kerb, does not tell that its map is moved.
+        -- A log that is nothing but an overtake, or in which the ego stands at the kerb, does not show that its map is moved.
         coalesce(lateral_median_m > aside_of_lane_m(), false)
             AND (outside_decides OR coalesce(sum(st.dt_ns) FILTER (s.speed_mps > 1) > longest_overtake_ns(), false)) AS is_aside
     FROM step st
@@ -67,7 +67,7 @@ map_check AS (
         -- Nobody overtakes in the opposing lane of a one-way road, and a map that states its hand states its directions.
         coalesce(n_on_lane >= 0.8 * n_steps AND n_with_direction < 0.6 * n_moving AND lateral_median_m <= 1.2 AND m.handedness_source = 'attribute'
             AND against_one_way_ns > one_way_ns() AND against_one_way_ns >= 0.8 * against_ns, false) AS is_against_one_way,
-        -- If the ego is against its lane, the other vehicles can tell, unless the log began in the middle of an overtake. If it is off the
+        -- If the ego is against its lane, the other vehicles decide, unless the log began in the middle of an overtake. If it is off the
         -- lanes, the map may lack just its lane.
         n_on_lane >= 0.8 * n_steps AND n_with_direction < 0.6 * n_moving AND against_ns > CASE WHEN is_against_one_way THEN one_way_ns() ELSE longest_overtake_ns() END AS is_against,
         -- If the ego is far from the middle of its lane, the others are as well on a map that is moved across. An ego that mostly stands may
@@ -77,7 +77,7 @@ map_check AS (
     JOIN data_log g USING (drive_id)
     LEFT JOIN environment m ON m.environment_id = g.environment_id
 ),
--- If the ego drives against its lane, or far from its middle, the other vehicles tell whether the map or the ego is wrong.
+-- If the ego drives against its lane, or far from its middle, the other vehicles show whether the map or the ego is wrong.
 vehicle_place AS (
     SELECT
         s.drive_id, s.actor_id, s.t_ns, s.speed_mps,

@@ -1,4 +1,4 @@
--- The class of every actor, as far as its recorded class, its box and its motion tell. A thing that moves by itself may be any road user.
+-- The class of every actor, as far as its recorded class, its box and its motion show it. A thing that moves by itself may be any road user.
 -- Only a thing that stands in the whole log is known to be none.
 WITH unclassified_actor AS (FROM actor WHERE actor_class IS NULL OR actor_class = 'object'),
 actor_motion AS (

@@ -1,4 +1,4 @@
--- What a viewer plots of the first ego of each of the drives $ids, one row per step. NULL: not known, nobody is there, or no rule of the
+-- The values that a viewer plots for the first ego of each of the drives $ids, one row per step. NULL: not known, no actor there, or no rule of the
 -- run reads the table that it comes from.
 WITH
 first_ego AS (

@@ -6,7 +6,7 @@ WITH lone AS (
 ), rule_there AS (
     SELECT rule_id, flatten(list(profiles)) AS profiles FROM {of}rules GROUP BY rule_id
 ), said AS (
-    -- what no signal of the log tells is not known to be kept
+    -- without a signal of the log, a rule is not known to be kept
     SELECT v.* REPLACE (CASE WHEN starts_with(v.reason_code, 'unrecorded_') THEN 'unknown' ELSE v.verdict END AS verdict) FROM {of}verdicts v SEMI JOIN lone l ON l.there_key = v.key
 ), egos AS (
     SELECT DISTINCT key, ego_id FROM said

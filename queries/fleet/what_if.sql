@@ -1,4 +1,4 @@
--- The verdict of each row of a rule if a parameter that is the required value were $value; NULL: only a new check can tell.
+-- The verdict of each row of a rule if a parameter that is the required value were $value; NULL: a new check is needed.
 CREATE OR REPLACE TEMP TABLE what_if AS
 WITH {subject}, row_of_rule AS (
     SELECT v.key, v.ego_id, v.profile, v.object_id, v.occurrence, s.tag_value, v.verdict AS was, v.observed, v.n_judged, v.n_expected,

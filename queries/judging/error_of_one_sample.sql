@@ -24,7 +24,7 @@ FROM (
     FROM (
         SELECT s.*, count(*) FILTER (a.x_m IS NOT NULL AND (f.every_ns IS NULL OR is_key_frame(a.t_ns, f.first_ns, f.every_ns))) AS n_samples
         FROM side s
-        -- an object may be a place of the map, which nobody measures
+        -- an object may be a place of the map, which is not measured
         SEMI JOIN actor o ON o.drive_id = s.drive_id AND o.actor_id = s.actor_id
         LEFT JOIN _key_frame f ON f.drive_id = s.drive_id AND f.actor_id = s.actor_id
         LEFT JOIN actor_state a ON a.drive_id = s.drive_id AND a.actor_id = s.actor_id AND a.t_ns BETWEEN s.t_start_ns AND s.t_end_ns

@@ -1,4 +1,4 @@
--- A rule that failed is an error for every subject that it was to judge. `told`: what went wrong, NULL where the code says it; `again`: it
+-- A rule that failed is an error for every subject that it had to judge. `told`: the problem, NULL if the code states it; `again`: it
 -- went beyond a limit earlier in this run, and was not tried here.
 INSERT INTO _error
 SELECT rule_no, drive_id, ego_id, $code,

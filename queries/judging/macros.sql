@@ -1,6 +1,6 @@
 -- Each evaluation creates these macros for the statements of this folder. Rules cannot call them.
 
--- A text that a rule gave; one that nobody could read, in millions of rows, would take all memory.
+-- A text from a rule, limited in length: an unreadably long one, in millions of rows, would take all memory.
 CREATE OR REPLACE TEMP MACRO bounded_text(given) AS CASE WHEN strlen(given::VARCHAR) > 10_000
     THEN error('it returned a text of more than 10,000 bytes')::VARCHAR ELSE given::VARCHAR END;
 

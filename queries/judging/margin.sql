@@ -1,4 +1,4 @@
--- A failing step is of the finding whose stretch it lies in. A rule that combines objects has one finding at a time, whoever it is about.
+-- A failing step is of the finding whose stretch it lies in. A rule that combines objects has one finding at a time, whatever objects it is about.
 INSERT INTO margin BY NAME
 WITH _stretch_of_finding AS (
     SELECT f.finding_id, r.rule_no, f.drive_id, f.ego_id, coalesce(f.profile, '') AS profile, f.ref_id,

@@ -1,6 +1,6 @@
--- The rows of `_named` or `_failed` with what each says, as the column `sentence`, and whether that tells what was observed and what is
+-- The rows of `_named` or `_failed` with the column `sentence`, and whether that states the observed value and the value that is
 -- required (`reason_measures`). Columns that are read: verdict, code, reason (the author's, or NULL), cause (that, or what the engine found
--- out), and the times, numbers and names that the codes of the engine tell. `_worded` has the words of the causes.
+-- out), and the times, numbers and names in the sentences of the engine's codes. `_worded` has the words of the causes.
 CREATE OR REPLACE TEMP MACRO with_sentences(verdict_table) AS TABLE
 WITH _parts AS (
     -- times in sentences count from the drive's first time stamp, as in every other output: the log's own times may count from 1970

@@ -1,5 +1,5 @@
 -- The failing runs of `_judged`: close ones as one, but never across a hole. `failing`: the first and last failing step of each label,
--- which tell whose verdicts the run is part of.
+-- which show the verdicts that the run belongs to.
 INSERT INTO _stretch BY NAME
 WITH _failing_step AS (
     SELECT j.*, r.kind, r.eventually, r.sense, r.merge_ns FROM _judged j JOIN _rule r USING (rule_no)

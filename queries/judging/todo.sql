@@ -51,7 +51,7 @@ SELECT rule_no, drive_id, ego_id, first.signal AS signal, first.reason AS reason
     WHERE coalesce(c.available, n.is_assumed) IS DISTINCT FROM true
     GROUP BY ALL);
 
--- What only few logs have, such as indicators or declared events: of a log that has nothing of it a rule asks nothing, if it is not asked for by
+-- Signals that only few logs have, such as indicators or declared events: a rule does not apply to a log without them, if it is not requested by
 -- its id (`is_named`) and the log's mapping does not name the signal. A rule
 -- that does not apply anyway is not among them.
 CREATE OR REPLACE TEMP TABLE _unrecorded AS

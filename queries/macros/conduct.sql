@@ -140,7 +140,7 @@ CREATE OR REPLACE MACRO brake_release_ns() AS 2_000_000_000;
 -- two samples at least.
 CREATE OR REPLACE MACRO coming_for_ns() AS 300_000_000;
 
--- Whether an actor in the way, which asks for a deceleration of `need_mps2`, is a reason to brake harder than `abrupt_mps2`. `known`: no
+-- Whether an actor in the way, which requires a deceleration of `need_mps2`, is a reason to brake harder than `abrupt_mps2`. `known`: no
 -- other actor may be in the way. Result NULL: not known.
 CREATE OR REPLACE MACRO asks_to_brake(need_mps2, known, abrupt_mps2) AS need_mps2 >= abrupt_mps2 OR CASE WHEN known THEN false END;
 
@@ -156,7 +156,7 @@ CREATE OR REPLACE MACRO stands_because_of(object_id, actor_class, gap_m, along_m
 -- A sampled distance, if the motion between the samples cannot change the verdict; else NULL.
 CREATE OR REPLACE MACRO sure_between_steps(seen_m, blur_m, required_m) AS CASE WHEN seen_m < required_m OR seen_m - coalesce(blur_m, 0.0) >= required_m THEN seen_m END;
 
--- No vehicle turns into premises or a side road faster than access_mps (20 mph: a bend of 12 m radius then asks for 6.7 m/s2), or without
+-- No vehicle turns into premises or a side road faster than access_mps (20 mph: a bend of 12 m radius then requires 6.7 m/s2), or without
 -- turning by at least turned_off_rad.
 CREATE OR REPLACE MACRO access_mps() AS 8.94;
 CREATE OR REPLACE MACRO turned_off_rad() AS pi() / 6;

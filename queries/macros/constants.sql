@@ -57,7 +57,7 @@ CREATE OR REPLACE MACRO measured_share() AS 0.05;
 CREATE OR REPLACE MACRO measured_m() AS 0.1;
 -- Two boxes that meet by less than this across may as well pass each other, where sensors measured them.
 CREATE OR REPLACE MACRO measured_meeting_m() AS 0.3;
--- An acceleration of somebody whose places are off by measured_m() to one side, to the other, and back, half a second apart.
+-- The acceleration of an actor whose places are off by measured_m() to one side, to the other, and back, half a second apart.
 CREATE OR REPLACE MACRO measured_mps2() AS 4 * measured_m() / 0.5 ** 2;
 -- A car whose tyres hold moves within a few degrees of its heading; a track at more than that may change from one car to another.
 CREATE OR REPLACE MACRO slides_rad() AS radians(4);

@@ -9,7 +9,7 @@ CREATE OR REPLACE MACRO conflict_apart_ns() AS 2_000_000_000;
 -- Headings in steps of 5 degrees: those at most three steps apart differ by less than 20 degrees.
 CREATE OR REPLACE MACRO heading_step(yaw_rad) AS floor(yaw_rad / radians(5))::INTEGER;
 CREATE OR REPLACE MACRO heading_steps_apart(a, b) AS abs(((a - b + 36) % 72 + 72) % 72 - 36);
--- An actor that is slower than this for at least a second stands still (UKHC and ALKS rules ask for a stop, not for slow driving).
+-- An actor that is slower than this for at least a second stands still (UKHC and ALKS rules demand a stop, not slow driving).
 CREATE OR REPLACE MACRO standstill_mps() AS 0.1;
 -- The longest time from one half of a pedestrian crossing to the other. A person who takes longer waits on an island between the two.
 CREATE OR REPLACE MACRO half_to_half_ns() AS 3_000_000_000;
@@ -53,7 +53,7 @@ CREATE OR REPLACE MACRO near_mark_m() AS 10.0;
 CREATE OR REPLACE MACRO merging_s() AS 1.0;
 -- The least time that rules require between the ego and another vehicle at a junction.
 CREATE OR REPLACE MACRO least_junction_s() AS 2.0;
--- To say that nobody came, the log must go on for at least this long after the ego has left (twice what rules require).
+-- To state that no actor came, the log must continue for at least this long after the ego has left (twice what rules require).
 CREATE OR REPLACE MACRO watched_ns() AS 4_000_000_000;
 -- An actor that is not seen for a while may have been where ways meet if it was this near to that place, or could have come this near.
 CREATE OR REPLACE MACRO meeting_near_m() AS 30.0;

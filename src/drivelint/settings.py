@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.errors import UsageError
 from drivelint.phrases import hint
+from drivelint.toml_text import parse_toml
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
@@ -57,7 +58,7 @@ def settings_table(file: Path) -> dict[str, Any]:
     import tomllib
 
     try:
-        content = tomllib.loads(file.read_text(encoding="utf-8"))
+        content = parse_toml(file.read_text(encoding="utf-8"))
     except FileNotFoundError:
         return {}
     except OSError as error:

@@ -24,7 +24,7 @@ from tests.audit.plan import plan
 
 
 def kills(n_drives: int, n_kills: int) -> None:
-    """Print what was seen; exit 1 where the tables differ, or the findings are not those planted."""
+    """Print what was seen; exit 1 where a kill is missing, the tables differ, or the findings are not those planted."""
     with TemporaryDirectory(prefix="drivelint-audit-") as home:
         drives = fleet.write(Path(home) / "fleet", n_drives)
         greedy = Path(home) / "fleet" / "logs" / "greedy.parquet"
@@ -47,8 +47,8 @@ def kills(n_drives: int, n_kills: int) -> None:
         found = _run(["sql", killed_out, broken, "--format", "csv"])
         names = set(found.stdout.decode().split()[1:])
         print(f"planted contacts: {len(drives.planted)}; found: {len(names)}; the same: {names == drives.planted}")
-        as_due = (told[0]["judged"], told[0]["quarantined"]) == (n_drives, 1) and told[1]["digest"] == told[2]["digest"]
-        sys.exit(int(not as_due or names != drives.planted))
+        as_due = (killed, told[0]["judged"], told[0]["quarantined"]) == (n_kills, n_drives, 1)
+        sys.exit(int(not as_due or told[1]["digest"] != told[2]["digest"] or names != drives.planted))
 
 
 def _summary(out: str) -> dict[str, Any]:

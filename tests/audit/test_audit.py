@@ -15,11 +15,13 @@ from drivelint.audit import AuditRequest, JudgeSettings, audit, identity, merge,
 from drivelint.audit import run as audit_run
 from drivelint.audit.ask import ask
 from drivelint.audit.compact import compact
-from drivelint.audit.driver import MOST_ATTEMPTS
+from drivelint.audit.driver import MOST_ATTEMPTS, tasks
 from drivelint.audit.executors import Outcome
 from drivelint.audit.lock import locked
+from drivelint.audit.model import AuditDrive
 from drivelint.audit.store import LocalFolder
 from drivelint.audit.text import summary_text
+from drivelint.drive.trace import DriveInput
 from drivelint.engine.memory import Memory
 from drivelint.errors import ExitCode, UsageError
 from drivelint.fleet_report import gated
@@ -195,6 +197,12 @@ def test_a_batch_that_another_audit_takes_for_a_rest_is_written_again(
     counted = judged(drives, tmp_path / "out")
     assert len(batches) == len(worker.TABLES)
     assert (counted.n_drives, counted.digest) == (N_DRIVES, undisturbed[1].digest)
+
+
+def test_the_first_tasks_are_small_so_that_an_early_interrupt_keeps_something() -> None:
+    drives = [AuditDrive(f"{n:03}.mcap", DriveInput()) for n in range(100)]
+    cut = [len(task.drives) for task in tasks(drives, "", "run", SETTINGS, ahead=100, max_drives=30, n_small=2)]
+    assert cut == [8, 8, 30, 30, 24]
 
 
 @pytest.mark.slow

@@ -78,7 +78,7 @@ def test_select(rules: dict[str, Rule], include: list[str], ignore: list[str], e
         (["pack.r1.speed"], [], ["pack"], ("pack.r1.speed",)),
         (["pack.r1.speed"], [], ["pack.r2.*"], "pack.r2.gap"),
         (["pack.r1.speed"], [], ["pack.r2.gap"], "pack.r2.gap"),
-        (["pack"], [], ["pack.r3.new"], "no stable rule"),
+        (["pack"], [], ["pack.r3.new"], "not a stable rule"),
         (["pack"], ["pack.r1.*"], ["pack.r1.*"], "excludes all of its rules"),
         (["pack"], [], ["pack.r9"], "no rule, pack or glob"),
         (["pack"], [], [], ()),

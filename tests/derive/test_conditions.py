@@ -229,7 +229,7 @@ def test_every_signal_says_why_it_is_there_or_what_to_provide() -> None:
             assert row["reason"], row
     nothing = {row["signal"]: sentence(row["reason"]) for row in capabilities(drive([ride()], None))}
     assert {nothing[signal] for signal in {"map", *SIGNALS_NEEDING_MAP} - {"registration"}} == {
-        "no map: give one with --map"
+        "no map: provide one with --map"
     }
 
 

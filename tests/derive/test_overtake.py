@@ -399,7 +399,8 @@ def test_safe_distance_ahead_is_the_papers_formula(
         if row["profile"] == "observed" or o["v_av_mps"] <= o["v_vbp_mps"]:
             assert row["sda_m"] is None
             assert row["zone"] is None
-            assert sentence(row["reason"]).startswith("the overtake was not" if v_av > v_vbp else "undefined")
+            cut_short = ("the log ends before the overtake is complete", "the overtake was aborted")
+            assert sentence(row["reason"]).startswith(cut_short if v_av > v_vbp else "undefined")
             continue
         k = row["pull_out_headroom_m"] + l_vbp + row["cut_in_clearance_m"] + l_av
         expected = safe_distance(

@@ -291,7 +291,7 @@ def test_ego_by_option(tmp_path: Path) -> None:
 
 def test_no_ego(tmp_path: Path) -> None:
     unnamed = LONG.replace('[ego]\nids = ["a"]\n', "")
-    with pytest.raises(TraceError, match=r"no ego: the log does not say .*: use --ego ID or --ego all \(ids: a, b\)"):
+    with pytest.raises(TraceError, match=r"no ego: the log does not name .*: use --ego ID or --ego all \(ids: a, b\)"):
         load(tmp_path, cars(), unnamed)
     with pytest.raises(
         TraceError, match=r"no ego: the log's ego 'q' has no states: use --ego ID or --ego all \(ids: a, b\)"

@@ -7,9 +7,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
+from drivelint.drive.actors import Actors
+from drivelint.drive.implausible import bodies
+from drivelint.drive.implausible.bodies import held_tracks, same_bodies
+from drivelint.drive.trace import States
 from tests.drive.tracks import doubts, drive, track
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
 
 TRUCK: dict[str, Any] = {"actor_class": "truck", "length_m": 12.0, "width_m": 2.5}
@@ -164,3 +169,40 @@ def test_who_brakes_hard_as_it_comes_in_is_there(tmp_path: Path) -> None:
     car["vx_mps"] = np.maximum(0.0, 15.0 - np.arange(100))
     car["x_m"] = np.cumsum(np.r_[0.0, (car["vx_mps"][1:] + car["vx_mps"][:-1]) / 20.0])
     assert not doubts(drive(tmp_path, car=car))
+
+
+class Walked(list[str]):
+    """Ids that count how often somebody goes over all of them."""
+
+    n_walks = 0
+
+    def __iter__(self) -> Iterator[str]:
+        self.n_walks += 1
+        return super().__iter__()
+
+
+def queue(ids: list[str], apart_m: float) -> tuple[States, Actors]:
+    """Return cars of 4.5 m that stand behind each other at two moments."""
+    n = len(ids)
+    x, zero = np.repeat(apart_m * np.arange(n), 2), np.zeros(2 * n)
+    numbers = {"x_m": x, "y_m": zero, "yaw_rad": zero, "vx_mps": zero, "vy_mps": zero}
+    t_ns = np.tile(np.array([0, 100_000_000]), n)
+    t_ns[1] = 200_000_000  # the first one is there longest: all the others' tracks end before the log does
+    states = States(ids, np.repeat(np.arange(n, dtype=np.int32), 2), t_ns, numbers, {}, np.zeros(2 * n, np.bool_))
+    return states, Actors(ids, ["car"] * n, {"length_m": np.full(n, 4.5), "width_m": np.full(n, 1.8)})
+
+
+def test_a_pair_of_tracks_takes_no_walk_over_all_actors() -> None:
+    """As it did: a log of 100,000 actors in two frames did not end."""
+    ids = Walked(f"{i:03}" for i in range(300))
+    states, actors = queue(ids, 4.0)
+    assert same_bodies(states, actors, {"000"}) == []
+    assert held_tracks(states, actors) == []
+    assert ids.n_walks < 20
+
+
+def test_of_tracks_too_short_to_be_coupled_no_pair_is_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
+    pairs: list[object] = []
+    monkeypatch.setattr(bodies, "_common", lambda *told: pairs.append(told))
+    assert same_bodies(*queue([f"{i:03}" for i in range(300)], 6.0), {"000"}) == []
+    assert pairs == []

@@ -177,7 +177,7 @@ def test_what_still_fails_at_another_step_is_a_class_of_its_own() -> None:
     told = descriptions.difference_text(diff.compare(base, new), [], "critical")
     assert "gone but not fixed: 0 unknown now, 0 not judged now, 1 still failing elsewhere" in told
     assert "Not fixed: the rule still fails, at another step or place (1)" in told
-    assert "cannot be told" not in told
+    assert "cannot be judged any more" not in told
     gone = model.exit_status(GateInputs(date(2026, 11, 26), base).apply_to(new))
     assert (gone.code, gone.why[-31:]) == (4, "not fixed: 1 still failing elsewhere"[-31:])
 

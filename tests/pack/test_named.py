@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from io import StringIO
 from typing import TYPE_CHECKING
 
 import pytest
+from rich.console import Console
 
-from drivelint.explain import ExplainRequest, explain
+from drivelint.explain import ExplainRequest, Explanation, explain
+from drivelint.explain.text import render
 from drivelint.pack import VerifyRequest, verify
 from tests.explain.checked import OVERTAKE, check
 from tests.pack.packed import make_pack
@@ -38,4 +41,14 @@ def test_a_signal_that_the_log_has_not(selector: str, verdict: str, tmp_path: Pa
 
     told = explain(ExplainRequest(HORN, tmp_path / "result"))
     assert told.verdict["judged_anew"] == verdict
-    assert not [note for note in told.notes if "Judged anew" in note]
+    assert not [note for note in told.notes if "Judged again" in note]
+    screen = printed(told)
+    assert ("NOT APPLICABLE: the log has none of a signal that the rule needs" in screen) == (verdict != "unknown")
+    assert "did not happen" not in screen
+
+
+def printed(told: Explanation) -> str:
+    console = Console(width=120, file=StringIO())
+    console.print(render(told, 120))
+    assert isinstance(console.file, StringIO)
+    return console.file.getvalue()

@@ -98,7 +98,7 @@ def test_the_left_is_driven_on_where_the_oncoming_lane_is_on_the_right() -> None
     ("left", "right", "why"),
     [
         ([[0, 1]], [[0, -1], [9, -1]], "fewer than two points"),
-        ([[0, 1], [float("nan"), 1]], [[0, -1], [9, -1]], "cannot be"),
+        ([[0, 1], [float("nan"), 1]], [[0, -1], [9, -1]], "an impossible coordinate"),
         ([[0, 1], [0, 1]], [[0, -1], [0, -1]], "no length"),
         ([[0, -1], [9, -1]], [[0, 1], [9, 1]], "on the right of its right bound"),
         ([[0, 100], [9, 100]], [[0, -1], [9, -1]], "101 m wide"),

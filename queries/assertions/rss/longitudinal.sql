@@ -66,7 +66,7 @@
 
 -- @applies
 -- RSS calls a situation dangerous if the distances along and across are both unsafe: a vehicle that the ego passes inside the lane may be
--- at a safe distance across. A standing ego already does what RSS asks of it. At a step without a row in `vehicle_ahead` it is not known
+-- at a safe distance across. A standing ego already does what RSS demands. At a step without a row in `vehicle_ahead` it is not known
 -- which vehicle is ahead.
 SELECT s.drive_id, s.ego_id, s.t_ns, v.object_id,
     CASE WHEN v.object_id IS NOT NULL THEN follows(v.in_lane, v.gap_m, v.speed_mps, v.oncoming) AND v.ego_speed_mps > standing_mps()

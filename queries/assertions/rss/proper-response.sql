@@ -70,7 +70,7 @@
 -- unit = "s"
 -- why = "our default: the response time and four seconds of braking, which take 16 m/s off"
 --
--- # Draft: it asks for braking wherever rss.longitudinal finds a gap too small, which ordinary driving does not do.
+-- # Draft: it demands braking wherever rss.longitudinal finds a gap too small; ordinary driving does not brake there.
 
 -- @reference
 WITH ahead_step AS (

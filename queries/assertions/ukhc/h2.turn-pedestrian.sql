@@ -27,7 +27,7 @@
 
 -- @reference
 SELECT p.drive_id, p.ego_id, p.t_in_ns AS t_ns, p.occurrence, p.turn, at_fork(p.turn, p.turn_rad, p.straightest_rad) AS fork, c.object_id,
-    -- A pedestrian may have stopped for another reason than the ego, such as having arrived, and no log tells: so `on_foot` is always given
+    -- A pedestrian may have stopped for another reason than the ego, such as having arrived, which no log shows: so `on_foot` is always given
     -- as another possible cause of the braking.
     made_to_brake(c.braked_mps2, c.braked_pet_s, 'on_foot', $decel_mps2, $pet_s) AS forced,
     CASE WHEN forced IS NULL THEN braked_reason(c.braked_id, c.braked_pet_s, c.braked_mps2, c.braked_cause) ELSE coalesce(c.reason, class_doubt(c.object_id)) END AS reason,

@@ -62,7 +62,7 @@ LEFT JOIN impact i USING (drive_id, ego_id, t_ns, object_id)
 WHERE coalesce(p.clearance_m > 0 OR p.clearance_is_bound, true)
 UNION ALL
 -- A contact at a step: the reason says whether the ego moved.
--- Boxes that overlap while nobody moves show their errors, not a contact, and so does a person at the door of a standing car.
+-- Boxes that overlap while neither moves show errors of the boxes, not a contact; the same holds for a person at the door of a standing car.
 SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, CASE WHEN NOT nobody_moves OR i.t_ns IS NOT NULL THEN p.clearance_m END, 0.0, false,
     why(CASE WHEN nobody_moves AND i.t_ns IS NULL THEN 'boxes_of_nobody_moving' WHEN p.fastest_3s_mps < standing_mps() THEN 'contact_standing' WHEN p.fastest_3s_mps IS NOT NULL THEN 'contact_moving' ELSE 'contact_speed_unknown' END,
         {'depth_m': abs(p.clearance_m), 'fastest_3s_mps': p.fastest_3s_mps})

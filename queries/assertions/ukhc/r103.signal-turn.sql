@@ -1,4 +1,4 @@
--- # Draft: on a priority road that bends, and on the way into a roundabout, no signal need be given; maps tell neither.
+-- # Draft: on a priority road that bends, and on the way into a roundabout, no signal is needed; maps show neither.
 -- title = "Signal when turning at a junction"
 -- breach = "No signal when turning at a junction"
 -- clause = "UKHC R103, R179 and R182: give a signal to the side to which you are going to turn"

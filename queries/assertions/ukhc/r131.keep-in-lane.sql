@@ -49,7 +49,7 @@ WITH astride_step AS (
     WHERE l.t_astride_ns IS NOT NULL
     WINDOW astride_stretch AS (PARTITION BY drive_id, ego_id, l.t_astride_ns ORDER BY l.t_ns ROWS UNBOUNDED PRECEDING)
 ),
--- The time that counts lies between least_s, in which the ego was certainly not going round somebody, and most_s, which includes the time
+-- The time that counts lies between least_s, in which the ego was certainly not going round an actor, and most_s, which includes the time
 -- in which it may have been.
 judged_step AS (
     SELECT *, CASE WHEN NOT changes THEN $astride_s ELSE $change_s END AS required,

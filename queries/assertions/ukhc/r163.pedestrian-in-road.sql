@@ -29,7 +29,7 @@
 -- unit = "m/s"
 -- why = "our default: a person who moves faster across the road is crossing it, which R195 and R170 cover"
 --
--- # Draft: what a low speed is, and whether there was no pavement, is a judgement; somebody who waits to cross is taken for one who walks along.
+-- # Draft: what a low speed is, and whether there was no pavement, is a judgement; a person who waits to cross counts as one who walks along.
 
 -- @applies
 -- A pedestrian who crosses and stops in the ego's way, or is struck there, is still crossing.

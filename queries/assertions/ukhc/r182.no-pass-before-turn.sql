@@ -43,7 +43,7 @@ JOIN reference r USING (ref_id)
 LEFT JOIN (
     SELECT drive_id, ego_id, t_ns, side, min(object_id) AS object_id
     FROM passing
-    -- The ego overtakes nobody who walks beside the road: rule h2.turn-pedestrian is about people on foot.
+    -- The ego does not overtake people who walk beside the road: rule h2.turn-pedestrian is about people on foot.
     WHERE ego_passes AND coalesce(speed_mps > standing_mps(), true) AND actor_class IS DISTINCT FROM 'pedestrian'
     GROUP BY drive_id, ego_id, t_ns, side
 ) p

@@ -1,4 +1,4 @@
--- # Draft: whether somebody who stands at the kerb wants to cross is a judgement.
+-- # Draft: whether a person who stands at the kerb wants to cross is a judgement.
 -- title = "Give way to people waiting at a zebra crossing"
 -- breach = "Did not give way to people waiting at a zebra crossing"
 -- clause = "UKHC R195: you should give way to pedestrians waiting to cross at a zebra crossing"

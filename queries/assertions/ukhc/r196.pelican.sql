@@ -46,7 +46,7 @@ WHERE coalesce(c.kind, 'signalled') = 'signalled'
 GROUP BY c.drive_id, c.ego_id, c.t_in_ns, c.occurrence, c.on_id, c.t_on_ns, c.known, c.coming_id, c.coming_known, c.state
 
 -- @condition
--- A light that is off allows nothing and forbids nothing: if somebody is there, a person must judge. On green and amber, another rule
+-- A light that is off allows nothing and forbids nothing: if a pedestrian is there, a person must judge. On green and amber, another rule
 -- applies to the people on the crossing.
 SELECT drive_id, ego_id, t_ns, ref_id,
     NOT forbids(CASE WHEN has_line THEN line_state ELSE state END)

@@ -1,4 +1,4 @@
--- # Draft: which road is the lesser one is told by its stop or give-way sign alone; driveways are not in map tables.
+-- # Draft: only a stop or give-way sign shows which road is the lesser one; driveways are not in map tables.
 -- title = "Do not reverse out of a side road"
 -- breach = "Reversed out of a side road"
 -- clause = "UKHC R201: do not reverse from a side road into a main road"

@@ -48,8 +48,8 @@ JOIN environment m USING (environment_id)
 WHERE coalesce(p.ego_passes AND NOT p.same_lane AND p.side <> overtaking_side(m.handedness), true)
 
 -- @condition
--- The rule is kept if the ego moves back, if there is no lane of the same direction on that side, or if somebody is there or may be there.
--- The vehicle just passed is there, too, but does not stay close behind: somebody whom the ego has passed counts from clear_s on.
+-- The rule is kept if the ego moves back, if there is no lane of the same direction on that side, or if a vehicle is there or may be there.
+-- The vehicle just passed is there, too, but does not stay close behind: a vehicle that the ego has passed counts from clear_s on.
 WITH occupied_step AS (
     SELECT DISTINCT s.ref_id, s.t_ns
     FROM reference_step s

@@ -48,19 +48,25 @@ def tasks(
     *,
     ahead: int,
     max_drives: int = TASK_DRIVES,
+    n_small: int = 0,
 ) -> Iterator[Task]:
-    """Cut drives into tasks, the largest of each `ahead` drives first, so that no long one is left for the end."""
-    left = iter(drives)
+    """Cut drives into tasks, the largest of each `ahead` drives first, so that no long one is left for the end.
+
+    The first `n_small` tasks are small: an audit that is interrupted early keeps something.
+    """
+    left, n_cut = iter(drives), 0
     while some := list(islice(left, ahead)):
         some.sort(key=lambda drive: (-drive.size, drive.log))
         part: list[AuditDrive] = []
         for drive in some:
             part.append(drive)
-            if len(part) >= max_drives or sum(each.size for each in part) >= TASK_BYTES:
+            most = min(max_drives, LEAST_TASK_DRIVES) if n_cut < n_small else max_drives
+            if len(part) >= most or sum(each.size for each in part) >= TASK_BYTES:
                 yield Task(tuple(part), dest, run_id, settings)
-                part = []
+                part, n_cut = [], n_cut + 1
         if part:
             yield Task(tuple(part), dest, run_id, settings)
+            n_cut += 1
 
 
 @dataclass
@@ -74,7 +80,8 @@ class Driver:
     mark_done: Callable[[tuple[AuditDrive, ...]], None] = lambda _drives: None
 
     def run(self, todo: Iterable[Task]) -> None:
-        """Run all tasks. Errors: those of a task that are no drive's fault, such as `OutputError`; any other is that of its drives."""
+        """Run all tasks. Errors: those that are not caused by a drive, such as `OutputError`; any other error belongs to the drives of
+        its task."""
         waiting = iter(todo)
         again: deque[Task] = deque()
         n_running = 0

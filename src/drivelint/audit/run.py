@@ -200,7 +200,8 @@ def _judge(
             driver = Driver(workers, results, tell, busy, claims.mark_done if claims else lambda _drives: None)
             while True:
                 todo = claims.claimed_drives(listing.todo(con)) if claims else listing.todo(con)
-                driver.run(tasks(todo, request.out, id_, _settings_of_workers(request), ahead=ahead, max_drives=most))
+                settings, n_small = _settings_of_workers(request), workers.capacity
+                driver.run(tasks(todo, request.out, id_, settings, ahead=ahead, max_drives=most, n_small=n_small))
                 if claims is None or not claims.n_waiting:
                     break
                 if not claims.n_taken:

@@ -16,6 +16,7 @@ from drivelint.casefile import case_location, merged_cases_difference, numbered_
 from drivelint.casefile.merged_cases import MERGE_KEYS, judge, merge, mergeable_groups
 from drivelint.casefile.mutants import mutants
 from drivelint.errors import RuleError
+from drivelint.toml_text import parse_toml
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -157,6 +158,6 @@ def _read(file: Path) -> list[_Survivor]:
     if not file.is_file():
         return []
     try:
-        return msgspec.convert(tomllib.loads(file.read_text(encoding="utf-8")), _Survivors).survivor
+        return msgspec.convert(parse_toml(file.read_text(encoding="utf-8")), _Survivors).survivor
     except (tomllib.TOMLDecodeError, msgspec.ValidationError) as error:
         raise RuleError(f"{file}: {error}") from error

@@ -95,7 +95,7 @@ def complaint(error: duckdb.Error) -> str:
 
 
 def complained_line(error: duckdb.Error, text: str) -> int | None:
-    """Return the line of a file in which the part of the SQL stands that DuckDB shows; None: in no line, or in several.
+    """Return the line of a file with the part of the SQL that DuckDB shows; None: no such line, or several.
 
     The statement that failed may be composed of parts of the file, so that its own number of the line says nothing.
     """

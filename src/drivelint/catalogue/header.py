@@ -15,6 +15,7 @@ from drivelint.phrases import hint
 from drivelint.reasons import signals
 from drivelint.reasons.reason_text import ReasonText
 from drivelint.sql.words import Quantity, vocabularies
+from drivelint.toml_text import parse_toml
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -134,7 +135,7 @@ def parse_header(text: str, where: str) -> Header:
     fields that contradict each other.
     """
     try:
-        raw = tomllib.loads(text)
+        raw = parse_toml(text)
     except (tomllib.TOMLDecodeError, RecursionError) as error:
         line = re.search(r"at line (\d+)", str(error))
         raise RuleError(f"{where}:{line[1] if line else 1}: the header is not TOML: {error}") from error

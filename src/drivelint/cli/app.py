@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import gc
 import os
-import signal
 import sys
 from contextlib import redirect_stdout
 from copy import copy
@@ -18,7 +17,7 @@ import typer
 from typer.main import get_command_name
 
 from drivelint import __version__, option_values, temporary
-from drivelint.cli import audits, checking, fleets, options, packs, results, rules, streams, watching
+from drivelint.cli import audits, checking, ending_signals, fleets, options, packs, results, rules, streams, watching
 from drivelint.cli import docs as docs_
 from drivelint.cli.console import print_rich, run_interruptible
 from drivelint.cli.grouped_help import GroupedCommand
@@ -187,7 +186,7 @@ def main() -> NoReturn:
     if (limit := least_limit_bytes()) is not None and limit < LEAST_BYTES:
         _fail(f"a limit of {limit / 1e6:.0f} MB of memory (ulimit -v) is too low: raise it", ExitCode.TEMPFAIL)
     leave_out_pandas()
-    _end_as_ctrl_c_does()
+    ending_signals.install()
     gc.set_threshold(GARBAGE_AFTER)
     try:
         code = _part_of("".join(sys.argv[1:2]))(standalone_mode=False, default_map=_settings())
@@ -232,14 +231,6 @@ def _part_of(word: str) -> typer.Typer:
 
 def _name_of(command: CommandInfo) -> str:
     return command.name or get_command_name(command.callback.__name__ if command.callback else "")
-
-
-def _end_as_ctrl_c_does() -> None:
-    """Let SIGTERM, and SIGHUP of a closed terminal, end a command as Ctrl-C does: results so far are kept. `nohup` still works."""
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
-    hang_up = getattr(signal, "SIGHUP", None)  # not on Windows
-    if hang_up is not None and signal.getsignal(hang_up) is not signal.SIG_IGN:
-        signal.signal(hang_up, signal.default_int_handler)
 
 
 def _command_words(error: Exception) -> str:

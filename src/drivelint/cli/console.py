@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import typer
 
+from drivelint.cli import ending_signals
 from drivelint.errors import DriveLintError
 from drivelint.phrases import inert, inert_line, plural
 
@@ -33,15 +34,18 @@ def run_interruptible(job: Callable[[], T], interrupt: Callable[[], None] | None
     With `interrupt`, the first Ctrl-C calls `interrupt` until the job has ended by itself; only the second one leaves.
     """
     running = ThreadPoolExecutor(max_workers=1).submit(job)
-    try:
+    with ending_signals.noted_only() as asked:
+        is_told = False
         while not running.done():
-            wait([running], timeout=0.2)
-    except KeyboardInterrupt:
-        if interrupt is None:
-            raise
-        typer.echo("drivelint: interrupted: stops; Ctrl-C again leaves at once, and keeps nothing", err=True)
-        while not running.done():
-            interrupt()
+            if asked() > (interrupt is not None):
+                raise KeyboardInterrupt
+            if interrupt is not None and asked():
+                if not is_told:
+                    typer.echo(
+                        "drivelint: interrupted: stops; Ctrl-C again leaves at once, and keeps nothing", err=True
+                    )
+                is_told = True
+                interrupt()
             wait([running], timeout=0.2)
     return running.result()
 

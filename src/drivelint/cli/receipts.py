@@ -156,6 +156,6 @@ class CheckReceipts:
 
 
 def _is_of_inputs(result: Result) -> bool:
-    """Whether a result is whole, and nothing in it may be of the machine: a drive or a rule that failed may not fail again."""
+    """Whether a result is complete and depends only on its inputs: a drive or a rule in error may not fail again."""
     judged = set(result.drives["status"].to_pylist()) <= {"judged"}
     return judged and not result.interrupted and "error" not in result.verdicts["verdict"].unique().to_pylist()

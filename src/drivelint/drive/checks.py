@@ -89,7 +89,7 @@ def _sizes(actors: Actors) -> list[QualityFinding]:
 
 
 def _gaps(states: States, step: Steps) -> list[QualityFinding]:
-    """Report holes of the whole log, and holes of single tracks that the log goes on recording through."""
+    """Report holes of the whole log, and holes of single tracks during which the log continues."""
     if step.period_ns <= 0:
         return []
     times = np.unique(states.t_ns)

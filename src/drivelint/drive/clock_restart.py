@@ -84,7 +84,7 @@ def _spans(states: States, run: Times) -> dict[tuple[int, int], tuple[int, int]]
 
 
 def _interleaved_count(run_ns: Times, other_run_ns: Times) -> int:
-    """Count the times of a run that lie between those of another, and not in its holes (both rise)."""
+    """Count the times of one run of the clock that lie between those of another, outside its holes (both ascend)."""
     steps = np.diff(run_ns)
     before = np.clip(np.searchsorted(run_ns, other_run_ns), 1, len(run_ns) - 1) - 1
     inside = (

@@ -46,7 +46,7 @@ class Interruption:
                 store.interrupt(self._con)
 
     def ends_judging_of_copies(self) -> bool:
-        """Whether no copies are begun any more: those of whole batches still are for a while, so that the result has their answers."""
+        """Whether judging of copies may no longer begin: for complete batches it still may for a while, so that the result has them."""
         return self.requested and time.monotonic() > self._requested_s + COPIES_S
 
     @contextmanager

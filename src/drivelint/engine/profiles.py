@@ -12,6 +12,7 @@ import pyarrow as pa
 from drivelint.errors import RuleError, UsageError
 from drivelint.phrases import hint
 from drivelint.resources import folder
+from drivelint.toml_text import parse_toml
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -44,7 +45,7 @@ def load_profiles(dirs: Sequence[Path] = ()) -> dict[str, Profile]:
         if not file.is_file():
             continue
         try:
-            profiles |= msgspec.convert(tomllib.loads(file.read_text(encoding="utf-8")), dict[str, Profile])
+            profiles |= msgspec.convert(parse_toml(file.read_text(encoding="utf-8")), dict[str, Profile])
         except (tomllib.TOMLDecodeError, UnicodeDecodeError, msgspec.ValidationError, RecursionError) as error:
             raise RuleError(f"{file}: {error}") from error
     return profiles

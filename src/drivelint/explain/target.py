@@ -34,7 +34,7 @@ class Target:
 
     @property
     def verdict_row(self) -> Row:
-        """The verdict with the finding's interval, numbers and reason, where one is meant."""
+        """The verdict with the interval, numbers and reason of the finding, if a finding is meant."""
         return self.verdict if self.finding is None else self.verdict | self.finding
 
     @property

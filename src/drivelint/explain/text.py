@@ -16,12 +16,14 @@ from drivelint.drive.declared_events import EVENTS
 from drivelint.explain.plot import plot
 from drivelint.explain.verdict_context import lacks_signal
 from drivelint.phrases import one_line
-from drivelint.reasons.signals import condition_of, remedy
+from drivelint.reasons.signals import UNRECORDED_PREFIX, condition_of, remedy
 from drivelint.result.text import finite, seconds
 from drivelint.result.text_templates import text_template
 from drivelint.sql import store
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from rich.console import RenderableType
 
     from drivelint.explain.model import Explanation, Row
@@ -44,6 +46,10 @@ _MEANS: Final = {
     "unknown": "it is not known whether the rule was kept: this is not a pass",
     "not_applicable": "the situation that the rule is about did not happen",
     "error": "the rule could not be run",
+}
+_DOES_NOT_APPLY: Final = {
+    "other_nation": "the rule is the law of another nation",
+    "outside_conditions": "the rule is for other conditions",
 }
 
 
@@ -95,9 +101,16 @@ def _title(explanation: Explanation, width: int) -> list[RenderableType]:
     word = row["verdict"].replace("_", " ").upper()
     return [
         Text(f"{rule['rule_id']}: {one_line(rule['title'])}", "bold"),
-        Text.assemble((word, _STYLE.get(row["verdict"], "bold")), f": {_MEANS[row['verdict']]}"),
+        Text.assemble((word, _STYLE.get(row["verdict"], "bold")), f": {_meaning(row)}"),
         *(Text(line) for line in textwrap.wrap(", ".join(who), width)),
     ]
+
+
+def _meaning(row: Mapping[str, Any]) -> str:
+    """Return what a verdict means in words."""
+    if row["verdict"] == "not_applicable" and row["reason_code"].startswith(UNRECORDED_PREFIX):
+        return f"the log has none of a signal that the rule needs; `--rules {row['rule_id']}` makes it unknown"
+    return _DOES_NOT_APPLY.get(row["reason_code"], _MEANS[row["verdict"]])
 
 
 def _prose(explanation: Explanation, width: int) -> dict[str, list[str]]:

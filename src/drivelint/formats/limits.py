@@ -32,6 +32,11 @@ _LOOK_S: Final = 0.1
 _PACKAGE: Final = Path(__file__).parents[1]
 
 
+def most_bytes(n_bytes: int) -> int:
+    """Return the memory that a file of so many bytes may take."""
+    return LEAST_BYTES + n_bytes * BYTES_PER_BYTE
+
+
 class _BeyondError(BaseException):
     """Ends reading; no `Exception`, which readers take for a damaged file."""
 
@@ -40,7 +45,7 @@ class _Watch:
     """Watches from a thread of its own the costs of the thread that made it, and interrupts that thread once."""
 
     def __init__(self, n_bytes: int) -> None:
-        self.seconds, self.bytes = LEAST_S + n_bytes * S_PER_BYTE, LEAST_BYTES + n_bytes * BYTES_PER_BYTE
+        self.seconds, self.bytes = LEAST_S + n_bytes * S_PER_BYTE, most_bytes(n_bytes)
         self.excess = ""
         self._reader = threading.get_ident()
         self._work, self._before = Work(threading.get_native_id()), resident_bytes()

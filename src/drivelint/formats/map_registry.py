@@ -8,12 +8,15 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from drivelint.errors import MapError, UsageError
+from drivelint.formats import limits
 from drivelint.formats.files import is_utf8
 from drivelint.formats.limits import bounded
 from drivelint.formats.probe import wrapping
 from drivelint.formats.search import is_pipe_or_device
 from drivelint.phrases import escape_invisible
+from drivelint.road.ground import BYTES_PER_SQUARE, SQUARE_M, ground_squares
 from drivelint.road.map_reader import MapOptions, MapSource, MapTables
+from drivelint.road.tree_parts import CrowdedPlaceError
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -94,10 +97,28 @@ def load_map(
     request = MapOptions((float(offset[0]), float(offset[1])), side, voted_handedness, origin)
 
     def read() -> MapTables:
-        tables: MapTables = import_module(f"drivelint.formats.{_reader(source)}").read(source, request)
+        tables: MapTables
+        try:
+            tables = import_module(f"drivelint.formats.{_reader(source)}").read(source, request)
+        except CrowdedPlaceError as error:
+            raise MapError(
+                f"map {source.name}: {error}, more than any road network has: give a map without copies"
+            ) from None
+        _refuse_endless_ground(source, tables)
         return tables
 
     return bounded(read, f"map {source.name}", len(source.content), MapError)
+
+
+def _refuse_endless_ground(source: MapSource, tables: MapTables) -> None:
+    """Refuse a map for whose ground the database would take more memory than reading may. Errors: `MapError`."""
+    squares, most = ground_squares(tables.tables["lane_point"]), limits.most_bytes(len(source.content))
+    if squares * BYTES_PER_SQUARE > most:
+        lanes = tables.tables["lanelet"].num_rows
+        raise MapError(
+            f"map {source.name}: its {lanes} lanes lie on {squares:.0f} squares of {SQUARE_M:g} m, of which each takes {BYTES_PER_SQUARE} "
+            f"bytes: more than the {most >> 20} MiB for a map of {len(source.content)} bytes: give a part of it"
+        )
 
 
 def _reader(source: MapSource) -> str:

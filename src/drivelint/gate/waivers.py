@@ -34,6 +34,7 @@ from drivelint.gate.match import seconds_since_start
 from drivelint.phrases import hint
 from drivelint.result.gate import Waiver
 from drivelint.settings import settings_table
+from drivelint.toml_text import parse_toml
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -59,7 +60,7 @@ def read(file: Path, *, only_waivers: bool = True) -> list[Waiver]:
         raise UsageError(f"{file}: waivers must be in a file, but this is not one")
     try:
         text = file.read_text(encoding="utf-8")
-        content = tomllib.loads(text) if only_waivers else settings_table(file)
+        content = parse_toml(text) if only_waivers else settings_table(file)
     except FileNotFoundError as error:
         raise UsageError(f"{file}: no such file of waivers") from error
     except OSError as error:

@@ -107,7 +107,7 @@ def inside(folder: Path, path: str) -> Path:
 
 
 def findings(rows: Iterable[Row], evidence: Evidence, place: str = FINDINGS) -> list[dict[str, Any]]:
-    """Return findings with their numbers, and the SQL that gives these or why there is none. `place`: the folder of theirs."""
+    """Return findings with their numbers, and the SQL that computes these or why there is none. `place`: their folder."""
     told = []
     for row in rows:
         files = evidence[row["finding_id"]]

@@ -21,6 +21,7 @@ from drivelint.phrases import escape_invisible
 from drivelint.result.counts import group_rows
 from drivelint.result.text_templates import cell, text_template
 from drivelint.road.signcodes import codes_of
+from drivelint.toml_text import parse_toml
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -72,7 +73,7 @@ def read_clauses(folder: Path) -> list[Clause]:
     if not file.is_file():
         return []
     try:
-        return msgspec.convert(tomllib.loads(file.read_text(encoding="utf-8")).get("clause", []), list[Clause])
+        return msgspec.convert(parse_toml(file.read_text(encoding="utf-8")).get("clause", []), list[Clause])
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, msgspec.ValidationError, RecursionError) as error:
         raise RuleError(f"{file}: {error}") from error
 

@@ -219,7 +219,7 @@ def _worse(gate: Gate | None) -> list[Part]:
 
 
 def _contacts(result: Result, rows: Sequence[Row], rules: Mapping[str, Row]) -> list[Part]:
-    """Return in how many drives the ego touched something, or may have; a contact that is known is one all the same."""
+    """Return in how many drives the ego touched something, or may have; a known (baseline) contact counts too."""
     contacts = [row for row in rows if is_contact(row, rules)]
     touched = {row["drive_id"] for row in contacts if not doubt(row)}
     sure = [row for row in contacts if row["drive_id"] in touched]

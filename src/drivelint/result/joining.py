@@ -28,7 +28,7 @@ _ORDER: Final = {
 def join(results: Sequence[Result]) -> Result:
     """Return one result of several whose drives are different; settings and notes are those of the first.
 
-    Maps that several have lanes of are there once.
+    A map that several of them have is included once.
     """
     first = results[0]
     with store.connect(threads=1) as con:

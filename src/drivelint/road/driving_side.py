@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 import shapely
 
+from drivelint.road.tree_parts import query_in_parts
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
@@ -84,11 +86,26 @@ def _opposing(pieces: _Pieces, reach_m: float) -> tuple[float, float]:
 
 def _gap_to_opposing(pieces: _Pieces, tree: shapely.STRtree, indices: Indices, side: float, reach_m: float) -> Floats:
     """Return the gap (m) from these pieces to the nearest lane on one side (1 left, -1 right); infinity: none, or it runs the same way."""
-    x, y, z, half = ((pieces.begin + pieces.end) / 2)[indices].T
+    x, y, _, half = ((pieces.begin + pieces.end) / 2)[indices].T
     ux, uy = pieces.ux[indices], pieces.uy[indices]
     reach = (half - _OVERLAP_M, half + reach_m + _WIDEST_HALF_M)
     across = (np.stack([a + side * r * n for r in reach], axis=1) for a, n in ((x, -uy), (y, ux)))
-    probe, other_piece = tree.query(shapely.linestrings(*across), predicate="intersects")
+    gaps = np.full(len(indices), np.inf)
+    for probe, other_piece in query_in_parts(tree, shapely.linestrings(*across), "intersects"):
+        nearest, gap = _nearest_opposing(pieces, indices, probe, other_piece, side=side, reach_m=reach_m)
+        gaps[nearest] = gap
+    return gaps
+
+
+def _nearest_opposing(
+    pieces: _Pieces, indices: Indices, probe: Indices, other_piece: Indices, *, side: float, reach_m: float
+) -> tuple[Indices, Floats]:
+    """Return the probes that have a lane beside them, and the gap to the nearest one; infinity: it runs the same way.
+
+    `probe`: numbers of `indices`, each with one of the pieces that the line across meets.
+    """
+    x, y, z, half = ((pieces.begin + pieces.end) / 2)[indices].T
+    ux, uy = pieces.ux[indices], pieces.uy[indices]
     along = ux[probe] * pieces.ux[other_piece] + uy[probe] * pieces.uy[other_piece]
     beside = (pieces.lane[other_piece] != pieces.lane[indices[probe]]) & (np.abs(along) > _ALONG)
     probe, other_piece, along = probe[beside], other_piece[beside], along[beside]
@@ -103,9 +120,7 @@ def _gap_to_opposing(pieces: _Pieces, tree: shapely.STRtree, indices: Indices, s
     probe, gap, along = probe[fits], gap[fits], along[fits]
     order = np.lexsort((along, gap, probe))
     nearest = order[np.r_[True, np.diff(probe[order]) > 0]] if len(order) else order
-    gaps = np.full(len(indices), np.inf)
-    gaps[probe[nearest]] = np.where(along[nearest] < 0, gap[nearest], np.inf)
-    return gaps
+    return probe[nearest], np.where(along[nearest] < 0, gap[nearest], np.inf)
 
 
 def opposite_side(side: str) -> str:

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import shapely
 
+from drivelint.road.tree_parts import query_in_parts
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -35,9 +37,8 @@ def mark_junctions(lanes: Sequence[BoundedLane], *, least_share: float = 0.0, le
         return i
 
     overlaps: set[int] = set()
-    for i, j in sorted(
-        {(int(min(a, b)), int(max(a, b))) for a, b in tree.query(areas, predicate="intersects").T if a != b}
-    ):
+    pairs = (np.stack(part, axis=1)[part[0] < part[1]] for part in query_in_parts(tree, areas, "intersects"))
+    for i, j in (pair for part in pairs for pair in sorted(part.tolist())):
         a, b = drivable_lanes[i], drivable_lanes[j]
         if b.lanelet_id in {a.left_id, a.right_id, *a.successors} or a.lanelet_id in b.successors:
             continue

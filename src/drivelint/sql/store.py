@@ -125,7 +125,7 @@ _cursors: dict[int, set[duckdb.DuckDBPyConnection]] = {}
 
 @contextmanager
 def cursor(con: duckdb.DuckDBPyConnection) -> Iterator[duckdb.DuckDBPyConnection]:
-    """Open a second connection to the database of `con`, which `interrupt` knows."""
+    """Open a second connection to the database of `con`, which `interrupt` can interrupt."""
     with con.cursor() as other:
         mine = _cursors.setdefault(id(con), set())
         mine.add(other)

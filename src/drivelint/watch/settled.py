@@ -65,7 +65,7 @@ class SettledVerdicts:
 
 
 def _single(verdicts: pa.Table) -> dict[Key, Row]:
-    """Return the verdicts that apply, by their key; none of those that share one, such as overtakes whose beginnings are not known."""
+    """Return the verdicts that apply, by their key, without those that share a key, such as overtakes with unknown beginnings."""
     rows: dict[Key, list[Row]] = {}
     for row in verdicts.to_pylist():
         if row["verdict"] != "not_applicable":

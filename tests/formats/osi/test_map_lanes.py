@@ -170,7 +170,7 @@ def test_a_lane_without_centre_line_and_direction_is_not_guessed_at() -> None:
     environment = trace.load(handedness="rht")
     assert environment.tables["lanelet"]["lanelet_id"].to_pylist() == ["1", "3"]
     (problem,) = [r for r in environment.tables["map_quality"].to_pylist() if r["severity"] == "error"]
-    assert (problem["lanelet_id"], "in which direction" in problem["message"]) == ("2", True)
+    assert (problem["lanelet_id"], "the direction in which" in problem["message"]) == ("2", True)
 
 
 def test_a_writer_that_leaves_out_what_is_false_means_false() -> None:
@@ -203,8 +203,8 @@ def reversed_side(trace: Trace) -> None:
         (lambda trace: trace.truth.lane[0].classification.ClearField("left_lane_boundary_id"), "no left boundary"),
         (gap, "43 m between"),
         (reversed_side, "same order"),
-        (lambda trace: moved(trace, math.nan), "cannot be"),
-        (lambda trace: moved(trace, 1e300), "cannot be"),
+        (lambda trace: moved(trace, math.nan), "an impossible coordinate"),
+        (lambda trace: moved(trace, 1e300), "an impossible coordinate"),
         (lambda trace: moved(trace, -1e9), "km long"),
     ],
 )

@@ -163,7 +163,7 @@ def test_the_log_counts_before_the_option(tmp_path: Path) -> None:
     assert at(trace, "ego", T0)["x_m"] == pytest.approx(AHEAD * math.cos(TURN))
     assert [row["message"] for row in trace.tables["quality"].to_pylist() if row["check_id"] == "ego_size"] == [
         "--ego-size puts the centre of the ego's box 0.7 m ahead of base_link, but the log states 1.345 m, which is used",
-        "--ego-size gives ego a length of 3 m, the log 4.89 m, which counts",
+        "--ego-size gives ego a length of 3 m, but the log states 4.89 m, which is used",
     ]
 
 

@@ -148,7 +148,7 @@ HOSTILE = {
     "no end": b"\x80\x04N",
     "a mark below": b"\x80\x04(.",
     "the stack is empty": b"\x80\x040.",
-    "content for what is no array": b"\x80\x04}Nb.",
+    "content for something that is not an array": b"\x80\x04}Nb.",
 }  # fmt: skip
 
 

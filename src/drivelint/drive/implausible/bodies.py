@@ -80,10 +80,11 @@ LEAVING_MPS2: Final = 4.0
 def same_bodies(states: States, actors: Actors, egos: Collection[str]) -> list[QualityFinding]:
     """Return a finding on the tracks that are another one's body; of two, the ego's, else the longer one, is believed."""
     rows, begun, pairs = np.zeros(len(states), np.bool_), np.zeros(len(states), np.bool_), []
+    half = _half_sizes(states, actors)
     for a, b in _begin_upon(states, actors):
         track_a, track_b = (slice(*np.searchsorted(states.actor, [i, i + 1]).tolist()) for i in (a, b))
         rows_a, rows_b = _common(states, track_a, track_b)
-        first, second = _boxes(states, actors, rows_a), _boxes(states, actors, rows_b)
+        first, second = _boxes(states, half, rows_a), _boxes(states, half, rows_b)
         deep = _deep(first, second)
         if len(deep) < LEAST_COMMON or not deep[0] or deep.mean() < COMMON_SHARE:
             if not _coupled(first, second):
@@ -130,7 +131,7 @@ def held_tracks(states: States, actors: Actors) -> list[QualityFinding]:
     vehicle = np.isin(np.array(actors.classes, dtype=object), list(MOTOR_VEHICLES))
     index = {name: i for i, name in enumerate(actors.ids)}
     motor = vehicle[np.array([index[name] for name in states.ids])]
-    lasts, speeds = np.r_[starts[1:], len(states)] - 1, np.hypot(*states.velocity)
+    lasts, speeds, half = np.r_[starts[1:], len(states)] - 1, np.hypot(*states.velocity), _half_sizes(states, actors)
     with np.errstate(invalid="ignore"):
         stands = (speeds[lasts] < SPIN_MPS / 2.0) & (states.t_ns[lasts] < t_ns[-1])
     for first, last in zip(starts[stands], lasts[stands], strict=True):
@@ -140,7 +141,7 @@ def held_tracks(states: States, actors: Actors) -> list[QualityFinding]:
         # who touches it then, or brakes hard from then on, may have run into it
         before = order[now:after]
         clear = (
-            _overlap(_boxes(states, actors, np.full(len(before), last)), _boxes(states, actors, before))[0].min(axis=0)
+            _overlap(_boxes(states, half, np.full(len(before), last)), _boxes(states, half, before))[0].min(axis=0)
             < 0.0
         )
         speed = dict(zip(states.actor[before[clear]].tolist(), speeds[before[clear]], strict=True))
@@ -151,8 +152,8 @@ def held_tracks(states: States, actors: Actors) -> list[QualityFinding]:
         if not len(other_rows):
             continue
         since_s = (states.t_ns[other_rows] - states.t_ns[last]) * 1e-9
-        mine = _boxes(states, actors, np.full(len(other_rows), last))
-        depth = _overlap(mine, _boxes(states, actors, other_rows))[0].min(axis=0)
+        mine = _boxes(states, half, np.full(len(other_rows), last))
+        depth = _overlap(mine, _boxes(states, half, other_rows))[0].min(axis=0)
         if (depth > BEGIN_M + LEAVING_MPS2 / 2.0 * since_s**2).any():
             rows[first : last + 1] |= states.t_ns[first : last + 1] >= states.t_ns[last] - HELD_NS
     text = (
@@ -163,16 +164,21 @@ def held_tracks(states: States, actors: Actors) -> list[QualityFinding]:
 
 
 def _begin_upon(states: States, actors: Actors) -> Iterator[tuple[int, int]]:
-    """Yield pairs of tracks of which one has its first sample deep in the other's box, or close before or behind it."""
-    starts = track_starts(states.actor)
+    """Yield pairs of tracks of which one has its first sample deep in the other's box, or close before or behind it.
+
+    Who are only close behind each other may be coupled, for which both need more samples than many tracks of a crowd have.
+    """
+    starts, half = track_starts(states.actor), _half_sizes(states, actors)
+    may_be_coupled = np.bincount(states.actor, minlength=len(states.ids)) >= COUPLED_LEAST
     number = np.full(len(states), -1)
     number[starts] = np.arange(len(starts))
     for first, second in _neighbours(states, actors, starts):
         # of two that begin together each is met once
         once = (states.actor[first] != states.actor[second]) & ((number[second] < 0) | (number[second] > number[first]))
         first, second = first[once], second[once]  # noqa: PLW2901  the rest is of no use
-        mine, theirs = _boxes(states, actors, first), _boxes(states, actors, second)
-        near = _deep(mine, theirs) | _in_line(mine, theirs) | (_overlap(mine, theirs)[0] >= BEGIN_M).all(axis=0)
+        mine, theirs = _boxes(states, half, first), _boxes(states, half, second)
+        coupled = may_be_coupled[states.actor[first]] & may_be_coupled[states.actor[second]] & _in_line(mine, theirs)
+        near = _deep(mine, theirs) | coupled | (_overlap(mine, theirs)[0] >= BEGIN_M).all(axis=0)
         yield from zip(states.actor[first[near]].tolist(), states.actor[second[near]].tolist(), strict=True)
 
 
@@ -205,12 +211,19 @@ def _common(states: States, a: slice, b: slice) -> tuple[Indices, Indices]:
     return in_a + a.start, in_b + b.start
 
 
-def _boxes(states: States, actors: Actors, rows: Indices) -> _Boxes:
+def _half_sizes(states: States, actors: Actors) -> Floats:
+    """Return half the length and half the width (2, n) of the actors that have states, by their number there."""
     index = {name: i for i, name in enumerate(actors.ids)}
-    who = np.array([index[name] for name in states.ids])[states.actor[rows]]
+    who = [index[name] for name in states.ids]
+    half: Floats = np.stack([actors.sizes["length_m"][who], actors.sizes["width_m"][who]]) / 2.0
+    return half
+
+
+def _boxes(states: States, half: Floats, rows: Indices) -> _Boxes:
+    """Return the boxes at these states. It is called for each pair of tracks: nothing here goes over all actors."""
     x, y, yaw, vx, vy = (states.numbers[name][rows] for name in ("x_m", "y_m", "yaw_rad", "vx_mps", "vy_mps"))
-    half = np.stack([actors.sizes["length_m"][who], actors.sizes["width_m"][who]]) / 2.0
-    return _Boxes(np.stack([x, y]), np.stack([np.cos(yaw), np.sin(yaw)]), half, np.stack([vx, vy]))
+    sizes = half[:, states.actor[rows]]
+    return _Boxes(np.stack([x, y]), np.stack([np.cos(yaw), np.sin(yaw)]), sizes, np.stack([vx, vy]))
 
 
 def _deep(first: _Boxes, second: _Boxes) -> Mask:

@@ -31,6 +31,7 @@ from drivelint.road.boundary_lanes import (
 from drivelint.road.driving_side import choose_side
 from drivelint.road.lane_geometry import stations
 from drivelint.road.quality import MapQuality
+from drivelint.road.tree_parts import query_in_parts
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -251,9 +252,11 @@ def _overlaps(lanes: Sequence[BoundedLane]) -> list[list[str]]:
     if not lanes:
         return []
     areas = [lane.line.polygon for lane in lanes]
-    pairs = shapely.STRtree(areas).query(areas, predicate="intersects").T
+    parts = query_in_parts(shapely.STRtree(areas), areas, "intersects")
     overlaps = []
-    for i, j in pairs[pairs[:, 0] < pairs[:, 1]].tolist():
+    for i, j in (pair for first, second in parts for pair in zip(first.tolist(), second.tolist(), strict=True)):
+        if i >= j:
+            continue
         a, b = lanes[i], lanes[j]
         apart = max(np.nanmin(a.z) - np.nanmax(b.z), np.nanmin(b.z) - np.nanmax(a.z)) if _have_heights(a, b) else 0.0
         if apart <= _LEVEL_M and shapely.area(shapely.intersection(areas[i], areas[j])) > _COMMON_GROUND_M2:

@@ -10,6 +10,7 @@ import shapely
 from drivelint.formats.d123 import facts
 from drivelint.road.boundary_lanes import Mark, both_marks
 from drivelint.road.lane_geometry import resampled, stations
+from drivelint.road.tree_parts import all_in_parts
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -99,7 +100,7 @@ def _piece_codes(points: Floats, starts: Indices, tree: shapely.STRtree, codes: 
     `starts`: where the points of each bound begin, and where the last ends.
     """
     n = len(codes)
-    at, line = tree.query(shapely.points(points), predicate="dwithin", distance=_NEAR_M)
+    at, line = all_in_parts(tree, shapely.points(points), "dwithin", _NEAR_M)
     keys = np.sort(at.astype(np.int64) * n + line)
     within = np.arange(len(points)) - np.repeat(starts[:-1], np.diff(starts))
     middles = np.flatnonzero(within % 2 == 1)

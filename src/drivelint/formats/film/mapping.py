@@ -7,7 +7,6 @@ assumed speed, and a detected actor is placed at its measured distance ahead, in
 from __future__ import annotations
 
 import os
-import tomllib
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal
 
@@ -16,6 +15,7 @@ import msgspec
 from drivelint.errors import UsageError
 from drivelint.formats.tables.mapping import UNITS, read_toml
 from drivelint.phrases import hint
+from drivelint.toml_text import parse_toml
 
 MAPPINGS_FOLDER: Final = Path(__file__).parent / "mappings"
 Metres = Annotated[float, msgspec.Meta(gt=0.0, lt=1000.0)]
@@ -120,7 +120,7 @@ def is_video_mapping(name: str) -> bool:
     if not os.path.isfile(name):  # noqa: PTH113 - also of a name that is too long for a file
         return False
     try:
-        raw = tomllib.loads(Path(name).read_text(encoding="utf-8"))
+        raw = parse_toml(Path(name).read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError):
         return False  # reading it as another mapping reports the problem
     return "frames" in raw or raw.get("extends") in shipped_mappings()

@@ -22,7 +22,7 @@ class UnreadTopics:
     topics: dict[str, tuple[str, str, int]] = field(default_factory=dict)
 
     def add(self, channel: Channel, kind: str) -> None:
-        """Count a message of a kind that would be read."""
+        """Count a message of a kind that is read in other encodings."""
         n = self.topics.get(channel.topic, ("", "", 0))[2]
         self.topics[channel.topic] = kind, channel.message_encoding, n + 1
 

@@ -13,6 +13,7 @@ import shapely
 
 from drivelint.formats.opendrive.lanelet import LaneKey, Lanelet, lanelet_id
 from drivelint.formats.opendrive.network import END, START
+from drivelint.road.tree_parts import query_in_parts
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -186,8 +187,8 @@ def _check_unlinked(lanes: list[Lanelet], links: dict[tuple[str, str], Link], qu
     if not lanes:
         return
     ends, starts = ([lane.line.centre[k] for lane in lanes] for k in (-1, 0))
-    touching = shapely.STRtree(shapely.points(starts)).query(shapely.points(ends), "dwithin", TOUCH_M)
-    for i, j in sorted(touching.T.tolist()):
+    touching = query_in_parts(shapely.STRtree(shapely.points(starts)), shapely.points(ends), "dwithin", TOUCH_M)
+    for i, j in (pair for part in touching for pair in sorted(np.stack(part, axis=1).tolist())):
         a, b = lanes[i], lanes[j]
         same = float((a.line.tangent[-1] * b.line.tangent[0]).sum()) > TOUCH_HEADING_COS
         if same and (a.lanelet_id, b.lanelet_id) not in links:

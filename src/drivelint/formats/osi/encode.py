@@ -108,7 +108,7 @@ def _struct(fields: Mapping[str, Any], there: Mask | None = None) -> pa.StructAr
 
 
 def _numbers(codes: Codes, words: Sequence[str], enum: str, names: Mapping[str, str]) -> NDArray[np.int32]:
-    """Return the numbers of an enumeration in which `names` are those of words; 0 for any other word, and for code -1."""
+    """Return the numbers of the words `names` in an enumeration; 0 for any other word, and for code -1."""
     numbers = {word: enum_numbers(enum)[name] for word, name in names.items()}
     return np.array([*(numbers.get(word, 0) for word in words), 0], np.int32)[codes]
 

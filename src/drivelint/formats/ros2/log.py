@@ -1,4 +1,4 @@
-"""Everything that is read of a ROS 2 log, by the type of the messages and their topic, and which topic counts where several could."""
+"""The content of a ROS 2 log by message type and topic, and the choice of a topic if there are several."""
 
 from __future__ import annotations
 

@@ -207,7 +207,7 @@ def _other_frame(states: States, swapped: Vectors, along: Mask, topic: str) -> l
 
 
 def choose_clock(parts: dict[str, RecordedPoses], findings: list[QualityFinding]) -> bool:
-    """Say whether the messages' own times can be used: all have one, it runs, and all count from the same moment.
+    """Return whether the messages' own times can be used: all have one, it advances, and all count from the same moment.
 
     Else the times of the container count, for all of them, and a finding says why. Fills `t_ns` of the rows.
     """

@@ -41,7 +41,7 @@ def furniture(
 def _lights(
     scenario: Scenario, lanes: Mapping[str, BoundedLane], offset: tuple[float, float], quality: MapQuality
 ) -> Rows:
-    """Return a row for each light: it is called as its states are, and holds from its stop point, or without one the lane's begin."""
+    """Return a row for each light: it has the id of its states, and applies from its stop point, or else from the begin of the lane."""
     rows, lost_names = [], []
     for name, light in scenario.lights.items():
         lane = lanes.get(str(light.get("lane", name)))

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 import numpy as np
 import shapely
 
+from drivelint.road.tree_parts import query_in_parts
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
@@ -54,7 +56,8 @@ def _by_shape(lanes: Mapping[str, CentreLine], after: dict[str, dict[str, None]]
         return
     tree = shapely.STRtree([shapely.Point(lane.line[0]) for lane in ordered])
     ends = [shapely.Point(lane.line[-1]) for lane in ordered]
-    for i, j in tree.query(ends, predicate="dwithin", distance=_JOINED_M).T:
+    parts = query_in_parts(tree, ends, "dwithin", _JOINED_M)
+    for i, j in (pair for part in parts for pair in zip(*part, strict=True)):
         if i != j and float(ordered[i].tangent[-1] @ ordered[j].tangent[0]) > _ONWARDS:
             after[ordered[i].lane_id][ordered[j].lane_id] = None
 

@@ -102,7 +102,7 @@ class _Machine:
                     at += 1
         except _EndError:
             if len(stack) != 1 or self.marks:
-                raise ValueError("it ends amid a value") from None
+                raise ValueError("it ends within a value") from None
             return stack[0]
         finally:
             self.at = at
@@ -268,7 +268,7 @@ class _Machine:
             rows = target.as_list()
             self.memo[target.first - 1] = self.stack[-1] = target = rows
         if type(target) is not list:
-            raise TypeError("values for what is no list")
+            raise TypeError("values for something that is not a list")
         target.extend(values)
 
     def new_tuple(self, at: int) -> int:
@@ -312,7 +312,7 @@ class _Machine:
     def _set(self, values: Any) -> None:
         target, keys = self.stack[-1], values[::2]
         if type(target) is not dict or len(values) % 2:
-            raise TypeError("keys and values for what is no dict")
+            raise TypeError("keys and values for something that is not a dict")
         if not _KEYS.issuperset(map(type, keys)):
             raise PickleError(f"a key that is neither text nor number: {_REMEDY}")
         target.update(zip(keys, values[1::2], strict=True))
@@ -332,7 +332,7 @@ class _Machine:
     def reduce(self, at: int) -> int:
         name, arguments = self._take(2)
         if type(name) is not Name or type(arguments) is not tuple:
-            raise TypeError("a call of what is no name")
+            raise TypeError("a call of something that is not a name")
         if name.meaning == "array":
             value: Any = Array(self._memo_at(at))
         elif name.meaning == "encode":
@@ -367,7 +367,7 @@ class _Machine:
             if target.memo is not None:
                 self.memo[target.memo] = self.stack[-1]
         else:
-            raise TypeError("content for what is no array")
+            raise TypeError("content for something that is not an array")
         return at
 
 

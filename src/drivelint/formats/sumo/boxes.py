@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class Tracks(NamedTuple):
-    """Whose each row (n) is, of which type and kind: `actor` indexes `ids`, `type_code` indexes `type_names`, `kind` as in `rows`."""
+    """The actor, type and kind of each row (n): `actor` indexes `ids`, `type_code` indexes `type_names`, `kind` as in `rows`."""
 
     ids: list[str]
     actor: NDArray[np.int32]

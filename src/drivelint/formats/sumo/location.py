@@ -45,7 +45,7 @@ class Location(NamedTuple):
         return found and f"of its projection {self.reference!r}: {found}"
 
     def surrounds(self, xy: Floats) -> Mask:
-        """Say of places (n, 2) in the net's coordinates whether they lie in the net; none does where its boundary is not known."""
+        """Return for places (n, 2) in the net's coordinates whether they lie in the net; none does if its boundary is not known."""
         if self.boundary is None:
             return np.zeros(len(xy), np.bool_)
         low, high = np.array(self.boundary).reshape(2, 2)

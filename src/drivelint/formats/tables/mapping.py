@@ -20,6 +20,7 @@ from drivelint.errors import UsageError
 from drivelint.formats.search import is_pipe_or_device
 from drivelint.phrases import hint
 from drivelint.sql.words import nearest
+from drivelint.toml_text import parse_toml
 
 if TYPE_CHECKING:
     from collections.abc import Set as AbstractSet
@@ -200,7 +201,7 @@ def load(name: str) -> tuple[str, Mapping]:
 def read_toml(path: Path) -> dict[str, Any]:
     """Return the content of a mapping file. Errors: `UsageError` where it cannot be read or is no TOML."""
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        return parse_toml(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise UsageError(f"mapping {path}: cannot be read: {error.strerror or error}") from error
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:

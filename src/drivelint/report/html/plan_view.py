@@ -174,7 +174,7 @@ def _shape_name(actor: Row) -> str:
 
 
 def _body(actor: Row, kind: str, lanes: Lanes, t_ns: int) -> dict[str, str]:
-    """Return where an actor is, its way before and after the moment, and where it was at full seconds from it."""
+    """Return an actor's place, its path before and after the moment, and its places at full seconds from it."""
     before, after, seconds = _way(actor["path"] or [], lanes, t_ns) if kind != "other" else ("", "", "")
     x, y = ((actor[axis] - zero) * UNITS_PER_M for axis, zero in zip(("x_m", "y_m"), lanes.origin, strict=True))
     return {

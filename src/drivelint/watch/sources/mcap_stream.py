@@ -116,7 +116,7 @@ class McapStream:
         self.notes.append(f"{self._where}: {reason} at byte {at}: nothing after it is watched")
 
     def _next_record(self) -> bytes | None:
-        """Return the next record that is read, once it is whole; None: nothing yet, or never again."""
+        """Return the next record, once it is complete; None: not yet, or there will be no more."""
         while not self.ended:
             skipped = min(self._skip, len(self._buffer) - self._place)
             self._skip -= skipped

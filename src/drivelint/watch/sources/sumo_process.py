@@ -51,7 +51,7 @@ class Step(NamedTuple):
 
 
 class VehicleType(NamedTuple):
-    """What SUMO knows of a vType."""
+    """SUMO's facts about a vType."""
 
     vehicle_class: str
     length_m: float
