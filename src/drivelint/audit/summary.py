@@ -151,7 +151,9 @@ class AuditSummary:
         if code is ExitCode.FAILED:
             severe = SEVERITIES[: SEVERITIES.index(fail_on) + 1]
             n = sum(self.findings.get(severity, 0) for severity in severe)
-            return f"{plural(n, 'finding')} at or above severity {fail_on}"
+            bare = sum(self.failed.get(severity, 0) for severity in severe)
+            what = plural(n, "finding") if n else f"{plural(bare, 'failed verdict')} without a finding"
+            return f"{what} at or above severity {fail_on}"
         if code is ExitCode.LOSSY:
             return "judged on lossy input: parts of a log were lost"
         if code is ExitCode.NOT_JUDGED:

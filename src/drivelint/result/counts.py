@@ -103,11 +103,11 @@ def by_severity(findings: Iterable[Mapping[str, Any]]) -> str:
     return ", ".join(f"{found.count(severity)} {severity}" for severity in SEVERITIES if severity in found)
 
 
-def rows_of_findings(rows: Sequence[Mapping[str, Any]], counted: Sequence[Mapping[str, Any]]) -> str:
+def rows_of_findings(rows: Sequence[Mapping[str, Any]], events: Sequence[Mapping[str, Any]]) -> str:
     """Return why a table of these rows has more of them than there are findings; '' where it has not."""
-    told = {row["finding_id"] for row in counted}
+    told = {row["finding_id"] for row in events}
     left_out = [row for row in rows if row["finding_id"] not in told]
-    return rows_sentence(len(rows), len(counted), is_of_profiles=any(row["profile"] is not None for row in left_out))
+    return rows_sentence(len(rows), len(events), is_of_profiles=any(row["profile"] is not None for row in left_out))
 
 
 def rows_sentence(n_rows: int, n_findings: int, *, is_of_profiles: bool) -> str:
