@@ -265,6 +265,28 @@ def test_a_page_tells_what_was_lost_what_is_only_possible_and_what_could_not_be_
     assert words(whole.xpath("//h1")[0]) == "Nothing could be decided: b"
 
 
+def test_an_overtake_under_two_profiles_counts_once_as_on_the_fleet_page() -> None:
+    twice = [found("a", profile=profile, finding_id=profile) for profile in ("nominal", "observed")]
+    for row in twice:
+        row |= {"t_start_s": 1.0, "t_worst_s": 1.0}
+    with duckdb.connect() as con:
+        audits.add_rows(
+            con, [ego_drive("a")], [said("a", "fail", profile=row["profile"]) for row in twice], twice, [rule()]
+        )
+        con.register("receipts", RECEIPT_SCHEMA.empty_table())
+        audit = Audit("out", LocalFolder(Path("out")), {"settings": {}}, Standing("d"))
+        told = content_.content(con, audit, None, ())
+        drive_pages.choose(con, None)
+        ((_, made),) = drive_pages.pages(con, audit, told.rules)
+    page = parsed_bytes(made)
+    assert [row["critical"] for row in told.worst] == [1]
+    assert words(page.xpath("//h1")[0]) == "1 critical finding in a"
+    section = page.xpath("//section[@aria-labelledby='findings']")[0]
+    assert words(section.xpath("./h2")[0]) == "Findings 1"
+    assert words(section.xpath("./p")[0]) == "2 rows, 1 finding: an overtake under two profiles counts once."
+    assert len(section.xpath(".//tbody/tr")) == 2
+
+
 def test_a_name_holds_nothing_of_a_key_that_is_no_hash() -> None:
     assert drive_pages.page_name("0a" * 32) == f"drives/{'0a' * 32}.html"
     for key in ("", "../../x", "A" * 64, "0a" * 33, "a/b\0\n'\"<", "\udcff"):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import re
 from datetime import date
+from typing import Any
 
 import pytest
 from lxml import html
@@ -34,12 +35,16 @@ UNKNOWN = result(
 BOTH = run(*TWICE, LATE)
 
 
-def words(element: html.HtmlElement) -> str:
+def parsed(text: str) -> Any:
+    return html.fromstring(text)
+
+
+def words(element: Any) -> str:
     return " ".join(element.text_content().split())
 
 
 def test_the_page_counts_as_its_headline_does() -> None:
-    tree = html.fromstring(page(BOTH))
+    tree = parsed(page(BOTH))
     assert "2 critical findings in 1 of 1 drive" in words(tree.find(".//h1"))
     assert words(tree.get_element_by_id("findings")) == "Worst first: findings 2"
     assert WHY + "." in [words(p) for p in tree.xpath("//section[@aria-labelledby='findings']/p")]
@@ -86,7 +91,7 @@ def test_what_is_known_is_as_many_as_what_is_unchanged() -> None:
     assert "no new finding; 2 known (2 critical) in 1 of 1 drive" in text
     assert "2 unchanged" in text
     assert f"Findings that do not gate (2)</summary>\n\n{WHY}." in text
-    (chips,) = html.fromstring(page(of)).xpath("//p[@class='gate-counts']")
+    (chips,) = parsed(page(of)).xpath("//p[@class='gate-counts']")
     assert words(chips).startswith("0 new, 2 known.")
 
 
