@@ -232,6 +232,9 @@ def test_the_hooks_that_a_repository_takes_stop_a_commit(drives: Path) -> None:
         codes[name] = run(line, drives, PATH=path, PYTHONPATH=str(ROOT / "src")).returncode
     assert codes == {"drivelint-rules": 0, "drivelint-check": 1}
     assert re.search(hooks["drivelint-check"]["files"], "drives/a.mcap")
+    for place in ("road.xodr", "maps/town.osm", "town.net.xml", "drivelint.toml"):
+        assert re.search(hooks["drivelint-check"]["files"], place), "what the check reads starts it"
+    assert not re.search(hooks["drivelint-check"]["files"], "notes.md")
     assert re.search(hooks["drivelint-rules"]["files"], "rules/mine/r1.sql")
 
 

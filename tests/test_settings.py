@@ -156,6 +156,17 @@ def test_the_file_sets_options_and_the_command_line_overrides_them(
     assert capfd.readouterr().err == ""
 
 
+def test_a_map_that_does_not_exist_names_the_file_unless_the_command_line_has_another(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    written(tmp_path, 'map = "roda.xodr"\nquiet = true')
+    monkeypatch.chdir(tmp_path)
+    assert run(monkeypatch, "inspect", "x.csv") == 2
+    assert "drivelint.toml: map = 'roda.xodr': does not exist: correct it, or give --map" in capfd.readouterr().err
+    run(monkeypatch, "inspect", "x.csv", "--map", "other.xodr")
+    assert "drivelint.toml" not in capfd.readouterr().err
+
+
 @pytest.mark.parametrize("text", ['fail-onn = "never"', 'fail-on = "nevre"'])
 def test_a_mistake_in_it_names_the_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], text: str

@@ -31,7 +31,7 @@ from drivelint.pictures import Camerawork, chosen_rows, planned_shots
 from drivelint.report.log_notes import LogNote, LogNotes, same_log, told_once
 from drivelint.report.rule_progress import ToldLimits
 from drivelint.result import collect, evidence
-from drivelint.result.counts import SEVERITIES, group_rows
+from drivelint.result.counts import by_severity, group_rows, one_per_event
 from drivelint.result.joining import join
 from drivelint.result.model import Result
 from drivelint.result.request import RunRequest
@@ -214,7 +214,7 @@ def judge_logs(
                 for batch in cut_batches(read):
                     ids |= {drive.trace.path: drive.trace.drive_id for drive in batch if isinstance(drive, Drive)}
                     _judge(session, batch, refused_logs, progress=progress, notes=notes, limits=limits)
-            _judge_copies(session, progress)
+            _judge_copies(session, progress, memory)
         finally:
             session.close()
         # of two logs of one content the first gives its path and its options
@@ -317,13 +317,13 @@ def _without_map(drive: Drive) -> list[str]:
     return texts
 
 
-def _judge_copies(session: JudgingSession, progress: Progress) -> None:
+def _judge_copies(session: JudgingSession, progress: Progress, memory: Memory) -> None:
     """Judge the copies that wait; of an interrupted run too."""
     if session.n_waiting:
-        counts = session.finding_counts()
+        findings = one_per_event(memory.run_job(collect.findings).to_pylist())
         # the first answer is on the screen before the copies begin
-        found = ", ".join(f"{counts[severity]} {severity}" for severity in SEVERITIES if severity in counts)
-        progress.stage(f"{found} findings; judging copies", session.n_to_copy())
+        word = "finding" if len(findings) == 1 else "findings"
+        progress.stage(f"{by_severity(findings)} {word}; judging copies", session.n_to_copy())
         session.judge_copies(progress.advance)
 
 

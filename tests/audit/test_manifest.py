@@ -10,7 +10,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from drivelint.audit.sources import drives, with_manifests
+from drivelint.audit.sources import doubtful_tags, drives, with_manifests
 from drivelint.cli.audits import audit as audit_command
 from drivelint.drive import conditions
 from drivelint.drive.trace import DriveInput
@@ -173,3 +173,19 @@ def test_a_table_of_states_with_a_column_log_is_a_log(two: fleet.Fleet, tmp_path
     states = pq.read_table(two.manifest.parent / "logs" / "drive-00000.parquet")
     pq.write_table(states.append_column("log", pa.array(["a b c"] * states.num_rows)), tmp_path / "own.parquet")
     assert with_manifests([str(tmp_path / "own.parquet")], DriveInput()) == ((str(tmp_path / "own.parquet"),), {})
+
+
+@pytest.mark.parametrize(
+    ("columns", "told"),
+    [
+        (["mpa", "site"], ["the manifest's column mpa is only a tag: did you mean map?"]),
+        (["Handednes"], ["the manifest's column Handednes is only a tag: did you mean handedness?"]),
+        (["lap", "release"], []),
+    ],
+)
+def test_a_misspelt_column_is_told_once(columns: list[str], told: list[str], tmp_path: Path) -> None:
+    assert list(doubtful_tags(columns)) == told
+    rows = [",".join(["logs/a.mcap", *("x" for _ in columns)])] * 2
+    notes: list[str] = []
+    with_manifests([written(tmp_path, ",".join(["log", *columns]), *rows)], DriveInput(), notes.append)
+    assert notes == told

@@ -140,6 +140,45 @@ def test_the_lists_use_words_and_say_how_many_more_there_are() -> None:
     assert "more reason" not in all_told
 
 
+@pytest.mark.parametrize(
+    ("counted", "fail_on", "why"),
+    [
+        (
+            AuditSummary(
+                n_drives=3, n_judged=3, digest="0", failed={"critical": 3}, findings={"critical": 2, "major": 4}
+            ),
+            "critical",
+            "exit 1: 2 findings at or above severity critical",
+        ),
+        (
+            AuditSummary(n_drives=3, n_judged=2, n_refused=1, digest="0"),
+            "critical",
+            "exit 4: 1 of 3 drives could not be judged",
+        ),
+        (
+            AuditSummary(n_drives=1, n_judged=1, digest="0", lossy=1),
+            "critical",
+            "exit 3: judged on lossy input: parts of a log were lost",
+        ),
+        (
+            AuditSummary(n_drives=1, n_judged=1, digest="0"),
+            "major",
+            "exit 0: nothing failed at or above severity major",
+        ),
+    ],
+)
+def test_the_exit_line_gives_the_reason(counted: AuditSummary, fail_on: str, why: str) -> None:
+    text = summary_text(counted, "out", counted.exit_code(fail_on, strict=False), fail_on=fail_on)
+    assert why in text.splitlines()
+
+
+def test_where_nothing_was_judged_there_is_nothing_to_look_at() -> None:
+    lost = AuditSummary(n_drives=2, n_refused=2, digest="0")
+    for counted, is_shown in ((lost, False), (replace(lost, n_judged=1, n_refused=1), True)):
+        lines = summary_text(counted, "out", ExitCode.NOT_JUDGED, fail_on="critical").splitlines()
+        assert any(line.startswith(("look ", "ask ", "explain ")) for line in lines) == is_shown
+
+
 @pytest.mark.slow
 def test_the_summary_counts_what_it_does_not_show(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(summary, "MOST_RULES", 0)

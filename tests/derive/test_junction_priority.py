@@ -135,7 +135,7 @@ def test_an_oncoming_one_who_turns_into_the_egos_road_comes_across_it_or_perhaps
     row = answers(going(ways[ego]), going(ways[other], s0=s0, name="other"), way=ways["we"])["oncoming"]
     if pet_s is None:
         assert (row["object_id"], row["pet_s"]) == (None, None)
-        assert row["reason"].startswith("other turned into the same road 1.")
+        assert row["reason"].startswith("object other turned into the same road 1.")
     else:
         assert row["object_id"] == "other"
         assert pet_s[0] < row["pet_s"] < pet_s[1]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from drivelint.explain.text import _comment
+from drivelint.explain.text import _comment, _cut
 from drivelint.sql import store
 
 
@@ -15,3 +15,8 @@ def test_a_null_says_what_it_means() -> None:
 
 def test_a_comment_that_says_nothing_of_null_stays() -> None:
     assert _comment("the step", None) == "the step"
+
+
+def test_a_row_is_cut_to_the_width_of_the_terminal() -> None:
+    assert _cut("gap_m  12.5  " + "x" * 70, 40) == "gap_m  12.5  " + "x" * 24 + "..."
+    assert _cut("gap_m  12.5", 40) == "gap_m  12.5"

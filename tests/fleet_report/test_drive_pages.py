@@ -19,6 +19,7 @@ from drivelint.audit.unpacked import Standing
 from drivelint.fleet_report import content as content_
 from drivelint.fleet_report import drive_pages
 from drivelint.fleet_report.audit_views import Audit, open_audits
+from drivelint.result.counts import one_per_event
 from tests.fleet import audits
 from tests.fleet.audits import ego_drive, found, said
 from tests.fleet_report import lake
@@ -103,7 +104,7 @@ def test_a_page_says_what_the_tables_say(ten: Path) -> None:
         (drive,) = [row for row in table(ten, "drives") if row["key"] == key]
         findings = [row for row in table(ten, "findings") if row["key"] == key]
         verdicts = Counter(row["verdict"] for row in table(ten, "verdicts") if row["key"] == key)
-        n = Counter(row["severity"] for row in findings)
+        n = Counter(row["severity"] for row in one_per_event(findings))
         said = ", ".join(f"{n[name]} {name}" for name in SEVERITIES if n[name])
         assert words(page.xpath("//h1")[0]) == f"{said} findings in {drive['drive_id']}"
         for word in ("pass", "fail", "unknown", "not_applicable", "error"):
@@ -262,6 +263,28 @@ def test_a_page_tells_what_was_lost_what_is_only_possible_and_what_could_not_be_
     assert [words(cell) for cell in open_[:2]] == ["rule timeout error", "1"]
     assert "1 other log of the audit" in words(lossy)
     assert words(whole.xpath("//h1")[0]) == "Nothing could be decided: b"
+
+
+def test_an_overtake_under_two_profiles_counts_once_as_on_the_fleet_page() -> None:
+    twice = [found("a", profile=profile, finding_id=profile) for profile in ("nominal", "observed")]
+    for row in twice:
+        row |= {"t_start_s": 1.0, "t_worst_s": 1.0}
+    with duckdb.connect() as con:
+        audits.add_rows(
+            con, [ego_drive("a")], [said("a", "fail", profile=row["profile"]) for row in twice], twice, [rule()]
+        )
+        con.register("receipts", RECEIPT_SCHEMA.empty_table())
+        audit = Audit("out", LocalFolder(Path("out")), {"settings": {}}, Standing("d"))
+        told = content_.content(con, audit, None, ())
+        drive_pages.choose(con, None)
+        ((_, made),) = drive_pages.pages(con, audit, told.rules)
+    page = parsed_bytes(made)
+    assert [row["critical"] for row in told.worst] == [1]
+    assert words(page.xpath("//h1")[0]) == "1 critical finding in a"
+    section = page.xpath("//section[@aria-labelledby='findings']")[0]
+    assert words(section.xpath("./h2")[0]) == "Findings 1"
+    assert words(section.xpath("./p")[0]) == "2 rows, 1 finding: an overtake under two profiles counts once."
+    assert len(section.xpath(".//tbody/tr")) == 2
 
 
 def test_a_name_holds_nothing_of_a_key_that_is_no_hash() -> None:

@@ -166,6 +166,31 @@ def test_an_expired_waiver_waives_nothing_and_is_told() -> None:
     ]
 
 
+@pytest.mark.parametrize(
+    ("rule_id", "said"),
+    [
+        ("ukhc.r162.safe-distance-ahed", "no rule has this id; did you mean 'ukhc.r162.safe-distance-ahead'?"),
+        ("ukhc.no-colision", "no rule has this id; did you mean 'ukhc.no-collision'?"),
+        ("x", "no rule has this id; drivelint rules list shows them all"),
+    ],
+)
+@pytest.mark.parametrize("expires", ["2026-11-19", "2027-11-19"])
+def test_a_waiver_for_a_rule_that_does_not_exist_says_so(rule_id: str, said: str, expires: str) -> None:
+    run = gated(waiver(rule=rule_id, expires=expires), rows=[ROW])
+    assert run.gate is not None
+    (line,) = descriptions.waiver_warnings(run.gate)
+    assert said in line
+    assert "no finding" not in line
+
+
+def test_a_waiver_for_a_rule_that_was_not_run_is_only_unmatched() -> None:
+    run = gated(waiver(rule="ukhc.no-collision"), rows=[ROW])
+    assert run.gate is not None
+    assert list(descriptions.waiver_warnings(run.gate)) == [
+        "w:1: no finding matches ukhc.no-collision (jo); correct or remove it"
+    ]
+
+
 def test_a_failed_verdict_without_a_finding_is_never_let_through() -> None:
     rows = [verdict("fail"), verdict("fail", profile="relaxed")]
     run = GateInputs(TODAY, waivers=(waiver(),)).apply_to(result(rows, [ROW]))

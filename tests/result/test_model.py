@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import io
 from dataclasses import replace
 from typing import Any
 
 import pytest
+from rich.console import Console
 
 from drivelint.errors import DriveLintError, ExitCode
-from drivelint.report import junit
+from drivelint.report import junit, terminal_summary
 from drivelint.result.model import Result, exit_status
 from drivelint.result.schemas import empty_table
 from tests.report.synthetic import SDA, drive, result, rule, verdict
@@ -145,3 +147,44 @@ def test_a_table_with_a_stray_column_is_refused() -> None:
     stray = rows.append_column("mood", rows["rule_id"])
     with pytest.raises(DriveLintError, match=r"finding.*excess.*mood"):
         Result(empty_table("verdict"), stray, empty_table("drive"), empty_table("rule"))
+
+
+HEADLIGHTS = {"reason_code": "unrecorded_headlights", "reason": "The log has nothing of the headlights."}
+HORN = {"reason_code": "unrecorded_horn", "reason": "The log has nothing of the horn."}
+UNRECORDED = [
+    verdict("pass"),
+    verdict("not_applicable", rule_id="a", **HEADLIGHTS),
+    verdict("not_applicable", rule_id="b", **HEADLIGHTS),
+    verdict("not_applicable", rule_id="c", **HORN),
+]
+RULES = [rule(), rule("a"), rule("b"), rule("c")]
+
+
+@pytest.mark.parametrize(
+    ("settings", "why", "column", "not_judged"),
+    [
+        (
+            {"strict": True},
+            "3 verdicts unknown: headlights (2 rules), horn (1 rule) (--strict)",
+            "3",
+            "2 rules without headlights, 1 rule without horn",
+        ),
+        (
+            {"required": ("a",)},
+            "1 verdict of required rules unknown (--require): 1 of a",
+            "1",
+            "1 rule without headlights",
+        ),
+        ({}, "nothing failed at or above severity critical", "·", "nothing"),
+    ],
+)
+def test_what_makes_exit_code_4_is_counted_as_unknown_and_named(
+    settings: dict[str, Any], why: str, column: str, not_judged: str
+) -> None:
+    run = result(UNRECORDED, rules=RULES, **settings)
+    assert exit_status(run).why == why
+    console = Console(file=io.StringIO(), width=120, force_terminal=False)
+    console.print(terminal_summary.render(run, None, 120))
+    lines = console.file.getvalue().splitlines()  # type: ignore[attr-defined]
+    assert [line.split()[-1] for line in lines if line.startswith("d1 ")] == [column]
+    assert f"not judged: {not_judged}" in lines

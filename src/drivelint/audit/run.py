@@ -9,7 +9,6 @@ from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import nullcontext, suppress
 from dataclasses import dataclass, field, fields, replace
-from difflib import get_close_matches
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final
@@ -23,16 +22,15 @@ from drivelint.audit.executors.local import begin_worker, deaf_to_ctrl_c
 from drivelint.audit.identity import rule_table, run_id, versions
 from drivelint.audit.lock import locked
 from drivelint.audit.model import JudgeSettings
-from drivelint.audit.sources import OPTION_COLUMNS
+from drivelint.audit.sources import doubtful_tags
 from drivelint.audit.store import LocalFolder, open_store
 from drivelint.audit.summary import AuditSummary, summed, summed_receipts
 from drivelint.audit.unpacked import SUMMARY_FILE
-from drivelint.drive.conditions import CONDITION_VALUES
 from drivelint.drive.trace import DriveInput
 from drivelint.engine.default_rules import chosen_selectors
 from drivelint.engine.memory import DEFAULT_MEMORY, LEAST_MEMORY
 from drivelint.errors import UsageError
-from drivelint.phrases import listed, plural
+from drivelint.phrases import plural
 from drivelint.result.files import parquet_bytes
 from drivelint.result.names import GATE_FILE
 from drivelint.sql.statements import statement
@@ -55,8 +53,6 @@ _LISTED: Final = "(FROM receipts SEMI JOIN _listed USING (source_id))"
 RECEIPTS_PER_COMPACTION: Final = 4_000
 WORKER_BYTES: Final = 500_000_000
 """The memory of a worker besides its database: programs, rules, and a log that is being read."""
-_ALIKE: Final = 0.8
-"""From this likeness on, the name of a tag is taken for a misspelt column: `maps` is, `lap` is not."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -161,14 +157,9 @@ def _audited(
 
 
 def _doubtful_tags(con: duckdb.DuckDBPyConnection) -> Iterator[str]:
-    """Yield warnings about tags with the name of a condition, or nearly that of a column that is no tag."""
+    """Yield warnings about tags that may be meant for something else."""
     rows = con.execute("SELECT DISTINCT unnest(map_keys(tags)) FROM _listed ORDER BY 1").fetchall()
-    names = [name for (name,) in rows]
-    if conditions := listed([f"column {name}" for name in names if name in CONDITION_VALUES]):
-        yield f"the manifest's {conditions} is only a tag: conditions of a drive stand in the column environment, such as weather=wet"
-    for name in names:
-        for meant in get_close_matches(name.casefold(), OPTION_COLUMNS, n=1, cutoff=_ALIKE):
-            yield f"the manifest's column {name} is only a tag: did you mean {meant}?"
+    yield from doubtful_tags([name for (name,) in rows])
 
 
 def _judge(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import fields, replace
+from difflib import get_close_matches
 from itertools import islice
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -17,6 +18,7 @@ import pyarrow.parquet as pq
 from drivelint.audit.bucket import download, is_url, list_objects, look
 from drivelint.audit.model import AuditDrive
 from drivelint.drive import conditions
+from drivelint.drive.conditions import CONDITION_VALUES
 from drivelint.drive.trace import DriveInput
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats import expand_traces
@@ -24,7 +26,7 @@ from drivelint.formats.files import TRACE_SUFFIXES, is_log_name, is_utf8
 from drivelint.phrases import hint, listed
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
 OPTION_COLUMNS: Final = ("log", "map", "ego", "environment", "handedness", "mapping", "topic")
 """Columns of a manifest that are no tags: the log, its map, its ego, conditions (`weather=wet;light=night`), and options."""
@@ -34,6 +36,8 @@ _TABLE_NEVER_HAS: Final = frozenset({"map", "environment", "handedness", "mappin
 _LEAST_NUMBERS: Final = 3
 """Numbers that a row of a table of states has at least: a time and two coordinates."""
 _LINES: Final = 100
+_ALIKE: Final = 0.8
+"""From this likeness on, the name of a tag is taken for a misspelt column: `maps` is, `lap` is not."""
 _ROWS: Final = 10_000
 
 
@@ -60,11 +64,14 @@ def drives(sources: Sequence[str], options: DriveInput) -> Iterator[AuditDrive]:
             yield AuditDrive(str(path), options)
 
 
-def with_manifests(traces: Sequence[str], options: DriveInput) -> tuple[tuple[str, ...], dict[Path, DriveInput]]:
+def with_manifests(
+    traces: Sequence[str], options: DriveInput, note: Callable[[str], object] = lambda _: None
+) -> tuple[tuple[str, ...], dict[Path, DriveInput]]:
     """Return the logs that `check` is to judge, those that manifests among `traces` name in their place, and the options of the latter.
 
-    A manifest is one Parquet or CSV file whose column `log` names a log: a table of states may have any columns. Errors: `UsageError` as
-    of `drives`, and for a log that two rows name with other options: a check has one result of each log.
+    `note` hears of columns that may be misspelt. A manifest is one Parquet or CSV file whose column `log` names a log: a table of states
+    may have any columns. Errors: `UsageError` as of `drives`, and for a log that two rows name with other options: a check has one result
+    of each log.
     """
     plain = DriveInput(**{each.name: getattr(options, each.name) for each in fields(DriveInput)})
     logs: list[str] = []
@@ -73,6 +80,8 @@ def with_manifests(traces: Sequence[str], options: DriveInput) -> tuple[tuple[st
         if not _names_logs(Path(trace)):
             logs.append(trace)
             continue
+        for text in doubtful_tags([name for name in next(_rows(Path(trace)), {}) if name not in OPTION_COLUMNS]):
+            note(text)
         for drive in _of_manifest(Path(trace), trace, plain):
             if own.setdefault(Path(drive.log), drive.options) != drive.options:
                 raise UsageError(
@@ -80,6 +89,18 @@ def with_manifests(traces: Sequence[str], options: DriveInput) -> tuple[tuple[st
                 )
             logs.append(drive.log)
     return tuple(logs), own
+
+
+def doubtful_tags(names: Sequence[str]) -> Iterator[str]:
+    """Yield warnings about tags with the name of a condition, or nearly that of a column that is no tag."""
+    if of_conditions := listed([f"column {name}" for name in names if name in CONDITION_VALUES]):
+        yield f"the manifest's {of_conditions} is only a tag: conditions of a drive stand in the column environment, such as weather=wet"
+    for name in names:
+        text = name.casefold()
+        # two letters that changed places make a short name less alike than `lap` and `map` are
+        turned = [each for each in OPTION_COLUMNS if each != text and sorted(each) == sorted(text)]
+        for meant in (*turned, *get_close_matches(text, OPTION_COLUMNS, n=1, cutoff=_ALIKE))[:1]:
+            yield f"the manifest's column {name} is only a tag: did you mean {meant}?"
 
 
 def _names_logs(path: Path) -> bool:

@@ -11,6 +11,7 @@ import pyarrow.compute as pc
 from drivelint.audit.compact import tables_digest
 from drivelint.errors import ExitCode
 from drivelint.fleet.distinct_logs import COUNTED_PREFIX, create_counted_views
+from drivelint.phrases import listed, plural
 from drivelint.reasons.signals import UNRECORDED_PREFIX
 from drivelint.result.certainty import LEAST_SHARE
 from drivelint.result.counts import SEVERITIES
@@ -142,6 +143,35 @@ class AuditSummary:
         ):
             return ExitCode.NOT_JUDGED
         return ExitCode.LOSSY if self.lossy else ExitCode.OK
+
+    def exit_reason(self, code: ExitCode, fail_on: str) -> str:
+        """Return in one sentence why an audit exits with this code."""
+        if code is ExitCode.USAGE:
+            return f"{plural(self.errors - self.beyond_limits, 'verdict')} in error: could not be run"
+        if code is ExitCode.FAILED:
+            severe = SEVERITIES[: SEVERITIES.index(fail_on) + 1]
+            n = sum(self.findings.get(severity, 0) for severity in severe)
+            bare = sum(self.failed.get(severity, 0) for severity in severe)
+            what = plural(n, "finding") if n else f"{plural(bare, 'failed verdict')} without a finding"
+            return f"{what} at or above severity {fail_on}"
+        if code is ExitCode.LOSSY:
+            return "judged on lossy input: parts of a log were lost"
+        if code is ExitCode.NOT_JUDGED:
+            return self._not_judged_reason()
+        return "failures do not gate" if fail_on == "never" else f"nothing failed at or above severity {fail_on}"
+
+    def _not_judged_reason(self) -> str:
+        if lost := self.n_refused + self.quarantined:
+            return f"{lost} of {plural(self.n_drives, 'drive')} could not be judged"
+        if self.beyond_limits:
+            return f"{plural(self.beyond_limits, 'verdict')} in error: exceeded its limits"
+        if self.off_map:
+            return f"the map does not fit {self.off_map} of {plural(self.n_drives, 'drive')}"
+        if self.missing_parts:
+            return f"parts have not ended: {listed(self.missing_parts)}"
+        return self.undecided or (
+            f"{plural(self.unknown, 'verdict')} unknown (--strict)" if self.unknown else "no drive was judged"
+        )
 
 
 def summed_receipts(con: duckdb.DuckDBPyConnection, of: str) -> AuditSummary:

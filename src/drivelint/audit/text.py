@@ -14,12 +14,25 @@ if TYPE_CHECKING:
     from drivelint.errors import ExitCode
 
 
-def summary_text(audit_summary: AuditSummary, out: str, code: ExitCode, gate: Iterable[str] = ()) -> str:
-    """Return the lines: drives, findings by severity, broken rules, unknowns, what was not judged, the gate, and what to do next."""
-    return "\n".join(map(one_line, _lines(audit_summary, out, code, gate)))
+def summary_text(
+    audit_summary: AuditSummary,
+    out: str,
+    code: ExitCode,
+    gate: Iterable[str] = (),
+    *,
+    fail_on: str = "never",
+    why: str = "",
+) -> str:
+    """Return the lines: drives, findings by severity, broken rules, unknowns, what was not judged, the gate, and what to do next.
+
+    `why`: the reason for the exit code where a gate gives it.
+    """
+    return "\n".join(map(one_line, _lines(audit_summary, out, code, gate, fail_on=fail_on, why=why)))
 
 
-def _lines(audit_summary: AuditSummary, out: str, code: ExitCode, gate: Iterable[str]) -> Iterator[str]:
+def _lines(
+    audit_summary: AuditSummary, out: str, code: ExitCode, gate: Iterable[str], *, fail_on: str, why: str
+) -> Iterator[str]:
     n_refused = audit_summary.n_refused - audit_summary.copies_not_judged
     n_drives = audit_summary.n_drives - audit_summary.copies - audit_summary.copies_not_judged
     yield f"{plural(n_drives, 'drive')} of {audit_summary.hours:,.2f} h; their egos drove {audit_summary.km:,.2f} km"
@@ -55,7 +68,10 @@ def _lines(audit_summary: AuditSummary, out: str, code: ExitCode, gate: Iterable
     yield from _not_judged(audit_summary, out)
     yield from [audit_summary.undecided] if audit_summary.undecided else []
     yield from gate
-    yield f"exit {int(code)}    rows {(audit_summary.digest or '')[:12]} (the same for the same results, see summary.json)"
+    yield f"exit {int(code)}: {why or audit_summary.exit_reason(code, fail_on)}"
+    yield f"rows     {(audit_summary.digest or '')[:12]} (the same for the same results, see summary.json)"
+    if not audit_summary.n_judged:
+        return  # nothing can be looked at, asked or explained
     yield f"look     drivelint report {out}"
     yield f'ask      drivelint sql {out} "SELECT rule_id, count(*) FROM counted_events GROUP BY ALL ORDER BY 2 DESC"'
     yield "explain  drivelint check LOG --map MAP --out DIR: its findings have the same ids, for drivelint explain ID --in DIR"

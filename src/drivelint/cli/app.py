@@ -241,6 +241,10 @@ def _command_words(error: Exception) -> str:
     return words
 
 
+_WITHOUT_SETTING_OF_MAP: Final = frozenset({"--map", "--map-dir", "--help", "-h"})
+"""Options of the command line with which the map of the settings file is not read."""
+
+
 def _settings() -> dict[str, Any]:
     """Return the options of the settings file for `check`, or for another command that reads a log.
 
@@ -256,7 +260,11 @@ def _settings() -> dict[str, Any]:
     taken = {p.name for p in commands[name].params}
     if name != "check":
         taken -= {"out", "format_"}
-    return {name: {param: value for param, value in read_settings(known, file, paths).items() if param in taken}}
+    values = {param: value for param, value in read_settings(known, file, paths).items() if param in taken}
+    map_file = None if _WITHOUT_SETTING_OF_MAP & {word.partition("=")[0] for word in sys.argv} else values.get("map")
+    if map_file is not None and not Path(map_file).exists():
+        raise UsageError(f"{file}: map = {map_file!r}: does not exist: correct it, or give --map")
+    return {name: values}
 
 
 def _fail(message: str, code: ExitCode) -> NoReturn:

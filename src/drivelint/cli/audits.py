@@ -168,11 +168,12 @@ def audit(
         except KeyboardInterrupt:
             typer.echo(f"drivelint: {_stored_results_sentence(out)}", err=True)
             raise
-    code, told = counted.exit_code(fail_on, strict=strict), list[str]()
+    code, told, why = counted.exit_code(fail_on, strict=strict), list[str](), ""
     if gate is not None or min_judged is not None:
         result = gated.apply_gate(out, gate)
         code, told = gated.exit_code(result, counted), list(gated.lines(result))
-    typer.echo(inert(summary_text(counted, out, code, told)))
+        why = gated.exit_reason(result, code)
+    typer.echo(inert(summary_text(counted, out, code, told, fail_on=fail_on, why=why)))
     if pack is not None:
         packs.write_and_tell(pack, err=True)
     raise typer.Exit(int(code))

@@ -249,7 +249,9 @@ def _with_manifests(settings: CheckOptions, *, packed: bool) -> CheckOptions:
         return settings
     from drivelint.audit.sources import with_manifests
 
-    logs, manifest_options = with_manifests(settings.traces, settings)
+    logs, manifest_options = with_manifests(
+        settings.traces, settings, lambda text: streams.say(f"drivelint: {inert_line(text)}")
+    )
     if manifest_options and packed:
         raise UsageError(
             "--evidence: a pack has one set of options for all logs: audit the manifest, and pack that audit"

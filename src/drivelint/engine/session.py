@@ -172,13 +172,6 @@ class JudgingSession:
         """The number of drives whose copies still wait to be judged."""
         return self._robustness.n_waiting if self._robustness else 0
 
-    def finding_counts(self) -> dict[str, int]:
-        """Return the number of findings of each severity."""
-        rows = self._con.execute(
-            "SELECT severity, count(*) FROM finding GROUP BY severity ORDER BY severity"
-        ).fetchall()
-        return dict(rows)
-
     def n_to_copy(self) -> int:
         """Return how many findings copies are judged of at first."""
         return self._robustness.n_asked() if self._robustness else 0

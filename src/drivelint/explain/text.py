@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 EXPLAIN_SCHEMA: Final = 1
 """Version of the JSON: raised when a key changes its meaning or goes."""
 PLOT_HEIGHT: Final = 8
+_CELLS_INDENT: Final = 4
+"""Spaces before a row of a table."""
 _STYLE: Final = {"pass": "bold green", "fail": "bold red", "unknown": "bold yellow", "error": "bold magenta"}
 _SMALL: Final = 0.1
 _GREAT: Final = 1e6
@@ -69,7 +71,7 @@ def render(explanation: Explanation, width: int) -> Group:
     """Return the explanation for a terminal of `width` columns."""
     width = max(40, min(width, 120))
     parts: list[RenderableType] = [*_title(explanation, width)]
-    prose = _prose(explanation)
+    prose = _prose(explanation, width)
     sections = [
         ("What happened", prose["happened"]),
         ("What would decide it", prose["decides"]),
@@ -111,7 +113,7 @@ def _meaning(row: Mapping[str, Any]) -> str:
     return _DOES_NOT_APPLY.get(row["reason_code"], _MEANS[row["verdict"]])
 
 
-def _prose(explanation: Explanation) -> dict[str, list[str]]:
+def _prose(explanation: Explanation, width: int) -> dict[str, list[str]]:
     """Return the sections of the template by their names, a sentence per line."""
     row, start_ns = explanation.verdict, explanation.drive["t_start_ns"]
     template = text_template(
@@ -119,7 +121,7 @@ def _prose(explanation: Explanation) -> dict[str, list[str]]:
         "explanation.txt.j2",
         # a line break in a value ends no line of the template
         finalize=lambda told: told.replace("\n", "\v") if isinstance(told, str) else told,
-        cells=lambda row, table: _cells(explanation, table, row),
+        cells=lambda row, table: [_cut(line, width - _CELLS_INDENT) for line in _cells(explanation, table, row)],
         at_least=_rounded_up,
         measure=_measure,
         rounded=_rounded_sentence,
@@ -162,6 +164,11 @@ def _cells(explanation: Explanation, table: str, row: Row) -> list[str]:
         f"{column:<{wide}}  {_cell(column, row[column], start_ns):<12}  {_comment(comments.get(column, ''), row[column])}"
         for column in named
     ]
+
+
+def _cut(line: str, width: int) -> str:
+    """Return a row of a table so that a terminal does not wrap it."""
+    return line if len(line) <= width else f"{line[: width - 3].rstrip()}..."
 
 
 def _cell(column: str, value: Any, start_ns: int) -> str:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 from drivelint.fleet.rates import rates
 from drivelint.fleet.situations import MEASURED_SITUATIONS, bound_tag, value_of
 from drivelint.fleet_report.figures import log_axis
+from drivelint.result.counts import SEVERITIES
 from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
@@ -31,9 +32,9 @@ class RuleByTag(NamedTuple):
 
 @dataclass(frozen=True)
 class RatesByTag:
-    """The rules with most findings by one tag, on one axis of findings per 100 km.
+    """The gravest rules, and of these the ones with most findings, by one tag, on one axis of findings per 100 km.
 
-    `n_values_left_out`: values that fewer drives have; `n_rules_left_out`: rules with fewer findings, `n_findings_left_out`: these.
+    `n_values_left_out`: values that fewer drives have; `n_rules_left_out`: the other rules, `n_findings_left_out`: theirs.
     """
 
     tag: str
@@ -62,9 +63,15 @@ def rates_by_tag(con: duckdb.DuckDBPyConnection, tag: str) -> RatesByTag:
     for rate in rates(con, tag, of=of):
         by_rule.setdefault((rate.rule_id, rate.profile), []).append(rate)
     found = [RuleByTag(*name, sorted(told, key=lambda r: r.tag_value is None)) for name, told in by_rule.items()]
+    severity = dict(con.execute("SELECT rule_id, severity FROM rules").fetchall())
     found = sorted(
         (each for each in found if _n_findings(each)),
-        key=lambda each: (-_n_findings(each), each.rule_id, each.profile or ""),
+        key=lambda each: (
+            SEVERITIES.index(severity[each.rule_id]),
+            -_n_findings(each),
+            each.rule_id,
+            each.profile or "",
+        ),
     )
     left = found[MAX_RULES:]
     return RatesByTag(

@@ -16,12 +16,12 @@ from typing import TYPE_CHECKING, Final
 from drivelint.audit.bucket import is_url
 from drivelint.fleet_report import figures
 from drivelint.fleet_report.drive_command import check_command
-from drivelint.fleet_report.rows import gravest_first, options_column, ranked, rows
+from drivelint.fleet_report.rows import gravest_first, one_per_event, options_column, ranked, rows
 from drivelint.phrases import plural
 from drivelint.reasons.signals import WHAT_IS_NULL, remedy
 from drivelint.report.html.environment import page_environment
 from drivelint.result.certainty import doubt
-from drivelint.result.counts import SEVERITIES, VERDICTS, group_rows
+from drivelint.result.counts import SEVERITIES, VERDICTS, group_rows, rows_sentence
 from drivelint.result.text import utc_at
 from drivelint.sql.statements import statement
 
@@ -77,7 +77,10 @@ def links(con: duckdb.DuckDBPyConnection, keys: Iterable[str | None]) -> dict[st
 def pages(con: duckdb.DuckDBPyConnection, audit: Audit, rules: Mapping[str, Row]) -> Iterator[tuple[str, bytes]]:
     """Yield name and content of the page of each chosen drive. `rules`: rule_id -> row of the table `rule`."""
     con.execute(statement("fleet_report/page_facts", options=options_column(con)))
-    con.execute(statement("fleet_report/page_findings", gravest_first=gravest_first()), {"most": MAX_FINDINGS})
+    con.execute(
+        statement("fleet_report/page_findings", gravest_first=gravest_first(), event=one_per_event("paged_")),
+        {"most": MAX_FINDINGS},
+    )
     con.execute(statement("fleet_report/page_verdicts"))
     (n_pages,) = con.execute("SELECT count(*) FROM page_drive").fetchone() or (0,)
     template = _environment().get_template("drive.html.j2")
@@ -114,13 +117,18 @@ def _page_content(
         row["mend"] = remedy(row["reason_code"], None, drive["format"] or "mapped")
     counts = dict.fromkeys(VERDICTS, 0) | {row["verdict"]: row["n"] for row in verdict_counts}
     by_severity = {name: findings[0][f"n_{name}"] if findings else 0 for name in SEVERITIES}
+    n_rows, n_findings = findings[0]["n_rows"] if findings else 0, sum(by_severity.values())
     home = f"{FOLDER}/{drive['drive_id']}"
     worst = [findings[0]["finding_id"]] if findings else []
     return {
         "drive": drive | {"tags": sorted(drive["tags"] or ()), "utc": utc_at(drive["t_start_ns"], drive)},
         "headline": _headline(drive, by_severity, counts),
         "findings": findings,
-        "n_findings": sum(by_severity.values()),
+        "n_findings": n_findings,
+        "n_rows": n_rows,
+        "rows_sentence": rows_sentence(
+            n_rows, n_findings, is_of_profiles=bool(findings and findings[0]["is_of_profiles"])
+        ),
         "counts": counts,
         "undecided": undecided,
         "lacking": group_rows(drive["not_judged"], lambda lack: (lack["signal"], lack["reason"])),

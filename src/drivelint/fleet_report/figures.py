@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from drivelint.fleet.intervals import Estimate
+    from drivelint.fleet.rates import Rate
 
 
 def figure(value: float | None) -> str:
@@ -31,6 +32,16 @@ def interval(estimate: Estimate) -> str:
     if estimate.rate is None:
         return NO_VALUE
     return f"{figure(estimate.rate)} ({figure(estimate.low)} to {figure(estimate.high)})"
+
+
+def least_rate(rate: Rate) -> tuple[str, str] | None:
+    """Return the lower bound that stands in place of a rate of 0 which leaves findings out, and what stands below it; None: no such rate.
+
+    Their drives were not wholly judged, so they do not count for the rate; a 0 beside them would read as that nothing happened.
+    """
+    if rate.findings or not rate.findings_of_unknown or not rate.at_least_per_100km:
+        return None
+    return f"at least {figure(rate.at_least_per_100km)}", f"over all; {interval(rate.per_100km)} where all was judged"
 
 
 def share(estimate: Estimate) -> str:

@@ -74,6 +74,12 @@ def exit_code(result: Result, summary: AuditSummary) -> ExitCode:
     return min((exit_status(result).code, other_exit), key=_WEIGHT.index)
 
 
+def exit_reason(result: Result, code: ExitCode) -> str:
+    """Return why an audit exits with this code, if it is the gate's; '' if the audit gives it."""
+    status = exit_status(result)
+    return status.why if status.code is code else ""
+
+
 def lines(result: Result) -> Iterator[str]:
     """Yield the result of the gate in words: the findings by their standing, the reason of the exit code, and doubtful waivers."""
     yield f"gate: {headline(result).sentence}"

@@ -125,6 +125,7 @@ def _mend(undecided: Undecided) -> str:
 
 _FILTERS: Final[dict[str, Any]] = {
     "figure": figures.figure,
+    "least_rate": figures.least_rate,
     "interval": figures.interval,
     "share": figures.share,
     "finding_line": finding_line,

@@ -24,8 +24,12 @@ def rows(con: duckdb.DuckDBPyConnection, name: str, bound: Row | None = None, **
 
 def ranked() -> str:
     """Return the SELECT of the drives with findings, the worst first."""
-    event = statement("fleet/event", of=COUNTED_PREFIX, least_share=str(LEAST_SHARE))
-    return statement("fleet_report/ranked", least_share=str(LEAST_SHARE), event=event)
+    return statement("fleet_report/ranked", least_share=str(LEAST_SHARE), event=one_per_event(COUNTED_PREFIX))
+
+
+def one_per_event(of: str) -> str:
+    """Return the SELECT of one finding of each event. `of`: what stands before the name `findings` of their table."""
+    return statement("fleet/event", of=of, least_share=str(LEAST_SHARE))
 
 
 def gravest_first() -> str:

@@ -11,7 +11,7 @@ import msgspec
 from drivelint.errors import ExitCode
 from drivelint.phrases import plural
 from drivelint.result import counts
-from drivelint.result.gate import NOT_FIXED
+from drivelint.result.gate import NOT_FIXED, n_findings
 from drivelint.result.text import number
 from drivelint.result.text_templates import text_template
 
@@ -54,28 +54,30 @@ def gating_findings(difference: Difference, fail_on: str, gate: Gate | None = No
 
 def headline(difference: Difference) -> str:
     """Return the counts in one sentence: new, fixed, and gone but not fixed findings."""
-    return f"{difference.counts()['new']} new, {since_baseline(difference)}"
+    return f"{difference.event_counts()['new']} new, {since_baseline(difference)}"
 
 
 def since_baseline(difference: Difference) -> str:
     """Return the standing of the earlier result's findings. New findings are not counted: a waiver may cover them."""
-    n = difference.counts()
-    kept = Counter(entry.there for entry in difference.with_diff_status("fixed"))
-    there = (kept["pass"], kept["not_applicable"])
-    return counts_sentence(n, sum(entry.worse for entry in difference.entries), there)
+    n = difference.event_counts()
+    passes = n_findings(entry for entry in difference.with_diff_status("fixed") if entry.there == "pass")
+    worse = n_findings(entry for entry in difference.entries if entry.worse)
+    return counts_sentence(n, worse, (passes, n["fixed"] - passes))
 
 
 def counts_sentence(n: Mapping[str, int], worse: int, fixed: tuple[int, int]) -> str:
-    """Return diff status -> number of an earlier result's findings as a sentence.
+    """Return diff status -> number of an earlier result's findings as a sentence without zeros.
 
     `worse`: of the changed; `fixed`: those that pass now, and those whose rule does not apply any more.
     """
-    text = f"{n['changed']} changed ({worse} worse), {n['unchanged']} unchanged, "
-    text += f"{n['fixed']} fixed ({fixed[0]} now pass, {fixed[1]} now not applicable)"
-    if any(n[status] for status in NOT_FIXED):
-        told = (f"{n[status]} {words}" for status, words in NOT_FIXED.items() if n[status] or status != "elsewhere")
-        text += f"; gone but not fixed: {', '.join(told)}"
-    return text
+    passes, idle = (f"{k} now {words}" if k else "" for k, words in zip(fixed, ("pass", "not applicable"), strict=True))
+    said = [f"{n['changed']} changed{f' ({worse} worse)' if worse else ''}"] if n["changed"] else []
+    said += [f"{n['unchanged']} unchanged"] if n["unchanged"] else []
+    said += [f"{n['fixed']} fixed ({', '.join(filter(None, (passes, idle)))})"] if n["fixed"] else []
+    gone = [f"{n[status]} {words}" for status, words in NOT_FIXED.items() if n[status]]
+    parts = [", ".join(said)] if said else []
+    parts += [f"gone but not fixed: {', '.join(gone)}"] if gone else []
+    return "; ".join(parts) or "no earlier finding"
 
 
 def judged_otherwise(difference: Difference) -> str:
@@ -107,6 +109,8 @@ def difference_text(
         titles=DIFF_STATUS_TITLES,
         waived=gate.waived if gate else {},
         groups=group_by_reason(difference.new_unknowns),
+        n_findings=n_findings,
+        rows_of_entries=rows_of_entries,
         exit=exit_summary(difference, failing, fail_on),
         most=MAX_LINES,
     )
@@ -115,7 +119,7 @@ def difference_text(
 
 def exit_summary(difference: Difference, failing: Sequence[ComparedFinding], fail_on: str) -> str:
     """Return the exit code of a difference and its reason, in one line."""
-    return exit_sentence(len(failing), fail_on, not_looked_at(difference, fail_on))
+    return exit_sentence(n_findings(failing), fail_on, not_looked_at(difference, fail_on))
 
 
 def exit_code(difference: Difference, failing: Sequence[ComparedFinding], fail_on: str) -> ExitCode:
@@ -130,7 +134,7 @@ def not_looked_at(difference: Difference, fail_on: str) -> str:
     if fail_on == "never":
         return ""
     severe = counts.SEVERITIES[: counts.SEVERITIES.index(fail_on) + 1]
-    n = sum(entry.stable and entry.severity in severe for entry in difference.not_fixed())
+    n = n_findings(entry for entry in difference.not_fixed() if entry.stable and entry.severity in severe)
     said = [f"{plural(n, 'earlier finding')} gone but not fixed"] if n else []
     said += ["the newer run was interrupted"] if difference.is_partial else []
     return " and ".join(said)
@@ -174,6 +178,13 @@ def finding_line(entry: ComparedFinding) -> str:
     return f"{head}{_there(entry)}"
 
 
+def rows_of_entries(entries: Sequence[ComparedFinding]) -> str:
+    """Return why there are more of these rows than findings; '' where there are not."""
+    left_out = [entry for entry in entries if entry.counted_id != entry.finding_id]
+    is_of_profiles = any(entry.profile is not None for entry in left_out)
+    return counts.rows_sentence(len(entries), n_findings(entries), is_of_profiles=is_of_profiles)
+
+
 def _there(entry: ComparedFinding) -> str:
     if entry.standing == "changed":
         return f": {entry.why}"
@@ -190,9 +201,12 @@ def waiver_warnings(gate: Gate) -> Iterator[str]:
     for waiver in gate.waivers:
         if waiver.state == "expired":
             like_that = plural(waiver.findings, "finding") if waiver.findings else "no finding is"
-            like_that += " like that"
+            like_that = waiver.unknown_rule or f"{like_that} like that"
             yield f"{waiver.where}: expired {waiver.expires} ({waiver.owner}): it has no effect; {like_that}"
         elif waiver.state == "unmatched":
+            if waiver.unknown_rule:
+                yield f"{waiver.where}: {waiver.rule} ({waiver.owner}): {waiver.unknown_rule}"
+                continue
             yield f"{waiver.where}: no finding matches {waiver_scope(waiver)} ({waiver.owner}); correct or remove it"
 
 

@@ -166,6 +166,7 @@ def _entry(
         there=outcome.verdict,
         why=outcome.why,
         worse=was is not None and _is_less(at.row["margin"], was.row["margin"]) and _differs(at.row, was.row),
+        event=lookup.counted_ids[at.row["finding_id"]],
     )
 
 
@@ -248,7 +249,12 @@ class ResultLookup:
             self._egos[row["drive_id"]].add(row["ego_id"])
             self._objects[row["drive_id"]].add(row["object_id"])
         self.findings: dict[str, list[TimedFinding]] = defaultdict(list)
-        for row in result.findings.to_pylist():
+        rows = result.findings.to_pylist()
+        self.counted_ids = {
+            row["finding_id"]: rows[place]["finding_id"]
+            for row, place in zip(rows, counts.counted_places(rows), strict=True)
+        }
+        for row in rows:
             drive, ends = self.drives[row["drive_id"]], ("t_start_ns", "t_end_ns", "t_worst_ns")
             times = (match.seconds_since_start(row[name], drive) for name in ends)
             self.findings[row["drive_id"]].append(match.TimedFinding(row, *times))

@@ -22,11 +22,13 @@ import tomllib
 from collections import Counter
 from dataclasses import replace
 from datetime import date, datetime
+from difflib import get_close_matches
 from fnmatch import fnmatchcase
 from itertools import pairwise
 from math import isfinite
 from typing import TYPE_CHECKING, Any, Final
 
+from drivelint.catalogue.load import load_rules
 from drivelint.errors import UsageError
 from drivelint.gate.match import seconds_since_start
 from drivelint.phrases import hint
@@ -89,10 +91,30 @@ def apply(waivers: Sequence[Waiver], result: Result, today: date) -> tuple[tuple
                 if not expired[number]:
                     waived.setdefault(row["finding_id"], number)
     stated = (
-        replace(waiver, findings=found[n], state="expired" if expired[n] else "active" if found[n] else "unmatched")
+        replace(
+            waiver,
+            findings=found[n],
+            unknown_rule=_unknown_rule(waiver.rule, result),
+            state="expired" if expired[n] else "active" if found[n] else "unmatched",
+        )
         for n, waiver in enumerate(waivers)
     )
     return tuple(stated), waived
+
+
+def _unknown_rule(rule_id: str, result: Result) -> str:
+    """Return that no rule has this id, and the nearest; '' if one has, or if it is a pattern."""
+    run_rules = result.rules["rule_id"].to_pylist()
+    if rule_id in run_rules or any(sign in rule_id for sign in "*?["):
+        return ""
+    dirs = () if result.run_options is None else result.run_options.rules_dirs
+    if not all(folder.is_dir() for folder in dirs):
+        return ""
+    known = sorted({*run_rules, *load_rules(dirs)})
+    if rule_id in known:
+        return ""
+    near = get_close_matches(rule_id, known, n=1)
+    return "no rule has this id; " + (f"did you mean {near[0]!r}?" if near else "drivelint rules list shows them all")
 
 
 def _matches(waiver: Waiver, row: Row, drive: Row) -> bool:

@@ -41,6 +41,13 @@ _AGAIN = "; run drivelint check with it: what else the rule needs is not looked 
 REMEDIES: Final[dict[str, str]] = TEXTS["remedies"]
 
 
+def signal_name(reason_code: str) -> str:
+    """Return in words the signal that a verdict lacks, or the reason code of one that lacks none."""
+    return (
+        reason_code.removeprefix(MISSING_PREFIX).removeprefix(UNRECORDED_PREFIX).removeprefix("mode_").replace("_", " ")
+    )
+
+
 def problem(signal: str) -> str | None:
     """Return the problem of the name of a signal; None: it is one."""
     if signal in SIGNALS:

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final, NamedTuple
 
+import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.drive.trace import ASIDE_OF_LANE, ASSUMED_MOTION, ASSUMED_SIZE, TURNED_FRAME
 from drivelint.phrases import listed, plural
-from drivelint.reasons.signals import MISSING_PREFIX, UNRECORDED_PREFIX
+from drivelint.reasons.signals import MISSING_PREFIX, UNRECORDED_PREFIX, signal_name
 from drivelint.report.law import law_words
 from drivelint.result import counts
-from drivelint.result.model import MISFITS, ego_absences, off_map_reason
+from drivelint.result.model import MISFITS, ego_absences, gating_unrecorded, off_map_reason
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -152,8 +153,9 @@ def _by_signal(result: Result, rows: Sequence[Row]) -> list[tuple[str, int, str]
 
 def _not_judged(result: Result, drives: int) -> InputNote:
     """Return the parts that were not judged: drives, rules by the missing signal, and the number of the other verdicts."""
-    rows = counts.undecided(result.verdicts).select(["reason_code", "rule_id", *_EGO]).to_pylist()
-    signals = [row for row in rows if row["reason_code"].startswith(MISSING_PREFIX)]
+    tables = [counts.undecided(result.verdicts), gating_unrecorded(result)]
+    rows = pa.concat_tables(tables).select(["reason_code", "rule_id", *_EGO]).to_pylist()
+    signals = [row for row in rows if row["reason_code"].startswith((MISSING_PREFIX, UNRECORDED_PREFIX))]
     parts = [plural(drives, "drive")] if drives else []
     if signals:
         without = [
@@ -180,13 +182,6 @@ def rules_without_map(result: Result) -> int:
         return 0
     undecided = counts.undecided(result.verdicts)
     return len(pc.unique(undecided.filter(pc.equal(undecided["reason_code"], _NO_MAP))["rule_id"]))
-
-
-def signal_name(reason_code: str) -> str:
-    """Return the missing signal, in words, from a reason code that begins with `missing_` or `unrecorded_`."""
-    return (
-        reason_code.removeprefix(MISSING_PREFIX).removeprefix(UNRECORDED_PREFIX).removeprefix("mode_").replace("_", " ")
-    )
 
 
 def _n_rules(rows: Iterable[Row]) -> int:

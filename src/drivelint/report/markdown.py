@@ -13,10 +13,11 @@ from drivelint.gate import descriptions
 from drivelint.phrases import escape_invisible, inert_line, plural
 from drivelint.report.html.anchors import anchor
 from drivelint.report.inputs import input_notes
-from drivelint.report.outcome import headline
+from drivelint.report.outcome import headline, one_per_event, standing
 from drivelint.report.worst_first import moment_ns, when
 from drivelint.result import counts
 from drivelint.result.certainty import doubt
+from drivelint.result.gate import n_findings
 from drivelint.result.model import exit_status
 from drivelint.result.text import utc_at
 from drivelint.result.text_templates import text_template
@@ -60,9 +61,11 @@ def render(result: Result, base_url: str | None = None) -> bytes:
         gate=gate,
         stopping=[item for item in findings if not item[1]],
         excused=[item for item in findings if item[1]],
-        n_new_excused=sum(
-            gate is not None and bool(why) and gate.standing(row["finding_id"]) == "new" for row, why in findings
+        n_new_excused=len(
+            one_per_event(gate, [row for row, why in findings if why and standing(gate, row["finding_id"]) == "new"])
         ),
+        counted=lambda items: one_per_event(gate, [row for row, _ in items]),
+        rows_of_findings=lambda items, told: counts.rows_of_findings([row for row, _ in items], told),
         rules=rules,
         starts=result.start_times,
         drives={row["drive_id"]: row for row in result.drives.to_pylist()},
@@ -103,7 +106,12 @@ def _parts(template: str, **values: Any) -> list[str]:
         "when": when,
     }
     text = text_template(__file__, template, **filters).render(
-        most=MAX_ROWS, end_part=_END_PART, anchor=anchor, **values
+        most=MAX_ROWS,
+        end_part=_END_PART,
+        anchor=anchor,
+        n_findings=n_findings,
+        rows_of_entries=descriptions.rows_of_entries,
+        **values,
     )
     return [part.strip("\n") for part in text.split(_END_PART)]
 

@@ -14,10 +14,11 @@ from drivelint.report.inputs import rules_without_map
 from drivelint.report.worst_first import is_contact
 from drivelint.result import counts
 from drivelint.result.certainty import doubt
+from drivelint.result.gate import n_findings
 from drivelint.result.model import exit_status, gating_findings, is_undecided
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from drivelint.result.gate import Gate
     from drivelint.result.model import Result
@@ -129,12 +130,6 @@ def standing(gate: Gate | None, finding_id: str) -> str:
     return "" if gate is None else gate.standing(finding_id)
 
 
-def by_severity(rows: Iterable[Row]) -> str:
-    """Return how many findings there are of each severity; '' for none."""
-    found = [row["severity"] for row in rows]
-    return ", ".join(f"{found.count(severity)} {severity}" for severity in counts.SEVERITIES if severity in found)
-
-
 def rule_counts(result: Result) -> RuleCounts:
     """Return how many rules were judged."""
     by_rule = counts.verdicts_by(result.verdicts, "rule_id")
@@ -197,7 +192,7 @@ def _findings(result: Result, rows: Sequence[Row]) -> str:
     where = f" in {len({row['drive_id'] for row in rows})} of {plural(result.drives.num_rows, 'drive')}"
     gate = result.gate
     if gate is None:
-        return f"{by_severity(rows)} {'finding' if len(rows) == 1 else 'findings'}{where}"
+        return f"{counts.by_severity(rows)} {'finding' if len(rows) == 1 else 'findings'}{where}"
     groups = counts.group_rows(rows, lambda row: gate.standing(row["finding_id"]))
     said = []
     for name, mine in groups.items():
@@ -205,9 +200,9 @@ def _findings(result: Result, rows: Sequence[Row]) -> str:
             n, gating = len(mine), len(counts.one_per_event(gating_findings(result).to_pylist()))
             some = "" if gating == n else f"; {gating or 'none'} {'gates' if gating < 2 else 'gate'}"
             label = {"new": "new", "open": "not waived" if gate.waivers else _COUNTED_LABEL}[name]
-            said.append(f"{n} {label} ({by_severity(mine)}{some})")
+            said.append(f"{n} {label} ({counts.by_severity(mine)}{some})")
     said += [
-        f"{len(groups[name])} {words} ({by_severity(groups[name])})"
+        f"{len(groups[name])} {words} ({counts.by_severity(groups[name])})"
         for name, words in LET_THROUGH.items()
         if name in groups
     ]
@@ -219,7 +214,7 @@ def _findings(result: Result, rows: Sequence[Row]) -> str:
 def _worse(gate: Gate | None) -> list[Part]:
     """Return how many known findings have a worse margin than in the baseline."""
     entries = gate.baseline.entries if gate is not None and gate.baseline is not None else ()
-    n = len({e.finding_id for e in entries if gate and e.worse and gate.standing(e.finding_id) == "known"})
+    n = n_findings(e for e in entries if gate and e.worse and gate.standing(e.finding_id) == "known")
     return [Part("1 known finding is worse" if n == 1 else f"{n} known findings are worse", "warning")] if n else []
 
 

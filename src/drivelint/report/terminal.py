@@ -14,6 +14,7 @@ from rich.text import Text
 
 from drivelint.phrases import listed
 from drivelint.report import NARROW_WIDTH, terminal_summary
+from drivelint.report.outcome import one_per_event
 from drivelint.report.worst_first import moment_ns
 from drivelint.result import counts
 from drivelint.result.certainty import doubt
@@ -123,7 +124,11 @@ def _measurement_table(result: Result, title: str, rows: pa.Table, style: str, *
     """
     if not rows.num_rows:
         return None
-    table = _table(_title(title, rows.num_rows), style)
+    is_of_findings = "finding_id" in rows.column_names
+    counted = one_per_event(result.gate, rows.to_pylist()) if is_of_findings else []
+    more = counts.rows_of_findings(rows.to_pylist(), counted) if is_of_findings else ""
+    cut = f"; the first {MAX_ROWS} rows" if rows.num_rows > MAX_ROWS else ""
+    table = _table(f"{title} ({len(counted)})\n{more}{cut}" if more else _title(title, rows.num_rows), style)
     table.show_header = wide
     _number_columns(table, ["time"])
     table.add_column("rule [profile]", overflow="fold", ratio=2)

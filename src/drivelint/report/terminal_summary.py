@@ -22,7 +22,7 @@ from drivelint.report.outcome import LABELS, LET_THROUGH, headline, one_per_even
 from drivelint.report.worst_first import is_contact, moment_ns, worst_first, worst_later
 from drivelint.result import counts
 from drivelint.result.certainty import doubt
-from drivelint.result.model import exit_status, off_map_reason
+from drivelint.result.model import exit_status, gating_unrecorded, off_map_reason
 from drivelint.result.text import closing, number, seconds, tolerance, went_wrong
 
 if TYPE_CHECKING:
@@ -131,6 +131,7 @@ def _drives(
     let_through = counts.group_rows(all_findings, lambda row: row["drive_id"])
     unknown = counts.verdicts_by(result.verdicts, "drive_id")
     lacking = set(counts.unrecorded(result.verdicts)["drive_id"].to_pylist())
+    unrecorded = Counter(gating_unrecorded(result)["drive_id"].to_pylist())
     starts = result.start_times
 
     def order(drive: Row) -> tuple[Any, ...]:
@@ -158,9 +159,8 @@ def _drives(
             worst = _without_finding(drive, unknown[name], lacks_signals=name in lacking)
         n = [sum(row["severity"] == severity for row in mine) for severity in counts.SEVERITIES]
         cells = [_cell(k, STYLE[severity]) for k, severity in zip(n, counts.SEVERITIES, strict=True)]
-        table.add_row(
-            Text(shown, "yellow" if drive["lossy"] else ""), worst, *cells, _cell(unknown[name]["unknown"], "yellow")
-        )
+        n_unknown = unknown[name]["unknown"] + unrecorded[name]
+        table.add_row(Text(shown, "yellow" if drive["lossy"] else ""), worst, *cells, _cell(n_unknown, "yellow"))
     if len(drives) > MOST_DRIVES:
         table.add_row(Text(f"... {len(drives) - MOST_DRIVES} more (--verbose)", "dim"))
     return table
@@ -312,7 +312,7 @@ def _end(result: Result, findings: list[Row], out: str | None) -> list[Text]:
     lines = [Text(f"exit {int(end.code)}: {end.why}{alone}", style)]
     if gate is not None and gate.baseline is not None:
         changes = descriptions.since_baseline(gate.baseline)
-        lines.append(Text(f"baseline of its findings {changes}"))
+        lines.append(Text(f"baseline: {changes}"))
     if gate is not None:
         lines += [Text(f"waiver   {line}", "yellow") for line in descriptions.waiver_warnings(gate)]
     if counts.total(result.verdicts)["unknown"] or counts.unrecorded(result.verdicts).num_rows:

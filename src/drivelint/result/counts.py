@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from operator import itemgetter
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from drivelint.phrases import plural
 from drivelint.reasons.signals import UNRECORDED_PREFIX
 from drivelint.result.certainty import POSSIBLE, certainty
 
@@ -79,15 +79,44 @@ def one_per_event(findings: Iterable[Mapping[str, Any]]) -> list[Mapping[str, An
     egos is the object of the other. A sure one stands for it before one that is only possible, and an earlier row before a later one.
     `queries/fleet/event.sql` does the same for audits.
     """
+    rows = list(findings)
+    return [
+        row for place, (row, counted) in enumerate(zip(rows, counted_places(rows), strict=True)) if place == counted
+    ]
+
+
+def counted_places(findings: Sequence[Mapping[str, Any]]) -> list[int]:
+    """Return for each finding the place of the one that is counted for its event, see `one_per_event`."""
     ordered = sorted(enumerate(findings), key=lambda item: (certainty(item[1]) == POSSIBLE, item[0]))
-    kept: dict[tuple[str, str, frozenset[str | None]], list[Mapping[str, Any]]] = defaultdict(list)
-    places = []
+    seen: dict[tuple[str, str, frozenset[str | None]], list[int]] = defaultdict(list)
+    places = list(range(len(findings)))
     for place, row in ordered:
-        mine = kept[row["drive_id"], row["rule_id"], frozenset({row["ego_id"], row["object_id"]})]
-        if not any(_is_same_event(other, row) for other in mine):
-            places.append((place, row))
-        mine.append(row)
-    return [row for _, row in sorted(places, key=itemgetter(0))]
+        mine = seen[row["drive_id"], row["rule_id"], frozenset({row["ego_id"], row["object_id"]})]
+        places[place] = next((places[other] for other in mine if _is_same_event(findings[other], row)), place)
+        mine.append(place)
+    return places
+
+
+def by_severity(findings: Iterable[Mapping[str, Any]]) -> str:
+    """Return how many findings there are of each severity; '' for none."""
+    found = [row["severity"] for row in findings]
+    return ", ".join(f"{found.count(severity)} {severity}" for severity in SEVERITIES if severity in found)
+
+
+def rows_of_findings(rows: Sequence[Mapping[str, Any]], events: Sequence[Mapping[str, Any]]) -> str:
+    """Return why a table of these rows has more of them than there are findings; '' where it has not."""
+    told = {row["finding_id"] for row in events}
+    left_out = [row for row in rows if row["finding_id"] not in told]
+    return rows_sentence(len(rows), len(events), is_of_profiles=any(row["profile"] is not None for row in left_out))
+
+
+def rows_sentence(n_rows: int, n_findings: int, *, is_of_profiles: bool) -> str:
+    """Return how many findings so many rows are, and why; '' where each row is one. `is_of_profiles`: some are, else all are touches."""
+    if n_rows == n_findings:
+        return ""
+    what = "an overtake under two profiles" if is_of_profiles else "a touch of two egos"
+    rows, found = plural(n_rows, "row"), plural(n_findings, "finding")
+    return f"{rows}, {found}: {what} counts once"
 
 
 def _is_same_event(other_finding: Mapping[str, Any], finding: Mapping[str, Any]) -> bool:

@@ -16,6 +16,7 @@ from drivelint.errors import UsageError
 from drivelint.result.names import GATE_FILE
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from pathlib import Path
 
 DIFF_STATUSES: Final = ("new", "changed", "unchanged", "fixed", "elsewhere", "unknown", "lost")
@@ -53,6 +54,13 @@ class ComparedFinding:
     there: str
     why: str
     worse: bool = False
+    event: str = ""
+    """Id of the finding that is counted for it in its result; '': itself."""
+
+    @property
+    def counted_id(self) -> str:
+        """The id of the finding that is counted for it."""
+        return self.event or self.finding_id
 
 
 @dataclass(frozen=True)
@@ -67,6 +75,11 @@ class NewUnknowns:
     n: int
     base_n: int
     reason: str
+
+
+def n_findings(entries: Iterable[ComparedFinding]) -> int:
+    """Return how many findings these are, one of each event."""
+    return len({entry.counted_id for entry in entries})
 
 
 class Difference(msgspec.Struct, frozen=True):
@@ -100,6 +113,13 @@ class Difference(msgspec.Struct, frozen=True):
         found = Counter(entry.standing for entry in self.entries)
         return {standing: found[standing] for standing in DIFF_STATUSES}
 
+    def event_counts(self) -> dict[str, int]:
+        """Return diff status -> number of findings, one of each event; of a known event that changed in a part, it is changed."""
+        changed = {entry.counted_id for entry in self.with_diff_status("changed")}
+        as_before = [entry for entry in self.with_diff_status("unchanged") if entry.counted_id not in changed]
+        found = {status: n_findings(self.with_diff_status(status)) for status in DIFF_STATUSES}
+        return found | {"unchanged": n_findings(as_before)}
+
     def with_diff_status(self, status: str) -> list[ComparedFinding]:
         """Return the findings of one status."""
         return [entry for entry in self.entries if entry.standing == status]
@@ -130,6 +150,8 @@ class Waiver:
     to_s: float | None = None
     state: str = "active"
     findings: int = 0
+    unknown_rule: str = ""
+    """That no rule has its id, and which one is meant; '': one has, or rules of other packs may have."""
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from dataclasses import dataclass, field
 from itertools import chain
 from typing import TYPE_CHECKING, Final, NamedTuple
@@ -13,9 +12,9 @@ import pyarrow.compute as pc
 from drivelint.drive.trace import EGO_ABSENT
 from drivelint.errors import ExitCode
 from drivelint.phrases import listed, plural
-from drivelint.reasons.signals import UNRECORDED_PREFIX
+from drivelint.reasons.signals import UNRECORDED_PREFIX, signal_name
 from drivelint.result.counts import SEVERITIES, group_rows, one_per_event, unrecorded
-from drivelint.result.gate import NOT_FIXED
+from drivelint.result.gate import NOT_FIXED, n_findings
 from drivelint.result.names import PICTURES, TABLE_OF_FILE
 from drivelint.result.schemas import conform, empty_table
 
@@ -222,6 +221,11 @@ def gating_unknowns(result: Result) -> pa.Table:
     return rows if result.strict else rows.filter(pc.is_in(rows["rule_id"], value_set=required))
 
 
+def gating_unrecorded(result: Result) -> pa.Table:
+    """Return the verdicts that make exit code 4 as unknown, though they are not applicable: the log has nothing of a signal."""
+    return unrecorded(gating_unknowns(result))
+
+
 def too_little_decided(result: Result) -> str | None:
     """Return why this run decided too little to gate, which makes exit code 4: nothing at all, or a smaller share than was asked for."""
     if _of_stable_rules(result, result.verdicts).num_rows and (nothing := _nothing_decided(result)):
@@ -319,17 +323,23 @@ def _let_through(result: Result) -> str:
 
 def _gone_sentence(result: Result, unfixed: Sequence[ComparedFinding]) -> str:
     """Return how many of the baseline's severe findings are gone without being fixed, and why."""
-    status_counts = Counter(entry.standing for entry in unfixed)
-    why = [f"{status_counts[status]} {words}" for status, words in NOT_FIXED.items() if status_counts[status]]
-    verb = "is" if len(unfixed) == 1 else "are"
-    subject = f"{plural(len(unfixed), 'finding')} of the baseline at or above severity {result.fail_on}"
+    by_status = {status: [entry for entry in unfixed if entry.standing == status] for status in NOT_FIXED}
+    why = [f"{n_findings(mine)} {NOT_FIXED[status]}" for status, mine in by_status.items() if mine]
+    n = n_findings(unfixed)
+    verb = "is" if n == 1 else "are"
+    subject = f"{plural(n, 'finding')} of the baseline at or above severity {result.fail_on}"
     return f"{subject} {verb} gone but not fixed: {', '.join(why)}"
 
 
 def _unknown_sentence(result: Result, unknown: pa.Table) -> str:
-    """Return how many verdicts are unknown that may not be; without `strict` also of which required rules."""
+    """Return how many verdicts are unknown that may not be, for which signals; without `strict` of which required rules."""
     if result.strict:
-        return f"{plural(unknown.num_rows, 'verdict')} unknown, and --strict is set"
+        rows = unknown.select(["rule_id", "reason_code"]).to_pylist()
+        of_signal = group_rows(rows, lambda row: signal_name(row["reason_code"]))
+        n_rules = {name: len({row["rule_id"] for row in mine}) for name, mine in of_signal.items()}
+        order = sorted(n_rules.items(), key=lambda item: (-item[1], item[0]))
+        why = listed([f"{name} ({plural(n, 'rule')})" for name, n in order])
+        return f"{plural(unknown.num_rows, 'verdict')} unknown: {why} (--strict)"
     of_rules = pc.value_counts(unknown["rule_id"]).to_pylist()
     told = [f"{each['counts']} of {each['values']}" for each in sorted(of_rules, key=lambda each: str(each["values"]))]
     return f"{plural(unknown.num_rows, 'verdict')} of required rules unknown (--require): {listed(told)}"

@@ -68,14 +68,15 @@ def contacts(result: Result, lines: Sequence[FindingLine], rules: Mapping[str, R
     }
 
 
-def rates(result: Result) -> dict[str, Any]:
+def rates(result: Result, events: Sequence[Row]) -> dict[str, Any]:
     """Return the findings by severity: their number, the drives that have them, and how many per 100 km and per hour of driving.
 
+    `events`: one finding of each event.
     `per`: whether the drives are long enough together for that (100 km, 1 hour).
     """
     km, hours = (float(pc.sum(result.drives[name]).as_py() or 0.0) for name in ("km", "duration_s"))
     hours /= 3600
-    found = counts.group_rows(result.findings.select(["severity", "drive_id"]).to_pylist(), lambda row: row["severity"])
+    found = counts.group_rows(events, lambda row: row["severity"])
     rows = [
         {
             "severity": severity,
@@ -90,9 +91,13 @@ def rates(result: Result) -> dict[str, Any]:
     return {"rows": rows, "per": km >= _LONG_KM and hours >= 1}
 
 
-def broken_rules(result: Result, rules: Mapping[str, Row], lines: Sequence[FindingLine]) -> list[dict[str, Any]]:
-    """Return the rules with findings, the gravest and most frequent first; `worst` None: not among the findings of the page."""
-    columns = result.findings.select(["rule_id", "drive_id"]).to_pylist()
+def broken_rules(
+    result: Result, rules: Mapping[str, Row], lines: Sequence[FindingLine], events: Sequence[Row]
+) -> list[dict[str, Any]]:
+    """Return the rules with findings, the gravest and most frequent first; `worst` None: not among the findings of the page.
+
+    `events`: one finding of each event.
+    """
     verdicts = counts.verdicts_by(result.verdicts, "rule_id")
     shown = counts.group_rows(lines, lambda line: line.row["rule_id"])
     found = [
@@ -104,7 +109,7 @@ def broken_rules(result: Result, rules: Mapping[str, Row], lines: Sequence[Findi
             "n_judged": verdicts[rule_id]["fail"] + verdicts[rule_id]["pass"],
             "worst": min(shown.get(rule_id, []), key=_margin, default=None),
         }
-        for rule_id, rows in counts.group_rows(columns, lambda row: row["rule_id"]).items()
+        for rule_id, rows in counts.group_rows(events, lambda row: row["rule_id"]).items()
     ]
     return sorted(found, key=lambda b: (counts.SEVERITIES.index(b["rule"]["severity"]), -b["n"], b["rule"]["rule_id"]))
 

@@ -28,7 +28,7 @@ from drivelint.report.html.road import Road
 from drivelint.report.html.timeline import empty_timeline, separate_shared_rules, timelines
 from drivelint.report.html.worst_moment import Evidence, finding_key, worst_moment
 from drivelint.report.inputs import input_notes
-from drivelint.report.outcome import rule_counts
+from drivelint.report.outcome import one_per_event, rule_counts
 from drivelint.report.same_contact import same_contact
 from drivelint.report.worst_first import worst_first
 from drivelint.result import counts
@@ -74,9 +74,8 @@ def content(result: Result) -> dict[str, Any]:
     drives = result.drives.to_pylist()
     starts = {row["drive_id"]: row["t_start_ns"] or 0 for row in drives}
     told = counts.verdicts_by(result.verdicts, "drive_id")
-    by_drive = counts.group_rows(
-        result.findings.select(["drive_id", "severity"]).to_pylist(), lambda row: row["drive_id"]
-    )
+    counted = one_per_event(result.gate, result.findings.to_pylist())
+    by_drive = counts.group_rows(counted, lambda row: row["drive_id"])
     rows = _worst_rows(result, rules)
     shown = _with_section(drives, [row["drive_id"] for _, row in rows], told)
     courses = {finding_key(row): row for row in result.courses.to_pylist()}
@@ -107,23 +106,28 @@ def content(result: Result) -> dict[str, Any]:
     )
     cameras = pictures_by_moment(result.pictures)
     add_pictures(worst, sections, cameras)
-    broken, told_of = overview.broken_rules(result, rules, failed), overview.drive_summaries(sections, len(drives))
+    broken, told_of = (
+        overview.broken_rules(result, rules, failed, counted),
+        overview.drive_summaries(sections, len(drives)),
+    )
     return {
         "outcome": exit_status(result),
         "headline": overview.page_headline(result),
         "inputs": input_notes(result),
         "worst": worst,
         "pictured": bool(cameras),
-        "rates": overview.rates(result),
+        "rates": overview.rates(result, counted),
         "contacts": overview.contacts(result, failed, rules),
         "rule_counts": rule_counts(result),
         "counts": overview.verdict_shares(totals),
         "names": _NAMES,
         "severities": list(counts.SEVERITIES),
         "passes": totals["pass"],
-        "n_findings": result.findings.num_rows,
+        "n_findings": len(counted),
+        "n_rows": result.findings.num_rows,
+        "rows_sentence": counts.rows_of_findings(result.findings.to_pylist(), counted),
         "n_overtakes": result.overtakes.num_rows,
-        "gate": gate_summary(result.gate, result.findings["finding_id"].to_pylist()),
+        "gate": gate_summary(result.gate, [row["finding_id"] for row in counted]),
         "n_near": int(pc.sum(result.verdicts["near_miss"]).as_py() or 0),
         "n_assumed": counts.count_assuming(result.verdicts, "line_of_sight"),
         "broken": broken,
