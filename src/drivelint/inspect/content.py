@@ -26,6 +26,7 @@ from drivelint.formats.tables.mapping import GROUP_PLACEHOLDER, Mapping, TextLay
 from drivelint.formats.tables.sheets import CsvSheet, ParquetSheet
 from drivelint.inspect.mapping_draft import draft_mapping
 from drivelint.inspect.model import Channel, Column, Content, Sheet
+from drivelint.pictures.frames import has_pictures
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -194,7 +195,8 @@ def _channel(key: tuple[str, str, str, str], count: _Count, roles: dict[tuple[st
         messages=count.messages,
         bytes=count.size,
         rate_hz=(count.messages - 1) / span_s if span_s > 0 else None,
-        read_as=roles.get((message_kind(schema), encoding)),
+        read_as=roles.get((message_kind(schema), encoding))
+        or ("pictures" if has_pictures(topic, schema, encoding) else None),
     )
 
 
