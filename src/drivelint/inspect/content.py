@@ -82,13 +82,27 @@ def _of_table(path: Path, head: bytes, mapping: str | None, notes: list[str], *,
         return Content(sheets=[_mapped(path, loaded)], mapping=name, notes=notes)
     if head.startswith(b"PAR1"):
         sheet = _plain(path)
-        guess = None if has_reader else draft_mapping([column.name for column in sheet.columns])
+        guess = (
+            None
+            if has_reader
+            else draft_mapping(parquet.schema(path).names, lambda name: _texts(ParquetSheet(path), name))
+        )
         return Content(sheets=[sheet], notes=notes, draft_mapping=guess)
     if has_reader or b"\0" in head or not head.strip() or head.lstrip()[:1] in {b"<", b"{"}:
         return Content(notes=notes)  # no table, or a text that another reader has read
-    names = CsvSheet(path, TextLayout()).names
-    sheet = Sheet(name=path.name, rows=None, columns=_unread(names))
-    return Content(sheets=[sheet], notes=notes, draft_mapping=draft_mapping(names))
+    table = CsvSheet(path, TextLayout())
+    sheet = Sheet(name=path.name, rows=None, columns=_unread(table.names))
+    draft = draft_mapping(table.names, lambda name: _texts(table, name))
+    return Content(sheets=[sheet], notes=notes, draft_mapping=draft)
+
+
+def _texts(sheet: CsvSheet | ParquetSheet, column: str) -> list[str]:
+    """Return the distinct texts of a column; none if it cannot be read."""
+    try:
+        sheet.load([column])
+        return sorted(sheet.text(column).unique().drop_null().to_pylist())
+    except TraceError:
+        return []  # the table cannot be read either, for the same reason, which is reported
 
 
 def _unread(names: Iterable[str]) -> list[Column]:
