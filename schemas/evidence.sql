@@ -9,7 +9,7 @@ CREATE TABLE scene (
     environment_id VARCHAR,           -- the map, for table lane_shape; NULL: no map
     reach_m DOUBLE NOT NULL,          -- range around the ego in which actors and lanes were kept
     lanelets VARCHAR[] NOT NULL,      -- lanelets within reach
-    actors STRUCT(actor_id VARCHAR, actor_class VARCHAR, length_m DOUBLE, width_m DOUBLE, x_m DOUBLE, y_m DOUBLE, yaw_rad DOUBLE, speed_mps DOUBLE, path STRUCT(t_ns BIGINT, x_m DOUBLE, y_m DOUBLE, yaw_rad DOUBLE, speed_mps DOUBLE, accel_mps2 DOUBLE, d_m DOUBLE)[])[] NOT NULL -- the ego first, then everybody within reach and placed: box centre at the moment, and the way 5 s before and after it, at most 5 points a second and the moment itself; d_m: offset from the centre line of the ego's running lane, left positive
+    actors STRUCT(actor_id VARCHAR, actor_class VARCHAR, length_m DOUBLE, width_m DOUBLE, x_m DOUBLE, y_m DOUBLE, yaw_rad DOUBLE, speed_mps DOUBLE, path STRUCT(t_ns BIGINT, x_m DOUBLE, y_m DOUBLE, yaw_rad DOUBLE, speed_mps DOUBLE, accel_mps2 DOUBLE, d_m DOUBLE)[])[] NOT NULL -- the ego first, then everybody within reach and placed: box centre at the moment, and the way 5 s before and after it, at most 5 points a second and the moment itself; d_m: offset from the centre line of the ego's running lane, left positive, NULL without a map
 );
 
 -- lifetime: run

@@ -16,7 +16,8 @@ WITH ego_log AS (
         -- A log has the actors around the ego, unless its format shows that they were not recorded.
         NOT EXISTS (FROM quality q WHERE q.drive_id = c.drive_id AND q.check_id = 'no_road_users') AS has_road_users,
         EXISTS (FROM actor o WHERE o.drive_id = c.drive_id AND o.actor_id <> c.ego_id) AS has_others,
-        EXISTS (FROM actor o WHERE o.drive_id = c.drive_id AND o.actor_id <> c.ego_id AND o.actor_class <> 'vehicle') AS has_classes
+        EXISTS (FROM actor o WHERE o.drive_id = c.drive_id AND o.actor_id <> c.ego_id AND o.actor_class <> 'vehicle') AS has_classes,
+        coalesce((SELECT min(q.message) FROM quality q WHERE q.drive_id = c.drive_id AND q.check_id = 'unmapped_class'), why('no_actor_classes')) AS no_classes_reason
     FROM clock c
     JOIN data_log g USING (drive_id)
     JOIN actor a ON a.drive_id = c.drive_id AND a.actor_id = c.ego_id
@@ -75,7 +76,7 @@ ego_input AS (
         {'signal': 'road_users', 'is_of_map': false, 'available': s.has_road_users, 'reason_available': why('has_road_users'), 'reason_missing': why('no_road_users')},
         -- A vehicle of unknown kind may be a bicycle. A log without other actors needs no classes.
         {'signal': 'actor_classes', 'is_of_map': false, 'available': s.has_classes OR NOT s.has_others,
-            'reason_available': CASE WHEN s.has_others THEN why('has_actor_classes') ELSE why('nobody_else') END, 'reason_missing': why('no_actor_classes')},
+            'reason_available': CASE WHEN s.has_others THEN why('has_actor_classes') ELSE why('nobody_else') END, 'reason_missing': s.no_classes_reason},
         {'signal': 'signals', 'is_of_map': false, 'available': s.has_signals OR NOT (m.has_traffic_lights OR m.has_junctions OR m.has_crossings),
             'reason_available': CASE WHEN s.has_signals THEN why('has_light_states') ELSE why('needs_no_lights') END, 'reason_missing': why('no_light_states')},
         {'signal': 'declared_events', 'is_of_map': false, 'available': s.has_events, 'reason_available': why('has_declared_events'), 'reason_missing': why('no_declared_events')},

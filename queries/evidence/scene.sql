@@ -6,12 +6,12 @@ WITH state AS (
     SELECT drive_id, ego_id, t_ns, object_id, x_m, y_m, yaw_rad, speed_mps, accel_mps2, d_m FROM pair
 ),
 present AS (
-    SELECT m.drive_id, m.ego_id, m.t_ns, m.ego_id AS actor_id, a.actor_class, e.length_m, e.width_m, e.x_m, e.y_m, e.yaw_rad, e.speed_mps
+    SELECT m.drive_id, m.ego_id, m.t_ns, m.environment_id, m.ego_id AS actor_id, a.actor_class, e.length_m, e.width_m, e.x_m, e.y_m, e.yaw_rad, e.speed_mps
     FROM _moment m
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     LEFT JOIN actor a ON a.drive_id = m.drive_id AND a.actor_id = m.ego_id
     UNION ALL BY NAME
-    SELECT m.drive_id, m.ego_id, m.t_ns, p.object_id AS actor_id, p.actor_class, p.length_m, p.width_m, p.x_m, p.y_m, p.yaw_rad, p.speed_mps
+    SELECT m.drive_id, m.ego_id, m.t_ns, m.environment_id, p.object_id AS actor_id, p.actor_class, p.length_m, p.width_m, p.x_m, p.y_m, p.yaw_rad, p.speed_mps
     FROM _moment m
     JOIN pair p USING (drive_id, ego_id, t_ns)
     WHERE p.x_m IS NOT NULL AND p.y_m IS NOT NULL AND p.distance_m <= m.reach_m
@@ -20,7 +20,7 @@ way AS (
     SELECT a.drive_id, a.ego_id, a.at_ns AS t_ns, s.actor_id,
         list({
             't_ns': a.t_ns, 'x_m': round(s.x_m, 2), 'y_m': round(s.y_m, 2), 'yaw_rad': round(s.yaw_rad, 3),
-            'speed_mps': round(s.speed_mps, 3), 'accel_mps2': round(s.accel_mps2, 2), 'd_m': round(s.d_m, 2)
+            'speed_mps': round(s.speed_mps, 3), 'accel_mps2': round(s.accel_mps2, 2), 'd_m': CASE WHEN p.environment_id IS NOT NULL THEN round(s.d_m, 2) END
         } ORDER BY a.t_ns) AS path
     FROM _around a
     JOIN present p ON p.drive_id = a.drive_id AND p.ego_id = a.ego_id AND p.t_ns = a.at_ns  -- the others are not drawn

@@ -111,4 +111,6 @@ CREATE OR REPLACE MACRO relations_of(from_rad, straightest_rad) AS
 -- Whether the ego went nearly straight on while another way out is straighter. Maps do not say whether the ego turned off there or its road
 -- bends.
 CREATE OR REPLACE MACRO at_fork(turn, turn_rad, straightest_rad) AS coalesce(turn = 'straight' AND abs(turn_rad) > abs(straightest_rad) + fork_rad(), false);
+-- Why it is not known whether the ego turned across the road: its turn is not recorded, or the side that is driven on is not known.
+CREATE OR REPLACE MACRO across_doubt(turn) AS CASE WHEN turn IS NULL THEN why('turn_across_unknown') ELSE why('turn_side_unknown') END;
 CREATE OR REPLACE MACRO fork_doubt() AS why('fork');

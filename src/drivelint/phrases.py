@@ -51,12 +51,18 @@ def hint(word: str, known_words: Iterable[str], *, cutoff: float = 0.6, sign: st
 
     `sign` stands before the word, in place of quotes.
     """
+    words = list(dict.fromkeys(known_words))
+    meant = nearest_word(word, words, cutoff=cutoff)
+    if meant is None:
+        return f"known are {', '.join(words)}"
+    return f"did you mean {sign}{meant}?" if sign else f"did you mean {meant!r}?"
+
+
+def nearest_word(word: str, known_words: Iterable[str], *, cutoff: float = 0.6) -> str | None:
+    """Return the nearest known word, whatever its case; None: there is none near."""
     words = {each.casefold(): each for each in known_words}
     near = get_close_matches(word.casefold(), words, n=1, cutoff=cutoff)
-    if not near:
-        return f"known are {', '.join(words.values())}"
-    meant = words[near[0]]
-    return f"did you mean {sign}{meant}?" if sign else f"did you mean {meant!r}?"
+    return words[near[0]] if near else None
 
 
 def listed(names: Sequence[str], max_names: int = 5) -> str:

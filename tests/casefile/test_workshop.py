@@ -170,7 +170,9 @@ def test_a_rule_is_tested_again_when_it_is_saved(tmp_path: Path, monkeypatch: py
         ("- name: [", 1, "not YAML"),
         ("a: 1", 1, "cases are a list"),
         ("\n- name: clean\n  given: {}\n  expect: pass\n- 7", 5, "a case consists of 'key: value' pairs"),
-        ("\n\n- name: clean\n  given: {}\n  expct: pass", 3, "unknown field `expct`"),
+        ("\n\n- name: clean\n  given: {}\n  expct: pass", 3, "unknown field `expct`; did you mean 'expect'?"),
+        ("- name: clean\n  given: {}\n  finding: []\n  expect: pass", 1, "`finding`; did you mean 'findings'?"),
+        ("- name: clean\n  given: {}\n  zzz: []\n  expect: pass", 1, "unknown field `zzz`"),
         (CASES + "\n- name: clean\n  given: {}\n  expect: pass", 15, "has the name of the case in line 2"),
         (CASES.replace("name: boundary", "name: boundary\n  params: {limitt: 1}"), 5, "has no parameter 'limitt'"),
         (CASES.replace("name: boundary", "name: boundary\n  missing: [indicator]"), 5, "does not require 'indicator'"),
@@ -228,6 +230,12 @@ def test_a_condition_about_objects_that_are_not_in_pair_is_told_why_it_never_app
     ("change", "line", "message"),
     [
         (("$limit", "$limit + $more"), 18, "$more is not a parameter of this rule; add [params.more] to the header"),
+        (
+            ("$limit", "$limitt"),
+            18,
+            "$limitt is not a parameter of this rule; did you mean $limit? If not, add [params.limitt]",
+        ),
+        (("$limit", "is_clas('car', 'car')"), 18, "is_clas() is not allowed in a rule; did you mean is_class()?: only"),
         (("$limit", "13"), 12, "parameter 'limit' is never used"),
         (("FROM ego_state", "FROM ego_state\nJOIN pair USING (drive_id)"), 19, "add pair to reads"),
         (('reads = ["ego_state"]', 'reads = ["ego_state", "pair"]'), 11, "remove pair"),

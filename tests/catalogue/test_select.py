@@ -117,7 +117,10 @@ def test_a_selector_that_matches_nothing_is_refused_with_the_nearest(
         ("severity:crit", "no rule has the severity 'crit'; did you mean 'critical'"),
         ("requires:zzz", "no rule has the requires 'zzz'; known are map"),
         ("pack,severity:minor", "no rule has the severity 'minor'; "),
-        ("clause:R10,status:draft", "no rule is all of 'clause:R10,status:draft'"),
+        (
+            "clause:R10,status:draft",
+            "'clause:R10,status:draft': each part alone selects some; for any of them, repeat --rules",
+        ),
         ("pack,", "no rule, pack or glob matches ''"),
     ],
 )

@@ -10,7 +10,9 @@ import pytest
 from drivelint.convert import ConvertRequest, convert
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats import expand_traces
-from drivelint.result.names import TABLE_OF_FILE
+from drivelint.own_files import RESULT_LOGS, OwnFiles
+from drivelint.result.folder import manifest
+from drivelint.result.names import PICTURES, RESULT_FILES, TABLE_OF_FILE
 from tests.formats.logs import cars, mapping, read, table
 
 
@@ -59,7 +61,8 @@ def test_a_folder_of_commonroad_has_its_scenarios_and_not_its_maps(tmp_path: Pat
 
 def test_what_an_earlier_check_wrote_is_not_searched(tmp_path: Path) -> None:
     """Whoever keeps results beside the logs and checks the folder again must not judge the results."""
-    written = [f"{name}.parquet" for name in TABLE_OF_FILE] + ["margins.parquet", "summary.json", "annotated/a.mcap"]
+    tables = [*TABLE_OF_FILE, *PICTURES, "margins"]
+    written = [f"{name}.parquet" for name in tables] + ["summary.json", "annotated/a.mcap"]
     for out in (tmp_path, tmp_path / "out"):
         for name in [*written, "a.mcap"]:
             (out / name).parent.mkdir(parents=True, exist_ok=True)
@@ -72,6 +75,26 @@ def test_what_an_earlier_check_wrote_is_not_searched(tmp_path: Path) -> None:
     assert names(expand_traces([str(tmp_path / "annotated")])) == ["a.mcap", "b.mcap"]
     (tmp_path / "summary.json").unlink()
     assert tmp_path / "verdicts.parquet" in expand_traces([str(tmp_path)])
+
+
+def test_every_file_of_a_result_that_has_the_suffix_of_a_log_is_known() -> None:
+    assert {name for name in RESULT_FILES if Path(name).suffix in {".parquet", ".mcap"}} == set(RESULT_LOGS)
+
+
+def test_what_the_list_of_an_audit_names_is_not_searched(tmp_path: Path) -> None:
+    """Its tables are called by their content; a log beside them is one."""
+    for name in ("tables/verdicts/1f.parquet", "tables/verdicts/log.parquet", "1f.parquet"):
+        (tmp_path / "fleet" / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / "fleet" / name).write_text("x")
+    (tmp_path / "fleet" / "files.json").write_bytes(manifest({"tables/verdicts/1f.parquet"}))
+    assert names(expand_traces([str(tmp_path)])) == ["1f.parquet", "log.parquet"]
+    assert names(expand_traces([str(tmp_path / "fleet" / "tables")])) == ["1f.parquet", "log.parquet"]
+
+
+@pytest.mark.parametrize("content", ["", "[]", "{}", '{"written_by_drivelint": 3}'])
+def test_a_damaged_list_names_nothing(tmp_path: Path, content: str) -> None:
+    (tmp_path / "files.json").write_text(content)
+    assert tmp_path / "a.parquet" not in OwnFiles(tmp_path)
 
 
 def barred(monkeypatch: pytest.MonkeyPatch, folder: Path, error: OSError) -> None:

@@ -25,8 +25,8 @@ def ran(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     return run(code_of_the_page(), tmp_path, monkeypatch)
 
 
-def code_of_the_page() -> str:
-    (code,) = (block.body for block in blocks(FOLDER / "python.md") if block.argument == "room.py")
+def code_of_the_page(name: str = "room.py") -> str:
+    (code,) = (block.body for block in blocks(FOLDER / "python.md") if block.argument == name)
     return code
 
 
@@ -47,6 +47,13 @@ def test_the_gap_around_a_moment_is_that_of_the_finding_at_it(ran: dict[str, Any
     assert len(at) == len(steps) > 50, "each time once, though there are two findings"
     assert (min(at), max(at)) == pytest.approx((2.7, 12.7), abs=0.2)
     assert Path("room.png").stat().st_size > 5000
+
+
+def test_the_headway_of_each_drive_is_drawn(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    headways = run(code_of_the_page("headway.py"), tmp_path, monkeypatch)["headways"]
+    assert set(headways["file_name"]) == {file.name for file in Path("demo").glob("*.mcap")}
+    assert 2 < headways["observed"].min() < headways["observed"].max() < 10
+    assert Path("headway.png").stat().st_size > 5000
 
 
 def test_the_gap_is_below_0_side_by_side_without_a_contact(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import re
+import tomllib
 from typing import TYPE_CHECKING, Any
 
 import msgspec
@@ -293,6 +294,43 @@ def test_drafts(tmp_path: Path, columns: str, lines: list[str]) -> None:
     for line in lines:
         assert line in draft
     assert ("\nvx = " in draft) == ("\nvy = " in draft)
+
+
+def _table(tmp_path: Path, *classes: str) -> Path:
+    """Write a table of an ego, a car, that drives behind actors whose class is called so."""
+    rows = [
+        f"{t / 10:.1f},{actor},{100 * actor + t},0,0,10,4.5,1.8,{kind}"
+        for t in range(50)
+        for actor, kind in enumerate(("car", *classes))
+    ]
+    (tmp_path / "log.csv").write_text("\n".join(["t,id,x,y,heading,speed,length,width,type", *rows]), encoding="utf-8")
+    return tmp_path / "log.csv"
+
+
+def test_a_draft_has_the_classes_that_the_table_names(tmp_path: Path) -> None:
+    draft = inspect(InspectRequest(str(_table(tmp_path, "Van", "foo", 'b"r')))).content.draft_mapping or ""
+    assert tomllib.loads(draft)["class"] == {
+        "column": "type", "values": {"Van": "van", "car": "car"}, "default": "vehicle"
+    }  # fmt: skip
+    assert '# in values, too: "foo" = "car"  # which class?\n' in draft
+    assert '# in values, too: "b\\"r" = "car"  # which class?\n' in draft
+    assert "text in the column" not in draft
+
+
+def test_texts_that_a_mapping_makes_no_class_of_are_named(tmp_path: Path) -> None:
+    log = _table(tmp_path, "foo", "bar")
+    draft = inspect(InspectRequest(str(log))).content.draft_mapping or ""
+    mapping = tmp_path / "draft.toml"
+    unfilled = draft.replace('"car" = "car"', "").replace("ids = []", 'ids = ["0"]')
+    mapping.write_text(unfilled, encoding="utf-8")
+    found = looked(log, mapping=str(mapping))
+    said = "column type: 'bar', 'car', 'foo' are not in [class] values of the mapping"
+    (classes,) = [item for item in found.egos[0].missing_signals if item.signal == "actor_classes"]
+    assert classes.reason == said
+    assert "in values a class for each of its texts" in classes.provide
+    assert said in [item.message for item in found.quality]
+    mapping.write_text(unfilled.replace("values = {", 'values = { "foo" = "van"'), encoding="utf-8")
+    assert "unmapped_class" not in [item.check_id for item in looked(log, mapping=str(mapping)).quality]
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 import drivelint
+from drivelint.inspect.content import content
 from drivelint.report import html
 from drivelint.result.load import load_result
 from tests.pictures.camera_bag import FRONT, LEFT, T0, number_in, taken_s, write_bag
@@ -61,6 +62,11 @@ def test_the_report_shows_them_with_their_times_and_each_once(out: Path) -> None
         told = f"{off_s:+.2f} s".replace("-", "\u2212")
         assert f'<span class="shot-time">{told}</span>' in page
     assert re.search(r'alt="Camera /camera/front/image_raw/compressed, .0\.0\d s 4\.\d\d.s"', page)
+
+
+def test_inspect_says_that_a_camera_is_read_as_pictures(bag: Path) -> None:
+    read = {channel.topic: channel.read_as for channel in content(bag, None, [], has_reader=True).channels}
+    assert (read[FRONT], read[LEFT]) == ("pictures", "pictures")
 
 
 def test_without_pictures_the_page_is_that_of_a_log_without_cameras(bag: Path, out: Path, tmp_path: Path) -> None:

@@ -93,3 +93,11 @@ def test_no_code_of_a_rule_hides_a_shared_one() -> None:
         for code in rule.reasons
         if code in reason_text.shared_texts()
     ] == []
+
+
+def test_who_lacks_only_the_way_out_of_a_junction_is_not_asked_for_the_side() -> None:
+    def said(code: str) -> str:
+        return reason_text.sentence(f'{{"code":"{code}"}}')
+
+    assert said("turn_across_unknown").endswith("across the road: record it until it has left the junction")
+    assert said("turn_side_unknown").endswith("is not known: set it with --handedness")

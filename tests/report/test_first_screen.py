@@ -214,6 +214,14 @@ def test_a_finding_that_few_copies_keep_is_only_possible() -> None:
     assert "The recording shows a contact" in Parsed(untested).text
 
 
+def test_how_sure_a_near_miss_is_was_not_examined() -> None:
+    near = verdict("pass", near_miss=True)
+    alone = page(result([near], rules=[rule()]))
+    assert "how sure not examined: a near miss is no finding" in plain(section(alone, "worst"))
+    both = page(result([verdict("fail"), near], [finding(n_copies=100, n_stays=97)], rules=[rule()]))
+    assert "not examined" in plain(section(both, "findings"))
+
+
 def test_findings_are_sorted_by_severity_then_contact_then_margin() -> None:
     rows = [
         finding(finding_id="minor", severity="minor", margin=-99.0),

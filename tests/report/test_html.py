@@ -128,7 +128,7 @@ def test_the_headline() -> None:
     mostly = result(
         [verdict("pass"), verdict("unknown", rule_id="ukhc.a"), verdict("unknown", rule_id="ukhc.b")], rules=others
     )
-    assert headline(mostly) == "MOSTLY UNKNOWN No findings, but most could not be judged"
+    assert headline(mostly) == "MOSTLY UNKNOWN No findings, but 2 of the 3 rules that came up could not be judged"
     assert "2 of the rules could be judged nowhere." in Parsed(page(mostly)).text
     partly = result([verdict("pass"), verdict("unknown"), verdict("unknown", occurrence=1)])
     assert headline(partly).startswith("PASS ")

@@ -138,7 +138,7 @@ def test_a_run_that_could_decide_little_is_no_pass() -> None:
     missing = [verdict("unknown", rule_id=f"ukhc.m{n}", reason_code="missing_map") for n in range(3)]
     of = result([verdict("pass"), *missing], drives=[drive(map_name=None)], rules=rules)
     assert exit_status(of).code == ExitCode.OK
-    words = "mostly unknown no findings, but most could not be judged; no map was given: 3 rules need one (--map)"
+    words = "mostly unknown no findings, but 3 of the 4 rules that came up could not be judged; no map was given: 3 rules need one (--map)"
     assert heads(of) == [words] * 3
     assert screen(of)[2].startswith("MOSTLY UNKNOWN")
     even = result([verdict("pass"), missing[0]], drives=[drive(map_name=None)], rules=rules)
@@ -154,7 +154,9 @@ def test_a_run_that_could_decide_little_is_no_pass() -> None:
 def test_of_many_drives_most_must_be_decided() -> None:
     drives = [drive(f"d{n}") for n in range(4)]
     rows = [verdict("pass", drive_id="d0"), *(verdict("unknown", drive_id=f"d{n}") for n in range(1, 4))]
-    assert headline(result(rows, drives=drives)).label == "MOSTLY UNKNOWN"
+    told = headline(result(rows, drives=drives))
+    words = "no findings, but 3 of the 4 rules that came up could not be judged, counted for each drive and ego"
+    assert (told.label, told.sentence) == ("MOSTLY UNKNOWN", words)
     assert headline(result(rows[:2], drives=drives)).label == "PASS"
 
 
@@ -301,5 +303,8 @@ def test_findings_do_not_hide_that_most_could_not_be_judged() -> None:
     ]
     minor = [finding(rule_id="ukhc.a", severity="minor")]
     told = headline(result(rows, minor, rules=rules))
-    assert (told.label, told.parts[-1]) == ("FINDINGS", ("most rules could not be judged", "warning"))
-    assert "most rules" not in headline(result(rows[:2], minor, rules=rules)).sentence
+    assert (told.label, told.parts[-1]) == (
+        "FINDINGS",
+        ("2 of the 3 rules that came up could not be judged", "warning"),
+    )
+    assert "rules that came up" not in headline(result(rows[:2], minor, rules=rules)).sentence

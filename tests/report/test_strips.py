@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 
-from drivelint.report.html.strips import LEFT, RIGHT, Series, _strip
+from drivelint.report.html.strips import LEFT, RIGHT, Series, _strip, strips
 from drivelint.report.html.svg import Axis
 from tests.report.synthetic import SECOND
 
@@ -48,3 +50,39 @@ def test_nothing_has_no_sign_but_of_a_measure_that_may_break_a_rule() -> None:
     course = {"t_ns": t, "required": [0.0] * 4, "holds": [False] * 4}
     lines = [Series("limit", "required", t, [0.0] * 4), Series("ego", "observed", t, [-0.001] * 4)]
     assert _strip(0, "gap", "m", lines, t[2], x=x, course=course)["at_worst"] == "observed -0.00, required 0.00"
+
+
+def actor(name: str, y_m: float, d_m: float | None) -> dict[str, Any]:
+    way = [
+        {
+            "t_ns": n * SECOND,
+            "x_m": 5.0 * n,
+            "y_m": y_m,
+            "yaw_rad": 0.0,
+            "speed_mps": 5.0,
+            "accel_mps2": 0.0,
+            "d_m": d_m,
+        }
+        for n in range(5)
+    ]
+    return {"actor_id": name, "length_m": 4.0, "width_m": 2.0, "path": way}
+
+
+@pytest.mark.parametrize(("ego", "name"), [("ego", "ego"), ("7", "ego 7")])
+def test_an_ego_is_named_once_and_a_long_id_in_short(ego: str, name: str) -> None:
+    long = "5f0d8a52-83b8-4b5c-9f6e-0d2a0a6ff001"
+    found = strips(
+        {"actors": [actor(ego, 0.0, 0.1), actor(long, 3.5, 3.6)]},
+        {"object_id": long, "t_worst_ns": 2 * SECOND, "unit": "s"}, None, None, 0,
+    )  # fmt: skip
+    assert found is not None
+    assert found["ego"] == name
+    assert found["strips"][0]["at_worst"] == f"{name} 5.00, object 5f0d8a52… 5.00"
+
+
+def test_without_offsets_from_a_lane_there_is_no_strip_of_them() -> None:
+    finding = {"object_id": None, "t_worst_ns": 2 * SECOND, "unit": "s"}
+    for d_m, there in ((0.1, True), (None, False)):
+        found = strips({"actors": [actor("ego", 0.0, d_m)]}, finding, None, None, 0)
+        assert found is not None
+        assert any("lane's centre" in strip["title"] for strip in found["strips"]) == there

@@ -28,7 +28,7 @@ WHERE across IS DISTINCT FROM false AND turn IS DISTINCT FROM 'u_turn'
 SELECT r.drive_id, r.ego_id, r.t_ns, r.ref_id, $tolerance_m AS required,
     CASE c.side WHEN 1 THEN c.left_out_m WHEN -1 THEN c.right_out_m END AS observed,
     CASE WHEN r.across IS NULL THEN NULL WHEN c.over_width_m IS NULL THEN false ELSE c.over_against END AS applies,
-    CASE WHEN r.across IS NULL THEN why('turn_across_unknown') END AS reason
+    CASE WHEN r.across IS NULL THEN across_doubt(r.turn) END AS reason
 FROM reference r
 JOIN ego_state e USING (drive_id, ego_id, t_ns)
 JOIN ego_corridor c USING (drive_id, ego_id, chain_id, t_ns)

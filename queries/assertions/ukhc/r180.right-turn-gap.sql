@@ -26,7 +26,7 @@
 -- why = "our default: a vehicle that brakes harder than this was forced to brake"
 
 -- @reference
-SELECT p.drive_id, p.ego_id, p.t_in_ns AS t_ns, p.occurrence, p.across,
+SELECT p.drive_id, p.ego_id, p.t_in_ns AS t_ns, p.occurrence, p.turn, p.across,
     made_to_brake(c.braked_mps2, c.braked_pet_s, c.braked_cause, $decel_mps2, $pet_s) AS forced,
     CASE WHEN forced THEN c.braked_id ELSE c.object_id END AS object_id,
     CASE WHEN forced IS DISTINCT FROM false THEN braked_reason(c.braked_id, c.braked_pet_s, c.braked_mps2, c.braked_cause) ELSE coalesce(c.reason, class_doubt(c.object_id)) END AS reason,
@@ -37,6 +37,6 @@ WHERE p.across IS DISTINCT FROM false
 
 -- @condition
 SELECT drive_id, ego_id, t_ns, ref_id, CASE WHEN across THEN pet_s END AS observed, $pet_s AS required,
-    CASE WHEN across IS NULL THEN why('turn_across_unknown')
+    CASE WHEN across IS NULL THEN across_doubt(turn)
         WHEN pet_s IS NULL OR forced THEN reason END AS reason
 FROM reference

@@ -26,7 +26,7 @@
 -- says = "an actor that may be beside the ego cannot be placed"
 
 -- @reference
-SELECT drive_id, ego_id, t_in_ns AS t_ns, occurrence, across, at_fork(turn, turn_rad, straightest_rad) AS fork,
+SELECT drive_id, ego_id, t_in_ns AS t_ns, occurrence, turn, across, at_fork(turn, turn_rad, straightest_rad) AS fork,
     CASE WHEN turn = 'straight' THEN CASE WHEN turn_rad > 0 THEN 'left' ELSE 'right' END ELSE turn END AS side
 FROM junction_passage
 WHERE across IS DISTINCT FROM true AND (turn IS DISTINCT FROM 'straight' OR at_fork(turn, turn_rad, straightest_rad))
@@ -34,7 +34,7 @@ WHERE across IS DISTINCT FROM true AND (turn IS DISTINCT FROM 'straight' OR at_f
 -- @condition
 SELECT rs.drive_id, rs.ego_id, rs.t_ns, rs.ref_id,
     CASE WHEN r.across IS NULL OR (p.t_ns IS NULL AND b.t_ns IS NOT NULL) THEN NULL WHEN p.t_ns IS NOT NULL THEN CASE WHEN NOT r.fork THEN false END ELSE true END AS holds,
-    CASE WHEN r.across IS NULL THEN why('turn_across_unknown')
+    CASE WHEN r.across IS NULL THEN across_doubt(r.turn)
         WHEN p.t_ns IS NOT NULL AND r.fork THEN fork_doubt()
         WHEN p.t_ns IS NOT NULL THEN why('got_ahead_of', {'object_id': p.object_id})
         WHEN b.t_ns IS NOT NULL THEN why('unplaced_beside') END AS reason

@@ -35,7 +35,7 @@ WHERE across IS DISTINCT FROM true AND turn IS DISTINCT FROM 'straight'
 
 -- @condition
 WITH placed_ego AS (
-    SELECT r.ref_id, r.across, e.*, c.half_width_m, c.side, CASE c.side WHEN 1 THEN -c.right_out_m WHEN -1 THEN -c.left_out_m END AS room_m
+    SELECT r.ref_id, r.turn, r.across, e.*, c.half_width_m, c.side, CASE c.side WHEN 1 THEN -c.right_out_m WHEN -1 THEN -c.left_out_m END AS room_m
     FROM reference r
     JOIN ego_state e USING (drive_id, ego_id, t_ns)
     JOIN ego_corridor c USING (drive_id, ego_id, chain_id, t_ns)
@@ -58,7 +58,7 @@ taken_near_side AS (
 SELECT ego.drive_id, ego.ego_id, ego.t_ns, ego.ref_id, $near_m AS required,
     CASE WHEN ego.room_m <= $near_m OR n.ref_id IS NULL THEN ego.room_m END AS observed,
     CASE WHEN ego.across IS NOT NULL THEN true END AS applies,
-    CASE WHEN ego.across IS NULL THEN why('turn_across_unknown')
+    CASE WHEN ego.across IS NULL THEN across_doubt(ego.turn)
         WHEN ego.room_m > $near_m AND n.ref_id IS NOT NULL THEN why('near_side_taken') END AS reason
 FROM placed_ego ego
 LEFT JOIN taken_near_side n USING (ref_id)

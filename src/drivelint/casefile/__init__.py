@@ -42,6 +42,7 @@ from drivelint.casefile import merged_cases
 from drivelint.casefile.scene import Row, column_of, complete_scene, refuse_wrong_word
 from drivelint.catalogue.rule_words import parameter_problem
 from drivelint.errors import RuleError
+from drivelint.phrases import nearest_word
 from drivelint.reasons.reason_text import codes_in
 from drivelint.sql.words import vocabularies
 
@@ -171,8 +172,16 @@ def _parsed(file: Path, text: str) -> list[Case]:
         try:
             cases.append(msgspec.convert({**item, "line": line}, Case))
         except msgspec.ValidationError as error:
-            raise RuleError(f"{file}:{line}: case {item.get('name')!r}: {error}") from error
+            raise RuleError(f"{file}:{line}: case {item.get('name')!r}: {error}{_key_meant(str(error))}") from error
     return cases
+
+
+def _key_meant(message: str) -> str:
+    """Return the key of a case that is nearest to the unknown one in msgspec's message, in words; '' where there is none."""
+    unknown = re.search(r"unknown field `([^`]+)`$", message)
+    keys = [about.encode_name for about in msgspec.structs.fields(Case) if about.name != "line"]
+    near = nearest_word(unknown[1], keys) if unknown else None
+    return f"; did you mean {near!r}?" if near else ""
 
 
 def run_cases(rule: Rule) -> list[CaseResult]:

@@ -16,6 +16,7 @@ from drivelint.casefile import case_location, merged_cases_difference, numbered_
 from drivelint.casefile.merged_cases import MERGE_KEYS, judge, merge, mergeable_groups
 from drivelint.casefile.mutants import mutants
 from drivelint.errors import RuleError
+from drivelint.phrases import plural
 from drivelint.toml_text import parse_toml
 
 if TYPE_CHECKING:
@@ -111,7 +112,7 @@ def summary(results: Sequence[MutationResult]) -> str:
     if not stable:
         return "no stable rule here: only the mutants of stable rules must be noticed"
     n, noticed = sum(result.n for result in stable), sum(result.noticed for result in stable)
-    return f"{len(stable)} stable rules: {noticed} of {n} mutants noticed ({noticed_share(results):.1%})"
+    return f"{plural(len(stable), 'stable rule')}: {noticed} of {n} mutants noticed ({noticed_share(results):.1%})"
 
 
 def judge_mutants(rule: Rule) -> MutationResult:

@@ -16,7 +16,7 @@ import duckdb
 from drivelint.catalogue import allowed_sql
 from drivelint.catalogue.allowed_sql import ENGINE_TABLES
 from drivelint.errors import RuleError
-from drivelint.phrases import hint
+from drivelint.phrases import hint, nearest_word
 from drivelint.sql.syntax import branches, column_name, offset_of, parser, syntax_tree, tables_needing_rows, walk
 
 if TYPE_CHECKING:
@@ -201,10 +201,12 @@ class _SyntaxFindings:
             self._refuse(part, f"{_plain(kind)} is not allowed in a rule")
         name = str(part.get("function_name", "")).lower()
         if name and name not in allowed_sql.functions():
+            near = nearest_word(name, allowed_sql.functions())
+            meant = f"; did you mean {near}()?" if near else ""
             self._refuse(
                 part,
-                f"function {name}() is not allowed in a rule: only functions that always return the same value and use "
-                "nothing but the tables, and the library's macros",
+                f"function {name}() is not allowed in a rule{meant}: only functions that always return the same value and "
+                "use nothing but the tables, and the library's macros",
             )
         if name in allowed_sql.ORDERED and not _is_ordered(part):
             self._refuse(

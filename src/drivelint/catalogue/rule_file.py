@@ -13,7 +13,7 @@ from drivelint.catalogue.header import Header, line_of, parse_header
 from drivelint.catalogue.rule import Rule
 from drivelint.catalogue.rule_words import check_words
 from drivelint.errors import RuleError
-from drivelint.phrases import hint
+from drivelint.phrases import hint, nearest_word
 from drivelint.reasons.reason_text import shared_texts
 from drivelint.sql import store
 
@@ -238,9 +238,10 @@ def _check_params(header: Header, queries: dict[str, Query], file: Path, toml: s
     for query in queries.values():
         if strange := sorted(query.parameters - header.params.keys()):
             name = strange[0]
+            near = nearest_word(name, header.params)
             yield (
                 f"{query.places[f'${name}']}: ${name} is not a parameter of this rule; "
-                f"add [params.{name}] to the header, with default, unit, why and source"
+                f"{f'did you mean ${near}? If not, ' if near else ''}add [params.{name}] to the header, with default, unit, why and source"
             )
     used = frozenset[str]().union(*(query.parameters for query in queries.values()))
     used |= {s for s in (header.window_s, header.exempt_after_s, header.merge_gap_s) if isinstance(s, str)}

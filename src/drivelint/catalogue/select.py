@@ -108,7 +108,9 @@ def _matching(rules: Mapping[str, Rule], selector: str) -> list[Rule]:
     found = [{rule.id for rule in _being(rules, part)} for part in parts]
     both = set.intersection(*found)
     if not both and len(parts) > 1:
-        raise UsageError(f"no rule is all of {selector!r}: each part alone selects some")
+        raise UsageError(
+            f"no rule is all of {selector!r}: each part alone selects some; for any of them, repeat --rules"
+        )
     return [rules[rule_id] for rule_id in sorted(both)]
 
 

@@ -17,7 +17,7 @@ from drivelint.explain.plot import plot
 from drivelint.explain.verdict_context import lacks_signal
 from drivelint.phrases import one_line
 from drivelint.reasons.signals import UNRECORDED_PREFIX, condition_of, remedy
-from drivelint.result.text import finite, seconds
+from drivelint.result.text import ego_name, finite, seconds
 from drivelint.result.text_templates import text_template
 from drivelint.sql import store
 
@@ -90,7 +90,7 @@ def render(explanation: Explanation, width: int) -> Group:
 
 def _title(explanation: Explanation, width: int) -> list[RenderableType]:
     row, rule = explanation.verdict, explanation.rule
-    who = [f"drive {row['drive_id']}", f"ego {row['ego_id']}"]
+    who = [f"drive {row['drive_id']}", ego_name(row["ego_id"])]
     who += [f"object {row['object_id']}"] if row["object_id"] is not None else []
     who += [f"profile {row['profile']}"] if row["profile"] is not None else []
     if row["t_start_ns"] is not None:

@@ -22,7 +22,7 @@ from drivelint.reasons.signals import WHAT_IS_NULL, remedy
 from drivelint.report.html.environment import page_environment
 from drivelint.result.certainty import doubt
 from drivelint.result.counts import SEVERITIES, VERDICTS, group_rows, rows_sentence
-from drivelint.result.text import utc_at
+from drivelint.result.text import ego_name, utc_at
 from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
@@ -157,6 +157,6 @@ def _environment() -> Environment:
     environment = page_environment(
         ("tables.js",), _HERE / "templates", ("fleet.css", "drive.css"), base=("report.css", "narrow.css", "first.css")
     )
-    environment.filters |= {"figure": figures.figure, "plural": plural}
+    environment.filters |= {"ego_name": ego_name, "figure": figures.figure, "plural": plural}
     environment.globals["what_is_null"] = WHAT_IS_NULL
     return environment

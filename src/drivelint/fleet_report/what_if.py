@@ -15,6 +15,7 @@ from drivelint.fleet.rates import check_tag
 from drivelint.fleet.what_if import WhatIf, flipped, what_if
 from drivelint.fleet_report.audit_views import open_audits
 from drivelint.phrases import hint, one_line, plural
+from drivelint.result.text import ego_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -151,7 +152,7 @@ def _flipped_verdict_lines(verdicts: Sequence[Flipped], n: int) -> list[str]:
         profile = f" [{each.profile}]" if each.profile else ""
         lines.append(
             one_line(
-                f"  {each.log}: ego {each.ego_id}{whom}{profile}: {each.was} -> {each.becomes or 'needs a new audit'}"
+                f"  {each.log}: {ego_name(each.ego_id)}{whom}{profile}: {each.was} -> {each.becomes or 'needs a new audit'}"
             )
         )
     if n > MAX_VALUES:

@@ -14,6 +14,7 @@ from drivelint.drive.trace import Identity
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats.folders import drive_files, drive_folders, is_drive_folder
 from drivelint.formats.search import is_pipe_or_device, tree, why_not_here
+from drivelint.own_files import OwnFiles
 from drivelint.phrases import escape_invisible
 
 if TYPE_CHECKING:
@@ -28,18 +29,8 @@ MAP_SUFFIXES = frozenset({".xodr", ".osm"})
 """Endings that maps have, and no format of logs."""
 _SEARCHED_SUFFIXES = TRACE_SUFFIXES | {".xml"}
 _HEAD_BYTES = 4096
-RESULT_FILES = frozenset(
-    f"{name}.parquet"
-    for name in (
-        "courses", "drives", "findings", "lanes", "margins", "opportunities", "overtakes", "rules", "scenes", "spaces",
-        "tracks", "verdicts",
-    )
-)  # fmt: skip
-"""Files of `check --out`, which are not treated as traces if their `summary.json` is beside them."""
 SCENARIO_LISTS = frozenset({"dataset_summary.pkl", "dataset_mapping.pkl"})
 """Files that ScenarioNet writes beside its scenarios, which are no scenarios."""
-ANNOTATED_FOLDER = "annotated"
-"""The folder beside them: logs that were judged already."""
 
 
 def expand_traces(traces: Sequence[str], *, but: Path | None = None) -> list[Path]:
@@ -47,9 +38,9 @@ def expand_traces(traces: Sequence[str], *, but: Path | None = None) -> list[Pat
 
     A path that exists is always taken literally, `[`, `*` and `?` in its name included. A folder that is one drive (`folders.KINDS`:
     canonical tables, rosbag2, Argoverse 2, 123D) is taken as it is; any other is searched, with subfolders, for such folders and MCAP,
-    Parquet, CSV, OSI, ScenarioNet, SUMO's FCD files and scenarios of CommonRoad with obstacles, except for what an earlier check wrote
-    there. Subfolders that cannot be read, links to folders elsewhere and dead links are among what is returned: `read_trace` says why
-    they cannot be judged.
+    Parquet, CSV, OSI, ScenarioNet, SUMO's FCD files and scenarios of CommonRoad with obstacles, except for what an earlier check or
+    audit wrote there. Subfolders that cannot be read, links to folders elsewhere and dead links are among what is returned: `read_trace`
+    says why they cannot be judged.
     `but`: the map, which a glob finds beside the logs: left out if anything else is there, and if its suffix says that it is no log. A
     scenario of CommonRoad is both, and stays.
     Errors: `UsageError` for a URI or an empty name, `TraceError` for something that matches nothing.
@@ -93,13 +84,13 @@ def _inside(path: Path) -> list[Path]:
         return [path]
     content = tree(path, _SEARCHED_SUFFIXES)
     drives = drive_folders([*content.folders, *content.links])
-    inside = frozenset(drives)
+    inside, own = frozenset(drives), OwnFiles(path)
     files = [
         file
         for file in content.files
         if file.suffix.lower() in _SEARCHED_SUFFIXES
         and inside.isdisjoint(file.parents)
-        and not _is_result(file, path)
+        and file not in own
         and (is_log_name(file.name) or (file.suffix.lower() == ".xml" and _is_xml_log(file)))
     ]
     missed = [each for each in (*content.links, *content.unreadable) if inside.isdisjoint((each, *each.parents))]
@@ -129,21 +120,6 @@ def _is_xml_log(file: Path) -> bool:
         return is_fcd(file, head) or has_obstacles(file, head)
     except OSError:
         return True
-
-
-def _is_result(file: Path, searched: Path) -> bool:
-    """Return whether an earlier check wrote the file: recorded logs beside its results are not its files.
-
-    Who names the folder of annotated logs itself, means them.
-    """
-    if file.name in RESULT_FILES:
-        return _is_result_folder(file.parent)
-    folder = file.parent.parent
-    return file.parent.name == ANNOTATED_FOLDER and folder.is_relative_to(searched) and _is_result_folder(folder)
-
-
-def _is_result_folder(folder: Path) -> bool:
-    return (folder / "summary.json").is_file() and (folder / "verdicts.parquet").is_file()
 
 
 def is_utf8(path: str) -> bool:

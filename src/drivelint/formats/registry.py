@@ -88,6 +88,10 @@ def _read(probe: Probe, before: list[tuple[str, int, int]]) -> Trace:
         raise TraceError(f"{path}: this is a map, not a log: use it with --map, together with a log")
     if probe.head.startswith(b"ARROW1"):
         raise TraceError(f"{path}: an Arrow table is read as part of a log of Argoverse 2 or 123D: name the folder")
+    if probe.head.startswith(b"SQLite format 3") and path.suffix.lower() == ".db3":
+        from drivelint.formats.mcap.bag import not_mcap
+
+        raise not_mcap(path, "sqlite3")
     raise TraceError(
         f"{path}: no reader for this file, which begins with {probe.head[:16]!r}: give MCAP, OSI, Parquet, CSV, "
         "SUMO's floating car data, a CommonRoad scenario, a ScenarioNet pickle, or the folder of a log of Argoverse 2 or 123D"

@@ -12,7 +12,7 @@ from drivelint.errors import ExitCode
 from drivelint.phrases import plural
 from drivelint.result import counts
 from drivelint.result.gate import NOT_FIXED, n_findings
-from drivelint.result.text import number
+from drivelint.result.text import ego_name, number
 from drivelint.result.text_templates import text_template
 
 if TYPE_CHECKING:
@@ -171,7 +171,7 @@ def to_json(difference: Difference, failing: Sequence[ComparedFinding], fail_on:
 def finding_line(entry: ComparedFinding) -> str:
     """Return a finding in one line: its severity, place, rule, and the result of the other side there."""
     profile = "" if entry.profile is None else f" [{entry.profile}]"
-    who = f"ego {entry.ego_id}" + ("" if entry.object_id is None else f", object {entry.object_id}")
+    who = ego_name(entry.ego_id) + ("" if entry.object_id is None else f", object {entry.object_id}")
     draft = "" if entry.stable else ", draft"
     margin = "" if entry.margin is None else f", margin {number(entry.margin, entry.unit)}"
     head = f"{entry.severity}{draft}: {entry.drive_id} at {entry.t_s:.2f} s: {entry.rule_id}{profile}, {who}{margin}"

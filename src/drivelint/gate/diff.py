@@ -13,7 +13,7 @@ from drivelint.gate import match
 from drivelint.reasons.signals import UNRECORDED_PREFIX
 from drivelint.result import counts
 from drivelint.result.gate import ComparedFinding, Difference, NewUnknowns
-from drivelint.result.text import number
+from drivelint.result.text import ego_name, number
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -332,7 +332,7 @@ class ResultLookup:
         if row["profile"] is not None and row["profile"] not in rule["profiles"]:
             return LookupResult("none", f"the profile {row['profile']} was not run")
         if row["ego_id"] not in self._egos[drive_id]:
-            return LookupResult("none", f"ego {row['ego_id']} was not judged")
+            return LookupResult("none", f"{ego_name(row['ego_id'])} was not judged")
         return None
 
     def _about(self, verdict: Row, row: Row, drive_id: str) -> bool:

@@ -26,6 +26,7 @@ from drivelint.formats.tables.mapping import GROUP_PLACEHOLDER, Mapping, TextLay
 from drivelint.formats.tables.sheets import CsvSheet, ParquetSheet
 from drivelint.inspect.mapping_draft import draft_mapping
 from drivelint.inspect.model import Channel, Column, Content, Sheet
+from drivelint.pictures.frames import has_pictures
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -81,13 +82,27 @@ def _of_table(path: Path, head: bytes, mapping: str | None, notes: list[str], *,
         return Content(sheets=[_mapped(path, loaded)], mapping=name, notes=notes)
     if head.startswith(b"PAR1"):
         sheet = _plain(path)
-        guess = None if has_reader else draft_mapping([column.name for column in sheet.columns])
+        guess = (
+            None
+            if has_reader
+            else draft_mapping(parquet.schema(path).names, lambda name: _texts(ParquetSheet(path), name))
+        )
         return Content(sheets=[sheet], notes=notes, draft_mapping=guess)
     if has_reader or b"\0" in head or not head.strip() or head.lstrip()[:1] in {b"<", b"{"}:
         return Content(notes=notes)  # no table, or a text that another reader has read
-    names = CsvSheet(path, TextLayout()).names
-    sheet = Sheet(name=path.name, rows=None, columns=_unread(names))
-    return Content(sheets=[sheet], notes=notes, draft_mapping=draft_mapping(names))
+    table = CsvSheet(path, TextLayout())
+    sheet = Sheet(name=path.name, rows=None, columns=_unread(table.names))
+    draft = draft_mapping(table.names, lambda name: _texts(table, name))
+    return Content(sheets=[sheet], notes=notes, draft_mapping=draft)
+
+
+def _texts(sheet: CsvSheet | ParquetSheet, column: str) -> list[str]:
+    """Return the distinct texts of a column; none if it cannot be read."""
+    try:
+        sheet.load([column])
+        return sorted(sheet.text(column).unique().drop_null().to_pylist())
+    except TraceError:
+        return []  # the table cannot be read either, for the same reason, which is reported
 
 
 def _unread(names: Iterable[str]) -> list[Column]:
@@ -194,7 +209,8 @@ def _channel(key: tuple[str, str, str, str], count: _Count, roles: dict[tuple[st
         messages=count.messages,
         bytes=count.size,
         rate_hz=(count.messages - 1) / span_s if span_s > 0 else None,
-        read_as=roles.get((message_kind(schema), encoding)),
+        read_as=roles.get((message_kind(schema), encoding))
+        or ("pictures" if has_pictures(topic, schema, encoding) else None),
     )
 
 

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Final
 from drivelint.facts import toml_beside
 from drivelint.formats.tables.mapping import FIELD_QUANTITIES, TIME_UNITS, UNITS
 from drivelint.result.text_templates import text_template
+from drivelint.sql.words import vocabularies
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
+    from collections.abc import Callable, Collection, Mapping, Sequence
 
 _WORD: Final = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+")
 _FACTS: Final = toml_beside(__file__, "mapping_words.toml")
@@ -26,8 +27,11 @@ _ORDER: Final = (
 )  # fmt: skip
 
 
-def draft_mapping(columns: Sequence[str]) -> str | None:
-    """Return a mapping as TOML, a comment where something has to be filled in; None where there are fewer columns than it needs."""
+def draft_mapping(columns: Sequence[str], texts_of: Callable[[str], Sequence[str]]) -> str | None:
+    """Return a mapping as TOML, a comment where something has to be filled in; None where there are fewer columns than it needs.
+
+    `texts_of`: returns the distinct texts of a column.
+    """
     found: dict[str, str] = {}
     for column in columns:
         meant = _meaning(column)
@@ -40,6 +44,7 @@ def draft_mapping(columns: Sequence[str]) -> str | None:
         found.pop("speed", None)
     if len(columns) < len(REQUIRED_FIELDS):
         return None
+    classes = {text: _class_of(text) for text in texts_of(found["class"])} if "class" in found else {}
     of_fields = {name: UNITS.get(FIELD_QUANTITIES.get(name, ""), {}) for name in found}
     draft = text_template(__file__, "mapping_draft.toml.j2", text=_text).render(
         column_by_field=found,
@@ -47,9 +52,16 @@ def draft_mapping(columns: Sequence[str]) -> str | None:
         time_unit=("time" in found and _unit(found["time"], dict(TIME_UNITS))) or "s",
         units={name: (_unit(found[name], units), next(iter(units), None)) for name, units in of_fields.items()},
         order=_ORDER,
+        classes={text: word for text, word in classes.items() if word is not None},
+        strange_classes=[text for text, word in classes.items() if word is None],
         required=REQUIRED_FIELDS,
     )
     return draft.removesuffix("\n")
+
+
+def _class_of(text: str) -> str | None:
+    """Return the class that a text names, however it is written; None: it is none."""
+    return vocabularies()["actor_class"].spelled("_".join(text.split()).replace("-", "_"))
 
 
 def _meaning(column: str) -> str | None:

@@ -39,7 +39,7 @@ class Channel(msgspec.Struct, frozen=True, kw_only=True):
     messages: int
     bytes: Annotated[int, described("of all its messages, unpacked")]
     rate_hz: Annotated[float | None, described("mean, by log time; null: fewer than two messages")]
-    read_as: Annotated[str | None, described("ground truth, map, declared events; null: not read")]
+    read_as: Annotated[str | None, described("ground truth, map, declared events, pictures; null: not read")]
 
 
 class Column(msgspec.Struct, frozen=True, kw_only=True):

@@ -16,6 +16,7 @@ from drivelint.formats.tables.mapping import GROUP_PLACEHOLDER
 from drivelint.phrases import listed, plural
 from drivelint.result.counts import group_rows
 from drivelint.result.one_line import flat
+from drivelint.result.text import ego_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -215,7 +216,7 @@ def _road(drive: model.Drive) -> Iterator[Line]:
     good = len(fits) - len(bad)
     share = "none" if not good else f"{good} of {len(fits)}" if bad else "all"
     yield "fit", Text(f"{share} of the egos lie well on the map", style="yellow" if bad else "green")
-    yield from _first_of("fit", [Text(f"ego {ego.actor.actor_id}: ").append_text(_fit(fit)) for ego, fit in bad])
+    yield from _first_of("fit", [Text(f"{ego_name(ego.actor.actor_id)}: ").append_text(_fit(fit)) for ego, fit in bad])
 
 
 def _map(road: model.Road) -> Text:

@@ -73,8 +73,13 @@ _SIDES: Final = ("left", "right", "rear", "back", "side")
 
 def is_camera(channel: Channel, schema: Schema) -> bool:
     """Whether the messages of a channel are frames of a camera."""
-    kind = (channel.message_encoding, short_type_name(schema.name))
-    return kind in _KINDS and not any(word in channel.topic.lower() for word in _NO_PICTURES)
+    return has_pictures(channel.topic, schema.name, channel.message_encoding)
+
+
+def has_pictures(topic: str, schema: str, encoding: str) -> bool:
+    """Whether the messages of a topic are frames of a camera. `schema`: its name; `encoding`: of the messages."""
+    is_known = (encoding, short_type_name(schema)) in _KINDS
+    return is_known and not any(word in topic.lower() for word in _NO_PICTURES)
 
 
 def ahead_first(topic: str) -> tuple[int, str]:

@@ -70,6 +70,25 @@ class Headline(NamedTuple):
         return "; ".join(part.words for part in self.parts)
 
 
+class _OpenRules(NamedTuple):
+    """How many rules are undecided (`n`) of those that may apply (`of`), counted for each drive and ego (`several`: there are many)."""
+
+    n: int
+    of: int
+    several: bool
+
+    @property
+    def are_most(self) -> bool:
+        """Whether more are undecided than decided."""
+        return 2 * self.n > self.of
+
+    @property
+    def words(self) -> str:
+        """Words for the sentence."""
+        which = "the rule that came up" if self.of == 1 else f"{self.n} of the {self.of} rules that came up"
+        return f"{which} could not be judged{', counted for each drive and ego' if self.several else ''}"
+
+
 class RuleCounts(NamedTuple):
     """How many rules were judged somewhere, and of these not everywhere. The others by their verdicts: all of them unknown or errors
     (`never`), all not applicable (`idle`), or both (`open`). `unrecorded`: all not applicable, some because the log has nothing of a signal
@@ -106,8 +125,8 @@ def headline(result: Result) -> Headline:
         if doubtful and (result.gate is None or result.gate.confidence is None):
             some = "" if doubtful == len(rows) else f"{doubtful} of {plural(len(rows), 'finding')} "
             parts.append(Part(f"{some}only possible"))
-        if _is_mostly_open(result):
-            parts.append(Part("most rules could not be judged", "warning"))
+        if (open_rules := _open_rules(result)).are_most:
+            parts.append(Part(open_rules.words, "warning"))
     if less:
         parts.append(Part(less, "warning"))
     if n := rules_without_map(result):
@@ -159,16 +178,17 @@ def _label(result: Result, has_findings: bool) -> str:
     if not told["pass"] + told["fail"]:
         lacking = counts.unrecorded(result.verdicts).num_rows
         return "UNKNOWN" if told["unknown"] + told["error"] + lacking or not told["not_applicable"] else _NOT_APPLICABLE
-    return _MOSTLY if _is_mostly_open(result) or code != ExitCode.OK else LABELS[code]
+    return _MOSTLY if _open_rules(result).are_most or code != ExitCode.OK else LABELS[code]
 
 
-def _is_mostly_open(result: Result) -> bool:
-    """Whether more rules are undecided than decided, counted for each drive and ego where they may apply."""
+def _open_rules(result: Result) -> _OpenRules:
+    """Return how many rules are undecided of those that may apply, counted for each drive and ego."""
     rows = counts.distinct_rows(result.verdicts, ["drive_id", "ego_id", "rule_id", "verdict"])
     where = counts.group_rows(rows, lambda row: (row["drive_id"], row["ego_id"], row["rule_id"]))
     said = [{row["verdict"] for row in mine} for mine in where.values()]
-    decided = sum(bool(each & {"pass", "fail"}) for each in said)
-    return sum(bool(each & {"unknown", "error"}) and not each & {"pass", "fail"} for each in said) > decided
+    n_decided = sum(bool(each & {"pass", "fail"}) for each in said)
+    n_open = sum(bool(each & {"unknown", "error"}) and not each & {"pass", "fail"} for each in said)
+    return _OpenRules(n_open, n_open + n_decided, len({key[:2] for key in where}) > 1)
 
 
 def _without_findings(result: Result, verdict_counts: Mapping[str, int], label: str, *, whole: bool) -> str:
@@ -183,7 +203,8 @@ def _without_findings(result: Result, verdict_counts: Mapping[str, int], label: 
     if not verdict_counts["pass"] + verdict_counts["fail"]:
         return "no findings, because no rule applied: the situations that they are about did not happen"
     if label == _MOSTLY:
-        return "no findings, but most could not be judged"
+        open_rules = _open_rules(result)
+        return f"no findings, but {open_rules.words if open_rules.n else 'less was decided than --min-judged demands'}"
     return "no findings" if whole else "no findings, as far as it could be judged"
 
 

@@ -18,7 +18,7 @@ from drivelint.report.outcome import one_per_event
 from drivelint.report.worst_first import moment_ns
 from drivelint.result import counts
 from drivelint.result.certainty import doubt
-from drivelint.result.text import NO_VALUE, comparison, number, rule_name, seconds, with_count
+from drivelint.result.text import NO_VALUE, comparison, ego_name, number, rule_name, seconds, with_count
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -139,7 +139,7 @@ def _measurement_table(result: Result, title: str, rows: pa.Table, style: str, *
     previous, starts = None, result.start_times
     rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
     for row in rows.slice(0, MAX_ROWS).to_pylist():
-        where = f"{row['drive_id']}, ego {row['ego_id']}" if egos else row["drive_id"]
+        where = f"{row['drive_id']}, {ego_name(row['ego_id'])}" if egos else row["drive_id"]
         if where != previous:
             table.add_row("", Text(where, style="bold"))
             previous = where

@@ -23,7 +23,7 @@ from drivelint.report.worst_first import is_contact, moment_ns, worst_first, wor
 from drivelint.result import counts
 from drivelint.result.certainty import doubt
 from drivelint.result.model import exit_status, gating_unrecorded, off_map_reason
-from drivelint.result.text import closing, number, seconds, tolerance, went_wrong
+from drivelint.result.text import closing, ego_name, number, seconds, tolerance, went_wrong
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -212,7 +212,7 @@ def _worst(row: Row, rules: dict[str, Any], start_ns: int | None, *, several_ego
     parts += who
     if later := worst_later(row, rules, start_ns):
         parts.append(later)
-    ego = f"ego {row['ego_id']} " if several_egos else ""
+    ego = f"{ego_name(row['ego_id'])} " if several_egos else ""
     when = f"{seconds(moment_ns(row, rules), start_ns):>8} {ego}"
     what = "possible contact " if doubt(row) else "CONTACT "
     if doubt(row) and not contact:

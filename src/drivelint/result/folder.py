@@ -14,6 +14,7 @@ from hashlib import file_digest, sha256
 from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import UsageError
+from drivelint.own_files import MANIFEST_KEY, written_files
 from drivelint.phrases import listed
 from drivelint.result.names import MANIFEST
 from drivelint.result.publishing import OutputError, prepare_folder, publish
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
     from pathlib import Path
 
-_KEY: Final = "written_by_drivelint"
 _HASHES: Final = "sha256"
 _WORK: Final = ".drivelint.work"
 EARLIER: Final = "earlier"
@@ -205,14 +205,6 @@ def _result_files(out: Path, patterns: Sequence[str], *, overwrite: bool) -> set
     return present if overwrite else present & written_files(out)
 
 
-def written_files(out: Path) -> set[str]:
-    """Return the names of the files that drivelint wrote into a folder, without their list; none where nothing says so."""
-    try:
-        return set(map(str, json.loads((out / MANIFEST).read_text(encoding="utf-8"))[_KEY]))
-    except (OSError, ValueError, KeyError, TypeError):
-        return set()  # whatever it is, it is not known to be drivelint's
-
-
 def _hashes(out: Path) -> dict[str, str]:
     try:
         return hashes_in((out / MANIFEST).read_bytes())
@@ -230,5 +222,5 @@ def hashes_in(content: bytes) -> dict[str, str]:
 
 def manifest(names: set[str], hashes: Mapping[str, str] | None = None) -> bytes:
     """Return the content of `files.json` for the files of these names."""
-    said = {_KEY: sorted(names), **({_HASHES: hashes} if hashes else {})}
+    said = {MANIFEST_KEY: sorted(names), **({_HASHES: hashes} if hashes else {})}
     return (json.dumps(said, indent=2, ensure_ascii=False) + "\n").encode()

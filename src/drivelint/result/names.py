@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import Final
 
-MANIFEST: Final = "files.json"
+from drivelint import own_files
+
+MANIFEST: Final = own_files.MANIFEST
 RUN_FILE: Final = "run.json"
 GATE_FILE: Final = "gate.json"
 MARK: Final = "summary.json"

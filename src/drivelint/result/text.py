@@ -10,6 +10,8 @@ from typing import Any, Final
 from drivelint.result.certainty import doubt
 
 NO_VALUE: Final = "-"
+LONGEST_LABEL: Final = 12
+"""Characters of an id that a picture has room for."""
 
 Row = Mapping[str, Any]
 """One row of an output table: column -> value."""
@@ -69,9 +71,19 @@ def rule_name(row: Row) -> str:
     return f"{row['rule_id']}" + ("" if row["profile"] is None else f" [{row['profile']}]")
 
 
+def ego_name(ego_id: str) -> str:
+    """Return an ego's name: "ego 7", or "ego" alone where that is its id."""
+    return ego_id if ego_id == "ego" else f"ego {ego_id}"
+
+
+def brief_id(actor_id: str) -> str:
+    """Return an id as a picture has room for it: data sets give universally unique ones of 36 characters."""
+    return actor_id if len(actor_id) <= LONGEST_LABEL else f"{actor_id[: LONGEST_LABEL - 4]}…"
+
+
 def subject(row: Row) -> str:
     """Return the ego and, if any, the object of a verdict or finding."""
-    who = f"ego {row['ego_id']}" if row["ego_id"] else "no ego"
+    who = ego_name(row["ego_id"]) if row["ego_id"] else "no ego"
     return f"{who}, object {row['object_id']}" if row["object_id"] is not None else who
 
 

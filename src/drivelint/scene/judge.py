@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple
 from drivelint import catalogue
 from drivelint.convert import ConvertRequest, convert
 from drivelint.errors import DriveLintError, ExitCode, TraceError, UsageError
-from drivelint.phrases import hint, plural
+from drivelint.phrases import hint, nearest_word, plural
 from drivelint.reasons.reason_text import codes_in
 from drivelint.report.progress import Silent
 from drivelint.result.publishing import publish
@@ -193,10 +193,23 @@ def gating_rules(rules: Mapping[str, Rule]) -> frozenset[str]:
     return frozenset(rule.id for rule in rules.values() if rule.status == "stable")
 
 
+def _no_rule(rule_id: str, rules: Mapping[str, Rule]) -> str:
+    """Return in words that there is no such rule, with the nearest one, or where its pack may be."""
+    pack, dot, name = rule_id.partition(".")
+    packs = {rule.pack for rule in rules.values()}
+    if dot and pack not in packs:
+        near = nearest_word(pack, packs)
+        meant = f"; did you mean {near!r}?" if near else ""
+        return f"no rule {rule_id!r}, as there is no pack {pack!r}{meant}: give its folder with --rules-dir"
+    holding = min((each for each in rules if (name or pack) in each), key=len, default=None)
+    near = holding or nearest_word(rule_id, rules, cutoff=0.75)
+    return f"no rule {rule_id!r}; {f'did you mean {near!r}?' if near else 'drivelint rules list shows them all'}"
+
+
 def _refuse_wrong_expectations(scene: Scene, rules: Mapping[str, Rule]) -> None:
     for rule, said in scene.text.expect.items():
         if rule not in rules:
-            raise UsageError(f"expect: no rule {rule!r}: {hint(rule, rules)}")
+            raise UsageError(f"expect: {_no_rule(rule, rules)}")
         expectation(said)
 
 

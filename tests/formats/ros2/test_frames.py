@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 import math
+import re
+import shlex
 import shutil
+import subprocess
+import sys
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mcap.reader import make_reader
+from rosbags import rosbag2
+from rosbags.typesys import Stores, get_typestore
 
 from drivelint.errors import TraceError
 from drivelint.formats import expand_traces
@@ -19,8 +26,6 @@ from tests.formats.ros2 import ros_log as ros
 from tests.formats.ros2.ros_drive import T0, TURN, N, along, ego, others, seen, ticks
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from drivelint.drive.trace import Trace
 
 MOVED = {"x_m": 100.0, "y_m": 50.0}
@@ -227,11 +232,30 @@ def test_bags_that_cannot_be_read(tmp_path: Path) -> None:
     folder, _ = parts(tmp_path)
     with pytest.raises(TraceError, match="a bag in sqlite3: convert it to MCAP"):
         read(bag(folder, ["drive_0.db3"], "sqlite3"))
+    with pytest.raises(TraceError, match="a bag in rocks: convert it to MCAP"):
+        read(bag(folder, ["drive_0.db3"], "rocks"))
     with pytest.raises(TraceError, match="lists no files"):
         read(bag(folder, []))
     (folder / "metadata.yaml").write_text("rosbag2_bagfile_information: 5\n", encoding="utf-8")
     with pytest.raises(TraceError, match=r"its metadata\.yaml cannot be read"):
         read(folder)
+
+
+@pytest.mark.parametrize("named", ["folder", "file", "lone file"])
+def test_the_error_about_a_bag_in_sqlite_has_the_command_that_converts_it(tmp_path: Path, named: str) -> None:
+    folder = tmp_path / "my bag"
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    odometry = "nav_msgs/msg/Odometry"
+    with rosbag2.Writer(folder, version=8, storage_plugin=rosbag2.StoragePlugin.SQLITE3) as writer:
+        writer.add_connection("/odometry", odometry, typestore=store)
+    if named == "lone file":
+        (folder / "metadata.yaml").unlink()
+    path = folder if named == "folder" else folder / "my bag.db3"
+    with pytest.raises(TraceError, match="a bag in sqlite3: convert it to MCAP with ") as error:
+        read(path)
+    command = shlex.split(re.search(r"rosbags-convert.*-dst-storage mcap", str(error.value))[0])  # type: ignore[index]
+    subprocess.run([Path(sys.executable).with_name(command[0]), *command[1:]], check=True)
+    assert list(Path(command[command.index("--dst") + 1]).glob("*.mcap"))
 
 
 @pytest.mark.parametrize("order", ["<", ">"])
@@ -255,8 +279,14 @@ def test_order_of_messages_and_objects_changes_nothing(
 
 
 def test_nothing_to_read(tmp_path: Path) -> None:
-    with pytest.raises(TraceError, match="no OSI ground truth in this file: it has tf2_msgs/msg/TFMessage in cdr"):
+    said = "no nav_msgs/Odometry and no road users: it has tf2_msgs/TFMessage on /tf, .* on /tf_static; see drivelint docs traces"
+    with pytest.raises(TraceError, match=said):
         seen(tmp_path, chain())
+    folder = tmp_path / "bag"
+    folder.mkdir()
+    ros.write(folder / "drive.mcap", chain())
+    with pytest.raises(TraceError, match=said):
+        read(bag(folder, ["drive.mcap"]))
     with pytest.raises(TraceError, match="no road users and no odometry"):
         seen(tmp_path, [ros.things(T0)])
 

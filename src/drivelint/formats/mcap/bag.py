@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
+from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.drive.trace import QualityFinding
 from drivelint.errors import TraceError
-from drivelint.formats.mcap.bag_folder import METADATA_FILE, METADATA_ROOT
+from drivelint.formats.mcap.bag_folder import METADATA_FILE, METADATA_ROOT, is_bag
 from drivelint.formats.mcap.reader import Container
 from drivelint.formats.mcap.summary import read_index
 from drivelint.formats.ros2.messages import DETECTIONS, MESSAGES, ODOMETRY_ROLE, ROAD_USERS
@@ -16,7 +18,6 @@ from drivelint.receipts.events import looked_for
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
-    from pathlib import Path
 
 OSI_SCHEMAS: Final = frozenset({"osi3.GroundTruth", "osi3.SensorView"})
 ROS_ROLES: Final = {name: message.role for name, message in MESSAGES.items()}
@@ -43,9 +44,7 @@ def mcap_files(path: Path) -> list[Path]:
     if not isinstance(names, list) or not names or not all(isinstance(name, str) for name in names):
         raise TraceError(f"{path}: its {METADATA_FILE} lists no files: reindex the bag")
     if storage not in {None, "mcap"}:
-        raise TraceError(
-            f"{path}: a bag in {storage}: convert it to MCAP (ros2 bag convert, with storage_id: mcap), and give that"
-        )
+        raise not_mcap(path, str(storage))
     files = []
     for name in names:
         # older recorders list a file by its name only, or below the folder's own name
@@ -64,6 +63,18 @@ def mcap_files(path: Path) -> list[Path]:
             f"{path}: its {METADATA_FILE} does not list {unlisted[0]}: reindex the bag, or take the file out of its folder"
         )
     return files
+
+
+def not_mcap(path: Path, storage: str) -> TraceError:
+    """Return the error about a bag in another storage, with the command that converts it. `path`: its folder, or one of its files."""
+    whole = path if path.is_dir() or not is_bag(path.parent) else path.parent
+    name = (whole.name if whole.is_dir() else whole.stem) or "bag"
+    converted = whole.with_name(f"{name}-mcap") if whole.name else Path(f"{name}-mcap")
+    command = f"rosbags-convert --src {quote(str(whole))} --dst {quote(str(converted))} --dst-storage mcap"
+    return TraceError(
+        f"{path}: a bag in {storage}: convert it to MCAP with {command} (of PyPI's package rosbags), "
+        "or with ros2 bag convert and storage_id: mcap, and give that"
+    )
 
 
 def _information(path: Path) -> Any:
@@ -125,6 +136,21 @@ def message_family(path: Path) -> str:
             if {roles.get(schema) for schema in found} & {ROAD_USERS, DETECTIONS, ODOMETRY_ROLE}:
                 return name
     return "none"
+
+
+def topics(path: Path) -> dict[str, str]:
+    """Return topic -> kind of its messages, as `message_kind` names it, of a drive's log. Errors: `TraceError` for a damaged file."""
+    found = {}
+    for file in mcap_files(path):
+        part = read_index(file)
+        if not part.channels:
+            part = Container(file, salvage=True)
+            for _ in part.packets():
+                pass
+        for channel in part.channels.values():
+            schema = part.schemas.get(channel.schema_id)
+            found[channel.topic] = message_kind(schema.name) if schema else "no schema"
+    return found
 
 
 def _indexed(file: Path) -> set[str]:

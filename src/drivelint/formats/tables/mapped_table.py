@@ -32,7 +32,7 @@ from drivelint.formats.tables import mapping as mappings
 from drivelint.formats.tables.geometry import to_map_frame
 from drivelint.formats.tables.mapping import FIELD_QUANTITIES, GROUP_PLACEHOLDER, UNITS
 from drivelint.formats.tables.sheets import CsvSheet, ParquetSheet, Sheet, describe_places
-from drivelint.phrases import hint
+from drivelint.phrases import hint, listed
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -43,6 +43,10 @@ if TYPE_CHECKING:
 
 formats: Final[dict[str, tuple[str, str]]] = {}
 takes_mapping: Final = True
+_NO_CLASS: Final = frozenset({-1, ACTOR_CLASSES.index("vehicle")})
+"""Codes of actors whose class is not known."""
+_MOST_TEXTS: Final = 5
+"""Texts that a message names."""
 MAX_HEADING_RAD: Final = 4 * np.pi
 """A heading that is never wrapped goes beyond one turn, on a roundabout or a ramp of a car park."""
 
@@ -162,6 +166,8 @@ class _Body:
     sheet: Sheet
     groups: list[str]
     findings: list[QualityFinding] = field(default_factory=list)
+    unmapped_classes: set[str] = field(default_factory=set)
+    """Texts of the class that are neither among the mapping's values nor of its patterns."""
 
     def read(self) -> Recording:
         columns = mappings.needed_columns(self.mapping)
@@ -189,6 +195,7 @@ class _Body:
         states = States.concatenate(parts)
         states.ids, states.actor = ids.dictionary.to_pylist(), ids.indices.to_numpy()
         to_map_frame(states, self.mapping)
+        self._report_unmapped_classes(states)
         return Recording(
             format="",
             states=states,
@@ -270,6 +277,8 @@ class _Body:
 
         def code_of(text: str) -> int:
             word = _word(text, spec)
+            if spec is self.mapping.actor_class and not _is_mapped(text, spec):
+                self.unmapped_classes.add(text)
             return -1 if word is None else words.index(word)
 
         return coded(texts[0], code_of)
@@ -309,6 +318,16 @@ class _Body:
             message = f"{self.path.name}, {self.sheet.describe_rows(np.flatnonzero(rows))}: {why}: {follows}"
             self.findings.append(QualityFinding(check, "warning" if check == "malformed_cell" else "error", message, n))
 
+    def _report_unmapped_classes(self, states: States) -> None:
+        """Report the texts of a class column, of which the mapping makes no class at all."""
+        spec, codes = self.mapping.actor_class, states.codes.get("actor_class")
+        if spec is None or codes is None or not self.unmapped_classes or not set(np.unique(codes)) <= _NO_CLASS:
+            return
+        texts = listed([repr(text) for text in sorted(self.unmapped_classes)], _MOST_TEXTS)
+        are = "is" if len(self.unmapped_classes) == 1 else "are"
+        message = f"column {'/'.join(spec.columns)}: {texts} {are} not in [class] values of the mapping"
+        self.findings.append(QualityFinding("unmapped_class", "warning", message))
+
     def _report_lines(self, n: int) -> None:
         if self.sheet.zeros_at is not None:
             message = (
@@ -323,6 +342,10 @@ class _Body:
             raise TraceError(f"{self.path}: {what}: no row is left; check the mapping's separator and skip_rows")
         message = f"{self.path.name}, {what}: not judged"
         self.findings.append(QualityFinding("malformed_row", "error", message, len(lines)))
+
+
+def _is_mapped(text: str, spec: WordMapping) -> bool:
+    return text in spec.values or any(re.search(pattern.match, text) for pattern in spec.patterns)
 
 
 def _word(text: str, spec: WordMapping) -> str | None:

@@ -17,7 +17,7 @@ from drivelint.phrases import escape_invisible
 from drivelint.report.html.anchors import anchor
 from drivelint.result.compiled_templates import CompiledTemplates
 from drivelint.result.schemas import OUTPUT_VERSION
-from drivelint.result.text import measure, number, went_wrong
+from drivelint.result.text import ego_name, measure, number, went_wrong
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -62,7 +62,7 @@ def page_environment(
         duckdb_version=duckdb.__version__,
         output_schema=OUTPUT_VERSION,
     )
-    environment.filters |= {"measure": measure, "went_wrong": went_wrong}
+    environment.filters |= {"ego_name": ego_name, "measure": measure, "went_wrong": went_wrong}
     return environment
 
 

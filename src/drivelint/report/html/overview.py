@@ -10,7 +10,7 @@ from drivelint.report.outcome import headline
 from drivelint.report.worst_first import is_contact, moment_ns, sureness, worst_later
 from drivelint.result import counts
 from drivelint.result.certainty import POSSIBLE, certainty
-from drivelint.result.text import closing, measure, non_breaking, seconds
+from drivelint.result.text import closing, ego_name, measure, non_breaking, seconds
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -45,7 +45,7 @@ def contacts(result: Result, lines: Sequence[FindingLine], rules: Mapping[str, R
     named = []
     for found in met.values():
         first = min(found, key=sureness)
-        who = f"ego {first['ego_id']}" + ("" if first["object_id"] is None else f" and object {first['object_id']}")
+        who = ego_name(first["ego_id"]) + ("" if first["object_id"] is None else f" and object {first['object_id']}")
         # a centimetre may be the recorder's error
         measured = [row for row in found if row["unit"] == "m" and row["observed"] is not None]
         worst = min(measured, key=lambda row: row["observed"], default=None)

@@ -15,6 +15,7 @@ import shapely
 
 from drivelint.report.html.road import UNITS_PER_M
 from drivelint.report.html.svg import num, polygon, polyline
+from drivelint.result.text import LONGEST_LABEL, brief_id, ego_name
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Sequence
@@ -27,7 +28,6 @@ _HEIGHT: Final = (190.0, 330.0)
 _LEAST_M: Final = (44.0, 16.0)  # the view shows at least this much of the road, along and across
 _PAD_M: Final = (7.0, 3.5)
 _DOT_M: Final = 0.8  # drawn size of an actor whose size is not known
-_LONGEST_LABEL: Final = 12
 _MOST_LONG_LABELS: Final = 5
 _BARS_M: Final = (1, 2, 5, 10, 20, 50, 100)
 _BESIDE: Final = 0.5  # who is up to half a view away may come into it when the scene is replayed
@@ -231,17 +231,12 @@ def _distances(ego: Row, met: Sequence[Row], view: _View) -> tuple[list[dict[str
 
 def _labelled(actors: list[Row], ego: Row, met: Sequence[Row]) -> list[Row]:
     """Return the actors whose names the picture has room for: with long ids, those concerned and the nearest of the others."""
-    if all(len(actor["actor_id"]) <= _LONGEST_LABEL for actor in actors):
+    if all(len(actor["actor_id"]) <= LONGEST_LABEL for actor in actors):
         return actors
     concerned = [actor for actor in actors if actor is ego or actor in met]
     others = [actor for actor in actors if actor is not ego and actor not in met]
     near = sorted(others, key=lambda a: (math.hypot(a["x_m"] - ego["x_m"], a["y_m"] - ego["y_m"]), a["actor_id"]))
     return [*concerned, *near[:_MOST_LONG_LABELS]]
-
-
-def _brief(actor_id: str) -> str:
-    """Return an id as a picture has room for it: data sets give universally unique ones of 36 characters."""
-    return actor_id if len(actor_id) <= _LONGEST_LABEL else f"{actor_id[: _LONGEST_LABEL - 4]}…"
 
 
 def _label(actor: Row, ego: Row, met: Sequence[Row], view: _View) -> dict[str, str]:
@@ -255,7 +250,7 @@ def _label(actor: Row, ego: Row, met: Sequence[Row], view: _View) -> dict[str, s
     return {
         "x": num(min(max(float(middle[0]), 22.0), WIDTH - 22.0)),
         "y": num(min(max(float(y), 12.0), view.height - 4.0)),
-        "text": f"ego {_brief(actor['actor_id'])}" if actor is ego else _brief(actor["actor_id"]),
+        "text": ego_name(brief_id(actor["actor_id"])) if actor is ego else brief_id(actor["actor_id"]),
         "kind": "ego" if actor is ego else "met" if actor in met else "other",
         "actor": actor["actor_id"],
     }

@@ -9,7 +9,7 @@ import shapely
 
 from drivelint.report.html.plan_view import corners
 from drivelint.report.html.svg import Axis, axis_that_decides, num
-from drivelint.result.text import number
+from drivelint.result.text import brief_id, ego_name, number
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -82,7 +82,7 @@ def strips(scene: Row, finding: Row, course: Row | None, observes: str | None, s
         "t1": round((t[-1] - start_ns) / 1e7),
         "words": "; ".join(f"{each['title']} {each['range']}" for each in found),
         "met": met["actor_id"] if met else None,
-        "ego": ego["actor_id"],
+        "ego": ego_name(ego["actor_id"]),
     }
 
 
@@ -91,7 +91,8 @@ def _seconds(x: Axis, start_ns: int) -> Axis:
 
 
 def _series(kind: str, actor: Row, column: str) -> Series:
-    name = f"{'ego' if kind == 'ego' else 'object'} {actor['actor_id']}"
+    short = brief_id(actor["actor_id"])
+    name = ego_name(short) if kind == "ego" else f"object {short}"
     return Series(kind, name, [point["t_ns"] for point in actor["path"]], [point[column] for point in actor["path"]])
 
 
