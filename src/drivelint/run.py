@@ -90,7 +90,7 @@ class RunRules(NamedTuple):
     def of(cls, settings: CheckOptions) -> RunRules:
         """Return the rules and profiles that the options of a run choose. Errors: `UsageError`, `RuleError`."""
         known = catalogue.load_rules(settings.rules_dirs)
-        rules = catalogue.select_rules(known, settings.rules, settings.ignore, named=settings.named_rules)
+        rules = catalogue.select_rules(known, settings.rules, settings.ignore, named_ids=settings.named_rules)
         required = catalogue.required_rules(known, rules, settings.require, settings.ignore)
         params = catalogue.parse_params(rules, settings.params)
         profiles = profile_table(load_profiles(settings.rules_dirs), settings.profiles)

@@ -370,7 +370,7 @@ def test_a_query_that_fails_is_one_error(checked: drivelint.CheckResult) -> None
         ({"memory": "1 byte"}, "memory"),
         ({"today": "tomorrow"}, "today"),
         ({"keep_db": True}, "^keep_db=True writes a file: name its folder with out=DIR"),
-        ({"confidence": 0.95, "robustness": False}, "^confidence= needs what robustness=False leaves out"),
+        ({"confidence": 0.95, "robustness": False}, "^confidence= needs the copies that robustness=False leaves out"),
         ({"confidence": 95}, "^confidence=95: write a share from 0 to 1"),
         ({"require": "no-such-rule"}, "no-such-rule"),
         ({"rules": []}, "rules names none"),

@@ -43,11 +43,11 @@ def select_rules(
     ignore: Sequence[str],
     *,
     default_pack: str = DEFAULT_PACK,
-    named: Collection[str] | None = None,
+    named_ids: Collection[str] | None = None,
 ) -> list[Rule]:
     """Return the selected rules, sorted by id.
 
-    A rule is `is_named` where its id is in `named`; None: where a selector is or contains its id.
+    A rule is `is_named` where its id is in `named_ids`; None: where a selector is or contains its id.
 
     Selectors: see the module. None given: the stable rules of `default_pack`. A deprecated rule is chosen only by its full
     id or as `status:deprecated`. Errors: `UsageError` for a selector that matches nothing, or when nothing is left.
@@ -61,9 +61,9 @@ def select_rules(
             chosen.pop(rule.id, None)
     if not chosen:
         raise UsageError("no rule is left to check: see `drivelint rules list` and choose with --rules")
-    if named is None:
-        named = {part.strip() for selector in include for part in selector.split(",")}
-    return [msgspec.structs.replace(chosen[name], is_named=name in named) for name in sorted(chosen)]
+    if named_ids is None:
+        named_ids = {part.strip() for selector in include for part in selector.split(",")}
+    return [msgspec.structs.replace(chosen[name], is_named=name in named_ids) for name in sorted(chosen)]
 
 
 def default_packs(rules: Mapping[str, Rule], nation: str | None) -> tuple[str, ...]:

@@ -135,7 +135,7 @@ def test_broken_scenarios_are_named_in_one_line(tmp_path: Path) -> None:
     scenario(tmp_path / "columns", ROWS, ["heading"])
     cases: list[tuple[Path, str]] = [
         (path, "not readable as Parquet"),
-        (scenario(tmp_path / "two", [*ROWS, *two]), "holds 2 scenarios"),
+        (scenario(tmp_path / "two", [*ROWS, *two]), "has 2 scenarios"),
         (tmp_path / "folder", "2 scenarios in one folder"),
         (tmp_path / "columns", "no column heading"),
         (scenario(tmp_path / "text", [{**row, "position_x": "east"} for row in ROWS]), "'position_x' is string"),

@@ -278,6 +278,19 @@ def test_parquet_through_a_mapping(tmp_path: Path) -> None:
     assert trace.embedded_map == b"<OpenDRIVE/>"
 
 
+@pytest.mark.parametrize("kind", [pa.timestamp("us"), pa.timestamp("ms", "Europe/Berlin"), pa.duration("s")])
+@pytest.mark.parametrize("beyond", [-(2**63), 2**63 - 1])
+def test_a_time_beyond_the_nanoseconds_of_64_bits_is_a_lost_row(tmp_path: Path, kind: pa.DataType, beyond: int) -> None:
+    n, per_s = 40, {"s": 1, "ms": 1000, "us": 1_000_000}[kind.unit]
+    t = [beyond, *(per_s * i for i in range(1, n))]
+    rows = {"t": pa.array(t, pa.int64()).cast(kind), "id": ["a"] * n, "x": [10.0 * i for i in range(n)]}
+    rows |= dict.fromkeys(("y", "yaw", "vy"), [0.0] * n) | {"vx": [10.0] * n}
+    pq.write_table(pa.table(rows), tmp_path / "d.parquet")
+    trace = read(tmp_path / "d.parquet", mapping=mapping(tmp_path))
+    assert [row["t_ns"] for row in states(trace)] == [i * 10**9 for i in range(1, n)]
+    assert quality(trace)["dropped_row"]["n"] == 1
+
+
 def test_a_shipped_mapping_is_found_by_its_columns(tmp_path: Path) -> None:
     names = "total_nanos,idx,x,y,z,yaw,vel_x,vel_y,acc_x,acc_y,length,width,height,type,subtype"
     lines = [names, *(f"{i * 50_000_000},0,{i},0,0,0,20,0,0,0,4,2,1,2,4" for i in range(30))]

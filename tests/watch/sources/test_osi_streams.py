@@ -324,7 +324,7 @@ def test_an_error_of_the_thread_reaches_who_reads() -> None:
 
 @pytest.mark.parametrize("name", ["log.csv", "ftp://a:1", "tcp://a", "udp://a:b", "tcp://a:1/b", "x-"])
 def test_an_unknown_name(tmp_path: Path, name: str) -> None:
-    with pytest.raises(UsageError, match=r"give (tcp|a host)"):
+    with pytest.raises(UsageError, match=r"(use tcp|write a host)"):
         open_source(name, tmp_path, idle_s=None)
 
 

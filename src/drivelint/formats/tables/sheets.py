@@ -224,15 +224,14 @@ class ParquetSheet:
     def time(self, name: str, unit: str) -> tuple[Times, Mask]:
         """Return nanoseconds; a column of time stamps or durations knows its own unit."""
         column = self._column(name)
-        if pa.types.is_timestamp(column.type):
-            column, unit = column.cast(pa.timestamp("ns", column.type.tz)).cast(pa.int64()), "ns"
-        elif pa.types.is_duration(column.type):
-            column, unit = column.cast(pa.duration("ns")).cast(pa.int64()), "ns"
+        if pa.types.is_timestamp(column.type) or pa.types.is_duration(column.type):
+            column, unit = column.cast(pa.int64()), column.type.unit
         if not pa.types.is_integer(column.type):
             return _nanoseconds(*self.number(name), factor=TIME_UNITS[unit])
         whole = pc.fill_null(column.cast(pa.int64(), safe=False), 0).to_numpy(zero_copy_only=False)
         factor = TIME_UNITS[unit]
-        beyond = np.abs(whole) > int(MAX_NS) // factor
+        most = int(MAX_NS) // factor
+        beyond = (whole > most) | (whole < -most)  # the least integer has no absolute value
         return np.where(beyond, 0, whole) * factor, beyond | column.is_null().to_numpy(zero_copy_only=False)
 
     def describe_rows(self, rows: Indices) -> str:
