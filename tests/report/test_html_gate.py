@@ -70,11 +70,14 @@ def test_each_finding_says_how_it_stands(gated: Result) -> None:
     gate = gated.gate
     assert gate is not None
     rows = gated.findings.to_pylist()
-    n = {kind: len(one_per_event(r for r in rows if gate.standing(r["finding_id"]) == kind)) for kind in told}
-    assert n["new"] < told["new"], "one overtake under several profiles"
-    assert f"{n['new']} new, {n['known']} known, {n['waived']} waived." in parsed.text
-    assert f": {n['new']} new (" in parsed.text.partition("Skip to")[2]
-    assert f"{len(rows)} rows, {sum(n.values())} findings: an overtake under two profiles counts once." in parsed.text
+    n_events = {kind: len(one_per_event(r for r in rows if gate.standing(r["finding_id"]) == kind)) for kind in told}
+    assert n_events["new"] < told["new"], "one overtake under several profiles"
+    assert f"{n_events['new']} new, {n_events['known']} known, {n_events['waived']} waived." in parsed.text
+    assert f": {n_events['new']} new (" in parsed.text.partition("Skip to")[2]
+    assert (
+        f"{len(rows)} rows, {sum(n_events.values())} findings: an overtake under two profiles counts once."
+        in parsed.text
+    )
     assert "waived until 2027-01-31 by jo@example.org: a prop of the track" in parsed.text
 
 
