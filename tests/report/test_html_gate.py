@@ -63,8 +63,8 @@ def test_each_finding_says_how_it_stands(gated: Result) -> None:
     parsed = Parsed(text)
     for part in ("findings", "drives"):
         section = text.partition(f'id="{part}"')[2].partition("</section>")[0]
-        for kind, n in told.items():
-            assert section.count(f'class="stands st-{kind}"') == n, "once in the table, once at its moment"
+        for kind, n_rows in told.items():
+            assert section.count(f'class="stands st-{kind}"') == n_rows, "once in the table, once at its moment"
     assert 'class="stands st-new"' in text.partition('id="worst"')[2].partition("</section>")[0]
     assert 'class="stands st-new"' in text.partition('id="story"')[2].partition("</section>")[0]
     gate = gated.gate
