@@ -20,7 +20,7 @@ def summary_text(
     code: ExitCode,
     gate: Iterable[str] = (),
     *,
-    fail_on: str = "never",
+    fail_on: str = "critical",
     why: str = "",
 ) -> str:
     """Return the lines: drives, findings by severity, broken rules, unknowns, what was not judged, the gate, and what to do next.

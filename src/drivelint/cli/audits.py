@@ -210,7 +210,7 @@ def merge(
     with bar(False) as progress:
         counted = run_interruptible(lambda: merged(dest, progress, delta))
     code = counted.exit_code("never", strict=False)
-    typer.echo(inert(summary_text(counted, dest, code)))
+    typer.echo(inert(summary_text(counted, dest, code, fail_on="never")))
     raise typer.Exit(int(code))
 
 
