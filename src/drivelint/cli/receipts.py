@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.cli.restart import DEAF_RULES_VARIABLE
 from drivelint.memo import cache_folder
+from drivelint.own_files import written_files
 from drivelint.receipts import store
 from drivelint.receipts.program import question_sha256
 from drivelint.receipts.recorder import Recorder, recording
@@ -142,11 +143,7 @@ class CheckReceipts:
             return
         day = self._day if gate is not None and gate.waivers else None
         with suppress(OSError):
-            names = (
-                []
-                if self._out is None
-                else sorted(folder.written_files(self._out), key=lambda name: (name == MARK, name))
-            )
+            names = [] if self._out is None else sorted(written_files(self._out), key=lambda name: (name == MARK, name))
             sizes = {name: (self._out / name).stat().st_size for name in names} if self._out else {}
             receipt = store.Receipt(inputs, stdout, result.notes, exit_code, day, sizes, grown_files)
             store.keep(self._key, receipt, self._out)

@@ -11,7 +11,7 @@ from drivelint.drive.trace import QualityFinding
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.bag_folder import METADATA_FILE, METADATA_ROOT, is_bag
 from drivelint.formats.mcap.reader import Container
-from drivelint.formats.mcap.summary import read_index
+from drivelint.formats.mcap.summary import Summary, read_index
 from drivelint.formats.ros2.messages import DETECTIONS, MESSAGES, ODOMETRY_ROLE, ROAD_USERS
 from drivelint.formats.ros2.types import message_kind
 from drivelint.receipts.events import looked_for
@@ -142,10 +142,10 @@ def topics(path: Path) -> dict[str, str]:
     """Return topic -> kind of its messages, as `message_kind` names it, of a drive's log. Errors: `TraceError` for a damaged file."""
     found = {}
     for file in mcap_files(path):
-        part = read_index(file)
+        part: Summary | Container = read_index(file)
         if not part.channels:
-            part = Container(file, salvage=True)
-            for _ in part.packets():
+            part = container = Container(file, salvage=True)
+            for _ in container.packets():
                 pass
         for channel in part.channels.values():
             schema = part.schemas.get(channel.schema_id)
