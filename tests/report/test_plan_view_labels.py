@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from drivelint.report.html import plan_view
+from drivelint.result.text import brief_id
 
 if TYPE_CHECKING:
     from drivelint.result.text import Row
@@ -17,11 +18,11 @@ def actors(*names: str) -> list[Row]:
 def test_short_names_are_all_shown() -> None:
     rows = actors("ego", *(f"car {n}" for n in range(20)))
     assert plan_view._labelled(rows, rows[0], rows[3:4]) == rows
-    assert plan_view._brief("truck 12") == "truck 12"
+    assert brief_id("truck 12") == "truck 12"
 
 
 def test_of_long_ids_those_concerned_and_the_nearest() -> None:
     rows = actors("ego", *(f"a34b697e-b881-471a-8da0-{n:012}" for n in range(20)))
     shown = plan_view._labelled(rows, rows[0], rows[15:16])
     assert shown == [rows[0], rows[15], *rows[1:6]]
-    assert plan_view._brief(rows[1]["actor_id"]) == "a34b697e…"
+    assert brief_id(rows[1]["actor_id"]) == "a34b697e…"
