@@ -19,6 +19,8 @@ from tests.shared_data import shared
 if TYPE_CHECKING:
     import pyarrow as pa
 
+pytestmark = pytest.mark.ci
+
 Target = Literal["mcap", "parquet"]
 TO: tuple[Target, ...] = ("mcap", "parquet")
 TABLES = ("actor", "actor_state", "signal_state", "declared_event")

@@ -13,6 +13,8 @@ from tests.faults.bad_logs import BAD_LOGS, BadLog
 if TYPE_CHECKING:
     from pathlib import Path
 
+pytestmark = pytest.mark.ci
+
 RULES = "ukhc.no-collision"
 
 

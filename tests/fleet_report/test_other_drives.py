@@ -23,6 +23,8 @@ from tests.fleet import audits
 from tests.fleet.audits import ego_drive, found, said
 from tests.report.synthetic import rule
 
+pytestmark = pytest.mark.ci
+
 RULES = [rule(name, profiles=[]) for name in ("follow", "overtake", "silent", "still")]
 N = {"r1": (2, 22), "r2": (17, 24)}
 """Release -> failed overtakes, and all of them."""

@@ -19,6 +19,8 @@ from tests.shared_data import shared
 if TYPE_CHECKING:
     from drivelint.road.map_reader import MapTables
 
+pytestmark = pytest.mark.ci
+
 # file, handedness and where it is from, roads, lanelets, links
 MAPS = {
     "maps/Town10HD.xodr": ("rht", "junctions", 108, 401, 339),

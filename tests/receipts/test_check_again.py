@@ -33,6 +33,8 @@ if TYPE_CHECKING:
     from drivelint.engine.interruption import Interruption
     from drivelint.result.model import Result
 
+pytestmark = pytest.mark.ci
+
 RULE = "ukhc/r162.safe-distance-ahead.sql"
 WAIVER = '[[waiver]]\nrule = "{}"\nreason = "ticket 17"\nowner = "jo"\nexpires = 2099-03-31\n'
 ARGUMENTS = (

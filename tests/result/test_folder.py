@@ -16,6 +16,8 @@ from drivelint.result.names import MANIFEST
 from drivelint.result.publishing import OutputError
 from tests.report.synthetic import drive, result, verdict
 
+pytestmark = pytest.mark.ci
+
 
 def checked(out: Path, *drives: str, overwrite: bool = False, **grown: bytes) -> None:
     """Write what a run of these drives would, each with its annotated log; `grown`: other files that grew during the run."""

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
     import duckdb
 
+pytestmark = pytest.mark.ci
+
 FIXTURES = [
     f"fixtures/scenes/{name}.xodr" for name in ("exit-road", "overtake-at-junction", "overtake-on-bend", "clean-drive")
 ]

@@ -20,6 +20,8 @@ from drivelint.formats.scenarionet.ego_clock import timed_track
 from tests.formats.logs import actors, log, read
 from tests.shared_data import shared
 
+pytestmark = pytest.mark.ci
+
 FOLDER = "perception/scenarionet"
 NUSCENES = ("sd_nuscenes_v1.0-mini_scene-0553", "sd_nuscenes_v1.0-mini_scene-1077", "sd_nuscenes_v1.0-mini_scene-1094")
 WAYMO = "sd_waymo_v1.2_eb4b91b10ca94ff2"
