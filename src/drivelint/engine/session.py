@@ -106,7 +106,6 @@ class JudgingSession:
         self._seen: set[str] = set()
         self._maps: frozenset[str] = frozenset()
         self._kept_maps: set[str] = set()
-        self._has_map_rows = False
         self._margins = MarginFile(out / ".margins.parquet") if margins and out else None
         self._kept = out / "drivelint.duckdb" if keep_db and out else None
         if self._kept:
@@ -253,9 +252,8 @@ class JudgingSession:
         environments = {d.environment.environment_id: d.environment for d in drives if d.environment}
         if not environments.keys() <= self._maps:
             self._maps = frozenset()  # until the new ones are whole: a failure here must not leave half a map behind
-            if self._has_map_rows:
-                self._con.execute(";".join(f"DELETE FROM {table}" for table in store.tables_of_lifetime("map")))
-            self._has_map_rows = True
+            # an earlier session may have left its map in the database
+            self._con.execute(";".join(f"DELETE FROM {table}" for table in store.tables_of_lifetime("map")))
             for id_, environment in sorted(environments.items()):
                 known = self._con.execute("FROM environment WHERE environment_id = ?", [id_]).fetchone() is not None
                 for table, rows in environment.tables.items():
