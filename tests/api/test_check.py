@@ -89,7 +89,7 @@ def test_evidence_is_a_pack_of_the_result(drives: Path, tmp_path: Path) -> None:
     told = verify(VerifyRequest(pack, traces=(drives / "safe.mcap",), map=drives / "road.xodr"))
     assert told.problems == []
     assert "1 drive judged again" in told.sentence
-    with pytest.raises(drivelint.DriveLintError, match="give out=, too"):
+    with pytest.raises(drivelint.DriveLintError, match="use out=, too"):
         drivelint.check(drives / "safe.mcap", **asked, evidence=tmp_path / "none")
 
 

@@ -40,7 +40,7 @@ def test_findings_where_not_all_was_judged_do_not_look_like_none() -> None:
     assert none.xpath(".//*[contains(@class, 'none')]")
     assert not partly.xpath(".//*[contains(@class, 'none')]")
     assert partly.xpath(".//rect[@class='open']")
-    assert "at least 0.121 over all" in partly.text_content()
+    assert "at least 0.121over all" in partly.text_content()
     in_rates = told.row("//div[contains(@class, 'rate-table')]", "z-contact")
     assert not in_rates.xpath(".//*[contains(@class, 'none')]")
     assert re.search(r"z-contact.*at least 0\.0807 over all", told.markdown), (

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import shlex
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from lxml import html
 from drivelint.fleet_report import content as content_
 from drivelint.fleet_report import page
 from drivelint.fleet_report.audit_views import open_audits
+from drivelint.result.counts import SEVERITIES
 from tests.audit import fleet
 from tests.audit.here import judged
 from tests.fleet_report import lake
@@ -123,10 +125,10 @@ def test_tags_have_a_table_per_rule_and_rare_values_are_counted(written: Any, fi
     assert len(rows(vehicle)) == 12
     assert "85 values of vehicle are left out" in " ".join(vehicle.text_content().split())
     n = sum(int(row["findings"].split()[0].replace(",", "")) for row in rows(site))
-    most = max(
-        table(filled.folder, "findings")["rule_id"].count(rule)
-        for rule in set(table(filled.folder, "findings")["rule_id"])
-    )
+    found = list(zip(*(table(filled.folder, "findings")[name] for name in ("rule_id", "severity")), strict=True))
+    # the gravest rule stands first; of several, the one with the most findings
+    gravest, most = max(Counter(found).items(), key=lambda each: (-SEVERITIES.index(each[0][1]), each[1]))
+    assert gravest[1] == SEVERITIES[0]
     assert n == most
 
 

@@ -22,7 +22,7 @@ CaseOf = Callable[[str], "Case"]
 @pytest.fixture(scope="session")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("incidents")
-    check(out, rules=("ukhc",), params=())
+    check(out, rules=("ukhc", "ukhc.r112.horn", "ukhc.r113.headlights"), params=())
     return out
 
 

@@ -209,7 +209,7 @@ def test_tables_that_their_summary_does_not_fit_are_not_packed(packed: PackedAud
     with pytest.raises(UsageError, match=r"summary\.json: was changed since drivelint audit wrote it"):
         make_pack(audit, tmp_path / "pack")
     (audit / MANIFEST).unlink()
-    with pytest.raises(UsageError, match=r"has ended, and files\.json.* is not there"):
+    with pytest.raises(UsageError, match=r"has ended, and files\.json.* is missing"):
         make_pack(audit, tmp_path / "pack")
 
 
