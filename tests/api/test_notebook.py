@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import os
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -24,11 +25,17 @@ PROGRAMS = {block.argument: block.body for block in blocks(FOLDER / "python.md")
 def run(folder: Path, *cells: str, allow_errors: bool = False) -> list[list[dict[str, Any]]]:
     """Run the cells in a new notebook; return the outputs of each. With `allow_errors`, a cell may raise an error."""
     notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(cell) for cell in cells])
+    execute(notebook, folder, allow_errors=allow_errors)
+    return [cell.outputs for cell in notebook.cells]
+
+
+def execute(notebook: Any, folder: Path, *, allow_errors: bool = False) -> None:
+    """Run all cells of a notebook in a folder, in a kernel of its own that finds this drivelint first."""
     path = os.pathsep.join([str(ROOT / "src"), os.environ.get("PYTHONPATH", "")])
+    commands = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
     where = {"metadata": {"path": str(folder)}}
     client = nbclient.NotebookClient(notebook, timeout=120, resources=where, allow_errors=allow_errors)
-    client.execute(env={**os.environ, "PYTHONPATH": path})
-    return [cell.outputs for cell in notebook.cells]
+    client.execute(env={**os.environ, "PYTHONPATH": path, "PATH": commands})
 
 
 def streams(outputs: list[dict[str, Any]]) -> dict[str, str]:
@@ -93,3 +100,21 @@ def test_an_error_is_a_line_and_its_traceback_is_there(folder: Path) -> None:
     assert error["traceback"][0].startswith("Traceback (most recent call last)")
     assert "drivelint.check('nowhere.mcap')" in "".join(error["traceback"])
     assert error["traceback"][-1].endswith(f"{line}\n")
+
+
+@pytest.mark.ci
+def test_the_notebook_of_the_fixtures_runs_in_an_empty_folder(tmp_path: Path) -> None:
+    """It has an audit too: DuckDB 1.5.5 refuses to turn its progress bar off in a notebook without ipywidgets."""
+    pytest.importorskip("matplotlib", reason="matplotlib is not installed (pip install matplotlib)")
+    notebook = nbformat.read(ROOT / "fixtures" / "notebooks" / "first-steps.ipynb", 4)
+    nbformat.validate(notebook)
+    assert not any(cell.get("outputs") for cell in notebook.cells), "it is kept without outputs"
+    execute(notebook, tmp_path)
+    outputs = {cell.id: cell.outputs for cell in notebook.cells if cell.cell_type == "code"}
+    assert "FAIL 1 critical" in outputs["check"][0]["data"]["text/html"]
+    assert "&lt;svg" in outputs["timeline"][0]["data"]["text/html"]
+    assert "ukhc.r162.safe-distance-ahead" in streams(outputs["explain"])["stdout"]
+    assert "6 judged" in streams(outputs["audit"])["stdout"]
+    (rates,) = outputs["rates"]
+    assert "ukhc.contact-signature" in rates["data"]["text/html"]
+    assert any("image/png" in each.get("data", {}) for each in outputs["plot"])
