@@ -21,8 +21,9 @@ from drivelint.audit.driver import empty_rows
 from drivelint.audit.model import Receipt, digest
 from drivelint.audit.worker import TABLES, batch_name, receipt_name
 from drivelint.errors import DriveLintError, UsageError
+from drivelint.sql import progress_bar
 from drivelint.sql.statements import statement
-from drivelint.sql.store import quoted, without_progress_bar
+from drivelint.sql.store import quoted
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -104,7 +105,7 @@ def database() -> Iterator[duckdb.DuckDBPyConnection]:
     with TemporaryDirectory(prefix="drivelint-audit-") as spill, duckdb.connect() as con:
         con.execute(f"SET memory_limit='{MEMORY}'")
         con.execute("SET temp_directory=?", [spill])
-        without_progress_bar(con)
+        progress_bar.turn_off(con)
         con.execute("SET python_enable_replacements=false")
         yield con
 

@@ -170,6 +170,7 @@ app.command()(packs.verify)
 app.command()(audits.audit)
 app.command()(audits.merge)
 app.command()(audits.sql)
+app.command()(fleets.trend)
 app.command("what-if")(fleets.what_if)
 app.command("docs")(docs_.docs)
 

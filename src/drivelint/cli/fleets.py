@@ -1,8 +1,8 @@
-"""The commands that read whole audits: `report` and `diff` for a folder that `audit --out` wrote, and `what-if`."""
+"""The commands that read whole audits: `report` and `diff` for a folder that `audit --out` wrote, `trend` and `what-if`."""
 
 from __future__ import annotations
 
-from pathlib import Path  # noqa: TC003 - Typer looks the annotations up
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -96,6 +96,32 @@ def what_if(
     asked = run_interruptible(lambda: ask_what_if(destination(dest), setting, by))
     typer.echo(inert_json(to_json(asked)) if format_ == "json" else inert(to_text(asked)))
     raise typer.Exit(int(asked.exit_code))
+
+
+def trend(
+    dests: Annotated[list[str], argument("DEST", "The folders that audit --out wrote, in the order of time.")],
+    format_: Annotated[options.DiffFormat, option("--format", None, "Format of the output on stdout.")] = "text",
+) -> None:
+    """Compare the rates of several audits, for example one a month: which rules rise or fall by more than chance explains.
+
+    A log that several audits have counts in the first of them only, so a growing audit gives its additions.
+
+    Exit codes: 0; 2 usage error; 4 an audit has not ended, or no rule has a rate to compare. Findings do not change it.
+    """
+    from drivelint.fleet_report.audit_views import destination
+    from drivelint.fleet_report.trend import audit_trend, to_json, to_text
+
+    def warn(warning: str) -> None:
+        typer.echo(f"drivelint: {inert_line(warning)}", err=True)
+
+    found = run_interruptible(lambda: audit_trend([destination(Path(dest)) for dest in dests], warn))
+    if format_ == "json":
+        typer.echo(inert_json(to_json(found)))
+    elif format_ == "markdown":
+        typer.echo(to_text(found, markdown=True))
+    else:
+        typer.echo(inert(to_text(found)))
+    raise typer.Exit(int(found.exit_code))
 
 
 def _warn(audit: Audit) -> None:

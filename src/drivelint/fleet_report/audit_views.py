@@ -8,16 +8,19 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final
 
+import pyarrow as pa
+
 from drivelint.audit.bucket import as_url
 from drivelint.audit.compact import database
 from drivelint.audit.run import AUDIT_FILE, told_of
 from drivelint.audit.sealed import require_as_written
 from drivelint.audit.store import open_store
 from drivelint.audit.unpacked import views_of_all
+from drivelint.audit.worker import TABLES
 from drivelint.errors import UsageError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     import duckdb
 
@@ -26,6 +29,9 @@ if TYPE_CHECKING:
 
 BASE: Final = "base_"
 """What the names of the views of the earlier audit begin with; those of the other begin with nothing."""
+
+
+_WHOLE: Final = "whole_"
 
 
 @dataclass(frozen=True)
@@ -84,6 +90,25 @@ def open_audits(dest: str, base: str | None = None) -> Iterator[tuple[duckdb.Duc
     with database() as con, TemporaryDirectory(prefix="drivelint-views-") as home:
         audit = _open(con, dest, Path(home) / "new", "")
         yield con, audit, None if base is None else _open(con, base, Path(home) / "base", BASE)
+
+
+@contextmanager
+def opened_without(dest: str, sha256s: Sequence[str]) -> Iterator[tuple[duckdb.DuckDBPyConnection, Audit, int]]:
+    """Open an audit without the logs that have one of these hashes; also yield how many of its drives are left out.
+
+    Errors: as `open_audits`.
+    """
+    with database() as con, TemporaryDirectory(prefix="drivelint-views-") as home:
+        audit = _open(con, dest, Path(home) / "new", _WHOLE)
+        con.register("left_out_log", pa.table({"sha256": pa.array(sha256s, pa.string())}))
+        con.execute(
+            f"CREATE TEMP TABLE own_key AS SELECT key FROM {_WHOLE}drives ANTI JOIN left_out_log USING (sha256)"
+        )
+        for table in (*TABLES, "receipts"):
+            con.execute(f"CREATE TEMP VIEW {table} AS FROM {_WHOLE}{table} SEMI JOIN own_key USING (key)")
+        con.execute(f"CREATE TEMP VIEW rules AS FROM {_WHOLE}rules")
+        (n,) = con.execute(f"SELECT count(*) FROM {_WHOLE}drives ANTI JOIN own_key USING (key)").fetchall()[0]
+        yield con, audit, n
 
 
 @contextmanager

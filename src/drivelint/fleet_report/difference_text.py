@@ -21,6 +21,7 @@ from drivelint.result.text_templates import text_template
 if TYPE_CHECKING:
     from drivelint.fleet.coverage import RuleCoverage
     from drivelint.fleet.rate_change import RateChange, RateTest
+    from drivelint.fleet.trend import Trend
     from drivelint.fleet_report.difference import AuditDifference
 
 AUDIT_DIFF_SCHEMA: Final = 1
@@ -30,7 +31,7 @@ JSON_ENTRIES: Final = 1_000
 """Findings of each standing that the JSON has."""
 
 
-def rate_name(of: RateChange | RuleCoverage) -> str:
+def rate_name(of: RateChange | RuleCoverage | Trend) -> str:
     """Return rule and profile."""
     return of.rule_id if of.profile is None else f"{of.rule_id} [{of.profile}]"
 
@@ -139,7 +140,7 @@ def to_text(difference: AuditDifference, fail_on: str | None, *, markdown: bool 
         "escaped": escaped,
         "code": code,
     }
-    name = "difference.md.j2" if markdown else "difference.txt.j2"
+    name = f"templates/difference.{'md' if markdown else 'txt'}.j2"
     text = text_template(__file__, name, None if markdown else _one_line, **filters).render(
         diff=difference,
         verdicts=VERDICTS,

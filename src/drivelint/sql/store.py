@@ -13,7 +13,7 @@ import duckdb
 
 from drivelint.errors import DriveLintError, MemoryShortError
 from drivelint.resources import folder
-from drivelint.sql import words
+from drivelint.sql import progress_bar, words
 from drivelint.sql.kept_schemas import kept_schemas
 from drivelint.sql.statements import texts
 from drivelint.temporary import temporary_folder
@@ -55,7 +55,7 @@ def connect(
     con = open_as_is(path)
     con.execute("SET allow_community_extensions=false")
     con.execute("SET GLOBAL python_enable_replacements=false")  # for its cursors too
-    without_progress_bar(con)
+    progress_bar.turn_off(con)
     con.execute("SET preserve_insertion_order=false")
     if path is None:
         # there is nothing to write down, but a checkpoint packs the tables anew: a tenth of the time to derive them
@@ -70,13 +70,6 @@ def connect(
         create_tables(con, comments=path is not None)
         create_macros(con)
     return con
-
-
-def without_progress_bar(con: duckdb.DuckDBPyConnection) -> None:
-    """Turn off DuckDB's own progress bar, which it turns on in notebooks."""
-    if con.execute("SELECT current_setting('enable_progress_bar')").fetchall()[0][0]:
-        # Not unless it is on: DuckDB 1.5.5 refuses the statement in a notebook without ipywidgets.
-        con.execute("SET enable_progress_bar=false")
 
 
 @contextmanager

@@ -1,0 +1,224 @@
+"""`drivelint trend`: the rates of several audits beside each other, in the order of time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import msgspec
+
+from drivelint.errors import ExitCode, UsageError
+from drivelint.fleet.distinct_logs import COUNTED_PREFIX, create_counted_views
+from drivelint.fleet.rates import rates
+from drivelint.fleet.trend import Trend, trends
+from drivelint.fleet_report.audit_views import opened_without
+from drivelint.fleet_report.difference_text import rate_name
+from drivelint.fleet_report.figures import figure
+from drivelint.fleet_report.rows import one_per_event, rows
+from drivelint.phrases import one_line, plural
+from drivelint.report.markdown import code, escaped
+from drivelint.result.counts import SEVERITIES
+from drivelint.result.text import NO_VALUE, finite
+from drivelint.result.text_templates import text_template
+from drivelint.sql.statements import statement
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    import duckdb
+
+    from drivelint.fleet.rates import Rate
+
+TREND_SCHEMA: Final = 1
+"""Version of the JSON: raised when a key changes its meaning or is removed."""
+
+
+class AuditTotals(NamedTuple):
+    """The counts of an audit without the logs that an earlier audit has. `n_left_out`: drives of such logs.
+
+    `findings`: severity -> events. `warning`: why the counts are not complete; empty: they are.
+    """
+
+    name: str
+    n_drives: int
+    n_judged: int
+    km: float
+    hours: float
+    findings: dict[str, int]
+    n_left_out: int
+    warning: str
+
+
+@dataclass(frozen=True)
+class AuditTrend:
+    """Several audits in the order of time. `trends`: of the rules with a finding, those nearest to a trend first."""
+
+    audits: list[AuditTotals]
+    trends: list[Trend]
+    n_rules_without_findings: int
+    n_tests: int
+
+    @property
+    def called_trends(self) -> list[Trend]:
+        """The rules whose rate rises or falls by more than chance explains."""
+        return [each for each in self.trends if each.is_called]
+
+    @property
+    def headline(self) -> str:
+        """What the tests found, in one sentence."""
+        if not self.n_tests:
+            return "no rule has a finding and a rate in two of the audits: there is nothing to compare"
+        parts = [f"{rate_name(each)} {direction(each)}" for each in self.called_trends]
+        changes = ", ".join(parts) if parts else "no rate rises or falls"
+        return f"{changes} by more than chance explains ({plural(self.n_tests, 'test')}, Holm's correction)"
+
+    @property
+    def exit_code(self) -> ExitCode:
+        """NOT_JUDGED if an audit has not ended, or if there is no rate to compare; else OK. A trend is a fact and no failure."""
+        return ExitCode.NOT_JUDGED if not self.n_tests or any(each.warning for each in self.audits) else ExitCode.OK
+
+
+def audit_trend(dests: Sequence[str], warn: Callable[[str], None]) -> AuditTrend:
+    """Return the trend of several audits. A log that several audits have counts in the first of them.
+
+    `warn`: called with a sentence for each audit that has not ended. Errors: `UsageError` for fewer than two audits, or where no audit is.
+    """
+    if len(dests) < 2:
+        raise UsageError("a trend needs two audits or more, in the order of time")
+    totals: list[AuditTotals] = []
+    rates_by_audit: list[list[Rate]] = []
+    known: list[str] = []
+    for dest in dests:
+        with opened_without(dest, known) as (con, audit, n_left_out):
+            if audit.warning:
+                warn(audit.warning)
+            totals.append(_totals(con, audit.name, n_left_out, audit.warning))
+            rates_by_audit.append(rates(con))
+            hashes = con.execute("SELECT DISTINCT sha256 FROM drives WHERE sha256 IS NOT NULL ORDER BY ALL").fetchall()
+            known += [sha256 for (sha256,) in hashes]
+    found = trends(rates_by_audit)
+    with_findings = [
+        each for each in found if any(rate and rate.findings + rate.findings_of_unknown for rate in each.rates)
+    ]
+    return AuditTrend(
+        totals,
+        sorted(with_findings, key=_nearest_first),
+        len(found) - len(with_findings),
+        sum(each.corrected is not None for each in found),
+    )
+
+
+def direction(trend: Trend) -> str:
+    """Return whether a rate rises or falls, as a verb."""
+    return "rises" if trend.is_rising else "falls"
+
+
+def _totals(con: duckdb.DuckDBPyConnection, name: str, n_left_out: int, warning: str) -> AuditTotals:
+    create_counted_views(con)
+    (of,) = con.execute(statement("fleet/totals")).to_arrow_table().to_pylist()
+    by_severity = {
+        row["severity"]: row["findings"] for row in rows(con, "severities", event=one_per_event(COUNTED_PREFIX))
+    }
+    findings = {severity: by_severity.get(severity, 0) for severity in SEVERITIES}
+    return AuditTotals(name, of["drives"], of["judged"], of["km"], of["hours"], findings, n_left_out, warning)
+
+
+def _nearest_first(trend: Trend) -> tuple[bool, float, int, str, str]:
+    chance = trend.p_value
+    return chance is None, chance or 0.0, -trend.n_findings, trend.rule_id, trend.profile or ""
+
+
+def rate_text(rate: Rate | None) -> str:
+    """Return findings per 100 km and their number; those of egos that were not wholly judged after a plus."""
+    if rate is None or rate.per_100km.rate is None:
+        return NO_VALUE
+    more = f"+{rate.findings_of_unknown}" if rate.findings_of_unknown else ""
+    return f"{figure(rate.per_100km.rate)} ({rate.findings}{more})"
+
+
+def trend_text(trend: Trend) -> str:
+    """Return the result of the test of a rule: its direction if it is called, p and the corrected p."""
+    if trend.p_value is None or trend.corrected is None:
+        return "no test"
+    word = direction(trend) if trend.is_called else "no trend"
+    return f"{word}, p {figure(trend.p_value)}, corrected {figure(trend.corrected)}"
+
+
+def to_text(trend: AuditTrend, *, markdown: bool = False) -> str:
+    """Return a trend as text for a person, or as Markdown."""
+    filters: dict[str, Any] = {
+        "figure": figure,
+        "rate_name": rate_name,
+        "rate_text": rate_text,
+        "trend_text": trend_text,
+        "escaped": escaped,
+        "code": code,
+    }
+    name = f"templates/trend.{'md' if markdown else 'txt'}.j2"
+    table = None if markdown else _text_table(trend)
+    text = text_template(__file__, name, None, **filters).render(trend=trend, severities=SEVERITIES, table=table)
+    return text.rstrip("\n")
+
+
+def _text_table(trend: AuditTrend) -> dict[str, list[str]]:
+    """Return the lines of both tables of the text, with columns of equal width."""
+    head = ["audit", "drives", "judged", "km", "hours", *SEVERITIES]
+    counts = [
+        [
+            one_line(of.name),
+            str(of.n_drives),
+            str(of.n_judged),
+            figure(of.km),
+            figure(of.hours),
+            *map(str, of.findings.values()),
+        ]
+        for of in trend.audits
+    ]
+    names = ["rule", *(one_line(of.name) for of in trend.audits), "trend"]
+    lines = [[rate_name(each), *map(rate_text, each.rates), trend_text(each)] for each in trend.trends]
+    return {"audits": _aligned([head, *counts]), "rules": _aligned([names, *lines])}
+
+
+def _aligned(cells: list[list[str]]) -> list[str]:
+    """Return one line per row: the first column on the left, the others on the right."""
+    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+    return [
+        "  ".join(
+            cell.ljust(width) if n == 0 else cell.rjust(width)
+            for n, (cell, width) in enumerate(zip(row, widths, strict=True))
+        )
+        for row in cells
+    ]
+
+
+def to_json(trend: AuditTrend) -> str:
+    """Return a trend as JSON: the counts of each audit, and every rule with a finding, its rates and its test."""
+    content = {
+        "trend_schema": TREND_SCHEMA,
+        "exit": {"code": int(trend.exit_code), "why": trend.headline},
+        "audits": [each._asdict() for each in trend.audits],
+        "rules": [
+            {
+                "rule_id": each.rule_id,
+                "profile": each.profile,
+                "p_value": each.p_value,
+                "corrected": each.corrected,
+                "called": each.is_called,
+                "direction": direction(each) if each.is_called else None,
+                "rates": [
+                    rate
+                    and {
+                        "findings": rate.findings,
+                        "findings_of_unknown": rate.findings_of_unknown,
+                        "km": rate.km,
+                        "km_unknown": rate.km_unknown,
+                        "per_100km": rate.per_100km._asdict(),
+                    }
+                    for rate in each.rates
+                ],
+            }
+            for each in trend.trends
+        ],
+        "rules_without_findings": trend.n_rules_without_findings,
+    }
+    return msgspec.json.format(msgspec.json.encode(finite(msgspec.to_builtins(content))), indent=2).decode()

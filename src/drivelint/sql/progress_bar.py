@@ -1,0 +1,14 @@
+"""DuckDB's own progress bar, which it turns on in notebooks."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import duckdb
+
+
+def turn_off(con: duckdb.DuckDBPyConnection) -> None:
+    """Turn the bar off if it is on: DuckDB 1.5.5 refuses the statement in a notebook without ipywidgets, where it is off."""
+    if con.execute("SELECT current_setting('enable_progress_bar')").fetchall()[0][0]:
+        con.execute("SET enable_progress_bar=false")
