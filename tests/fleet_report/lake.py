@@ -79,8 +79,13 @@ def write(folder: Path, n_drives: int, seed: int = 0, settings: JudgeSettings | 
             path = folder / "tables" / name / f"{first:08d}.parquet"
             path.parent.mkdir(parents=True, exist_ok=True)
             pq.write_table(rows, path, compression="zstd")
-    seal(LocalFolder(folder), [AUDIT_FILE, RULES_FILE], json.dumps({"digest": f"{seed:064d}"}).encode())
+    seal_anew(folder, seed)
     return Lake(folder, n_drives, n_lost, n_findings, worst[0])
+
+
+def seal_anew(folder: Path, seed: int = 0) -> None:
+    """List the files of an audit as they are, as after its end."""
+    seal(LocalFolder(folder), [AUDIT_FILE, RULES_FILE], json.dumps({"digest": f"{seed:064d}"}).encode())
 
 
 def _chunk(rng: np.random.Generator, numbers: Any, rules: list[Row], seed: int) -> tuple[dict[str, pa.Table], _Drives]:

@@ -17,7 +17,7 @@ from drivelint.audit.compact import RECEIPT_SCHEMA
 from drivelint.audit.store import LocalFolder
 from drivelint.audit.unpacked import Standing
 from drivelint.fleet_report import content as content_
-from drivelint.fleet_report import drive_pages
+from drivelint.fleet_report import drive_pages, moment_pages
 from drivelint.fleet_report.audit_views import Audit, open_audits
 from drivelint.result.counts import one_per_event
 from tests.fleet import audits
@@ -180,6 +180,7 @@ def test_a_report_that_ends_early_leaves_a_list_of_all_that_is_there(
 
     monkeypatch.setattr(drive_pages, "pages", broken)
     monkeypatch.setattr(drive_pages, "choose", lambda *_: [drive_pages.page_name("new")])
+    monkeypatch.setattr(moment_pages, "chosen_drives", lambda *_: [])
     with pytest.raises(RuntimeError):
         ran("report", own_ten)
     monkeypatch.undo()
@@ -315,6 +316,7 @@ def test_the_baseline_leads_to_the_pages(lake_copy: Path, tmp_path: Path) -> Non
         duckdb.from_arrow(found).filter(f"key <> '{key}'").to_arrow_table(),
         base.folder / "tables" / "findings" / "00000000.parquet",
     )
+    lake.seal_anew(base.folder)
     assert ran("report", lake_copy, "--baseline", base.folder, "--drive-pages", 1).code == 0
     since = parsed(lake_copy / "fleet.html").xpath("//section[@aria-labelledby='since']")[0]
     assert set(since.xpath(".//li/a/@href")) == {drive_pages.page_name(key)}
@@ -325,7 +327,7 @@ def test_the_baseline_leads_to_the_pages(lake_copy: Path, tmp_path: Path) -> Non
     [
         (("--drive-pages", "some"), "write a number such as 100, or all"),
         (("--drive-pages", "-1"), "write a number such as 100, or all"),
-        (("--drive-pages", "5", "--to", "markdown"), "is for --to html"),
+        (("--drive-pages", "5", "--to", "markdown"), "are for --to html"),
     ],
 )
 def test_mistakes_are_told(lake_copy: Path, asked: tuple[str, ...], said: str) -> None:

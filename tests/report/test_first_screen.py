@@ -265,13 +265,14 @@ def test_what_an_earlier_run_left_beside_the_page_is_not_linked(tmp_path: Path) 
     assert (tmp_path / "again" / "report.html").read_bytes() == (tmp_path / "fresh" / "report.html").read_bytes()
 
 
-def test_a_contact_names_the_command_of_its_sheet_and_both_its_times() -> None:
+def test_a_contact_names_the_command_of_its_sheet_and_both_its_times(tmp_path: Path) -> None:
     times = {"t_start_ns": 111 * SECOND, "t_worst_ns": 112 * SECOND, "t_end_ns": 113 * SECOND}
     touch = finding(rule_id="ukhc.no-collision", profile=None, finding_id="abc", unit="m", **times)
     run = result([verdict("fail")], [touch], rules=[rule(), CONTACT])
-    shown = plain(section(page(run), "worst"))
+    shown = plain(section(page(replace(run, folder=tmp_path)), "worst"))
     assert "drivelint report . --incident abc" in shown
     assert "11.00 s (deepest at 12.00 s)" in shown
+    assert "--in ." not in plain(section(page(run), "worst")), "a page beside no result has no command for its folder"
 
 
 def test_a_safe_distance_without_end_is_no_number(overtakes: Result) -> None:

@@ -9,7 +9,7 @@ import typer
 
 from drivelint import option_values
 from drivelint.cli import options  # noqa: TC001 - Typer looks the annotations up
-from drivelint.cli.console import run_interruptible
+from drivelint.cli.console import progress, run_interruptible
 from drivelint.cli.options import argument, option
 from drivelint.errors import UsageError
 from drivelint.phrases import inert, inert_json, inert_line, listed
@@ -20,7 +20,16 @@ if TYPE_CHECKING:
     from drivelint.fleet_report.audit_views import Audit
 
 
-def report_audit(dest: str, to: str, by: Sequence[str], baseline: Path | None, drive_pages: str | None) -> None:
+def report_audit(
+    dest: str,
+    to: str,
+    by: Sequence[str],
+    baseline: Path | None,
+    *,
+    drive_pages: str | None,
+    moments: int | None,
+    quiet: bool,
+) -> None:
     """Write the fleet page of an audit into its folder, and print the name of the page."""
     from drivelint.fleet_report import gated, page
     from drivelint.fleet_report.audit_views import destination
@@ -30,19 +39,22 @@ def report_audit(dest: str, to: str, by: Sequence[str], baseline: Path | None, d
         known = listed([*page.FORMATS, *gated.FORMATS])
         raise UsageError(f"--to {to}: of an audit there are {known}: other formats are of a check")
     if to in gated.FORMATS:
-        if by or baseline is not None or drive_pages is not None:
+        if by or baseline is not None or drive_pages is not None or moments is not None:
             raise UsageError(
-                f"--by, --baseline and --drive-pages are of pages: {to} has the gate of the last drivelint audit"
+                f"--by, --baseline, --drive-pages and --moments are of pages: {to} has the gate of the last drivelint audit"
             )
         name, audit = run_interruptible(lambda: gated.write_report(dest, to))
         _warn(audit)
         typer.echo(inert_line(f"{dest.rstrip('/')}/{name}"))
         return
-    if drive_pages is not None and to != "html":
-        raise UsageError("--drive-pages is for --to html: the other formats are one file")
+    if (drive_pages is not None or moments is not None) and to != "html":
+        raise UsageError("--drive-pages and --moments are for --to html: the other formats are one file")
     most = MOST_DRIVES if drive_pages is None else option_values.parse_number_or_all("--drive-pages", drive_pages)
     base = None if baseline is None else destination(baseline)
-    name, audit = run_interruptible(lambda: page.write(dest, to, tuple(by), base, most))
+    with progress(quiet) as listener:
+        name, audit = run_interruptible(
+            lambda: page.write(dest, to, tuple(by), base, most_drives=most, most_moments=moments, progress=listener)
+        )
     _warn(audit)
     typer.echo(inert_line(f"{dest.rstrip('/')}/{name}"))
 

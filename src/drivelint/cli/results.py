@@ -68,6 +68,17 @@ def report(
             "For an audit, with html: write pages of the N worst drives into its folder drives; 0 for none. Default: 100.",
         ),
     ] = None,
+    moments: Annotated[
+        int | None,
+        option(
+            "--moments",
+            "N",
+            "For an audit, with html: judge the N worst drives again and draw their moments, as the report of a check does. "
+            "Default: 3, without long drives.",
+            min=0,
+        ),
+    ] = None,
+    quiet: options.Quiet = False,
 ) -> None:
     """Write a report of a result into its folder.
 
@@ -82,14 +93,14 @@ def report(
     from drivelint.fleet_report.audit_views import destination, is_audit
 
     of_the_sheet = pdf or trace is not None or map_ is not None
-    of_an_audit = bool(by) or baseline is not None or drive_pages is not None
+    of_an_audit = bool(by) or baseline is not None or drive_pages is not None or moments is not None
     if is_audit(dest := destination(folder)):
         if incident is not None or of_the_sheet or base_url is not None:
             raise UsageError(f"{dest} is an audit: --incident, --pdf, --trace, --map and --base-url are of a check")
-        fleets.report_audit(dest, to, by or (), baseline, drive_pages)
+        fleets.report_audit(dest, to, by or (), baseline, drive_pages=drive_pages, moments=moments, quiet=quiet)
     elif of_an_audit:
         raise UsageError(
-            f"--by, --baseline and --drive-pages are of an audit, and {dest} is none: name the folder of audit --out"
+            f"--by, --baseline, --drive-pages and --moments are of an audit, and {dest} is none: name the folder of audit --out"
         )
     elif incident is not None:
         from drivelint.incident import IncidentRequest

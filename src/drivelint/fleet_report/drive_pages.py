@@ -11,7 +11,8 @@ import re
 import shlex
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from drivelint.audit.bucket import is_url
 from drivelint.fleet_report import figures
@@ -19,6 +20,7 @@ from drivelint.fleet_report.drive_command import check_command
 from drivelint.fleet_report.rows import gravest_first, one_per_event, options_column, ranked, rows
 from drivelint.phrases import plural
 from drivelint.reasons.signals import WHAT_IS_NULL, remedy
+from drivelint.report.html.anchors import anchor
 from drivelint.report.html.environment import page_environment
 from drivelint.result.certainty import doubt
 from drivelint.result.counts import SEVERITIES, VERDICTS, group_rows, rows_sentence
@@ -43,7 +45,18 @@ MAX_NOTES: Final = 40
 """Reasons of unknown verdicts on a page, and notes on the data."""
 _AT_A_TIME: Final = 100
 _PLAIN: Final = re.compile(r"[0-9a-f]{64}")
+_FILE: Final = re.compile(rf"{_PLAIN.pattern}(-moments)?\.html")
 _HERE: Final = Path(__file__).parent
+
+
+class MomentsLink(NamedTuple):
+    """The page with the moments of a drive. `name`: None where there is none, for this `reason`."""
+
+    name: str | None
+    reason: str
+
+
+NO_MOMENTS: Final[Mapping[str, MomentsLink]] = MappingProxyType({})
 
 
 def page_name(key: str) -> str:
@@ -53,9 +66,9 @@ def page_name(key: str) -> str:
 
 
 def is_page_name(name: str) -> bool:
-    """Whether a name is one that `page_name` gives."""
+    """Whether a name is that of a drive's page, or of the page with its moments."""
     folder, _, file = name.rpartition("/")
-    return folder == FOLDER and file.endswith(".html") and _PLAIN.fullmatch(file.removesuffix(".html")) is not None
+    return folder == FOLDER and _FILE.fullmatch(file) is not None
 
 
 def choose(con: duckdb.DuckDBPyConnection, max_drives: int | None) -> list[str]:
@@ -74,8 +87,16 @@ def links(con: duckdb.DuckDBPyConnection, keys: Iterable[str | None]) -> dict[st
     return {key: page_name(key) for (key,) in found.fetchall()}
 
 
-def pages(con: duckdb.DuckDBPyConnection, audit: Audit, rules: Mapping[str, Row]) -> Iterator[tuple[str, bytes]]:
-    """Yield name and content of the page of each chosen drive. `rules`: rule_id -> row of the table `rule`."""
+def pages(
+    con: duckdb.DuckDBPyConnection,
+    audit: Audit,
+    rules: Mapping[str, Row],
+    moments: Mapping[str, MomentsLink] = NO_MOMENTS,
+) -> Iterator[tuple[str, bytes]]:
+    """Yield name and content of the page of each chosen drive.
+
+    `rules`: rule_id -> row of the table `rule`. `moments`: a drive's key -> the page with its moments, of the drives that were tried.
+    """
     con.execute(statement("fleet_report/page_facts", options=options_column(con)))
     con.execute(
         statement("fleet_report/page_findings", gravest_first=gravest_first(), event=one_per_event("paged_")),
@@ -94,7 +115,9 @@ def pages(con: duckdb.DuckDBPyConnection, audit: Audit, rules: Mapping[str, Row]
     }
     for first in range(1, n_pages + 1, _AT_A_TIME):
         for told in _some(con, audit, first, first + _AT_A_TIME - 1):
-            yield page_name(told["drive"]["key"]), template.render(same | told).encode("utf-8", "replace")
+            key = told["drive"]["key"]
+            values = same | told | {"moments": moments.get(key)}
+            yield page_name(key), template.render(values).encode("utf-8", "replace")
 
 
 def _some(con: duckdb.DuckDBPyConnection, audit: Audit, first: int, last: int) -> Iterator[Row]:
@@ -158,5 +181,5 @@ def _environment() -> Environment:
         ("tables.js",), _HERE / "templates", ("fleet.css", "drive.css"), base=("report.css", "narrow.css", "first.css")
     )
     environment.filters |= {"ego_name": ego_name, "figure": figures.figure, "plural": plural}
-    environment.globals["what_is_null"] = WHAT_IS_NULL
+    environment.globals |= {"what_is_null": WHAT_IS_NULL, "anchor": anchor}
     return environment

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.audit.bucket import is_url
 from drivelint.fleet.coverage import STANDINGS
-from drivelint.fleet_report import drive_pages, figures, page_files
+from drivelint.fleet_report import drive_pages, figures, moment_pages, page_files
 from drivelint.fleet_report.audit_views import open_audits
 from drivelint.fleet_report.content import FleetContent, content
 from drivelint.fleet_report.difference_text import rate_line, rate_name, rate_sides, since, times
@@ -19,6 +19,7 @@ from drivelint.phrases import plural
 from drivelint.reasons.signals import WHAT_IS_NULL, how_to_provide, remedy
 from drivelint.report.html.environment import page_environment
 from drivelint.report.markdown import code, escaped
+from drivelint.report.progress import Silent
 from drivelint.result.counts import SEVERITIES, VERDICTS
 from drivelint.result.text_templates import text_template
 
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from drivelint.fleet.missing_signals import MissingSignal, Undecided
     from drivelint.fleet.rates import Rate
     from drivelint.fleet_report.audit_views import Audit
+    from drivelint.report.progress import Progress
 
 FORMATS: Final = ("html", "markdown")
 NO_LINKS: Final[Mapping[str, str]] = MappingProxyType({})
@@ -45,27 +47,52 @@ _HERE: Final = Path(__file__).parent
 
 
 def write(
-    dest: str, to: str, by: Sequence[str], baseline: str | None, most_drives: int | None = MOST_DRIVES
+    dest: str,
+    to: str,
+    by: Sequence[str],
+    baseline: str | None,
+    *,
+    most_drives: int | None = MOST_DRIVES,
+    most_moments: int | None = None,
+    progress: Progress | None = None,
 ) -> tuple[str, Audit]:
     """Write the page of an audit into it, and with HTML those of its worst drives; return the fleet page's name and the audit.
 
-    `by`: tags by which rates are divided. `most_drives`: that get a page of their own; None: all drives of the audit. Errors:
-    `UsageError` for an audit or tag that is not there; `OutputError`.
+    `by`: tags by which rates are divided. `most_drives`: that get a page of their own; None: all drives of the audit. `most_moments`: of
+    these, how many are judged again to draw their moments; None: see `moment_pages`. Errors: `UsageError` for an audit or tag that is not
+    there; `OutputError`.
     """
     with open_audits(dest, baseline) as (con, audit, base):
         fleet = content(con, audit, base, by)
         if to == "html":
-            _write_html(con, fleet, most_drives)
+            _write_html(con, fleet, most_drives, most_moments, progress or Silent())
         else:
             audit.results.write(_FILES[to], markdown(fleet))
     return _FILES[to], audit
 
 
-def _write_html(con: duckdb.DuckDBPyConnection, fleet: FleetContent, most_drives: int | None) -> None:
-    """Write the drive pages, then the fleet page that links to them."""
+def _write_html(
+    con: duckdb.DuckDBPyConnection,
+    fleet: FleetContent,
+    most_drives: int | None,
+    most_moments: int | None,
+    progress: Progress,
+) -> None:
+    """Write the moments and pages of drives, then the fleet page that links to them."""
     results = fleet.audit.results
-    with page_files.listed(results, drive_pages.choose(con, most_drives)):
-        for name, page in drive_pages.pages(con, fleet.audit, fleet.rules):
+    names = drive_pages.choose(con, most_drives)
+    drives = moment_pages.chosen_drives(con, most_moments)
+    with page_files.listed(
+        results, [*names, *(moment_pages.moments_name(drive["key"]) for drive in drives)]
+    ) as written:
+        links: dict[str, drive_pages.MomentsLink] = {}
+        for moments in moment_pages.moments(drives, fleet.audit, progress):
+            if moments.content:
+                results.write(moments.name, moments.content)
+            else:
+                written.discard(moments.name)
+            links[moments.key] = drive_pages.MomentsLink(moments.name if moments.content else None, moments.reason)
+        for name, page in drive_pages.pages(con, fleet.audit, fleet.rules, links):
             results.write(name, page)
         results.write(_FILES["html"], html(fleet, drive_pages.links(con, fleet.keys)))
 

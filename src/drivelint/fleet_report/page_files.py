@@ -19,21 +19,22 @@ _KEY: Final = "written_by_drivelint"
 
 
 @contextmanager
-def listed(results: ResultStore, names: Collection[str]) -> Iterator[None]:
+def listed(results: ResultStore, names: Collection[str]) -> Iterator[set[str]]:
     """List the pages that are written meanwhile; afterwards, remove those of an earlier report that are not among them.
 
-    While they are written, the list has the earlier ones too: if this report is killed, the next one knows of both. Files that are not
-    listed are never removed. Errors: `OutputError`.
+    Yields the set of the names: a caller that does not write one of them discards it. While they are written, the list has the earlier
+    ones too: if this report is killed, the next one knows of both. Files that are not listed are never removed. Errors: `OutputError`.
     """
     earlier = _listed(results)
     if earlier or names:
         _write(results, {*earlier, *names})
-    yield
-    if gone := earlier - set(names):
+    written = set(names)
+    yield written
+    if gone := earlier - written:
         results.delete(sorted(gone))
-    if names:
-        _write(results, names)
-    elif earlier:
+    if written:
+        _write(results, written)
+    elif earlier or names:
         results.delete([LIST_FILE])
 
 

@@ -1,0 +1,118 @@
+"""Pages with the moments of single drives of an audit: plan view, charts, player and camera pictures, as the report of a check has them.
+
+An audit keeps verdicts and findings, but no positions. So each of these drives is judged again, from its log and by the settings of the
+audit. The page is written only if the findings are the same.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import msgspec
+
+from drivelint import run
+from drivelint.audit.bucket import is_url
+from drivelint.drive.trace import DriveInput
+from drivelint.errors import DriveLintError
+from drivelint.fleet_report.drive_pages import page_name
+from drivelint.fleet_report.rows import options_column, rows
+from drivelint.report import html
+from drivelint.report.progress import Silent
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    import duckdb
+
+    from drivelint.fleet_report.audit_views import Audit
+    from drivelint.fleet_report.rows import Row
+    from drivelint.report.progress import Progress
+    from drivelint.result.model import Result
+
+MOST_DRIVES: Final = 3
+"""Number of drives whose moments are drawn by default."""
+MOST_STATES: Final = 200_000
+"""By default, drives with more actor states are left out: to judge them again takes longer than a person waits for a page."""
+_SETTINGS: Final = ("rules", "ignore", "profiles", "params", "rules_dirs")
+
+
+class Moments(NamedTuple):
+    """The page with the moments of a drive. `content`: empty if there is none, for this `reason`."""
+
+    key: str
+    name: str
+    content: bytes
+    reason: str
+
+
+def chosen_drives(con: duckdb.DuckDBPyConnection, n: int | None) -> list[Row]:
+    """Return the worst drives that have a page and findings, after `drive_pages.choose`.
+
+    `n`: number of drives; None: `MOST_DRIVES`, without drives of more than `MOST_STATES` states.
+    """
+    bound = {"most": MOST_DRIVES if n is None else n, "most_states": MOST_STATES if n is None else None}
+    return rows(con, "moment_drives", bound, options=options_column(con))
+
+
+def moments(drives: Sequence[Row], audit: Audit, progress: Progress) -> Iterator[Moments]:
+    """Judge these drives again, one by one; yield the moments of each."""
+    if drives:
+        progress.stage("drawing moments", len(drives))
+    for drive in drives:
+        progress.doing(drive["drive_id"])
+        yield _moments(drive, audit)
+        progress.advance()
+
+
+def _moments(drive: Row, audit: Audit) -> Moments:
+    reason, content = "", b""
+    try:
+        result = _judged_again(drive, audit)
+        if reason := _difference(result, drive):
+            reason = f"{reason}: audit the drives again, or check this one alone"
+        else:
+            content = html.render(result)
+    except (DriveLintError, OSError, msgspec.MsgspecError) as error:
+        reason = str(error)
+    return Moments(drive["key"], moments_name(drive["key"]), content, reason)
+
+
+def _judged_again(drive: Row, audit: Audit) -> Result:
+    """Check a drive by the settings of its audit. Errors: `DriveLintError`."""
+    if is_url(drive["log"]):
+        raise DriveLintError("the log lies in an object store: check a copy of it")
+    if not Path(drive["log"]).exists():
+        raise DriveLintError(f"the log is not at {drive['log']} any more")
+    options = msgspec.json.decode(drive["options"] or "{}", type=DriveInput, dec_hook=lambda kind, value: kind(value))
+    rules, ignore, profiles, params, rules_dirs = (tuple(audit.settings.get(name, ())) for name in _SETTINGS)
+    request = run.CheckOptions(
+        (drive["log"],),
+        **{name: getattr(options, name) for name in options.__dataclass_fields__},
+        rules=rules,
+        ignore=ignore,
+        profiles=profiles,
+        params=params,
+        rules_dirs=tuple(map(Path, rules_dirs)),
+        robustness=bool(audit.settings.get("robustness", False)),
+        annotate=False,
+        evidence=True,
+    )
+    return run.check(request, Silent())
+
+
+def _difference(result: Result, drive: Row) -> str:
+    """Return how a drive that was judged again differs from its result in the audit; empty: in nothing that counts."""
+    (row,) = result.drives.to_pylist()
+    if row["sha256"] != drive["sha256"]:
+        return "the log has changed since the audit"
+    if row["map_sha256"] != drive["map_sha256"]:
+        return "the map has changed since the audit"
+    if sorted(result.findings["finding_id"].to_pylist()) != drive["finding_ids"]:
+        return "this version of drivelint finds something else"
+    return ""
+
+
+def moments_name(key: str) -> str:
+    """Return the name of the page with a drive's moments."""
+    return page_name(key).removesuffix(".html") + "-moments.html"
