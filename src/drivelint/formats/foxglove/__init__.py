@@ -1,1 +1,1 @@
-"""Reads Foxglove scenes in MCAP files, and declares Foxglove's message types for writing."""
+"""Reads Foxglove scenes in MCAP files, and declares Foxglove's messages."""

@@ -216,7 +216,7 @@ def _recording(
 
 
 def _lost_times(nameless: RecordedPoses, topic: str) -> list[LostTime]:
-    """Return the time ranges of entities without an id: from their message to the end of their lifetime; without one, no end."""
+    """Return the time ranges of entities without an id: from the message to the end of the lifetime (no lifetime: no end)."""
     times = zip(nameless.log_ns.tolist(), np.asarray(nameless.lifetime_ns).tolist(), strict=True)
     spans = {(log_ns - 1, log_ns + lifetime_ns + 1 if lifetime_ns > 0 else None) for log_ns, lifetime_ns in times}
     endless = min((since for since, until in spans if until is None), default=None)

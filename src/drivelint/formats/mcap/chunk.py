@@ -15,7 +15,7 @@ MOST_GROWTH = 250
 """All chunks of a file may unpack to `FREE_BYTES` plus this many times their packed size. Real logs grew at most thirtyfold."""
 FREE_RECORDS = 500_000
 LEAST_RECORD_BYTES = 4
-"""A file may have `FREE_RECORDS` records, plus one per `LEAST_RECORD_BYTES` packed bytes: the time of a message alone needs as many."""
+"""A file may have `FREE_RECORDS` records, plus one per this many packed bytes: even well packed, a message's time needs as many."""
 COMPRESSIONS = frozenset({"", "zstd", "lz4"})
 _CHUNK = struct.Struct("<QQQII")
 
@@ -99,7 +99,7 @@ def chunk_records(head: ChunkHead, where: str) -> bytes:
 
 
 def _unpacked(head: ChunkHead) -> bytes:
-    """Return the decompressed records. Errors: `ChunkError` if they have not exactly the declared size."""
+    """Return the decompressed records. Errors: `ChunkError` if their size is not the declared size."""
     import zstandard
 
     size, packed = head.size, head.packed

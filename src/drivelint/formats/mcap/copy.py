@@ -36,10 +36,7 @@ def copy_original(original: Original, sink: Sink) -> None:
 
 
 def copy_log(path: Path, sha256: str, sink: Sink) -> None:
-    """Copy an MCAP file, or all files of a bag in their order, into an empty sink.
-
-    Errors: `TraceError` for a damaged file; `ChangedLogError` if the file changed after ingest had read it.
-    """
+    """Copy an MCAP file, or all files of a bag in their order, into an empty sink. Errors: those of `copy_original`."""
     for part in mcap_files(path):
         with Original(part, None if path.is_dir() else sha256) as original:
             copy_original(original, sink)

@@ -20,7 +20,7 @@ class LostBytes:
     """Bytes `start` to `end` of a file, and why they were lost.
 
     The lost messages have log times after `since_ns` and before `until_ns`; None: no bound. `timed`: the bounds come from the lost
-    messages' own times, not from the neighbouring messages.
+    messages, not from their neighbours.
     """
 
     start: int
@@ -33,7 +33,7 @@ class LostBytes:
 
 @dataclass
 class Losses:
-    """The lost bytes of a file, in the order in which they were found. False if there are none.
+    """The lost bytes of a file, in the order in which they were found. Its truth value: whether there are any.
 
     `first_ns`, `last_ns`: log times of the first and last message read so far.
     """
@@ -50,12 +50,12 @@ class Losses:
 
     @property
     def first(self) -> LostBytes:
-        """The lost bytes that were found first. Errors: `IndexError` if there are none."""
+        """The lost bytes that were found first."""
         return self.lost_bytes[0]
 
     @property
     def last(self) -> LostBytes:
-        """The lost bytes that were found last. Errors: `IndexError` if there are none."""
+        """The lost bytes that were found last."""
         return self.lost_bytes[-1]
 
     def message(self, log_ns: int) -> None:
@@ -92,7 +92,7 @@ class Losses:
         return any(each.start <= offset < each.end for each in self.lost_bytes)
 
     def narrow(self, chunks: Mapping[int, tuple[int, int, int]]) -> None:
-        """Bound the times of lost bytes by the times of the chunks in them, which come from the index.
+        """Bound the times of lost bytes by the times that the index has for the chunks in them.
 
         `chunks`: offset of a chunk -> its length, first and last log time.
         """

@@ -44,7 +44,7 @@ def decode_others(
 ) -> tuple[T | None, dict[int, MessageError]]:
     """Decode a batch without its malformed messages.
 
-    Return the decoded data (None if no message is readable), and for each malformed message its place in the batch -> its error.
+    Return the decoded data (None if no message is readable), and place in the batch -> error for the malformed messages.
     Errors: the error of the first malformed message, if more than a tenth of the batch is malformed.
     """
     try:

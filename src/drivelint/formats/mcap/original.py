@@ -46,7 +46,7 @@ class Record(NamedTuple):
 
 
 class Original:
-    """An MCAP file, mapped into memory, of which only record headers are read wherever they are enough.
+    """A mapped MCAP file. Only its record headers are read, wherever they are enough.
 
     `sha256`: the hash when the file was read and checked; None: the caller compares the hash of the whole log instead.
     `indexed`: whether the message indexes of its chunks are complete.

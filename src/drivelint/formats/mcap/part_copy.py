@@ -72,7 +72,7 @@ def _number(announced: T, records_by_id: dict[int, T], kind: str, *, least: int)
 
 
 class PartCopy:
-    """Copies one part. Bytes `_from` to `_to` of the original are still to be written, in one block, as nothing comes between them."""
+    """Copies one part. Consecutive records are written together: bytes `_from` to `_to` of the original are still to be written."""
 
     def __init__(self, original: Original, sink: Sink) -> None:
         self._original = original

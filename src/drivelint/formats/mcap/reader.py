@@ -151,7 +151,7 @@ class Container:
         self._report()
 
     def _record(self, view: memoryview, at: int) -> tuple[int, int, int]:
-        """Return the opcode, and the start and end of the body, of the record at byte `at`. Errors: `DamageError` for no valid record."""
+        """Return the opcode, and the start and end of the body, of the record at byte `at`. Errors: `DamageError` if it is invalid."""
         if at + _RECORD.size > len(view):
             raise self._damaged(at, "the file ends without a footer")
         opcode, length = _RECORD.unpack_from(view, at)
@@ -292,7 +292,7 @@ class Container:
         raise self._damaged(at, "a chunk that ends within a record", end)
 
     def _index_of_damaged(self, view: memoryview, error: DamageError) -> Summary:
-        """Add the index's schemas and channels, whose records may be lost. Without `salvage`, raise `error`."""
+        """Return the index, and add its schemas and channels, as their records may be lost. Without `salvage`, raise `error`."""
         if not self.salvage:
             raise error
         index = read_summary(view)
@@ -306,7 +306,7 @@ class Container:
         return next_record(view, at + 1, channels=None if chunked else self.channels)
 
     def _check_data_end(self, size: int, *, has_footer: bool, has_index: bool) -> None:
-        """Report a file without a data end record or without a footer; a loss, if messages may be missing at its end."""
+        """Report a missing data end record or footer: as a loss if messages may be missing at the end, otherwise as a finding."""
         if self._in_data and has_footer:
             if has_index:
                 return

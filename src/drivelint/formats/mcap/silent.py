@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 def silent_topics(files: Iterable[Path], is_wanted: Callable[[str], bool]) -> str:
     """Return a clause that names the topics of wanted schemas without a message; '' if there are no such topics.
 
-    This reads the whole files again. It is meant for the error that nothing usable was found.
+    This reads the whole files again, for the error that nothing usable was found.
     """
     announced: set[str] = set()
     spoken: set[str] = set()

@@ -25,7 +25,7 @@ _FOOTER_BYTES = 20
 
 @dataclass
 class Summary:
-    """The index of an MCAP file: schemas and channels by their ids, and `metadata`, the offsets of metadata records.
+    """The index of an MCAP file. `schemas`, `channels`: by their ids; `metadata`: the offsets of metadata records.
 
     `chunks`: offset of a chunk -> its length, first and last log time.
     `message_indexes`: offset of a chunk -> channel id -> offset of the message index.

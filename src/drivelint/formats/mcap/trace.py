@@ -24,7 +24,7 @@ formats: Final[dict[str, tuple[str, str]]] = {
 }
 takes_mapping: Final = False
 _MAX_TOPICS: Final = 8
-"""Most topics that an error names; it only counts any others."""
+"""An error lists at most this many topics, and counts the others."""
 
 
 def accepts(probe: Probe) -> bool:

@@ -59,7 +59,7 @@ class Sink:
         self._record(records.Header(profile="", library=library))
 
     def add_channel(self, topic: str, encoding: str, schema: records.Schema) -> int:
-        """Write a channel with a free id, before it its schema unless the file has the same schema; return the channel's id.
+        """Write a channel with a free id, and return the id. The schema is written first, unless the file already has it.
 
         `schema` has the id 0, as its id is chosen here. Errors: `DriveLintError` if no id is free.
         """

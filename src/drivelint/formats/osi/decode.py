@@ -207,7 +207,7 @@ def read_first_message(data: bytes, name: str) -> FirstMessage:
 
 
 def _inner(fields: pa.DataType | None, name: str) -> pa.DataType | None:
-    """Return the struct type of a field, or for a list of its items; None if there is no such field."""
+    """Return the struct type of a field, or of the items of a list field; None if there is no such field."""
     if fields is None or fields.get_field_index(name) < 0:
         return None
     kind = fields.field(fields.get_field_index(name)).type

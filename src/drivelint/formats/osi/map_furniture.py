@@ -108,7 +108,7 @@ def _once(lanes: list[BoundedLane]) -> list[BoundedLane]:
 
 
 def _facing(base: Any, lanes: list[BoundedLane]) -> list[BoundedLane]:
-    """Return the lanes whose traffic sees the front of a sign, to which its x axis points; all lanes if there are none."""
+    """Return the lanes whose traffic sees the front of a sign, which faces along its x axis; all lanes if there are none."""
     if not np.isfinite([base.orientation.roll, base.orientation.pitch, base.orientation.yaw]).all():
         return lanes
     normal = rotation(base)[:2, 0]
@@ -221,7 +221,7 @@ def _over(mark: Any, area: Any, road: _Road) -> list[tuple[BoundedLane, float]]:
 
 
 def _stop_line(mark: Any, road: _Road, quality: MapQuality) -> Iterable[Row]:
-    """Return a row for each lane that a stop line crosses: with half of the line's length, or over half of the lane's width."""
+    """Return a row for each lane that a stop line crosses with half of its length, or on half of the lane's width."""
     corners = _outline(mark, road)
     middle = corners.mean(axis=0)
     way = np.linalg.eigh(np.cov((corners - middle).T))[1][:, -1]  # direction of the outline's longer side

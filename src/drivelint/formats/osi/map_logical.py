@@ -44,7 +44,7 @@ class LogicalLane:
 
     @property
     def physical_lane_ids(self) -> list[int]:
-        """The ids of the physical lanes to which it refers."""
+        """The ids of the physical lanes to which the lane refers."""
         return [ref.physical_lane_id.value for ref in self.message.physical_lane_reference]
 
     def lane_fraction(self, s: float) -> float:
@@ -141,7 +141,7 @@ def _side(ids: Iterable[Any], bounds: Mapping[int, Any], word: str) -> Floats:
 
 
 def _sides(lane: LogicalLane, field: str) -> tuple[Any, Any]:
-    """Return a left/right field of the message for the driver's left and right side."""
+    """Return the values of `left_<field>` and `right_<field>` in the message, swapped if needed to the driver's left and right."""
     both = getattr(lane.message, f"left_{field}"), getattr(lane.message, f"right_{field}")
     return both if lane.along > 0 else both[::-1]
 
@@ -224,7 +224,7 @@ def _limits(lane: LogicalLane) -> Iterator[tuple[float, float, float]]:
         limit_value = rule.speed_limit.speed_limit_value
         unit = kinds.SPEED_UNITS_MPS.get(kinds.UNITS.get(limit_value.value_unit, ""))
         where = rule.traffic_rule_validity
-        # the rule applies to all vehicles if it names no type, or vehicles without a vehicle type
+        # the rule applies to all vehicles if it names no type, or only the type vehicle
         valid = where.valid_for_type
         for_all = not valid or any(each.type == 2 and not each.HasField("vehicle_type") for each in valid)
         if rule.traffic_rule_type or unit is None or limit_value.value <= 0 or not for_all:

@@ -31,7 +31,7 @@ _DIRECTION = "centerline_is_driving_direction"
 
 @dataclass(frozen=True)
 class PhysicalLane:
-    """A lane in the direction of travel: its message, centre line (n, 3) and bounds (n, 2). `turned`: OSI's points are against it."""
+    """A lane in the direction of travel: its message, centre line (n, 3) and bounds (n, 2). `turned`: OSI has the opposite direction."""
 
     message: Any
     centre: Floats

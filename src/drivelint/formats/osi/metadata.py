@@ -31,9 +31,9 @@ TRACE_RECORD: Final = "drivelint.trace"
 ACTORS_RECORD: Final = "drivelint.actors"
 EVENT_MESSAGE: Final = "drivelint.DeclaredEvent"
 EGO_CHECK_IDS: Final = frozenset({"no_ego", "ego_count", "no_indicator", "no_brake_light"})
-"""Checks of findings that depend on the ego. Converted logs do not contain them; reading makes them anew for the chosen ego."""
+"""Checks of findings that depend on the ego. Converted logs omit them; reading finds them again for the chosen ego."""
 OPTIONAL_COORDINATES: Final = ("z_m",)
-"""Coordinates that an OSI vector must have. If no state has one, the record lists it as unknown."""
+"""Coordinates that cannot be left out of an OSI vector. The record lists a coordinate that no state has."""
 
 
 class _Actor(msgspec.Struct, forbid_unknown_fields=True, frozen=True, kw_only=True):
@@ -167,7 +167,7 @@ def _apply_trace(path: Path, facts: _TraceFacts, recording: Recording) -> None:
     recording.sensor_range_m = facts.sensor_range_m
     for name in set(facts.unknown) & set(OPTIONAL_COORDINATES):
         recording.states.numbers[name] = np.full(len(recording.states), np.nan)
-    # frames with only traffic lights were added by the conversion; these were empty frames of the original log
+    # only these empty frames were in the original log; the conversion added frames for traffic lights
     recording.frames_ns = np.array(facts.nobody_ns, np.int64)
     kept = [f for f in facts.quality if not facts.as_recorded or f.check_id not in FOUND_ANEW]
     recording.findings += known_findings(path, kept)

@@ -111,7 +111,7 @@ def read_mcap(path: Path, topic: str | None) -> Recording:
 
 
 def _refuse_lost_end_of_converted(container: Container) -> None:
-    """Raise `TraceError` for a log of `drivelint convert` without its end, because that contained all declared events."""
+    """Raise `TraceError` for a log of `drivelint convert` whose end is lost, because the end contains all declared events."""
     if container.library == metadata.LIBRARY and any(each.until_ns is None for each in container.losses.lost_bytes):
         raise TraceError(
             f"{container.path}: the end of this converted log, with its declared events, is lost "
@@ -313,7 +313,7 @@ def _clock(batches: list[FrameBatch], log_ns: Times, findings: list[QualityFindi
 
 
 def _host(hosts: list[int | None], t_ns: Times, findings: list[QualityFinding]) -> list[str]:
-    """Return the host vehicle's id in most frames, of equally frequent ids the earliest; an empty list without any id."""
+    """Return the most frequent host vehicle's id, of equally frequent ids the earliest, as a list; empty without any id."""
     host_counts = Counter(host for host in hosts if host is not None)
     if not host_counts:
         return []

@@ -1,6 +1,6 @@
 """Protobuf descriptors for the part of ASAM OSI 3 that drivelint writes, and that it reads from logs without a schema.
 
-They are built from `schema.toml`. Only a part of the messages that are read is also written.
+They are built from `schema.toml`. Some messages are only read.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def _file(*parts: str) -> descriptor_pb2.FileDescriptorProto:
 
 @cache
 def descriptor_set(*more: str) -> bytes:
-    """Return the serialised `FileDescriptorSet` of the written messages, for an MCAP schema record; with "read", also of read messages."""
+    """Return the serialised `FileDescriptorSet` of the written messages, for an MCAP schema record. "read" adds the read messages."""
     return descriptor_pb2.FileDescriptorSet(file=[_file("written", *more)]).SerializeToString(deterministic=True)
 
 

@@ -93,7 +93,7 @@ def _begins(content: mmap.mmap, at: int) -> bool:
 def lost_times(path: Path, losses: Losses, t_ns: Times) -> list[LostTime]:
     """Return the losses as ranges of the messages' own time. `t_ns`: the times of the messages that were read, in the file's order.
 
-    If times go back, messages were written late, and lost messages may have been as late: the ranges are widened by that time.
+    If times go back, messages were written late. Lost messages may have been late, too, so the ranges are widened by the largest delay.
     If all times are equal, the ranges have no bounds.
     """
     steps = np.diff(t_ns)

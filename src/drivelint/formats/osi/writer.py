@@ -28,7 +28,7 @@ GROUND_TRUTH_TOPIC: Final = "ground_truth"
 MAP_TOPIC: Final = "ground_truth_map"
 EVENT_TOPIC: Final = "declared_event"
 BATCH_STATES: Final = 200_000
-"""This many states, in whole frames, are encoded at a time, which bounds the memory that a long log needs."""
+"""This many states, in whole frames, are encoded at a time, which bounds the memory."""
 _MAX_ID: Final = (1 << 64) - 1
 
 

@@ -110,7 +110,7 @@ def _last(t_ns: Times, reports: tuple[Times, NDArray[Any]] | None) -> Times:
 
 
 def engagement(reports: dict[str, tuple[Times, NDArray[Any]]], ego: str) -> pa.Table | None:
-    """Return the events `engaged` on and off at each change of whether the automated system drives; None without reports.
+    """Return events `engaged` (on or off) at the first report and whenever the automated system starts or stops driving; None: no reports.
 
     The vehicle's report takes precedence over the command to the vehicle. Only full automation is `engaged`.
     """

@@ -122,7 +122,7 @@ class Log:
         return np.concatenate([np.zeros(0, np.int64), *times])
 
     def silences(self, objects: Iterable[str], odometry: Iterable[str]) -> Iterator[LostTime]:
-        """Yield the times without messages on topics of road users whose senders also send messages without objects."""
+        """Yield the times in which a topic of road users has no messages, if its sender also sends messages without objects."""
         steady = {topic for kind in SENT_WHERE_NOBODY_IS for topic in self.topics.get(kind, ())}
         for topic in sorted(steady.intersection(objects)):
             sent_ns, own_ns = (self.frames(topics, own_times=False) for topics in ([topic], odometry))

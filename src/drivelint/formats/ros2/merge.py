@@ -60,7 +60,7 @@ def merge_ego(
 
 
 def _with_one_ego_track(ego: States, object_states: States, topic: str, findings: list[QualityFinding]) -> Recording:
-    """Return a recording with only the longer of the ego's two tracks; the odometry's track takes size and class from the objects."""
+    """Return a recording with the longer of the ego's two tracks. If it is the odometry's, size and class come from the objects."""
     (name,) = ego.ids
     twin = object_states.actor == object_states.ids.index(name)
     n = int(twin.sum())
@@ -97,7 +97,7 @@ def _free_id(name: str, ids: list[str]) -> str:
 
 
 def _carla_ego_ids(ego_by_topic: Mapping[str, str], odometry: tuple[str, States] | None) -> list[str]:
-    """Return the ids of the CARLA bridge's egos; if they differ, only the id next to the odometry's topic."""
+    """Return the ids of the CARLA bridge's egos; of several ids, those from a topic beside the odometry's."""
     if odometry is not None and len(set(ego_by_topic.values())) > 1:
         beside = odometry[0].rpartition("/")[0]
         ego_by_topic = {topic: name for topic, name in ego_by_topic.items() if topic.rpartition("/")[0] == beside}

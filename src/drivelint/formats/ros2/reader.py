@@ -68,7 +68,7 @@ _REPORTS = {TURN_INDICATORS: "report", HAZARD_LIGHTS: "report", CONTROL_MODE: "m
 
 
 def read(path: Path, options: IngestOptions) -> Recording:
-    """Read a file or a bag. Errors: `TraceError` for a damaged log, for one without usable poses, and if a topic must be chosen."""
+    """Read a file or a bag. Errors: `TraceError` if it is damaged, has no usable poses, or has several topics without a choice."""
     requested_topics = [] if options.topic is None else [part.strip() for part in options.topic.split(",")]
     log = Log(path, requested_topics)
     log.read(bag.mcap_files(path))

@@ -80,7 +80,7 @@ def join_batches(parts: Sequence[RecordedPoses]) -> RecordedPoses:
 
 
 def recorded_poses(stamps: tuple[Times, Mask], poses: tuple[Vectors, Vectors], **columns: Any) -> RecordedPoses:
-    """Return `RecordedPoses` from (time, whether there is one) and (place, quaternion); columns that are not given are unknown."""
+    """Return `RecordedPoses`. `stamps`: times, and whether they exist; `poses`: places and quaternions. Missing columns are unknown."""
     n = len(poses[0])
     unknown: dict[str, Any] = {
         **{name: np.full((n, 3), np.nan) for name in ("size", "velocity", "acceleration")},
@@ -174,7 +174,10 @@ def _unresolved_frame(topic: str, frame: str, fixed: str, frames: TransformTree,
 
 
 def _other_frame(states: States, swapped: Vectors, along: Mask, topic: str) -> list[QualityFinding]:
-    """Replace velocities by `swapped`, their values if given in the other frame, if only these fit the positions; return the finding."""
+    """Replace velocities by `swapped` if only these fit the positions, and return the finding.
+
+    `swapped`: the velocities under the assumption that the log gives them in the other frame.
+    """
     vx, vy = states.numbers["vx_mps"], states.numbers["vy_mps"]
     fast = np.bincount(states.actor[np.hypot(swapped[:, 0], swapped[:, 1]) > MOVING_MPS], minlength=len(states.ids))
     chosen = np.zeros(len(states.ids), np.bool_)
@@ -207,9 +210,9 @@ def _other_frame(states: States, swapped: Vectors, along: Mask, topic: str) -> l
 
 
 def choose_clock(parts: dict[str, RecordedPoses], findings: list[QualityFinding]) -> bool:
-    """Set `t_ns` of the rows; return whether it is the messages' own time: all have one, it advances, and topics overlap in it.
+    """Set `t_ns` of the rows to the messages' own times or to log times; return whether own times are used.
 
-    Otherwise the container's log times are used for all rows, and a finding states the reason.
+    Own times are used if all messages have one, they advance, and the topics overlap. Otherwise a finding states the reason.
     """
     why = None
     ranges = []

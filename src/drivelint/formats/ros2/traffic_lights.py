@@ -152,9 +152,9 @@ def signal_states(
 
 
 def _ends(times: Times, step: NDArray[np.intp], group: NDArray[np.int64]) -> Times:
-    """Return the time at which each state ends: at the next message, if the group is not in it, or at most after `LONGEST_HOLD_NS`.
+    """Return the time at which each state ends: at the next message, but at most `LONGEST_HOLD_NS` after its own.
 
-    If the next message has the group in time, the end is the far future. Rows are sorted by group and step.
+    If the next message is in time and has the group, the end is the far future. Rows are sorted by group and step.
     `times`: the sorted times of the messages; `step`: each row's index in `times`.
     """
     following = np.append(times[1:], np.iinfo(np.int64).max)[step]

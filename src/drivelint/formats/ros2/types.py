@@ -127,7 +127,7 @@ def _fields(body: str, wrong: MakeError) -> Iterator[Field]:
 
 
 def _resolved(kind: str, container: str, defined: set[str], wrong: MakeError) -> str:
-    """Return a member's type with its package's name; without a package in the text, it is a primitive or of the container's package."""
+    """Return a member's type with its package. A type without a package is a primitive or belongs to the container's package."""
     if kind in NUMPY_CODES or kind in TEXT_TYPES:
         return kind
     full = short_type_name(kind)

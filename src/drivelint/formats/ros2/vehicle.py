@@ -64,7 +64,7 @@ def at_axle(frames: NDArray[Any]) -> Mask:
 def vehicle_box(
     parameters: Iterable[Table], dimensions: Iterable[tuple[str, Table]]
 ) -> tuple[VehicleBox | None, list[QualityFinding]]:
-    """Return the ego's box; None if no source gives one, or sources differ, which is a finding.
+    """Return the ego's box and findings. The box is None if no source gives one, or if sources differ.
 
     `parameters`: parameter events of nodes; `dimensions`: topic and messages of recorded dimensions. Lengths of several nodes are not
     combined into a box, because the nodes may mean different vehicles.

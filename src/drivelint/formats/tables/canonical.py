@@ -53,7 +53,7 @@ _WORDS = {**_OF_A_STATE, "state": SIGNAL_STATES}
 
 
 def accepts(probe: Probe) -> bool:
-    """Return whether it is a canonical folder, or a Parquet file with canonical columns for which no mapping was chosen."""
+    """Return whether the trace is a canonical folder, or Parquet with canonical columns and without a chosen mapping."""
     if probe.path.is_dir():
         return is_canonical_folder(probe.path)
     if probe.options.mapping is not None or not probe.head.startswith(b"PAR1"):

@@ -46,7 +46,7 @@ takes_mapping: Final = True
 _NO_CLASS: Final = frozenset({-1, ACTOR_CLASSES.index("vehicle")})
 """The codes for an unknown class, and for a vehicle of unknown class."""
 _MOST_TEXTS: Final = 5
-"""Most texts that a message lists."""
+"""A message lists at most this many texts."""
 MAX_HEADING_RAD: Final = 4 * np.pi
 """The largest plausible heading: without wrapping, it exceeds one turn on roundabouts and ramps of car parks."""
 
@@ -97,7 +97,7 @@ def _assumptions(name: str, mapping: Mapping) -> list[QualityFinding]:
 
 
 def _refuse_misread(path: Path, name: str, recording: Recording) -> None:
-    """Raise `TraceError` if the mapping cannot read most rows: it is the wrong mapping, and the rows that it can read would mislead."""
+    """Raise `TraceError` if most rows cannot be read: the mapping is wrong, and the other rows would mislead."""
     lost = sum(finding.n for finding in recording.findings if finding.check_id in LOSS_CHECKS)
     kept = len(recording.states)
     if lost > kept > 0:

@@ -1,4 +1,4 @@
-"""Loads and checks mapping files: TOML that states how the columns of a table become actor states. Some are shipped with drivelint.
+"""Loads and checks mapping files: TOML that states how the columns of a table become actor states.
 
 A field is a column name (`x = "pos_x"`), a constant in SI (`length = 4.8`) or a table
 `{ column = "v", unit = "km/h" }` / `{ value = "7" }`. `{k}` in a column name means the number of a column group:
@@ -134,7 +134,7 @@ class WordMapping(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class EgoChoice(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """The choice of the ego: the first of `ids` in the log, or with `otherwise = "first"`, the first column group with a vehicle."""
+    """The choice of the ego: the first of `ids` that the log has; without any, if `otherwise = "first"`, the first vehicle of the table."""
 
     ids: list[str] = []
     otherwise: Literal["first"] | None = None

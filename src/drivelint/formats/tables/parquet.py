@@ -76,9 +76,9 @@ def _refuse_bomb(path: Path, metadata: pq.FileMetaData, n_columns: int) -> None:
 
 
 def _refuse_second_file(path: Path, file: BufferedReader) -> None:
-    """Raise `TraceError` if two Parquet files are concatenated: the last footer has offsets that count from the first file's start.
+    """Raise `TraceError` if two Parquet files are concatenated, because the last footer's offsets would be applied to the first file.
 
-    The file is searched for magic bytes, because reading column metadata with damaged statistics makes the library end the process.
+    The file is searched for magic bytes, because pyarrow ends the process if it reads column metadata with damaged statistics.
     """
     with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
         at = data.find(_MAGIC * 2)

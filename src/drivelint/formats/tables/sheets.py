@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 MAX_NS = 2.0**63
 TEXT_BLOCK = 1 << 20
 _MOST_PLACES = 5
-"""Most places that a message lists."""
+"""A message lists at most this many places."""
 
 
 class CsvSheet:
-    """A CSV file in UTF-8. Every cell is first read as text, so that no type is guessed and every unreadable cell is noticed."""
+    """A CSV file in UTF-8. Every cell is first read as text, so that no type is guessed and no invalid cell is missed."""
 
     def __init__(self, path: Path, layout: TextLayout) -> None:
         """Read the header. Errors: `TraceError` if there is none."""
@@ -211,10 +211,7 @@ class ParquetSheet:
         return np.asarray(self._column(name).is_valid().to_numpy(zero_copy_only=False), np.bool_)
 
     def number(self, name: str) -> tuple[Floats, Mask]:
-        """Return values (NaN: NULL), and False for each cell, because a column's type makes all its cells numbers.
-
-        Errors: `TraceError` for a column of another type.
-        """
+        """Return values (NaN: NULL), and False for each cell. Errors: `TraceError` if the column's type is not numeric."""
         column = self._column(name)
         try:
             values = column.cast(pa.float64(), safe=False)
@@ -225,7 +222,7 @@ class ParquetSheet:
         return pc.fill_null(values, float("nan")).to_numpy(zero_copy_only=False), np.zeros(len(column), np.bool_)
 
     def time(self, name: str, unit: str) -> tuple[Times, Mask]:
-        """Return nanoseconds, and for each cell whether it is NULL or out of range. Time stamps and durations have their own unit."""
+        """Return nanoseconds, and for each cell whether it is NULL or out of range. Time stamps and durations ignore `unit`."""
         column = self._column(name)
         if pa.types.is_timestamp(column.type) or pa.types.is_duration(column.type):
             column, unit = column.cast(pa.int64()), column.type.unit
