@@ -24,9 +24,9 @@ if TYPE_CHECKING:
 MOVING_MPS = 2.0
 """Below this speed, noise of the positions hides in which frame a velocity is given."""
 FIT_RATIO = 3.0
-"""Velocities are taken as given in the other frame if they fit the positions this many times better there."""
+"""Velocities that should be along the actor's axes are read as along the frame's, or vice versa, if that fits this many times better."""
 MAX_FIT_ERROR_MPS = 0.5
-"""In the frame that is taken, velocities must fit the positions at least this well (median)."""
+"""The largest median difference to the positions' changes in the frame that is then used."""
 SAMPLED_ACTORS = 8
 """Only this many actors are compared: those that move most."""
 MIN_SAMPLES = 20

@@ -33,7 +33,7 @@ _WHOLE, _DOUBLE = 2, 3
 _SAME_M: Final = 0.001
 """Lengths that differ by less are equal: some are recorded in single precision."""
 _MOST_M: Final = 50.0
-"""The bound of a plausible length or width: no road vehicle is so large."""
+"""A longer or wider box is implausible."""
 
 
 class VehicleBox(NamedTuple):

@@ -232,7 +232,7 @@ def word_mappings(mapping: Mapping) -> dict[str, tuple[WordMapping, tuple[str, .
 
 
 def needed_columns(mapping: Mapping) -> list[str]:
-    """Return the names of all columns that the mapping reads, without duplicates; `{k}` is not replaced."""
+    """Return the distinct names of all columns that the mapping reads; `{k}` is not replaced."""
     names = [mapping.time.column, *(f.column for f in fields(mapping).values() if f.column is not None)]
     names += [name for spec, _ in word_mappings(mapping).values() for name in spec.columns]
     return list(dict.fromkeys(names))
