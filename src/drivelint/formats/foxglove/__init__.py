@@ -1,1 +1,1 @@
-"""Foxglove scenes in MCAP."""
+"""Reads Foxglove scenes in MCAP files, and declares Foxglove's messages."""

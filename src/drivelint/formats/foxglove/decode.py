@@ -1,7 +1,7 @@
-"""Foxglove messages to Arrow structs, a batch at a time: protobuf by a pruned schema, JSON by the same fields.
+"""Decodes batches of Foxglove messages in protobuf or JSON to Arrow structs that have only the fields that are read.
 
 Schemas: https://docs.foxglove.dev/docs/visualization/message-schemas. Times are `seconds` and `nanos` in protobuf, `sec` and
-`nsec` in JSON, each an integer or not.
+`nsec` in JSON, which may be fractions.
 """
 
 from __future__ import annotations
@@ -58,9 +58,9 @@ _BLOCK: Final = 1 << 20
 
 
 def decoded_rows(path: Path, schema: Schema, packets: list[Packet]) -> pa.StructArray:
-    """Decode a batch of one schema and encoding, one struct per message.
+    """Decode a batch of messages with one schema and encoding to one struct per message.
 
-    Errors: `TraceError` naming the first message that cannot be decoded, or where the log's schema is none of the message.
+    Errors: `TraceError` with the first message that cannot be decoded, or if the log's schema does not describe the message.
     """
     tree = FIELD_TREES[schema.name]
     if packets[0].channel.message_encoding == "json":
@@ -70,12 +70,12 @@ def decoded_rows(path: Path, schema: Schema, packets: list[Packet]) -> pa.Struct
 
 
 def _json_rows(schema: pa.Schema, messages: list[bytes]) -> pa.StructArray:
-    # within JSON's texts a line's end is written otherwise, so that one message can be put on one line
+    # JSON strings contain no raw line breaks, so each message can be put on one line
     lines = [message.replace(b"\n", b" ").replace(b"\r", b" ") for message in messages]
     parse = json.ParseOptions(explicit_schema=schema, unexpected_field_behavior="ignore")
     block = json.ReadOptions(block_size=max(_BLOCK, 2 * max(map(len, lines)) + 2))
     text = b"\n".join(lines)
-    text.decode()  # the library takes texts as they are, and fails where they are read
+    text.decode()  # raises for invalid UTF-8, which the library would only notice when the texts are used
     table = json.read_json(pa.BufferReader(text), block, parse).combine_chunks()
     if table.num_rows != len(messages):
         raise ValueError(f"{len(messages)} messages hold {table.num_rows} JSON objects")
@@ -98,7 +98,7 @@ def _json_type(tree: FieldTree) -> list[pa.Field]:
 
 
 def times(stamp: pa.Array) -> tuple[Times, Mask]:
-    """Return times or durations in nanoseconds (0 where there is none), and where there is one."""
+    """Return times or durations in nanoseconds (0 if missing), and for each row whether it is present."""
     whole, rest = (_first(stamp, names) for names in (("seconds", "sec"), ("nanos", "nsec")))
     seconds = np.floor(whole)
     t_ns = seconds.astype(np.int64) * 1_000_000_000 + np.rint((whole - seconds) * 1e9 + rest).astype(np.int64)
@@ -106,7 +106,7 @@ def times(stamp: pa.Array) -> tuple[Times, Mask]:
 
 
 def _first(parent: pa.Array, names: tuple[str, ...]) -> Floats:
-    """Return the first of several members that is there; 0 where none is (protobuf does not write zeros)."""
+    """Return for each row the first finite member of `names`; 0 if there is none, because protobuf does not write zeros."""
     result = np.zeros(len(parent))
     for name in reversed(names):
         values = numbers(parent, name)
@@ -115,23 +115,23 @@ def _first(parent: pa.Array, names: tuple[str, ...]) -> Floats:
 
 
 def numbers(parent: pa.Array, name: str) -> Floats:
-    """Return a member as doubles, NaN where it is not there."""
+    """Return a member as doubles; NaN if it is missing."""
     values: Floats = struct_field(parent, name).cast(pa.float64()).to_numpy(zero_copy_only=False)
     return values
 
 
 def vectors(parent: pa.Array, name: str, axes: str = "xyz") -> Vectors:
-    """Return a vector's coordinates as columns: 0 where a vector that is there leaves one out, NaN where there is none."""
+    """Return vectors with one column per axis: 0 for a missing axis, because protobuf omits zeros, and NaN for a missing vector."""
     inner = struct_field(parent, name)
     there = inner.is_valid().to_numpy(zero_copy_only=False)
     columns = [
         pc.fill_null(struct_field(inner, axis).cast(pa.float64()), 0.0).to_numpy(zero_copy_only=False) for axis in axes
-    ]  # a NaN that was written stays one
+    ]  # a NaN in the log stays NaN
     return np.where(there[:, None], np.stack(columns, axis=1), np.nan)
 
 
 def distinct_texts(parent: pa.Array, name: str) -> tuple[list[str], NDArray[np.int32]]:
-    """Return the distinct texts of a member ('' where it is not there) and each row's index into them."""
+    """Return the distinct texts of a member ('' if it is missing), and each row's index in them."""
     column = struct_field(parent, name)
     if pa.types.is_null(column.type):
         return [""], np.zeros(len(column), np.int32)

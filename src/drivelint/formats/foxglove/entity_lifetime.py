@@ -1,7 +1,6 @@
-"""The lifetime of the entities of a scene: until they are replaced, deleted or expired.
+"""Adds states for entities of a scene that still exist without an update: they exist until they are replaced, deleted or expired.
 
-An actor that is still there without a message of its own has states too. If it stood still, it is where it
-was. If it moved, its place is not known: it is there but not placed.
+An entity that stood still keeps its place. If it moved, its place is unknown: it is present but not placed.
 """
 
 from __future__ import annotations
@@ -22,18 +21,18 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import Severity
 
 MAX_PERSISTED: Final = 20_000_000
-"""More states than this are not made up: no log has so many road users that stand still."""
+"""If more states than this would be added, the log is refused: no log has so many road users that stand still."""
 STALE_NS: Final = 500_000_000
-"""An entity that moves and is not updated for so long is not placed: until then its last state speaks for it."""
+"""A moving entity is present but not placed if its last update is older than this."""
 _NEVER: Final = np.iinfo(np.int64).max
 
 
 def with_persisted(
     rows: RecordedPoses, deletions: tuple[Times, list[str | None]], findings: list[QualityFinding], topic: str
 ) -> RecordedPoses:
-    """Add the states of entities that are there without an update: where they were if they stood still, else not placed.
+    """Return `rows` with added states for entities that exist without an update: with a place only if they stood still.
 
-    `deletions`: times of deletions, and the ids that they delete, None: all. An entity that was updated at that time or later stays.
+    `deletions`: times, and the ids that are deleted (None: all). A deletion does not affect updates at the same time or later.
     """
     unique, actor = distinct(rows.ids)
     number = {name: i for i, name in enumerate(unique)}
@@ -63,9 +62,10 @@ def with_persisted(
 def _persisted(
     updates: RecordedPoses, actor: NDArray[np.int32], deletions: tuple[Times, NDArray[np.int32]], grid_ns: Times
 ) -> tuple[Indices, Times, Mask]:
-    """Return the states between updates: which update each goes back to, its time, and whether the entity stood still.
+    """Return the states between updates: the row of the last update, the time, and whether the entity stood still.
 
-    `actor`: the index of each update's entity; `deletions`: times, and indices that they delete, -1: all.
+    `actor`: the index of each update's entity; `deletions`: times, and indices of the deleted entities (-1: all).
+    `grid_ns`: the times at which states are added.
     """
     n = len(updates)
     order = np.lexsort((np.arange(n), updates.t_ns, actor))
@@ -80,7 +80,7 @@ def _persisted(
     gone_ns = np.where((lifetime > 0) & (lifetime < _NEVER - np.abs(t_ns)), t_ns + lifetime, _NEVER)
     gone_ns = np.minimum(gone_ns, _deleted(actor, t_ns, deletions))
     replaced = (follows <= gone_ns) & (follows < _NEVER)
-    # between two places the entity moved: the samples themselves say so, and nothing is put between them
+    # an entity whose next update has another place moved, and gets no states in between
     still = np.asarray(np.where(replaced, np.r_[same & alike, False], np.r_[True, alike | ~same]), np.bool_)
     first = np.searchsorted(grid_ns, t_ns + np.where(still, 0, STALE_NS), side="right")
     last = np.searchsorted(grid_ns, np.minimum(follows, gone_ns), side="left")
@@ -94,7 +94,7 @@ def _persisted(
 
 
 def _deleted(actor: NDArray[np.int32], t_ns: Times, deletions: tuple[Times, NDArray[np.int32]]) -> Times:
-    """Return when each update is deleted: by the first deletion of its actor, or of all, with a later time."""
+    """Return the time at which each update is deleted: the first later deletion of its actor or of all actors."""
     when, whom = deletions
     result = np.full(len(t_ns), _NEVER)
     for one in np.unique(whom):

@@ -1,7 +1,7 @@
-"""Foxglove's public message types, as far as they are written here: `messages.toml` declares them.
+"""The schemas of the Foxglove messages that drivelint writes, built from `messages.toml`.
 
-They are spelled out because the package that holds them weighs 54 MB and encodes one object at a time. A scene must be
-declared whole: viewers walk through every kind of primitive, used or not.
+The official package is not used, because it has 54 MB and encodes one object at a time. A scene must be declared with all its
+kinds of primitives, because viewers read each of them, used or not.
 """
 
 from __future__ import annotations
@@ -23,17 +23,17 @@ INFO, WARNING, ERROR = 2, 3, 4
 
 @cache
 def schema(name: str) -> Schema:
-    """Return the MCAP schema record (still without id) of `foxglove.<name>`: a set of file descriptors, imports first."""
+    """Return the MCAP schema record of `foxglove.<name>`, with the id 0: a set of file descriptors, imports first."""
     files = descriptor_pb2.FileDescriptorSet()
     _add_declaration(name, files, set(), Declarations(toml_beside(__file__, "messages.toml")))
-    # a fixed order of bytes: no map fields, and the files in the order in which they are found
+    # the bytes are deterministic: there are no map fields, and the order of the files is fixed
     return Schema(id=0, name=f"foxglove.{name}", encoding="protobuf", data=files.SerializeToString(deterministic=True))
 
 
 def _add_declaration(
     name: str, files: descriptor_pb2.FileDescriptorSet, added_names: set[str], declared: Declarations
 ) -> None:
-    """Append the file that declares a message, after those that it imports."""
+    """Append the files that a message imports, then the file that declares it."""
     if name in added_names:
         return
     added_names.add(name)

@@ -1,7 +1,7 @@
-"""This module reads Foxglove scenes in MCAP; the first cube of an entity is the road user's box. No velocities, no ego: both come from
-elsewhere.
+"""Reads Foxglove scenes in MCAP. The first cube of an entity is the road user's box.
 
-The pose of a cube is the centre of its box, in the entity's frame.
+The position of a cube is the centre of its box, in the entity's frame. Scenes have no velocities, which are derived later, and no ego,
+which `--ego` names.
 """
 
 from __future__ import annotations
@@ -56,13 +56,13 @@ if TYPE_CHECKING:
     from drivelint.arrays import Codes, Mask, Times
 
 KIND_KEYS: Final = ("class", "type", "classification", "category", "label", "object_class", "object_type")
-"""Keys of the metadata with the class of an entity, if the value is a known word."""
+"""Keys of an entity's metadata whose value can be its class."""
 DELETE_ALL: Final = 1
 
 
 @dataclass
 class _Scene:
-    """The content of one topic."""
+    """The content of one topic with scenes. `without_box`: number of entities without a cube."""
 
     rows: list[RecordedPoses] = field(default_factory=list)
     deletions: list[tuple[Times, Mask, Times, list[str | None]]] = field(default_factory=list)
@@ -70,7 +70,10 @@ class _Scene:
 
 
 def read(path: Path, topic: str | None) -> Recording:
-    """Read the scene of one topic. Errors: `TraceError` for damage, no scene, several topics, or nothing that can be placed."""
+    """Read the scenes of one topic.
+
+    Errors: `TraceError` for a damaged log, no scene, several topics without a choice, or no entity with a position.
+    """
     scenes: dict[str, _Scene] = {}
     transforms: list[tuple[pa.Array, Times]] = []
     findings: list[QualityFinding] = []
@@ -167,7 +170,7 @@ def _bytes(entities: pa.Array, name: str) -> NDArray[np.bytes_]:
 
 
 def _classes(entities: pa.Array) -> Codes:
-    """Return the class of an entity by the first key of the metadata whose value is a known word."""
+    """Return the classes of entities, from the first metadata entry with a key of `KIND_KEYS` and a known value; -1 without one."""
     codes = np.full(len(entities), -1, np.int8)
     pairs, parent = list_items(entities, "metadata")
     if not len(pairs):
@@ -213,7 +216,7 @@ def _recording(
 
 
 def _lost_times(nameless: RecordedPoses, topic: str) -> list[LostTime]:
-    """Return when entities without an id were there: from their message on for their lifetime, if they have one."""
+    """Return the time ranges of entities without an id: from the message to the end of the lifetime (no lifetime: no end)."""
     times = zip(nameless.log_ns.tolist(), np.asarray(nameless.lifetime_ns).tolist(), strict=True)
     spans = {(log_ns - 1, log_ns + lifetime_ns + 1 if lifetime_ns > 0 else None) for log_ns, lifetime_ns in times}
     endless = min((since for since, until in spans if until is None), default=None)
@@ -224,7 +227,10 @@ def _lost_times(nameless: RecordedPoses, topic: str) -> list[LostTime]:
 
 
 def _deletions(scene: _Scene, rows: RecordedPoses, *, own_times: bool) -> tuple[Times, list[str | None]]:
-    """Return times and ids (None: all are meant). One without a time has that of its message, in the entities' clock."""
+    """Return times and ids (None: all) of deletions, in the clock of the entities.
+
+    A deletion without a time gets the latest time of the entities before it in the log.
+    """
     order = np.argsort(rows.log_ns, kind="stable")
     log_ns, latest = rows.log_ns[order], np.maximum.accumulate(rows.t_ns[order])
     times, ids = [np.zeros(0, np.int64)], []
@@ -237,7 +243,7 @@ def _deletions(scene: _Scene, rows: RecordedPoses, *, own_times: bool) -> tuple[
 
 
 def _frames(transforms: list[tuple[pa.Array, Times]], *, own_times: bool) -> TransformTree:
-    """Collect transforms. One that is always the same holds always: a scene says it once, when it begins."""
+    """Return the tree of all transforms. A transform that never changes is static: some logs contain it only once, at the start."""
     parts_by_frames: dict[tuple[str, str], list[tuple[Times, Any, Any]]] = {}
     for rows, log_ns in transforms:
         t_ns = times(struct_field(rows, "timestamp"))[0] if own_times else log_ns

@@ -1,1 +1,1 @@
-"""MCAP files: read record by record, copied byte by byte, written."""
+"""Reads MCAP files record by record, copies them byte by byte, and writes them."""

@@ -1,4 +1,4 @@
-"""MCAP logs of one drive: a file, or a folder of files as `ros2 bag record` splits them."""
+"""The MCAP log of one drive: one file, or a folder of the files into which `ros2 bag record` splits a log."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ FOXGLOVE_ROLES: Final = {
     "foxglove.FrameTransform": "frames",
     "foxglove.FrameTransforms": "frames",
 }
-"""Schema (for ROS as `message_kind` names it) -> what its messages are read as."""
+"""Schema -> the role of its messages. Schemas of ROS have the names that `message_kind` returns."""
 
 
 def mcap_files(path: Path) -> list[Path]:
     """Return the MCAP files of a drive in the order of recording.
 
-    Errors: `TraceError` for a bag whose description cannot be read, that is no MCAP, or of which files are missing.
+    Errors: `TraceError` if a bag's `metadata.yaml` cannot be read, the bag is not in MCAP, or a file is missing, empty or not listed.
     """
     if not path.is_dir():
         return [path]
@@ -47,7 +47,7 @@ def mcap_files(path: Path) -> list[Path]:
         raise not_mcap(path, str(storage))
     files = []
     for name in names:
-        # older recorders list a file by its name only, or below the folder's own name
+        # older recorders list only a file's name, or prefix it with the folder's name
         file = next(
             (each for each in (path / name, path / name.rsplit("/", 1)[-1]) if looked_for(each).is_file()), None
         )
@@ -66,7 +66,10 @@ def mcap_files(path: Path) -> list[Path]:
 
 
 def not_mcap(path: Path, storage: str) -> TraceError:
-    """Return the error about a bag in another storage, with the command that converts it. `path`: its folder, or one of its files."""
+    """Return the error for a bag in a storage other than MCAP, with the command that converts it.
+
+    `path`: the bag's folder, or one of its files.
+    """
     whole = path if path.is_dir() or not is_bag(path.parent) else path.parent
     name = (whole.name if whole.is_dir() else whole.stem) or "bag"
     converted = whole.with_name(f"{name}-mcap") if whole.name else Path(f"{name}-mcap")
@@ -78,8 +81,8 @@ def not_mcap(path: Path, storage: str) -> TraceError:
 
 
 def _information(path: Path) -> Any:
-    """Return the description of a bag. Errors: `TraceError`."""
-    import yaml  # logs of other formats do without
+    """Return the content of a bag's `metadata.yaml`. Errors: `TraceError` if it cannot be read."""
+    import yaml  # imported here, because only bags need it
 
     try:
         return yaml.safe_load((path / METADATA_FILE).read_bytes())[METADATA_ROOT]
@@ -92,10 +95,10 @@ def _unreadable(path: Path, error: Exception) -> TraceError:
 
 
 def missing_messages(path: Path, parts: Sequence[Container], is_read: Callable[[str], bool]) -> list[QualityFinding]:
-    """Return a finding for each topic of which a bag's description counts more messages than its files hold.
+    """Return a finding for each topic of which the bag's `metadata.yaml` counts more messages than its files contain.
 
-    `parts`: its files, read to their ends. `is_read`: whether a kind of messages, as `message_kind` names it, is read. Where bytes were
-    lost, these explain it.
+    `parts`: the bag's files, read to their ends. `is_read`: whether messages of a kind, as `message_kind` returns it, are read.
+    If bytes were lost, they explain missing messages, so there is no finding.
     """
     if not path.is_dir() or any(part.losses.has_lost_bytes for part in parts):
         return []
@@ -113,7 +116,7 @@ def missing_messages(path: Path, parts: Sequence[Container], is_read: Callable[[
 
 
 def _counted_topics(information: Any) -> Iterator[tuple[str, str, int]]:
-    """Yield name, type and number of messages of each topic that a description counts as rosbag2 does."""
+    """Yield name, type and number of messages of each topic in a bag's description; skip entries that are not as rosbag2 writes them."""
     topics = information.get("topics_with_message_count")
     for each in topics if isinstance(topics, list) else ():
         match each:
@@ -124,8 +127,8 @@ def _counted_topics(information: Any) -> Iterator[tuple[str, str, int]]:
 def message_family(path: Path) -> str:
     """Return the kind of messages in a drive's log: `osi`, `ros2`, `foxglove`, or `none` of them.
 
-    The index at the end of the file is asked first, the whole file only where that says nothing: each reader then finds
-    out for itself whether it was right to ask. A log may hold several: OSI counts first, it is the truth.
+    The indexes of the files are searched first. Only if they name no usable schema are the whole files read.
+    If a log has several kinds, OSI wins, because it is ground truth.
     """
     parts = mcap_files(path)
     for schemas in (_indexed, _recorded):
@@ -139,7 +142,10 @@ def message_family(path: Path) -> str:
 
 
 def topics(path: Path) -> dict[str, str]:
-    """Return topic -> kind of its messages, as `message_kind` names it, of a drive's log. Errors: `TraceError` for a damaged file."""
+    """Return topic -> kind of its messages, as `message_kind` returns it, for a drive's log.
+
+    Errors: `TraceError` for a damaged file.
+    """
     found = {}
     for file in mcap_files(path):
         part: Summary | Container = read_index(file)
@@ -154,12 +160,12 @@ def topics(path: Path) -> dict[str, str]:
 
 
 def _indexed(file: Path) -> set[str]:
-    """Return the schemas that the index lists; none where it is not there or damaged."""
+    """Return the names of the schemas in the file's index; an empty set if the index is missing or damaged."""
     return {schema.name for schema in read_index(file).schemas.values()}
 
 
 def _recorded(file: Path) -> set[str]:
-    """Return the schemas that stand among the data. Errors: `TraceError` for a damaged file."""
+    """Return the names of the schemas in the file's data section. Errors: `TraceError` for a damaged file."""
     container = Container(file, salvage=True)
     for _ in container.packets():
         pass

@@ -1,4 +1,4 @@
-"""Recognises the folder of a bag, as `ros2 bag record` leaves it, without reading its logs."""
+"""Recognises a folder that `ros2 bag record` wrote, without reading its logs."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ METADATA_ROOT: Final = "rosbag2_bagfile_information"
 
 
 def is_bag(path: Path) -> bool:
-    """Say whether `path` is a folder that rosbag2 recorded."""
+    """Return whether `path` is a folder that rosbag2 recorded."""
     try:
         with (path / METADATA_FILE).open("rb") as file:
             return METADATA_ROOT.encode() in file.read(65536)

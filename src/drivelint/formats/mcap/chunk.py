@@ -1,4 +1,4 @@
-"""The chunks of an MCAP file: unpacked within the size that they declare, and checked by their CRC."""
+"""Unpacks the chunks of an MCAP file: at most to their declared size, and checked by their CRC."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from typing import NamedTuple
 from drivelint.errors import TraceError
 
 MAX_CHUNK_BYTES = 512 * 1024 * 1024
-"""A chunk that says it grows beyond this is refused before anything is allocated: recorders write a few MB each."""
+"""A chunk that declares a larger unpacked size is refused before memory is allocated. Recorders write chunks of a few MB."""
 FREE_BYTES = 1 << 30
 MOST_GROWTH = 250
-"""All chunks together may unpack to `FREE_BYTES`, and to so many times their size; of real logs none grew by more than thirty times."""
+"""All chunks of a file may unpack to `FREE_BYTES` plus this many times their packed size. Real logs grew at most thirtyfold."""
 FREE_RECORDS = 500_000
 LEAST_RECORD_BYTES = 4
-"""So many records a file may have whatever its size, and of more each takes so many packed bytes: its time alone takes as many."""
+"""A file may have `FREE_RECORDS` records, plus one per this many packed bytes: even well packed, a message's time needs as many."""
 COMPRESSIONS = frozenset({"", "zstd", "lz4"})
 _CHUNK = struct.Struct("<QQQII")
 
 
 class ChunkError(Exception):
-    """A chunk is damaged. `framed`: the length of its record can be believed all the same."""
+    """The error for a damaged chunk. `framed`: the length of its record is still right, so that the next record can be found."""
 
     def __init__(self, message: str, *, framed: bool = True) -> None:
         super().__init__(message)
@@ -29,7 +29,7 @@ class ChunkError(Exception):
 
 
 class ChunkHead(NamedTuple):
-    """What a chunk declares, and its bytes as they are in the file."""
+    """The header of a chunk record, and its packed bytes. `size`: the declared unpacked size in bytes."""
 
     size: int
     crc: int
@@ -38,13 +38,13 @@ class ChunkHead(NamedTuple):
 
 
 class Work:
-    """Counts the work that a file causes, and refuses one that causes too much for its size: a small file could keep a reader for hours."""
+    """Limits the unpacked bytes and records of a file relative to its size, because a small malicious file could take hours to read."""
 
     def __init__(self) -> None:
         self._packed = self._unpacked = self._records = 0
 
     def unpacked(self, head: ChunkHead, where: str) -> bytes:
-        """Return the records of a chunk, if it may be unpacked. Errors: as `chunk_records`, and `TraceError`."""
+        """Return the unpacked records of a chunk. Errors: those of `chunk_records`; `TraceError` beyond the limit."""
         packed, size = self._packed + len(head.packed), self._unpacked + head.size
         if head.size <= MAX_CHUNK_BYTES and size > FREE_BYTES + MOST_GROWTH * packed:
             raise TraceError(
@@ -55,7 +55,7 @@ class Work:
         return records
 
     def record(self, where: str) -> None:
-        """Count a record of a chunk. Errors: `TraceError`."""
+        """Count a record of a chunk. Errors: `TraceError` beyond the limit."""
         self._records += 1
         if self._records > FREE_RECORDS + self._packed // LEAST_RECORD_BYTES:
             raise TraceError(
@@ -65,7 +65,7 @@ class Work:
 
 
 def chunk_head(body: memoryview) -> ChunkHead:
-    """Return the declaration of a chunk record. Errors: `ChunkError` where its lengths do not fit."""
+    """Return the header of a chunk record. Errors: `ChunkError` if its lengths contradict each other."""
     if len(body) < _CHUNK.size:
         raise ChunkError("a chunk record without its header", framed=False)
     _, _, size, crc, name_length = _CHUNK.unpack_from(body)
@@ -81,9 +81,9 @@ def chunk_head(body: memoryview) -> ChunkHead:
 
 
 def chunk_records(head: ChunkHead, where: str) -> bytes:
-    """Return the records of a chunk. Errors: `ChunkError` where they are damaged.
+    """Return the unpacked records of a chunk. `where`: file and byte, for the error.
 
-    `TraceError` where they cannot be read at all, `where` (file and byte): too large, or of an unknown compression.
+    Errors: `ChunkError` if the chunk is damaged; `TraceError` if it is too large, or its compression is unknown.
     """
     if head.size > MAX_CHUNK_BYTES:
         raise TraceError(
@@ -99,7 +99,7 @@ def chunk_records(head: ChunkHead, where: str) -> bytes:
 
 
 def _unpacked(head: ChunkHead) -> bytes:
-    """Decompress at most as many bytes as the chunk declares."""
+    """Return the decompressed records. Errors: `ChunkError` if their size is not the declared size."""
     import zstandard
 
     size, packed = head.size, head.packed
@@ -108,7 +108,7 @@ def _unpacked(head: ChunkHead) -> bytes:
             records = bytes(packed) if len(packed) == size else b""
         elif head.compression == "zstd":
             declared = zstandard.get_frame_parameters(packed).content_size
-            # the library believes the frame's own size rather than the limit given to it
+            # the library uses the size in the frame instead of the limit given to it
             if declared not in {size, zstandard.CONTENTSIZE_UNKNOWN}:
                 raise ChunkError(
                     f"a chunk whose header states an unpacked size of {size} bytes and then of {declared},"

@@ -1,4 +1,4 @@
-"""This module copies a recorded log, an MCAP file or a bag of several, into an annotated one."""
+"""Copies a recorded log, an MCAP file or a bag of several, into an annotated log."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
 
 def copy_original(original: Original, sink: Sink) -> None:
-    """Copy the data into a sink, fresh or with earlier parts of the log, and add the copied records to its index.
+    """Append the data of one file to a sink, and add the copied records to the sink's index.
 
-    Errors: `TraceError`; `ChangedLogError` for a file that is not as it was.
+    Errors: `TraceError` for a damaged file; `ChangedLogError` if the file changed after ingest had read it.
     """
     if original.sha256 is None:
         PartCopy(original, sink).run()
@@ -36,17 +36,14 @@ def copy_original(original: Original, sink: Sink) -> None:
 
 
 def copy_log(path: Path, sha256: str, sink: Sink) -> None:
-    """Copy an MCAP file, or all files of a bag one after another, into a fresh sink.
-
-    Errors: `TraceError`; `ChangedLogError` for a file that is not as it was.
-    """
+    """Copy an MCAP file, or all files of a bag in their order, into an empty sink. Errors: those of `copy_original`."""
     for part in mcap_files(path):
         with Original(part, None if path.is_dir() else sha256) as original:
             copy_original(original, sink)
 
 
 def is_mcap(path: Path) -> bool:
-    """Whether a trace is an MCAP file, by its first bytes, or a bag of such files."""
+    """Return whether a trace is a bag, or begins with MCAP's magic bytes."""
     if path.is_dir():
         return is_bag(path)
     with open_log(path) as file:

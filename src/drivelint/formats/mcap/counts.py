@@ -1,4 +1,4 @@
-"""Counts the messages of an MCAP file, and compares the counts with those of its own indexes."""
+"""Counts the messages of an MCAP file, and compares the counts with those in the file's indexes."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ if TYPE_CHECKING:
     from mcap.records import Channel, Statistics
 
 MESSAGE_INDEX_HEAD: Final = struct.Struct("<HI")
-"""Channel, and bytes of the entries behind it."""
+"""The header of a message index: channel id, and length in bytes of the entries that follow."""
 _ENTRY: Final = struct.Struct("<QQ")
 _MOST_CONTRADICTIONS: Final = 3
 
 
 @dataclass
 class MessageCounts:
-    """Channel -> number of its messages. `unused`: channels of whose messages none is used: missing messages there are no loss."""
+    """The number of messages per channel id. `unused`: channels that are not read, so that missing messages are no loss."""
 
     of_channels: Counter[int] = field(default_factory=Counter)
     unused: set[int] = field(default_factory=set)
     _open_chunk: dict[int, list[int]] | None = (
         None  # channel -> log times of its messages in the chunk that is being read
     )
-    _last_chunk: dict[int, list[int]] | None = None  # the same of the chunk before, if all of it was read
+    _last_chunk: dict[int, list[int]] | None = None  # the same for the previous chunk, if it was read to its end
 
     def add(self, channel: int, log_ns: int) -> None:
         """Count a message."""
@@ -36,17 +36,17 @@ class MessageCounts:
             self._open_chunk.setdefault(channel, []).append(log_ns)
 
     def begin_chunk(self) -> None:
-        """Begin with the messages of a chunk."""
+        """Start a chunk: the next messages belong to it."""
         self._open_chunk, self._last_chunk = {}, None
 
     def end_chunk(self) -> None:
-        """End with them: all were read."""
+        """End the chunk, after all its messages were read."""
         self._open_chunk, self._last_chunk = None, self._open_chunk
 
     def missing_from_chunk(self, index: memoryview) -> list[int]:
-        """Return the log times of the messages that the index of a channel, behind a chunk, names and the chunk does not hold.
+        """Return the log times of messages that are in the message index after a chunk, but not in the chunk.
 
-        They count as found: the caller reports that they are lost.
+        These messages are added to the counts, because the caller reports them as lost.
         """
         channel, length = MESSAGE_INDEX_HEAD.unpack_from(index)
         found = None if self._last_chunk is None else self._last_chunk.get(channel, [])
@@ -58,9 +58,10 @@ class MessageCounts:
         return missing
 
     def contradiction(self, index: Statistics, channels: Mapping[int, Channel], *, is_damaged: bool) -> str | None:
-        """Return which counts of the index are not those of the messages; None: none is.
+        """Return, in words, the counts of the index that differ from those of the messages; None if all are equal.
 
-        An index with a wrong CRC (`is_damaged`) is heard if it agrees with itself: what changed it may have taken messages.
+        An index with a wrong CRC (`is_damaged`) is compared only if its counts per channel sum up to its total:
+        the same damage may have removed messages.
         """
         index_counts, total = index.channel_message_counts, self.of_channels.total()
         agrees = not index_counts or sum(index_counts.values()) == index.message_count

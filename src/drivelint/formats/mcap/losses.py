@@ -1,4 +1,4 @@
-"""The losses of an MCAP file: bytes, and the log times of the messages that may have been in them."""
+"""The losses of an MCAP file: lost bytes, and the range of log times of the messages that these bytes may have contained."""
 
 from __future__ import annotations
 
@@ -12,14 +12,15 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 MOST_BACKWARD_NS: Final = 1_000_000_000
-"""If log times go back further, they do not follow the file: data between two messages may be of any time."""
+"""If log times go back by more, messages are not in the order of time, and lost bytes between two messages may be of any time."""
 
 
 @dataclass(frozen=True)
 class LostBytes:
     """Bytes `start` to `end` of a file, and why they were lost.
 
-    Their messages are of log times after `since_ns` and before `until_ns`; None: any.
+    The lost messages have log times after `since_ns` and before `until_ns`; None: no bound. `timed`: the bounds come from the lost
+    messages, not from their neighbours.
     """
 
     start: int
@@ -32,7 +33,10 @@ class LostBytes:
 
 @dataclass
 class Losses:
-    """The lost bytes of a file in its order, each between the messages before and after it. False if there are none."""
+    """The lost bytes of a file, in the order in which they were found. Its truth value: whether there are any.
+
+    `first_ns`, `last_ns`: log times of the first and last message read so far.
+    """
 
     lost_bytes: list[LostBytes] = field(default_factory=list)
     first_ns: int | None = None
@@ -46,16 +50,16 @@ class Losses:
 
     @property
     def first(self) -> LostBytes:
-        """The first lost bytes; there must be some."""
+        """The lost bytes that were found first."""
         return self.lost_bytes[0]
 
     @property
     def last(self) -> LostBytes:
-        """The lost bytes that were found last; there must be some."""
+        """The lost bytes that were found last."""
         return self.lost_bytes[-1]
 
     def message(self, log_ns: int) -> None:
-        """Take note of a message that was read."""
+        """Record the log time of a message that was read: it bounds the lost bytes before and after it."""
         if self.first_ns is None:
             self.first_ns = log_ns
         for k in range(self._open, len(self.lost_bytes)):
@@ -67,7 +71,7 @@ class Losses:
         self.last_ns = log_ns
 
     def add(self, start: int, end: int, cause: str, since: int | None = None, until: int | None = None) -> None:
-        """Take note of lost bytes behind the messages read so far, or of these first and last log times."""
+        """Add lost bytes; `since` and `until`: the log times of their first and last message, if the index has them."""
         if since is None or until is None:
             self.lost_bytes.append(LostBytes(start, end, cause, self.last_ns))
         else:
@@ -75,7 +79,7 @@ class Losses:
             self._open = len(self.lost_bytes)
 
     def add_message(self, offset: int, cause: str, log_ns: int) -> None:
-        """Take note of a message that cannot be decoded."""
+        """Add a message that cannot be decoded."""
         self.lost_bytes.append(LostBytes(offset, offset, cause, log_ns - 1, log_ns + 1, timed=True))
 
     @property
@@ -84,13 +88,13 @@ class Losses:
         return any(each.end > each.start for each in self.lost_bytes)
 
     def covers(self, offset: int) -> bool:
-        """Whether this byte is lost."""
+        """Return whether the byte at `offset` is lost."""
         return any(each.start <= offset < each.end for each in self.lost_bytes)
 
     def narrow(self, chunks: Mapping[int, tuple[int, int, int]]) -> None:
-        """Bound the times of lost bytes by those of the chunks in them, where the index knows these (offset: length, times).
+        """Bound the times of lost bytes by the times that the index has for the chunks in them.
 
-        A loss with nothing but chunks and their message indexes in it cannot be of other times.
+        `chunks`: offset of a chunk -> its length, first and last log time.
         """
         for k, each in enumerate(self.lost_bytes):
             inside = [times for offset, (_, *times) in chunks.items() if each.start <= offset < each.end]
@@ -99,7 +103,7 @@ class Losses:
                 self.lost_bytes[k] = replace(each, since_ns=since, until_ns=until, timed=True)
 
     def times(self, path: Path) -> list[LostTime]:
-        """Return what was lost as stretches of log time, each with its sentence."""
+        """Return the losses as ranges of log time, each with a text for the user."""
         lost_times = []
         for loss in self.lost_bytes:
             since, until = loss.since_ns, loss.until_ns
@@ -116,7 +120,10 @@ class Losses:
 
 
 def times_of_parts(parts: Sequence[tuple[Path, Losses]]) -> list[LostTime]:
-    """Return the losses of a log in several files, in their order: the neighbours of a file bound its beginning and end."""
+    """Return the losses of a log in several files, given in their order.
+
+    If a loss has no bound, it gets the time of the last message in earlier files, or of the first in later files.
+    """
     lost_times = []
     for k, (path, losses) in enumerate(parts):
         before = max((each.last_ns for _, each in parts[:k] if each.last_ns is not None), default=None)

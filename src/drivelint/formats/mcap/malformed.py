@@ -1,4 +1,4 @@
-"""Decodes messages of which some may be malformed: these are counted and left out, where they are few."""
+"""Decodes batches of messages, and leaves out and counts malformed messages if they are few."""
 
 from __future__ import annotations
 
@@ -15,15 +15,16 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 MOST_MALFORMED_SHARE: Final = 0.1
-"""Where more of the messages cannot be decoded, the log's schema is not theirs, and the content of the others is chance."""
+"""If a larger share of messages cannot be decoded, the schema is wrong, and the other messages were decoded by chance."""
 
 
 def decode_readable(
     container: Container, packets: list[Packet], decode: Callable[[list[Packet]], T]
 ) -> tuple[T | None, list[Packet]]:
-    """Decode a batch without its malformed messages, which are lost; return the decoded data (None: none) and the messages that were read.
+    """Decode a batch, and add its malformed messages to the losses of `container`.
 
-    Errors: that of the first malformed message, where more than a tenth of the batch is malformed.
+    Return the decoded data (None if no message is readable), and the messages that were decoded.
+    Errors: the error of the first malformed message, if more than a tenth of the batch is malformed.
     """
 
     def decode_timed(some: list[Packet]) -> T:
@@ -41,9 +42,10 @@ def decode_readable(
 def decode_others(
     packets: list[Packet], decode: Callable[[list[Packet]], T]
 ) -> tuple[T | None, dict[int, MessageError]]:
-    """Decode a batch without its malformed messages; return the decoded data (None: none), and the places and errors of the malformed ones.
+    """Decode a batch without its malformed messages.
 
-    Errors: that of the first malformed message, where more than a tenth of the batch is malformed.
+    Return the decoded data (None if no message is readable), and place in the batch -> error for the malformed messages.
+    Errors: the error of the first malformed message, if more than a tenth of the batch is malformed.
     """
     try:
         return decode(packets), {}
@@ -57,7 +59,7 @@ def decode_others(
 
 
 def _malformed(packets: list[Packet], decode: Callable[[list[Packet]], object]) -> list[tuple[int, MessageError]]:
-    """Return the places of the messages that cannot be decoded, and their errors, by halves."""
+    """Return place and error of each message that cannot be decoded, found by bisection."""
     malformed_messages: list[tuple[int, MessageError]] = []
     waiting = [(0, len(packets))]
     while waiting and len(malformed_messages) <= max(1, MOST_MALFORMED_SHARE * len(packets)):

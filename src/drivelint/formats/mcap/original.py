@@ -1,4 +1,4 @@
-"""A recorded MCAP file, read by its record heads alone wherever that is enough, so that it can be copied."""
+"""Reads a recorded MCAP file for copying: only its record headers, wherever they are enough."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _BLOCK: Final = 4 << 20
 
 
 class Record(NamedTuple):
-    """A record: its opcode, where it begins (its head included), where its body begins, where it ends."""
+    """A record: its opcode, and the bytes at which its header begins (`at`), its body begins (`body`) and it ends."""
 
     opcode: int
     at: int
@@ -46,18 +46,18 @@ class Record(NamedTuple):
 
 
 class Original:
-    """An MCAP file, mapped into memory and read by its record heads alone wherever that is enough.
+    """A mapped MCAP file. Only its record headers are read, wherever they are enough.
 
-    The file was read and checked by ingest; `sha256` is what it was then, None: who copies it holds its hash against that of the whole
-    log. `indexed`: its chunks' message indexes can be relied on.
-    Errors: `TraceError` where it is damaged or was changed since.
+    `sha256`: the hash when the file was read and checked; None: the caller compares the hash of the whole log instead.
+    `indexed`: whether the message indexes of its chunks are complete.
+    Errors: `TraceError` if the file is damaged, or was changed after it was checked.
     """
 
     def __init__(self, path: Path, sha256: str | None = None) -> None:
         self.path = path
         self.sha256 = sha256
-        self._file = open_log(path)  # closed by leaving the `with` that this object is made for
-        # mapped for the record heads alone: what is read through a map counts as memory of this process
+        self._file = open_log(path)  # closed by `__exit__`
+        # only record headers are read through the map: pages that are read through it count as memory of this process
         self._view = memoryview(mmap.mmap(self._file.fileno(), 0, access=mmap.ACCESS_READ))
         self.schemas: dict[int, Schema] = {}
         self.channels: dict[int, Channel] = {}
@@ -71,7 +71,7 @@ class Original:
         self._file.close()
 
     def records(self, at: int = len(MAGIC)) -> Iterator[Record]:
-        """Yield the records of the file from byte `at` on, the footer being the last."""
+        """Yield the records from byte `at` up to and including the footer."""
         size = len(self._view)
         while at + _HEAD.size <= size:
             opcode, length = _HEAD.unpack_from(self._view, at)
@@ -85,19 +85,19 @@ class Original:
         raise self.damage_error(at)
 
     def damage_error(self, at: int) -> TraceError:
-        """Return the error for a record that cannot be read."""
+        """Return the error for a record at byte `at` that cannot be read."""
         return TraceError(f"{self.path}: the log changed or is damaged at byte {at}: check it again")
 
     @contextmanager
     def parsing(self, record: Record) -> Iterator[None]:
-        """Turn the library's error about an unreadable record into a `TraceError`."""
+        """Convert errors of the MCAP library about this record to `TraceError`."""
         try:
             yield
         except (McapError, struct.error, ValueError) as error:
             raise self.damage_error(record.at) from error
 
     def read(self, start: int, end: int) -> bytes:
-        """Return bytes of the file."""
+        """Return bytes `start` to `end` of the file."""
         try:
             content = os.pread(self._file.fileno(), end - start, start)
         except OSError as error:
@@ -107,7 +107,7 @@ class Original:
         return content
 
     def stream(self, record: Record, most_bytes: int | None = None) -> ReadDataStream:
-        """Return the body of a record, to be read field by field; `most_bytes`: so many bytes, for the fields before its data."""
+        """Return a stream of a record's body; with `most_bytes`, only of its first bytes, which contain the fields before the data."""
         end = record.end if most_bytes is None else min(record.end, record.body + most_bytes)
         return ReadDataStream(io.BytesIO(self.read(record.body, end)))
 
@@ -123,7 +123,7 @@ class Original:
             at += _HEAD.size + length
 
     def chunk_message_index(self, record: Record) -> ChunkMessageIndex:
-        """Unpack a chunk to find where its messages are."""
+        """Return the message index of a chunk, made by unpacking the chunk."""
         inside = (each for each in self.chunk_records(record) if each[0] == Opcode.MESSAGE)
         return index_arrays((*_MESSAGE.unpack_from(body), at) for _, at, body in inside)
 
@@ -138,7 +138,7 @@ class Original:
         return channel, sequence, log_time
 
     def _survey(self) -> bool:
-        """Find schemas and channels, from the summary if it agrees with the data, else from the chunks; say whether it agrees."""
+        """Set schemas and channels; return whether the indexes are complete. If not, the chunks are unpacked for schemas and channels."""
         indexed_channels: set[int] = set()
         chunks: list[Record] = []
         data: list[Record] = []
@@ -160,7 +160,7 @@ class Original:
                 part.append(record)
         self.schemas, self.channels, _ = self._announced(data)
         counts: Statistics | None = None
-        with suppress(TraceError):  # the data are enough
+        with suppress(TraceError):  # a damaged summary is not needed
             schemas, channels, counts = self._announced(summary)
             self.schemas, self.channels = schemas | self.schemas, channels | self.channels
         if not chunks or self._agrees(counts, messages, indexed_channels):
@@ -169,7 +169,7 @@ class Original:
         return False
 
     def _announced(self, records: list[Record]) -> tuple[dict[int, Schema], dict[int, Channel], Statistics | None]:
-        """Return the schemas, channels and counts among records. Errors: `TraceError` for one that is damaged."""
+        """Return the schemas, channels and statistics among `records`. Errors: `TraceError` for a damaged record."""
         schemas: dict[int, Schema] = {}
         channels: dict[int, Channel] = {}
         counts: Statistics | None = None
@@ -201,7 +201,7 @@ class Original:
                         self.channels[channel.id] = channel
 
     def _agrees(self, counts: Statistics | None, messages: int, indexed_channels: set[int]) -> bool:
-        """Whether the summary names every channel and schema, and the message indexes know of every message."""
+        """Return whether the summary lists every channel and schema, and the message indexes list every message."""
         return (
             counts is not None
             and counts.message_count == messages
@@ -212,7 +212,7 @@ class Original:
         )
 
     def digest(self) -> str:
-        """Return the hash of the file as it is now."""
+        """Return the SHA-256 of the file's present content."""
         digest = hashlib.sha256()
         for start in range(0, len(self._view), _BLOCK):
             digest.update(self.read(start, min(start + _BLOCK, len(self._view))))
@@ -220,7 +220,7 @@ class Original:
 
 
 def open_log(path: Path) -> BinaryIO:
-    """Open a log that was read before. Errors: `TraceError`."""
+    """Open a log that ingest has read. Errors: `TraceError` if it cannot be opened."""
     try:
         return path.open("rb")
     except OSError as error:
@@ -232,7 +232,7 @@ def _unreadable(path: Path, error: OSError) -> TraceError:
 
 
 def index_arrays(messages: Iterable[tuple[int, int, int, int]]) -> ChunkMessageIndex:
-    """Return the index of messages (channel, sequence number, log time, offset): by channel an array of log time and offset."""
+    """Return channel id -> (n, 2) array of log time and offset, for messages (channel id, sequence number, log time, offset)."""
     entries: dict[int, list[tuple[int, int]]] = {}
     for channel, _, log_time, at in messages:
         entries.setdefault(channel, []).append((log_time, at))

@@ -1,8 +1,8 @@
-"""This module copies the data of one MCAP file behind those of others, and adds the indexes that it lacks.
+"""Appends the data of one MCAP file to a copy, and adds missing indexes.
 
-Chunks are copied as they are. Two things are added where a log lacks them, because readers seek by them: message indexes behind a chunk,
-and a chunk around messages that stand outside of any. Where a part of a split log gives a number to another channel or schema than the
-parts before it, its records get new numbers; the bytes of a message stay the same.
+Chunks are copied unchanged. Readers seek by message indexes and chunks, so two things are added if the log lacks them: message indexes
+after a chunk, and a chunk around messages that are in none. If a part of a split log uses an id for another channel or schema than
+an earlier part, its records get new ids; the content of messages stays the same.
 """
 
 from __future__ import annotations
@@ -38,13 +38,13 @@ _SUMMARY: Final = frozenset({
 LOOSE_CHUNK_BYTES: Final = 4 << 20
 """Messages outside of chunks are put into chunks of about this size."""
 _BLOCK: Final = 4 << 20
-_HEAD_BYTES: Final = 1 << 17  # names and times of an attachment or a chunk, without what is in it
+_HEAD_BYTES: Final = 1 << 17  # enough for the names and times of an attachment or a chunk, without its data
 
 
 class Numbers:
-    """The numbers that the schemas and channels of a part have in the copy: number in the part -> number in the copy.
+    """The ids of a part's schemas and channels: id in the part -> id in the copy.
 
-    What a sink has already keeps its number there; what is new keeps its own if that is free. All are made known to the sink.
+    A schema or channel that is already in the sink has the sink's id. A new one keeps its id if that is free, and is added to the sink.
     """
 
     def __init__(self, original: Original, sink: Sink) -> None:
@@ -60,7 +60,7 @@ class Numbers:
 
     @property
     def are_kept(self) -> bool:
-        """Whether every number is the same in the copy."""
+        """Whether every id is the same in the copy."""
         return all(old == new for numbers in (self.schemas, self.channels) for old, new in numbers.items())
 
 
@@ -72,7 +72,7 @@ def _number(announced: T, records_by_id: dict[int, T], kind: str, *, least: int)
 
 
 class PartCopy:
-    """One copying: bytes wait to be written in one go, from `_from` on, as long as nothing must be put between them."""
+    """Copies one part. Consecutive records are written together: bytes `_from` to `_to` of the original are still to be written."""
 
     def __init__(self, original: Original, sink: Sink) -> None:
         self._original = original
@@ -86,7 +86,7 @@ class PartCopy:
         self._renumbers = not self._numbers.are_kept
 
     def run(self) -> None:
-        """Copy everything before the end of the data."""
+        """Copy all records before the end of the data section."""
         self._to = len(MAGIC)
         if not self._is_first:
             self._from = self._to
@@ -122,12 +122,12 @@ class PartCopy:
             self._flush()
 
     def _skip(self, record: Record) -> None:
-        """Leave out a record."""
+        """Leave a record out of the copy."""
         self._flush()
         self._from = self._to = record.end
 
     def _add_renumbered(self, records: Iterable[tuple[int, bytes | memoryview]]) -> None:
-        """Write schemas, channels and messages (opcode, body) under their numbers in the copy, as a chunk if there are messages."""
+        """Write schemas, channels and messages (opcode, body) with their ids in the copy; as a chunk, if there are messages."""
         parts: list[bytes | memoryview] = []
         messages: list[tuple[int, int, int, int]] = []
         at = 0
@@ -164,11 +164,11 @@ class PartCopy:
         self._from = self._to
 
     def _place(self, at: int) -> int:
-        """Return where a byte of the original that is waiting will be in the copy."""
+        """Return the offset in the copy of a byte of the original that is still to be written."""
         return self._sink.offset + at - self._from
 
     def _note(self, record: Record) -> None:
-        """Add a record that will be copied to the index."""
+        """Add a chunk, attachment or metadata record, which will be copied, to the index of the copy."""
         start, length = self._place(record.at), record.end - record.at
         head = self._original.stream(record, _HEAD_BYTES)
         if record.opcode == Opcode.CHUNK:
@@ -189,7 +189,7 @@ class PartCopy:
             self._sink.metadata.append(MetadataIndex(offset=start, length=length, name=head.read_prefixed_string()))
 
     def _take_index(self, record: Record) -> None:
-        """Copy a message index if its chunk can be relied on. Otherwise the index is left out, and the copy makes a new one."""
+        """Copy a message index if it follows a chunk and the original's indexes are complete; otherwise leave it out."""
         if self._chunk is None or not self._original.indexed:
             self._skip(record)
             return
@@ -210,7 +210,7 @@ class PartCopy:
         self._sink.index_chunk(index, self._original.chunk_message_index(record))
 
     def _end_loose(self) -> None:
-        """Put messages outside of chunks, and declarations between them, into a chunk; declarations without messages stay."""
+        """Write messages outside of chunks, with the schemas and channels between them, as a chunk; without messages, copy the records."""
         if not self._loose:
             return
         loose, self._loose = self._loose, []

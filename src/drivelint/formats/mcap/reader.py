@@ -1,7 +1,7 @@
-"""The MCAP container, read from front to back with every CRC checked and every length bounded before it is used.
+"""Reads MCAP files from front to back, checks every CRC, and bounds every length before it is used.
 
-What counts is the data: the index at the end of the file only shows what is missing. Each record's byte offset is known, so that damage
-is named by its place. On request, a reader gets the readable part of a damaged file, and the losses.
+Messages come from the data section; the index at the end of the file only shows what is missing. Errors name the byte offset of the damage.
+On request, the readable part of a damaged file and its losses are returned.
 """
 
 from __future__ import annotations
@@ -37,30 +37,30 @@ T = TypeVar("T")
 BATCH_BYTES = 32 * 1024 * 1024
 """Messages are decoded in batches of about this size, which bounds the memory that a long log needs."""
 MOST_RECORD_BYTES = 1 << 48
-"""A record of a known kind that says it is longer is no cut-off one, for no file was ever so large: the file is refused."""
+"""No file is so large: a known record that declares more bytes is not merely cut off, and the file is refused."""
 _RECORD = struct.Struct("<BQ")
 _MESSAGE = struct.Struct("<HIQQ")
 _LENGTHS = {Opcode.FOOTER: 20, Opcode.DATA_END: 4, Opcode.SUMMARY_OFFSET: 17}
-"""Records whose length is always the same."""
+"""Opcode -> length in bytes of the records with a fixed length."""
 _OPCODES = frozenset(Opcode)
 _PRIVATE = 0x80
-"""Opcodes from here on belong to applications: their records are no part of the log."""
+"""Opcodes from this one on are reserved for applications; records with them are ignored."""
 _MAGIC = re.compile(re.escape(MAGIC))
 
 
 class MessageError(TraceError):
-    """One message cannot be decoded."""
+    """The error for one message that cannot be decoded."""
 
 
 class DamageError(TraceError):
-    """A place of the file cannot be read; `resume`: the byte from which on it surely can, None: not known."""
+    """The error for a part of the file that cannot be read. `resume`: the byte at which reading can go on; None if unknown."""
 
     resume: int | None = None
 
 
 @dataclass(frozen=True)
 class Packet:
-    """One message: its channel, time in the log and bytes; `offset` is its record's, or that of the chunk around it."""
+    """One message. `offset`: the byte at which its record begins in the file, or the chunk that contains it."""
 
     channel: Channel
     log_time_ns: int
@@ -68,17 +68,17 @@ class Packet:
     offset: int
 
     def error(self, path: Path, problem: str) -> MessageError:
-        """Return the error for this message: its place and its problem."""
+        """Return the error that names this message's topic, time and offset, and the problem."""
         where = f"topic {self.channel.topic!r}, log time {self.log_time_ns} ns, record at byte {self.offset}"
         return MessageError(f"{path}: {where}: {problem}: record or copy the log again")
 
 
 @dataclass
 class Container:
-    """An MCAP file. All but its path is complete once `packets` is exhausted.
+    """An MCAP file. All fields are complete after the last message of `packets`.
 
-    `salvage`: of a damaged file, the readable part is read, and `losses` has the rest; else damage is an error.
-    `metadata`: name of a metadata record -> its texts; of several with one name, the first. `library`: what wrote the file.
+    `salvage`: read the readable part of a damaged file, and list the lost parts in `losses`; otherwise damage is an error.
+    `metadata`: name of a metadata record -> its content; the first record of a name counts. `library`: the software that wrote the file.
     """
 
     path: Path
@@ -102,13 +102,13 @@ class Container:
     def packets(self) -> Iterator[Packet]:
         """Yield every message in the order of the file.
 
-        Errors: `DamageError` naming what is damaged, at which byte; with `salvage` only where nothing is left, or if the remaining part
-        cannot be distinguished from the lost one. `TraceError` for what is no single MCAP file, or asks for too much memory.
+        Errors: `DamageError` with the damage and its byte; with `salvage` only if no message can be read, or the lost
+        bytes cannot be located. `TraceError` if a second MCAP file follows, or chunks are too large to unpack.
         """
         with self.path.open("rb") as file:
             if not self.path.stat().st_size:
                 raise self._damaged(0, "the file is empty")
-            # not closed by hand: an error on its way up still holds views into the map; it ends with the last of them
+            # not closed here: a raised error may still refer to views of the map, which is freed after the last view
             data = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
         yield from self._file(memoryview(data))
 
@@ -135,7 +135,7 @@ class Container:
                 if index is None:
                     index = self._index_of_damaged(view, error)
                 if error.resume is None and not self._messages and not index.chunks:
-                    raise  # the description of the log is there, and it is not known whether it is still complete
+                    raise  # schemas and channels may be lost, and there is no index that has them
                 resume = error.resume or self._resume(view, at)
                 self._refuse_second_file_within(view, at + 1, resume)
                 self.losses.add(at, resume, str(error))
@@ -151,7 +151,7 @@ class Container:
         self._report()
 
     def _record(self, view: memoryview, at: int) -> tuple[int, int, int]:
-        """Return opcode, start and end of the record at `at`, which must lie wholly within the file."""
+        """Return the opcode, and the start and end of the body, of the record at byte `at`. Errors: `DamageError` if it is invalid."""
         if at + _RECORD.size > len(view):
             raise self._damaged(at, "the file ends without a footer")
         opcode, length = _RECORD.unpack_from(view, at)
@@ -181,7 +181,7 @@ class Container:
         return opcode, start, end
 
     def _may_be_lost_data(self, view: memoryview, opcode: int, end: int) -> bool:
-        """Whether a record of an unknown kind may be a changed one of the log's: a chunk's index follows only a chunk."""
+        """Return whether a record with an unknown opcode may be a damaged record: a message index after it means that it was a chunk."""
         return opcode < _PRIVATE or (end < len(view) and view[end] == Opcode.MESSAGE_INDEX)
 
     def _refuse_second_file(self, view: memoryview, at: int) -> None:
@@ -189,7 +189,7 @@ class Container:
             raise TraceError(f"{self.path}: a second MCAP file begins at byte {at}: split the two, use each by itself")
 
     def _refuse_second_file_within(self, view: memoryview, start: int, end: int) -> None:
-        """Refuse a file whose lost bytes contain the beginning of another file: the data after it may be of another drive."""
+        """Raise `TraceError` if lost bytes contain the beginning of another file: the data after it may be of another drive."""
         match = _MAGIC.search(view[: end + len(MAGIC)], start)
         if match and match.start() < len(view) - len(MAGIC):
             self._refuse_second_file(view, match.start())
@@ -201,7 +201,7 @@ class Container:
         if opcode == Opcode.DATA_END:
             self._in_data = False
             crc = self._parsed(DataEnd.read, body, at).data_section_crc
-            self._data_crc = 0 if self.losses.has_lost_bytes else crc  # of what is left, it cannot be checked
+            self._data_crc = 0 if self.losses.has_lost_bytes else crc  # after a loss, the CRC cannot be checked
             if self._data_crc and zlib.crc32(view[:at]) != crc:
                 self._data_changed(at)
         elif opcode == Opcode.HEADER:
@@ -215,12 +215,12 @@ class Container:
         elif opcode == Opcode.METADATA:
             record = self._parsed(Metadata.read, body, at)
             self.metadata.setdefault(record.name, record.metadata)
-        elif self._in_data:  # the index repeats schemas and channels: only those among the data count
+        elif self._in_data:  # the index repeats schemas and channels: only those in the data section are used
             self._loose += opcode == Opcode.MESSAGE
             yield from self._content(opcode, body, at, end)
 
     def _data_changed(self, at: int) -> None:
-        """Report a wrong CRC of all data where the CRC of every chunk is right, and only chunks are read."""
+        """Report a wrong CRC of the data section if all messages came from chunks with right CRCs; otherwise raise `TraceError`."""
         error = self._damaged(at, "a data section with a wrong CRC (its content changed), ending")
         if not self.salvage or self._loose or self._unprotected or self.metadata:
             raise TraceError(str(error))
@@ -233,7 +233,7 @@ class Container:
             raise self._damaged(at, f"a record that cannot be read ({error})") from error
 
     def _content(self, opcode: int, body: memoryview, at: int, end: int) -> Iterator[Packet]:
-        """Take a schema, a channel or a message; other records are of no use here."""
+        """Store a schema or channel, or yield a message; ignore other records."""
         if opcode == Opcode.MESSAGE:
             if len(body) < _MESSAGE.size:
                 raise self._damaged(at, "a message record without its header", end)
@@ -292,7 +292,7 @@ class Container:
         raise self._damaged(at, "a chunk that ends within a record", end)
 
     def _index_of_damaged(self, view: memoryview, error: DamageError) -> Summary:
-        """Take the declarations of the index, which the lost bytes may have contained. Errors: the damage, without salvage."""
+        """Return the index, and add its schemas and channels, as their records may be lost. Without `salvage`, raise `error`."""
         if not self.salvage:
             raise error
         index = read_summary(view)
@@ -301,12 +301,12 @@ class Container:
         return index
 
     def _resume(self, view: memoryview, at: int) -> int:
-        """Return where reading can go on: at the next record that vouches for itself."""
+        """Return the byte of the next record that is certainly intact, where reading can go on."""
         chunked = bool(self._messages - self._loose) or not self._loose
         return next_record(view, at + 1, channels=None if chunked else self.channels)
 
     def _check_data_end(self, size: int, *, has_footer: bool, has_index: bool) -> None:
-        """Report a file without an end of its data, of which something may be lost unless the index names every chunk."""
+        """Report a missing data end record or footer: as a loss if messages may be missing at the end, otherwise as a finding."""
         if self._in_data and has_footer:
             if has_index:
                 return
@@ -326,7 +326,7 @@ class Container:
             self.findings.append(QualityFinding("no_footer", "warning", message))
 
     def _check_footer(self, view: memoryview, at: int, start: int, end: int) -> None:
-        """Check the index's CRC: the data were read without it, so damage there loses nothing."""
+        """Report a wrong CRC of the index, bytes after the file's end, or missing magic bytes; none of these loses messages."""
         footer = self._parsed(Footer.read, view[start:end], at)
         if not summary_is_whole(footer, view, at, end):
             message = f"the index has a wrong CRC (footer at byte {at}): only what it counts is compared"
@@ -341,7 +341,7 @@ class Container:
             self.findings.append(QualityFinding("no_footer", "warning", message))
 
     def _check_index(self, index: Summary) -> None:
-        """Find messages that an index with a right CRC has and the data lack."""
+        """Add as losses the chunks that an intact index lists, but the data lack. Errors: `DamageError` for a missing metadata record."""
         for offset, (length, since, until) in sorted(index.chunks.items()):
             if offset not in self._places and not self.losses.covers(offset):
                 error = self._damaged(offset, "no chunk, where the index has one,")
@@ -371,9 +371,9 @@ class Container:
 def message_batches(
     container: Container, kind_of: Callable[[Channel, Schema], str | None]
 ) -> Iterator[tuple[str, list[Packet]]]:
-    """Yield the kind and the messages of a topic, those of one schema and some tens of megabytes at a time.
+    """Yield batches of messages, each of one topic and one schema and of about `BATCH_BYTES`, with their kind.
 
-    `kind_of`: what is read from a channel with a schema; None: nothing.
+    `kind_of`: returns the kind for a channel and its schema; None: the channel is not read.
     """
     waiting: dict[str, tuple[str, list[Packet]]] = {}
     sizes: Counter[str] = Counter()

@@ -1,4 +1,4 @@
-"""Finds where an MCAP file can be read again behind damage: at the next record that vouches for itself."""
+"""Finds the byte after damage at which an MCAP file can be read again: the next record that is certainly intact."""
 
 from __future__ import annotations
 
@@ -17,24 +17,24 @@ if TYPE_CHECKING:
 MAGIC = b"\x89MCAP0\r\n"
 _RECORD = struct.Struct("<BQ")
 _CANDIDATE: Final = re.compile(rb"[\x02\x05\x06\x0f][\s\S]{5}\x00{3}")
-"""The head of a footer, message, chunk or end of data, shorter than 1 TiB."""
+"""Matches the header of a footer, message, chunk or data end record that is shorter than 1 TiB."""
 _BEHIND_DATA_END: Final = frozenset({
     Opcode.SCHEMA, Opcode.CHANNEL, Opcode.STATISTICS, Opcode.CHUNK_INDEX, Opcode.ATTACHMENT_INDEX, Opcode.METADATA_INDEX,
     Opcode.SUMMARY_OFFSET, Opcode.FOOTER,
 })  # fmt: skip
 _CHAIN: Final = 3
-"""So many messages in a row, each on a known channel, are no chance."""
+"""This many consecutive messages on known channels are not there by chance."""
 _LEAST_MESSAGE: Final = 22
 _WORK: Final = 4
-"""At most this many times the file's size is unpacked in a search: a file made of false chunk heads must end, too."""
+"""A search unpacks at most this many times the file's size, so that it also ends for a file full of false chunk headers."""
 _LEAST_WORK: Final = 64 << 20
 
 
 def next_record(view: memoryview, at: int, *, channels: Container[int] | None) -> int:
     """Return the first byte from `at` on at which reading can go on; the end of the file if there is none.
 
-    That is a chunk with its CRC, the end of the data, or the footer. `channels`: the known ones of a file without chunks, whose
-    messages stand by themselves; None: the file has chunks, so that bytes like a message are the inside of a damaged one.
+    Reading goes on at an intact chunk, a data end record, or the footer; in a file without chunks also at a message.
+    `channels`: the known channel ids of a file without chunks; None: the file has chunks, and messages are only inside them.
     """
     work = max(_WORK * len(view), _LEAST_WORK)
     place = at
@@ -66,7 +66,7 @@ def _declared(body: memoryview) -> int:
 def _is_chunk(body: memoryview) -> bool:
     try:
         head = chunk_head(body)
-        # without a CRC, only what unpacks vouches for itself
+        # without a CRC, only successful decompression shows that the chunk is intact
         return bool(head.crc or head.compression) and len(chunk_records(head, "")) == head.size
     except (ChunkError, TraceError):
         return False
@@ -82,7 +82,7 @@ def _is_end(view: memoryview, opcode: int, start: int, end: int) -> bool:
 
 
 def _is_message(view: memoryview, at: int, channels: Container[int]) -> bool:
-    """Say whether messages follow one another from `at` on, up to the end of the data if they are few."""
+    """Return whether `_CHAIN` messages on known channels follow from `at` on, or fewer up to the end of the data."""
     for _ in range(_CHAIN):
         if at + _RECORD.size > len(view):
             return False

@@ -1,4 +1,4 @@
-"""Topics that an MCAP log announces and on which it has no message: the writer had a channel, and nothing was recorded."""
+"""Finds topics for which an MCAP log declares a channel, but contains no message."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ if TYPE_CHECKING:
 
 
 def silent_topics(files: Iterable[Path], is_wanted: Callable[[str], bool]) -> str:
-    """Return in words that topics of wanted schemas have no message; '' where there are none.
+    """Return a clause that names the topics of wanted schemas without a message; '' if there are no such topics.
 
-    The whole files are read once more: this is for the error that says that nothing was found.
+    This reads the whole files again, for the error that nothing usable was found.
     """
     announced: set[str] = set()
     spoken: set[str] = set()

@@ -1,4 +1,4 @@
-"""The contents of an MCAP file by the index at its end, if a CRC shows that the index is unchanged."""
+"""Reads the index at the end of an MCAP file."""
 
 from __future__ import annotations
 
@@ -25,9 +25,10 @@ _FOOTER_BYTES = 20
 
 @dataclass
 class Summary:
-    """Schemas and channels by their ids; `chunks`: offset -> length, first and last log time; offsets of metadata records.
+    """The index of an MCAP file. `schemas`, `channels`: by their ids; `metadata`: the offsets of metadata records.
 
-    `message_indexes`: offset of a chunk -> channel -> offset of the index of its messages in it.
+    `chunks`: offset of a chunk -> its length, first and last log time.
+    `message_indexes`: offset of a chunk -> channel id -> offset of the message index.
     """
 
     schemas: dict[int, Schema] = field(default_factory=dict)
@@ -38,7 +39,7 @@ class Summary:
 
 
 def read_index(file: Path) -> Summary:
-    """Return the content of the index of a file, although no CRC protects it; nothing if it is missing or damaged."""
+    """Return the index of a file, even if it has no CRC; an empty `Summary` if it is missing or damaged."""
     with (
         file.open("rb") as stream,
         mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as data,
@@ -48,7 +49,10 @@ def read_index(file: Path) -> Summary:
 
 
 def read_summary(view: memoryview, *, unprotected: bool = False) -> Summary:
-    """Return the content of the index; nothing if there is none with a right CRC, or (`unprotected`) with none."""
+    """Return the index of a mapped file; an empty `Summary` if the index is missing or damaged.
+
+    An index without a CRC is read only if `unprotected`.
+    """
     end = len(view) - len(MAGIC)
     at = end - _FOOTER_BYTES - _RECORD.size
     if at < len(MAGIC) or bytes(view[end:]) != MAGIC or _RECORD.unpack_from(view, at) != (Opcode.FOOTER, _FOOTER_BYTES):
@@ -67,7 +71,7 @@ def read_summary(view: memoryview, *, unprotected: bool = False) -> Summary:
 
 
 def summary_is_whole(footer: Footer, view: memoryview, at: int, end: int) -> bool:
-    """Say whether the index has the CRC, if any, that the footer in bytes `at` to `end` of the file says."""
+    """Return whether the index matches the CRC in the footer, which is in bytes `at` to `end`; also True without a CRC."""
     begin = min(footer.summary_start or at, at)
     return not footer.summary_crc or zlib.crc32(view[begin : end - 4]) == footer.summary_crc
 

@@ -1,6 +1,6 @@
-"""MCAP, a file or a folder of rosbag2: ASAM OSI ground truth, ROS 2 messages or Foxglove scenes.
+"""The trace format MCAP, a file or a rosbag2 folder, with ASAM OSI ground truth, ROS 2 messages or Foxglove scenes.
 
-Each of their readers states its reference point: all hand over box centres.
+The reader of each message type states its reference point; all return box centres.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ formats: Final[dict[str, tuple[str, str]]] = {
 }
 takes_mapping: Final = False
 _MAX_TOPICS: Final = 8
-"""Topics that an error names before it says how many more there are."""
+"""An error lists at most this many topics, and counts the others."""
 
 
 def accepts(probe: Probe) -> bool:
-    """Accept by the container's magic bytes, or the folder's description."""
+    """Return whether the file has MCAP's magic bytes, or the folder is a bag."""
     return probe.head.startswith(b"\x89MCAP") or folder_kind(probe.path) == "bag"
 
 
 def read(probe: Probe) -> Recording:
-    """Read the messages of the log, OSI before the others."""
+    """Read the log's OSI messages; if there are none, its ROS 2 messages; if neither, its Foxglove messages."""
     from drivelint.formats.mcap import bag
     from drivelint.formats.osi import reader as osi
 
@@ -54,7 +54,7 @@ def read(probe: Probe) -> Recording:
 
 
 def _refuse_other_messages(path: Path) -> None:
-    """Refuse a log of ROS 2 or Foxglove that has neither an ego nor road users. Errors: `TraceError` with its topics."""
+    """Raise `TraceError` for a bag, or a ROS 2 or Foxglove log, without odometry and road users; the error lists the topics."""
     from drivelint.formats.mcap import bag
 
     kinds = bag.topics(path)

@@ -1,4 +1,4 @@
-"""Topics whose messages are in an encoding that is not read: their content is not known, which is reported."""
+"""Reports topics whose messages are in an unsupported encoding, so that their content is unknown."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
 @dataclass
 class UnreadTopics:
-    """Topics with messages that are passed over: topic -> kind, encoding and number of its messages."""
+    """Topics whose messages are skipped: topic -> kind, encoding and number of its messages."""
 
     topics: dict[str, tuple[str, str, int]] = field(default_factory=dict)
 
     def add(self, channel: Channel, kind: str) -> None:
-        """Count a message of a kind that is read in other encodings."""
+        """Count a message that would be read if its encoding were supported."""
         n = self.topics.get(channel.topic, ("", "", 0))[2]
         self.topics[channel.topic] = kind, channel.message_encoding, n + 1
 
@@ -34,9 +34,9 @@ class UnreadTopics:
         ]
 
     def refuse(self, path: Path, kinds: Collection[str], read_topics: Collection[str]) -> None:
-        """Refuse a log with a topic of road users of these kinds: its actors are not known.
+        """Raise `TraceError` if a skipped topic has messages of these `kinds`, which contain road users: its actors are unknown.
 
-        `read_topics`: topics of theirs that are read, which may be chosen. Errors: `TraceError`.
+        `read_topics`: topics of these kinds in a supported encoding; the error proposes the first.
         """
         for topic, what in sorted(self.topics.items()):
             if what[0] in kinds:

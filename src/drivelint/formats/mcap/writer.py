@@ -1,4 +1,4 @@
-"""An MCAP file being written: its bytes, its CRC, and the index of what is in it, written as the summary at the end."""
+"""Writes an MCAP file with its CRCs, and a summary at its end that indexes all records."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-ID_LIMIT: Final = 1 << 16  # channel and schema ids are 16 bits wide; schema 0 means none
+ID_LIMIT: Final = 1 << 16  # channel and schema ids have 16 bits; schema id 0 means: no schema
 _ZSTD_LEVEL: Final = 1
 _BLOCK: Final = 4 << 20
 
 
 class Sink:
-    """Writes one MCAP file. Its index also has everything that was copied into it, so that the summary is complete.
+    """Writes one MCAP file. Records that are copied into the file are also in its index, so that the summary is complete.
 
-    `offset` is where the next byte goes. The summary holds schemas, channels, statistics, chunk, attachment and metadata
-    indexes and their offsets, with a CRC; the data section has one too.
+    `offset`: the place of the next byte. The summary contains schemas, channels, statistics, the indexes of chunks, attachments
+    and metadata, and the offsets of these. Summary and data section each have a CRC.
     """
 
     def __init__(self, file: BinaryIO) -> None:
@@ -46,7 +46,7 @@ class Sink:
         self.counts: Counter[int] = Counter()
 
     def write(self, data: bytes | memoryview) -> None:
-        """Append bytes as they are."""
+        """Append bytes unchanged."""
         for start in range(0, len(data), _BLOCK):
             block = data[start : start + _BLOCK]
             self._crc = zlib.crc32(block, self._crc)
@@ -54,14 +54,14 @@ class Sink:
         self.offset += len(data)
 
     def begin(self, library: str) -> None:
-        """Begin a file of our own (a copied one begins with the original's magic bytes and header)."""
+        """Write magic bytes and header. Not for a copied file, which begins with those of the original."""
         self.write(MAGIC)
         self._record(records.Header(profile="", library=library))
 
     def add_channel(self, topic: str, encoding: str, schema: records.Schema) -> int:
-        """Announce a channel under ids that are still free, and its schema unless it is there; return the channel's id.
+        """Write a channel with a free id, and return the id. The schema is written first, unless the file already has it.
 
-        `schema` comes without an id (0). Errors: `DriveLintError` where all 65,535 ids are taken.
+        `schema` has the id 0, as its id is chosen here. Errors: `DriveLintError` if no id is free.
         """
         same = [number for number, known in self.schemas.items() if replace(known, id=0) == replace(schema, id=0)]
         number = min(same) if same else free_id(self.schemas, 1, "schema")
@@ -80,12 +80,12 @@ class Sink:
         return channel.id
 
     def announce_schema(self, schema: records.Schema) -> None:
-        """Write a schema under its own id."""
+        """Write a schema, keeping its id."""
         self.schemas[schema.id] = schema
         self._record(schema)
 
     def announce_channel(self, channel: records.Channel) -> None:
-        """Write a channel under its own id."""
+        """Write a channel, keeping its id."""
         self.channels[channel.id] = channel
         self._record(channel)
 
@@ -116,7 +116,7 @@ class Sink:
         self.index_chunk(entry, index)
 
     def index_chunk(self, chunk: records.ChunkIndex, index: Mapping[int, NDArray[np.uint64]]) -> None:
-        """Write the message indexes of the chunk that was written last, and remember it for the summary."""
+        """Write the message indexes of the last chunk, and add the chunk to the summary."""
         start = self.offset
         for channel, entries in sorted(index.items()):
             chunk.message_index_offsets[channel] = self.offset
@@ -127,7 +127,7 @@ class Sink:
         self.chunks.append(chunk)
 
     def add_attachment(self, name: str, media_type: str, data: bytes, log_time: int) -> None:
-        """Write an attachment; its creation time is 0, so that the same run writes the same bytes."""
+        """Write an attachment; its creation time is 0, so that equal runs write equal bytes."""
         start = self.offset
         self._record(records.Attachment(create_time=0, log_time=log_time, name=name, media_type=media_type, data=data))
         self.attachments.append(records.AttachmentIndex(
@@ -136,16 +136,16 @@ class Sink:
         ))  # fmt: skip
 
     def add_metadata(self, name: str, content: Mapping[str, str]) -> None:
-        """Write a metadata record, its keys in order."""
+        """Write a metadata record with its keys sorted."""
         start = self.offset
         self._record(records.Metadata(name=name, metadata=dict(sorted(content.items()))))
         self.metadata.append(records.MetadataIndex(offset=start, length=self.offset - start, name=name))
 
     def finish(self) -> None:
-        """End the data, write the summary and the footer."""
+        """Write the end of the data section, the summary and the footer."""
         self._record(records.DataEnd(data_section_crc=self._crc))
         start = self.offset
-        self._crc = 0  # the footer's CRC begins with the summary
+        self._crc = 0  # the CRC in the footer covers the bytes from the summary on
         groups: list[tuple[int, Sequence[records.McapRecord]]] = [
             (Opcode.SCHEMA, [s for _, s in sorted(self.schemas.items())]),
             (Opcode.CHANNEL, [c for _, c in sorted(self.channels.items())]),
@@ -192,7 +192,7 @@ class Sink:
 
 
 def free_id(used_ids: Mapping[int, object], least: int, kind: str) -> int:
-    """Return the id after the highest one, or the lowest unused one."""
+    """Return the id after the highest used one, or if that is too large, the lowest free id. Errors: `DriveLintError` if none is free."""
     after = max(used_ids, default=least - 1) + 1
     if after < ID_LIMIT:
         return max(after, least)

@@ -1,1 +1,1 @@
-"""ASAM OSI: ground truth in MCAP and in `.osi` files, read and written; the lanes that it carries."""
+"""Reads ASAM OSI ground truth in MCAP and `.osi` files, with its lanes, and writes it as MCAP."""

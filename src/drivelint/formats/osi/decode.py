@@ -1,4 +1,4 @@
-"""OSI messages to arrays: a batch of ground truth or sensor views decoded at once by a pruned schema."""
+"""Decodes batches of OSI messages (ground truth or sensor views) to arrays of the fields that are read."""
 
 from __future__ import annotations
 
@@ -72,19 +72,19 @@ VECTORS: dict[str, dict[str, str]] = {
     "acceleration": {"ax_mps2": "x", "ay_mps2": "y"},
     "dimension": {"length_m": "length", "width_m": "width", "height_m": "height"},
 }
-"""Vector of `moving_object.base` -> our column -> its coordinate."""
+"""Vector of `moving_object.base` -> drivelint's column -> OSI's coordinate."""
 _LANES = ("lane_boundary", "lane", "reference_line", "logical_lane_boundary", "logical_lane")
 _NEVER_ZERO = frozenset({"position", "dimension"})
-"""Vectors that are unknown if all coordinates are missing, even if the writer leaves zeros out."""
+"""Vectors that are unknown if all coordinates are missing, even if the writer omits zeros."""
 
 
 @dataclass(frozen=True)
 class FrameBatch:
-    """A decoded batch. Per frame: the message's time and whether it says one, the host's id (None: not said).
+    """A decoded batch. Per frame: the message's time, whether it has one (`timed`), and the host's id (None: missing).
 
-    Per object with an id: its frame, id, columns of `STATE_COLUMNS` and `SIZE_COLUMNS` (NaN: unknown), codes. `nameless`: the frame of
-    each object without one. `left_out`: the coordinates that a vector does not have and that a writer which leaves zeros out may mean
-    as 0, by column. `says_zero`: some coordinate is written as 0, so that this is no such writer.
+    Per object with an id: its frame, id, columns of `STATE_COLUMNS` and `SIZE_COLUMNS` (NaN: unknown), and codes. `nameless`: the frame
+    of each object without an id. `left_out`: column -> whether the coordinate is missing but means 0 if the writer omits zeros.
+    `says_zero`: whether any coordinate is written as 0, which shows that the writer does not omit zeros.
     """
 
     t_ns: NDArray[np.int64]
@@ -105,7 +105,7 @@ class Decoder:
     """Decodes messages of one schema record."""
 
     def __init__(self, path: Path, schema_id: int, name: str, descriptor_set: bytes) -> None:
-        """Prune the schema. Errors: `TraceError` where it lacks the fields without which nothing can be judged."""
+        """Prune the schema to the fields that are read. Errors: `TraceError` if it has no ids or positions of moving objects."""
         self._path, self._name, self.schema_id = path, name, schema_id
         self.lights: Mapping[str, str] = {}  # bulb id -> traffic light id, from the first message
         types = parse_schema(path, name, descriptor_set)
@@ -120,7 +120,7 @@ class Decoder:
         self._words = EnumCodes(types, GROUND_TRUTH)
 
     def frames(self, packets: list[Packet]) -> FrameBatch:
-        """Decode a batch. Errors: `TraceError` naming topic and byte of the first message that cannot be decoded."""
+        """Decode a batch. Errors: `TraceError` with topic and byte of the first message that cannot be decoded."""
         message = decoded(self._path, packets, self._decode)
         truth = struct_field(message, "global_ground_truth") if self._name == SENSOR_VIEW else message
         (t_ns, timed), (outer_ns, outer_timed) = _times(truth), _times(message)
@@ -159,9 +159,10 @@ class Decoder:
 
 
 class FirstMessage(NamedTuple):
-    """What the first message alone says: lanes as a message of their own, the geo reference with its offset, lanes that have no width.
+    """Data that only the first message of a trace has.
 
-    `lights`: see `osi_heads.light_by_bulb`. `nation`: the country by its number in ISO 3166-1, as two letters.
+    `lanes`: lanes and road furniture as a serialised ground truth; `reference`, `geo_offset`: the geo reference; `findings`: lanes
+    without a width. `lights`: see `osi_heads.light_by_bulb`. `nation`: the country in two letters, from its ISO 3166-1 number.
     """
 
     lanes: bytes | None = None
@@ -173,15 +174,15 @@ class FirstMessage(NamedTuple):
 
 
 def read_first_message(data: bytes, name: str) -> FirstMessage:
-    """Return lanes and geo reference (a PROJ string, with x, y and yaw) of a ground truth, or of the one in a sensor view.
+    """Return lanes, geo reference (a PROJ string, with x, y and yaw) and country of a ground truth or a sensor view.
 
-    The lanes go with their boundaries, signs, lights and road markings. Lanes without boundaries have no width, and nothing can be
-    placed on them: they are reported, and make no map.
+    `lanes` includes boundaries, signs, lights and road markings. If no lane has boundaries, there is no map, because the lanes have
+    no width; this is a finding.
     """
     try:
         outer = message_class(name.removeprefix("osi3.")).FromString(data)
     except DecodeError:
-        return FirstMessage()  # whether the message is damaged, who reads its objects says
+        return FirstMessage()  # a damaged message is reported when its objects are decoded
     truth = outer.global_ground_truth if name == SENSOR_VIEW else outer
     reference = str(truth.proj_string) or None
     lights = osi_heads.light_by_bulb(truth.traffic_light)
@@ -206,7 +207,7 @@ def read_first_message(data: bytes, name: str) -> FirstMessage:
 
 
 def _inner(fields: pa.DataType | None, name: str) -> pa.DataType | None:
-    """Return the struct type of a field, or that of its items; None where there is no such field."""
+    """Return the struct type of a field, or of the items of a list field; None if there is no such field."""
     if fields is None or fields.get_field_index(name) < 0:
         return None
     kind = fields.field(fields.get_field_index(name)).type
@@ -215,7 +216,7 @@ def _inner(fields: pa.DataType | None, name: str) -> pa.DataType | None:
 
 
 def _coordinate(vector: pa.Array, name: str) -> tuple[Floats, Mask]:
-    """Return a coordinate, NaN where it is missing or not finite, and where it is present."""
+    """Return a coordinate (NaN if missing or not finite), and for each row whether it is present."""
     values = struct_field(vector, name).cast(pa.float64())
     said = values.is_valid().to_numpy(zero_copy_only=False)
     numbers = pc.fill_null(values, float("nan")).to_numpy(zero_copy_only=False)

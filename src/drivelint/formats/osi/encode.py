@@ -1,4 +1,4 @@
-"""Ground-truth messages from whole columns: Arrow structs as OSI nests them, of which ptars makes the bytes."""
+"""Encodes columns as OSI ground-truth messages: Arrow structs with OSI's nesting are built, and ptars serialises them."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from drivelint.arrays import Codes, Floats, Mask, Times
 
 _OPTIONAL: Final = frozenset({"length_m", "width_m", "height_m", "z_m"})
-"""Coordinates that a vector may lack; if another one is missing, the whole vector is left out."""
+"""Coordinates that may be missing in a vector; if any other coordinate is missing, the whole vector is left out."""
 _VEHICLES: Final = {
     "car": "MEDIUM_CAR", "van": "DELIVERY_VAN", "truck": "HEAVY_TRUCK", "bus": "BUS", "motorcycle": "MOTORBIKE",
     "bicycle": "BICYCLE", "trailer": "TRAILER", "vehicle": "UNKNOWN",
@@ -38,7 +38,7 @@ _LIGHT_FIELDS: Final = {
         "brake_light", BRAKE_LIGHTS, "BrakeLightState", {w: name for name, w in BRAKE_LIGHT_NAMES.items()},
     ),
 }  # fmt: skip
-"""Field -> its code, the words that the code indexes, their enumeration, and the name that each word has in it."""
+"""Field -> column of codes, the words that the codes index, OSI's enumeration, and word -> OSI's name."""
 _BULBS: Final[dict[str | None, tuple[tuple[str, str], ...]]] = {
     "red": (("RED", "CONSTANT"),),
     "red_amber": (("RED", "CONSTANT"), ("YELLOW", "CONSTANT")),
@@ -51,7 +51,10 @@ _BULBS: Final[dict[str | None, tuple[tuple[str, str], ...]]] = {
 
 
 def ground_truths(t_ns: Times, host: int | None, objects: pa.StructArray, starts: NDArray[np.int64]) -> pa.BinaryArray:
-    """Return ground truths: version, time stamp, the host's id where there is one, `objects` `starts[i]` to `starts[i + 1]`."""
+    """Return one ground truth per time, with version, time stamp and the host's id (None: left out).
+
+    Message i has the objects from `starts[i]` to before `starts[i + 1]`.
+    """
     n = len(t_ns)
     seconds, nanos = np.divmod(t_ns, 1_000_000_000)
     parts = ("version_major", "version_minor", "version_patch")
@@ -74,9 +77,10 @@ def _handler() -> Any:
 def moving_objects(
     number: NDArray[np.uint64], values: Mapping[str, Floats], codes: Mapping[str, Codes], *, heights: bool
 ) -> pa.StructArray:
-    """Return moving objects: OSI id, columns of `VECTORS` (NaN: unknown), and `codes` as indices into the words of ingest (-1: unknown).
+    """Return moving objects as structs.
 
-    `heights`: the log has heights, so that z is written as NaN where it is not known (left out, it would read as 0).
+    `number`: OSI ids; `values`: the columns of `VECTORS` (NaN: unknown); `codes`: indices in words such as `ACTOR_CLASSES` (-1: unknown).
+    `heights`: whether the log has heights; then an unknown z is written as NaN, because a missing z would be read as 0.
     """
     base = {}
     for vector, columns in VECTORS.items():
@@ -108,15 +112,15 @@ def _struct(fields: Mapping[str, Any], there: Mask | None = None) -> pa.StructAr
 
 
 def _numbers(codes: Codes, words: Sequence[str], enum: str, names: Mapping[str, str]) -> NDArray[np.int32]:
-    """Return the numbers of the words `names` in an enumeration; 0 for any other word, and for code -1."""
+    """Return the enumeration numbers of codes that index `words`; 0 for code -1, and for words without a name in `names`."""
     numbers = {word: enum_numbers(enum)[name] for word, name in names.items()}
     return np.array([*(numbers.get(word, 0) for word in words), 0], np.int32)[codes]
 
 
 def traffic_light(signal_id: str, state: str | None, numbers: Sequence[int]) -> bytes:
-    """Return a signal's state as fields of a ground truth: a bulb per lit colour, each naming the signal of the map.
+    """Return a signal's state as serialised fields of a ground truth: one bulb per lit colour, each with a reference to the signal.
 
-    `numbers`: an id for each of its bulbs, at most two.
+    `numbers`: the ids of the bulbs, of which there are at most two.
     """
     bulbs = [
         {

@@ -1,5 +1,4 @@
-"""This module translates OSI's enumerations into drivelint's codes. Numbers come from the log's own schema, so only the names are fixed
-here."""
+"""Translates OSI's enumerations into drivelint's codes. Only names are fixed here; their numbers come from the log's schema."""
 
 from __future__ import annotations
 
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
     from drivelint.formats.protobuf.descriptors import Types
 
 OFF, ON, OTHER = 0, 1, 2
-# one bulb each: bits of a traffic light's lit colours; LIT stands for the bulb's colour
+# one bit per state of a bulb; LIT means: lit in the bulb's colour
 RED, AMBER, GREEN, FLASHING, UNKNOWN, LIT = 1, 2, 4, 8, 16, 32
 _LIT = {0: "off", RED: "red", RED | AMBER: "red_amber", AMBER: "amber", GREEN: "green"}
 INDICATOR_NAMES = {"OFF": "off", "LEFT": "left", "RIGHT": "right", "WARNING": "hazard"}
@@ -57,11 +56,11 @@ _CODES: dict[str, tuple[str, str, dict[str, int]]] = {
         "traffic_light.classification.mode", "MODE", {"OFF": 0, "FLASHING": FLASHING, "CONSTANT": LIT, "COUNTING": LIT},
     ),
 }  # fmt: skip
-"""Attribute -> the field of a ground truth that has its enumeration, what its names begin with, and the codes of the names."""
+"""Attribute -> the ground truth's field with its enumeration, the prefix of the enumeration's names, and the names' codes."""
 
 
 class EnumCodes:
-    """Number -> code by attribute, for one schema: -1 for UNKNOWN, OTHER and whatever else is not in `_CODES`."""
+    """The codes of OSI's enumeration numbers for one schema; -1 for UNKNOWN, OTHER and all other names that are not in `_CODES`."""
 
     def __init__(self, types: Types, truth: str) -> None:
         """Build the tables from the enumerations of the ground-truth message `truth`."""
@@ -76,14 +75,14 @@ class EnumCodes:
             self._tables[attribute] = table
 
     def codes(self, attribute: str, numbers: pa.Array) -> Codes:
-        """Return the codes of numbers, -1 where they are unknown."""
+        """Return the codes of an attribute's enumeration numbers; -1 for unknown or missing numbers."""
         table = self._tables[attribute]
         index = pc.fill_null(numbers.cast(pa.int32()), -1).to_numpy(zero_copy_only=False)
         return np.asarray(table[np.where((index < 0) | (index >= len(table)), len(table) - 1, index)], np.int8)
 
 
 def state_codes(words: EnumCodes, objects: pa.Array) -> dict[str, Codes]:
-    """Return class, indicator, brake light and headlights of moving objects as codes. A vehicle of unsaid kind is a `vehicle`."""
+    """Return class, indicator, brake light and headlights of moving objects as codes. A vehicle of unknown type is a `vehicle`."""
     vehicle = struct_field(objects, "vehicle_classification")
     lights = struct_field(vehicle, "light_state")
     kind = words.codes("kind", struct_field(objects, "type"))
@@ -100,18 +99,18 @@ def state_codes(words: EnumCodes, objects: pa.Array) -> dict[str, Codes]:
 
 
 def _headlights(dipped: Codes, main: Codes) -> Codes:
-    """Return whether the headlights are on: dipped or main beam. Off: `head_light` says so and `high_beam` nothing else.
+    """Return `ON` where dipped or main beam is on, `OFF` where dipped beam is off and main beam off or unknown; otherwise -1.
 
-    A state of another kind, flashing or OTHER, is not known.
+    Other states, such as flashing, are unknown.
     """
     off = (dipped == OFF) & np.isin(main, (OFF, -1))
     return np.where((dipped == ON) | (main == ON), ON, np.where(off, OFF, -1)).astype(np.int8)
 
 
 def bulbs_of(words: EnumCodes, truth: pa.Array, light_of_bulb: Mapping[str, str]) -> pa.Table:
-    """Return the bulbs of traffic lights, one row per message and bulb: frame, the signal's id, the bit of what it shows.
+    """Return one row per message and bulb of a traffic light: frame, id of the signal, and bit of the bulb's state.
 
-    Each belongs to the OpenDRIVE signal it refers to, else to the light that `light_of_bulb` names. Of others each is its own.
+    The signal is the OpenDRIVE signal to which the bulb refers, otherwise the light in `light_of_bulb`, otherwise the bulb alone.
     """
     bulbs, frame = list_items(truth, "traffic_light")
     seen = struct_field(bulbs, "classification")
@@ -127,7 +126,7 @@ def _signal_ids(bulbs: pa.Array, light_of_bulb: Mapping[str, str]) -> list[str]:
     own = integers(struct_field(bulbs, "id"), "value", pa.uint64()).tolist()
     references = struct_field(bulbs, "source_reference").to_pylist()
     ids = []
-    for number, sources in zip(own, references, strict=True):  # bulbs are few; actor states never come this way
+    for number, sources in zip(own, references, strict=True):  # a loop is fast enough, because bulbs are few
         names = [
             s["identifier"][0] for s in sources or [] if s.get("type") == OPEN_DRIVE_REFERENCE and s.get("identifier")
         ]
@@ -136,7 +135,7 @@ def _signal_ids(bulbs: pa.Array, light_of_bulb: Mapping[str, str]) -> list[str]:
 
 
 def signal_states(bulbs: pa.Table, t_ns: NDArray[np.int64]) -> pa.Table | None:
-    """Join the bulbs of each signal and frame into its state: `t_ns` is the time of each frame."""
+    """Return the state of each signal in each frame, joined from its bulbs; None without bulbs. `t_ns`: the time of each frame."""
     if not bulbs.num_rows:
         return None
     different = bulbs.group_by(["frame", "signal_id", "bits"]).aggregate([])

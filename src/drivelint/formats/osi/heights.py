@@ -1,4 +1,4 @@
-"""Heights of OSI objects that are copies of their widths, as omega-prime 0.3.7 writes the MCAP file that it makes of its Parquet."""
+"""Detects heights of OSI objects that are copies of their widths, as omega-prime 0.3.7 writes when it converts Parquet to MCAP."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def forget_copied_heights(states: States) -> QualityFinding | None:
-    """Make the heights unknown where each one that is known is the width of its object, and say so; None: they are not copies."""
+    """Make all heights unknown if every known height equals its object's width, and return the finding; otherwise return None."""
     height, width = states.numbers["height_m"], states.numbers["width_m"]
     has_height = np.isfinite(height)
     if not has_height.any() or (height[has_height] != width[has_height]).any():

@@ -1,4 +1,4 @@
-"""Signs, lights and road markings of an OSI trace, on the lanes that it assigns them to; painted lines on those they lie across."""
+"""Reads signs, lights and road markings of an OSI trace, and finds their lanes by the trace's assignments or by place."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
     Row = dict[str, Any]
 
-_ON_ROAD_M = 1.0  # what is painted lies no further than this above or below the lane
-_ACROSS = 0.7  # sine of the least angle between a stop line and its lane
+_ON_ROAD_M = 1.0  # largest difference in height between a marking and its lane
+_ACROSS = 0.7  # sine of the smallest angle between a stop line and its lane
 
 
 def read(
@@ -34,7 +34,10 @@ def read(
     offset: tuple[float, float],
     quality: MapQuality,
 ) -> dict[str, list[Row]]:
-    """Return the rows of traffic_signal, stop_line and crossing. `logical_by_physical`: physical lane -> logical lanes in its place."""
+    """Return the rows of the tables traffic_signal, stop_line and crossing.
+
+    `logical_by_physical`: physical lane -> the logical lanes that replace it.
+    """
     road = _Road(lanes, logical_by_physical, np.array(offset))
     signals = [row for sign in truth.traffic_sign for row in _sign(sign, road, quality)]
     signals += [row for bulbs in _heads(truth.traffic_light).items() for row in _light(*bulbs, road, quality)]
@@ -61,19 +64,19 @@ def read(
 
 @dataclass(frozen=True)
 class _Road:
-    """The lanes of the map."""
+    """The lanes of the map, with the offset from the log's coordinates to the map's."""
 
     lanes: Sequence[BoundedLane]
     logical_by_physical: Mapping[int, Sequence[int]]
     offset: Floats
 
     def place(self, base: Any) -> Floats | None:
-        """Return where something stands, x and y on the map and the height; None: the log does not say it."""
+        """Return the position of an object: x and y on the map, and the height; None if the log does not have it."""
         at = np.array([base.position.x + self.offset[0], base.position.y + self.offset[1], base.position.z])
         return at if base.HasField("position") and np.isfinite(at).all() else None
 
     def assigned_lanes(self, classification: Any, base: Any) -> list[BoundedLane]:
-        """Return the lanes that a sign, light or marking is assigned to; of the logical lanes on a physical one those beside it."""
+        """Return the lanes to which a sign, light or marking is assigned; for a replaced physical lane, the logical lanes beside it."""
         by_id = {lane.lanelet_id: lane for lane in self.lanes}
         names = [str(each.assigned_lane_id.value) for each in classification.logical_lane_assignment]
         lanes = [by_id[name] for name in names if name in by_id]
@@ -88,7 +91,7 @@ class _Road:
         return _once(lanes)
 
     def _beside(self, lanes: list[BoundedLane], stands: Floats | None) -> list[BoundedLane]:
-        """Return the lanes that begin before and end after a place, or else the nearest ones; all where it is not known."""
+        """Return the lanes that are beside a place, or if there are none, the nearest lanes; all if the place is unknown."""
         if stands is None:
             return lanes
         place = stands[:2]
@@ -105,7 +108,7 @@ def _once(lanes: list[BoundedLane]) -> list[BoundedLane]:
 
 
 def _facing(base: Any, lanes: list[BoundedLane]) -> list[BoundedLane]:
-    """Return the lanes whose traffic sees the front of a sign, if there are any: its x axis points towards the reader."""
+    """Return the lanes whose traffic sees the front of a sign, which faces along its x axis; all lanes if there are none."""
     if not np.isfinite([base.orientation.roll, base.orientation.pitch, base.orientation.yaw]).all():
         return lanes
     normal = rotation(base)[:2, 0]
@@ -116,7 +119,7 @@ def _facing(base: Any, lanes: list[BoundedLane]) -> list[BoundedLane]:
 
 
 def rotation(base: Any) -> Floats:
-    """Return the axes (columns) of something that is turned by roll, pitch and yaw, in this order, in the frame of the road."""
+    """Return the rotation matrix of an object's orientation, from roll, pitch and yaw, applied in this order."""
     roll, pitch, yaw = base.orientation.roll, base.orientation.pitch, base.orientation.yaw
     cr, sr, cp, sp, cy, sy = np.cos(roll), np.sin(roll), np.cos(pitch), np.sin(pitch), np.cos(yaw), np.sin(yaw)
     return np.array(
@@ -155,7 +158,7 @@ def _sign(sign: Any, road: _Road, quality: MapQuality) -> Iterable[Row]:
 
 
 def _heads(bulbs: Iterable[Any]) -> dict[str, list[Any]]:
-    """Return signal id -> its bulbs that are in service, named as the states of the log are."""
+    """Return signal id -> its bulbs that are in service. Signal ids are those of the log's signal states."""
     heads: dict[str, list[Any]] = {}
     for bulb in bulbs:
         named = {ref.type: ref.identifier[0] for ref in reversed(bulb.source_reference) if ref.identifier}
@@ -181,7 +184,7 @@ def _light(name: str, bulbs: Sequence[Any], road: _Road, quality: MapQuality) ->
 def _signal_rows(
     description: str, row: Row, lanes: Sequence[BoundedLane], place: Floats | None, quality: MapQuality
 ) -> Iterable[Row]:
-    """Return the rows of a signal for its lanes; where it stands is the lane's end if the log does not say it."""
+    """Return one row per lane of a signal. If the signal's place is unknown, it is the end of the lane."""
     if not lanes:
         message = f"{description} is assigned to no lane of the map: it is not known to which lanes it applies"
         quality.add("signal_without_lane", "warning", None, message)
@@ -191,7 +194,7 @@ def _signal_rows(
 
 
 def _outline(mark: Any, road: _Road) -> Floats:
-    """Return the eight corners (8, 2) of a marking's box on the map; NaN where the log does not say them."""
+    """Return the eight corners (8, 2) of a marking's box on the map; NaN if the log does not have place and size."""
     middle = road.place(mark.base)
     size = mark.base.dimension
     half = np.array([size.length, size.width, size.height]) / 2
@@ -204,7 +207,7 @@ def _outline(mark: Any, road: _Road) -> Floats:
 
 
 def _over(mark: Any, area: Any, road: _Road) -> list[tuple[BoundedLane, float]]:
-    """Return the lanes for driving that an area is painted on, and the area's station on each."""
+    """Return the lanes for driving under a painted shape, and the shape's station on each."""
     lane_stations = []
     z = mark.base.position.z
     for lane in road.lanes:
@@ -218,10 +221,10 @@ def _over(mark: Any, area: Any, road: _Road) -> list[tuple[BoundedLane, float]]:
 
 
 def _stop_line(mark: Any, road: _Road, quality: MapQuality) -> Iterable[Row]:
-    """Return a row for each lane that a stop line lies across: on half of the lane's width, or with half of its own."""
+    """Return a row for each lane that a stop line crosses with half of its length, or on half of the lane's width."""
     corners = _outline(mark, road)
     middle = corners.mean(axis=0)
-    way = np.linalg.eigh(np.cov((corners - middle).T))[1][:, -1]  # the longer side of its outline
+    way = np.linalg.eigh(np.cov((corners - middle).T))[1][:, -1]  # direction of the outline's longer side
     reach = float(np.abs((corners - middle) @ way).max())
     line = shapely.LineString([middle - way * reach, middle + way * reach])
     lane_ids = {lane.lanelet_id for lane in road.assigned_lanes(mark.classification, mark.base)}
@@ -235,7 +238,7 @@ def _stop_line(mark: Any, road: _Road, quality: MapQuality) -> Iterable[Row]:
             across.append((lane, s, float(upwards @ tangent)))
     if lane_ids & {lane.lanelet_id for lane, _, _ in across}:
         across = [each for each in across if each[0].lanelet_id in lane_ids]
-    elif any(along > _ACROSS for _, _, along in across):  # the symbol reads upright for the traffic that it is for
+    elif any(along > _ACROSS for _, _, along in across):  # a symbol is upright for the traffic to which it applies
         across = [each for each in across if each[2] > 0]
     name = str(mark.id.value)
     if not across:

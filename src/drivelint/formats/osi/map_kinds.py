@@ -1,4 +1,4 @@
-"""OSI's numbers for lanes, boundaries, signs and lights in the words of the map's tables, as `map_kinds.toml` has them."""
+"""OSI's numbers for types of lanes, boundaries, signs and lights, and the words for them in the map's tables (`map_kinds.toml`)."""
 
 from __future__ import annotations
 
@@ -17,24 +17,24 @@ def _words(table: str) -> dict[int, Any]:
 LANE_KINDS: Final[dict[int, str]] = _words("lane_kinds")
 DRIVABLE: Final = frozenset({"driving", "exit", "entry", "onRamp", "offRamp", "connectingRamp"})
 INTERSECTION: Final = 4
-"""`Lane.Classification.Type` of an area where ways meet."""
+"""The `Lane.Classification.Type` of an intersection."""
 CURB: Final = 16
-"""`LogicalLane.Type` of a kerb stone: it has no width."""
+"""The `LogicalLane.Type` of a kerb."""
 INCREASING, DECREASING, BOTH = 2, 3, 4
-"""`LogicalLane.MoveDirection`: along the reference line, against it, both; of any other it is not known."""
+"""Values of `LogicalLane.MoveDirection`: along the reference line, against it, both. With any other value it is unknown."""
 _MARKINGS: Final[dict[int, str]] = _words("markings")
 _UNSAID: Final = frozenset({0, 1})  # UNKNOWN, OTHER
 _LINES: Final = frozenset({"solid", "broken", "botts_dots"})
 _DOUBLE: Final = frozenset({"solid", "broken"})
 LANE_CHANGES: Final[dict[int, str]] = _words("lane_changes")
 STOP_SIGN: Final = 17
-"""`TrafficSign.MainSign.Classification.Type` of a stop sign, and of the line at which one stops if it is painted as a symbol."""
+"""The `TrafficSign.MainSign.Classification.Type` of a stop sign, and of a painted symbol that marks a stop line."""
 ZEBRA: Final = 87
 SYMBOL_MARKING: Final = 3
-"""`RoadMarking.Classification.Type` of a line or symbol painted on the road."""
+"""The `RoadMarking.Classification.Type` of a painted line or symbol."""
 SIGN_KINDS: Final[dict[int, str]] = _words("sign_kinds")
 VARIABLE_SIGN: Final = frozenset({3, 5, 6})
-"""`TrafficSign.Variability` of a sign that shows now this, now that."""
+"""Values of `TrafficSign.Variability` for signs whose content changes."""
 UNITS: Final[dict[int, str]] = _words("units")
 SPEED_UNITS_MPS: Final = {"km/h": 1 / 3.6, "mph": 0.44704}
 TURNS: Final[dict[int, list[str]]] = _words("turns")
@@ -43,9 +43,10 @@ LIGHT_KINDS: Final[dict[int, str]] = _words("light_kinds")
 
 
 def marking(types: Sequence[int | None]) -> str | None:
-    """Return the marking that boundaries make, the one nearest to the lane first; None in `types`: it is not in the log.
+    """Return the marking that the boundaries on one side of a lane make together; None if it is unknown.
 
-    An edge, rail or wall beside a line is no marking of its own. None: not known.
+    `types`: the boundaries' types, nearest to the lane first; None for a boundary that is not in the log. An edge, rail or wall
+    beside a line is ignored.
     """
     if not types or any(kind is None or kind in _UNSAID for kind in types):
         return None

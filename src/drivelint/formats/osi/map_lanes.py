@@ -1,6 +1,6 @@
-"""Lanes that an OSI trace carries itself, in its first ground truth: logical lanes, and physical lanes where there are none.
+"""Reads the lanes in the first ground truth of an OSI trace: logical lanes, and physical lanes in places without logical lanes.
 
-In OSI, left and right are along the points of lines, which may run against the traffic; here all is turned into the direction of travel.
+OSI's left and right refer to the order of a line's points, which may be against the traffic. Here, lanes are in the direction of travel.
 """
 
 from __future__ import annotations
@@ -30,11 +30,11 @@ if TYPE_CHECKING:
     from drivelint.formats.osi.map_physical import PhysicalLane
     from drivelint.road.map_reader import MapOptions, MapSource, MapTables
 
-_SAME_SURFACE_M = 1.0  # a lane nearer than this above or below another lies on the same road
+_SAME_SURFACE_M = 1.0  # lanes whose heights differ by less are on the same road
 
 
 def read(source: MapSource, request: MapOptions) -> MapTables:
-    """Return the map's tables; `MapError` saying why where no lane for driving can be built."""
+    """Return the map's tables. Errors: `MapError` with the reason if no lane for driving can be built."""
     quality = MapQuality()
     try:
         truth = message_class("GroundTruth").FromString(source.content)
@@ -60,7 +60,7 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     heights |= {way.lanelet_id: ends for way, ends in ways}
     for lane in lanes:
         lane.z = heights_beside(heights[lane.lanelet_id], lane.line.centre - request.offset)
-    # the option counts whatever the lanes say
+    # the option takes precedence over the side that the lanes show
     said = ("option", request.side) if request.side else ("lanes", side_driven_on(lanes))
     side = choose_side([said], quality, "the lanes")
     beside = osi_furniture.read(truth, lanes, covers, request.offset, quality)
@@ -68,7 +68,7 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
 
 
 def _covers(logical: Mapping[int, LogicalLane], physical: Mapping[int, PhysicalLane]) -> dict[int, list[int]]:
-    """Return physical lane -> the logical lanes that say more of the same place: those that name it, or lie over most of it."""
+    """Return physical lane -> the logical lanes that replace it: those that refer to it, or that together cover most of it."""
     covers: dict[int, list[int]] = {}
     for name, lane in logical.items():
         for ref in lane.physical_lane_ids:
@@ -95,7 +95,7 @@ def _covers(logical: Mapping[int, LogicalLane], physical: Mapping[int, PhysicalL
 
 
 def _why_none(truth: Any, quality: MapQuality) -> str:
-    """Say why no lane for driving could be built: the most frequent reason."""
+    """Return the most frequent reason why no lane for driving could be built."""
     n = len(truth.logical_lane) + len(truth.lane)
     reasons = Counter(
         row["message"].partition(" is left out: ")[2] for row in quality.rows if row["check_id"] == "invalid_lane"

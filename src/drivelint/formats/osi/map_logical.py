@@ -1,6 +1,6 @@
-"""Logical lanes of an OSI trace (OSI 3.5 and later): lanes by their two bounds along a reference line.
+"""Builds the logical lanes of an OSI trace (OSI 3.5 and later) from their two boundaries along a reference line.
 
-In OSI, left, right, begin and end are along the reference line; here all is turned into the direction of travel.
+OSI's left, right, start and end refer to the direction of the reference line. Here, lanes are in the direction of travel.
 """
 
 from __future__ import annotations
@@ -20,13 +20,16 @@ if TYPE_CHECKING:
     from drivelint.arrays import Floats
     from drivelint.road.quality import MapQuality
 
-_SHORT_M = 0.5  # a boundary that ends further than this before its lane does not reach its end
-MAX_LINK_GAP_M = 5.0  # a lane that begins further away from where another ends does not follow it
+_SHORT_M = 0.5  # a lane is invalid if a boundary ends further than this before the lane's end
+MAX_LINK_GAP_M = 5.0  # the largest distance between a lane's end and the start of its successor
 
 
 @dataclass(frozen=True)
 class LogicalLane:
-    """A lane in the direction of travel: its message, bounds (n, 3) and span of s; `along` -1: against the reference line."""
+    """A lane in the direction of travel: its message and bounds (n, 3). `span`: its first and last s on the reference line.
+
+    `along`: 1 if its direction is that of the reference line, otherwise -1.
+    """
 
     message: Any
     left: Floats
@@ -36,23 +39,23 @@ class LogicalLane:
 
     @property
     def centre(self) -> Floats:
-        """The middle between its bounds (n, 3)."""
+        """The centre line (n, 3), in the middle between the bounds."""
         return (self.left + self.right) / 2
 
     @property
     def physical_lane_ids(self) -> list[int]:
-        """Ids of the physical lanes that it lies on."""
+        """The ids of the physical lanes to which the lane refers."""
         return [ref.physical_lane_id.value for ref in self.message.physical_lane_reference]
 
     def lane_fraction(self, s: float) -> float:
-        """Return a station on the reference line as a share of the lane's length, in the direction of travel."""
+        """Return a station on the reference line as a share of the lane's length, from 0 at its start in the direction of travel."""
         begin, end = self.span
         at = min(max((s - begin) / (end - begin), 0.0), 1.0)
         return at if self.along > 0 else 1.0 - at
 
 
 def read(truth: Any, quality: MapQuality) -> dict[int, LogicalLane]:
-    """Return the logical lanes that have a shape and a direction, by id; problems of the others go to `quality`."""
+    """Return id -> logical lane. A lane without a shape or direction is left out and added to `quality`."""
     bounds = {bound.id.value: bound for bound in truth.logical_lane_boundary}
     lanes: dict[int, LogicalLane] = {}
     for message in truth.logical_lane:
@@ -67,7 +70,7 @@ def read(truth: Any, quality: MapQuality) -> dict[int, LogicalLane]:
 
 
 def lanelets(lanes: Mapping[int, LogicalLane], truth: Any) -> Iterator[BoundedLane]:
-    """Yield the lanes as the map has them, with links, neighbours and markings."""
+    """Yield the lanes for the map, with links, neighbours, markings and speed limits."""
     bounds = {bound.id.value: bound for bound in truth.logical_lane_boundary}
     types = {bound.id.value: int(bound.classification.type) for bound in truth.lane_boundary}
     areas = {lane.id.value for lane in truth.lane if lane.classification.type == kinds.INTERSECTION}
@@ -87,7 +90,7 @@ def lanelets(lanes: Mapping[int, LogicalLane], truth: Any) -> Iterator[BoundedLa
 
 
 def _lane(message: Any, bounds: Mapping[int, Any]) -> LogicalLane:
-    """Return a lane in the direction of travel. Errors: `UnbuildableError` saying what it lacks."""
+    """Return a lane in the direction of travel. Errors: `UnbuildableError` with the missing or invalid part."""
     driven = kinds.LANE_KINDS.get(message.type) in kinds.DRIVABLE
     way = message.move_direction
     if driven and way not in {kinds.INCREASING, kinds.DECREASING, kinds.BOTH}:
@@ -113,7 +116,7 @@ def _lane(message: Any, bounds: Mapping[int, Any]) -> LogicalLane:
 
 
 def _side(ids: Iterable[Any], bounds: Mapping[int, Any], word: str) -> Floats:
-    """Return the points (n, 4) of one side: x, y, z and, ascending, s. Errors: `UnbuildableError`."""
+    """Return the points (n, 4) of one side: x, y, z and s, which ascends. Errors: `UnbuildableError` for an invalid boundary."""
     names = [i.value for i in ids]
     lost = [str(i) for i in names if i not in bounds]
     if not names or lost:
@@ -131,20 +134,20 @@ def _side(ids: Iterable[Any], bounds: Mapping[int, Any], word: str) -> Floats:
     side_points = np.vstack(parts)
     if (np.diff(side_points[:, 3]) < -1e-3).any() or side_points[0, 3] >= side_points[-1, 3]:
         raise UnbuildableError(f"the s positions of its {word} boundary do not ascend")
-    # where a boundary steps aside, two points have one station
+    # at a lateral step of a boundary, two points have the same s
     side_points[:, 3] = np.maximum.accumulate(side_points[:, 3])
     side_points[1:, 3] += np.cumsum(np.diff(side_points[:, 3]) == 0) * 1e-9
     return side_points
 
 
 def _sides(lane: LogicalLane, field: str) -> tuple[Any, Any]:
-    """Return the elements of the message on the driver's left and right."""
+    """Return the values of `left_<field>` and `right_<field>` in the message, swapped if needed to the driver's left and right."""
     both = getattr(lane.message, f"left_{field}"), getattr(lane.message, f"right_{field}")
     return both if lane.along > 0 else both[::-1]
 
 
 def _linked(lanes: Mapping[int, LogicalLane]) -> list[tuple[int, int]]:
-    """Return (a, b) where b follows a, as either of the two says."""
+    """Return the pairs (a, b) in which b follows a. One of the two must state the link."""
     stated_links = {
         pair
         for name, lane in lanes.items()
@@ -158,7 +161,7 @@ def _linked(lanes: Mapping[int, LogicalLane]) -> list[tuple[int, int]]:
 
 
 def _leads_into(lane: LogicalLane, next_lane: LogicalLane) -> bool:
-    """Say whether a lane ends where another begins and not, as two that run towards each other, where it ends."""
+    """Return whether a lane ends at the start of `next_lane`, and not, as for opposing lanes, at its end."""
     end = lane.centre[-1, :2]
     to_begin, to_end = (float(np.linalg.norm(end - next_lane.centre[k, :2])) for k in (0, -1))
     return to_begin < MAX_LINK_GAP_M and to_begin <= to_end
@@ -167,7 +170,10 @@ def _leads_into(lane: LogicalLane, next_lane: LogicalLane) -> bool:
 def _neighbour(
     lane: LogicalLane, relations: Iterable[Any], lanes: Mapping[int, LogicalLane]
 ) -> tuple[str | None, bool | None]:
-    """Return the lane that is beside a lane for longest, and whether it is driven the other way."""
+    """Return the id of the lane with the longest stretch beside `lane`, and whether it is driven in the opposite direction.
+
+    Both are None without a neighbour.
+    """
     begin, end = lane.span
     length = {
         r.other_lane_id.value: min(r.end_s, end) - max(r.start_s, begin)
@@ -189,7 +195,11 @@ def _neighbour(
 def _marks(
     lane: LogicalLane, bounds: Mapping[int, Any], types: Mapping[int, int], *, log_has_markings: bool
 ) -> Iterator[Mark]:
-    """Yield the markings of both sides. `log_has_markings`: the log says which boundaries have markings, so that one without has none."""
+    """Yield the markings of both sides.
+
+    `types`: id of a physical boundary -> its type. `log_has_markings`: whether the log links boundaries to markings; then a boundary
+    without a link has no marking, otherwise its marking is unknown.
+    """
     sides = _sides(lane, "boundary_id")
     for word, ids, nearest_first in (("left", sides[0], lane.along > 0), ("right", sides[1], lane.along < 0)):
         for i in ids:
@@ -198,7 +208,7 @@ def _marks(
             begin, end = sorted((lane.lane_fraction(min(stations)), lane.lane_fraction(max(stations))))
             if end <= begin:
                 continue
-            # from right to left of the reference line
+            # OSI lists physical boundaries from right to left of the reference line
             physical = [types.get(p.value) for p in bound.physical_boundary_id]
             marking = (
                 kinds.marking(physical if nearest_first else physical[::-1])
@@ -209,12 +219,12 @@ def _marks(
 
 
 def _limits(lane: LogicalLane) -> Iterator[tuple[float, float, float]]:
-    """Yield the speed limits for all vehicles: from and to which share of the lane, and the limit in m/s."""
+    """Yield the speed limits for all vehicles, as (start, end, limit): shares of the lane's length, and m/s."""
     for rule in lane.message.traffic_rule:
         limit_value = rule.speed_limit.speed_limit_value
         unit = kinds.SPEED_UNITS_MPS.get(kinds.UNITS.get(limit_value.value_unit, ""))
         where = rule.traffic_rule_validity
-        # for vehicles of any type: it names none, or vehicles as such
+        # the rule applies to all vehicles if it names no type, or only the type vehicle
         valid = where.valid_for_type
         for_all = not valid or any(each.type == 2 and not each.HasField("vehicle_type") for each in valid)
         if rule.traffic_rule_type or unit is None or limit_value.value <= 0 or not for_all:

@@ -1,7 +1,6 @@
-"""Physical lanes of an OSI trace (`lane` and `lane_boundary`): by their centre line and bounds, or by their bounds alone.
+"""Builds the physical lanes of an OSI trace (`lane` and `lane_boundary`) from centre lines and boundaries, or from boundaries alone.
 
-An intersection is one area with pairs of lanes that lead into and out of it: a way is drawn for each pair, as smooth as their
-ends allow.
+In OSI, an intersection is one area with pairs of lanes that lead into it and out of it. Here, a smooth lane is drawn for each pair.
 """
 
 from __future__ import annotations
@@ -24,15 +23,15 @@ if TYPE_CHECKING:
     from drivelint.road.quality import MapQuality
 
 _DRIVING, _NONDRIVING = 2, 3
-_CUT_M = 0.2  # a side that ends further than this from the lane's end is not whole
-_DASH_GAP_M = 15.0  # a dashed boundary is drawn up to its last dash: the next one begins no further away than this
+_CUT_M = 0.2  # a side that ends further than this from the lane's end is extended
+_DASH_GAP_M = 15.0  # largest gap between boundaries of one side: dashed ones only reach to their last dash
 _WAY_POINTS = 13
 _DIRECTION = "centerline_is_driving_direction"
 
 
 @dataclass(frozen=True)
 class PhysicalLane:
-    """A lane of the trace turned into the direction of travel: its message, centre line (n, 3), bounds (n, 2)."""
+    """A lane in the direction of travel: its message, centre line (n, 3) and bounds (n, 2). `turned`: OSI has the opposite direction."""
 
     message: Any
     centre: Floats
@@ -42,13 +41,10 @@ class PhysicalLane:
 
 
 def read(truth: Any, quality: MapQuality) -> dict[int, PhysicalLane]:
-    """Return the lanes that have a shape and a direction, by id; problems of the others go to `quality`.
-
-    Areas of intersections are not among them.
-    """
+    """Return id -> lane, without areas of intersections. A lane without a shape or direction is left out and added to `quality`."""
     bounds = {b.id.value: b for b in truth.lane_boundary}
     directions = [lane.classification for lane in truth.lane if lane.classification.HasField(_DIRECTION)]
-    # if lanes say true or nothing, and never false, the writer leaves false out
+    # if the flag is true or missing, and never false, the writer omits false
     drops = {said.centerline_is_driving_direction for said in directions} == {True}
     lanes: dict[int, PhysicalLane] = {}
     for lane in truth.lane:
@@ -64,7 +60,7 @@ def read(truth: Any, quality: MapQuality) -> dict[int, PhysicalLane]:
 
 
 def _ascending(classification: Any, *, drops: bool) -> bool:
-    """Return whether a lane is driven in the order of its points. Errors: `UnbuildableError` if it is not known."""
+    """Return whether a lane is driven in the order of its points. Errors: `UnbuildableError` if the log does not state it."""
     if classification.HasField(_DIRECTION):
         return bool(classification.centerline_is_driving_direction)
     if drops:
@@ -81,7 +77,7 @@ def _xyz(points: Iterable[Any]) -> Floats:
 
 
 def _turned(lane: Any, bounds: Mapping[int, Any], *, drops: bool) -> PhysicalLane:
-    """Return a lane in the direction of travel. Errors: `UnbuildableError` saying what it lacks."""
+    """Return a lane in the direction of travel. Errors: `UnbuildableError` with the missing or invalid part."""
     classification = lane.classification
     ids = classification.left_lane_boundary_id, classification.right_lane_boundary_id
     lines = [
@@ -106,13 +102,13 @@ def _turned(lane: Any, bounds: Mapping[int, Any], *, drops: bool) -> PhysicalLan
 
 
 def _chain(parts: list[Floats]) -> Floats:
-    """Return one side's boundaries (n, 3) one after another, in the order of their points. Errors: `UnbuildableError`."""
+    """Return one side's boundaries joined to a line (n, 3). Errors: `UnbuildableError` for too few points or too large gaps."""
     parts = [part for part in parts if len(part) > 1]
     if not parts:
         raise UnbuildableError("a boundary has fewer than two points")
     gaps = np.array([[np.hypot(*(b[0] - a[-1])[:2]) for b in parts] for a in parts])
     np.fill_diagonal(gaps, np.inf)
-    at = int(np.argmax(gaps.min(axis=0))) if len(parts) > 1 else 0  # the one that follows none
+    at = int(np.argmax(gaps.min(axis=0))) if len(parts) > 1 else 0  # the boundary that follows no other
     chain, left = [parts[at]], set(range(len(parts))) - {at}
     while left:
         follows = min(left, key=lambda k: (gaps[at, k], k))
@@ -125,7 +121,7 @@ def _chain(parts: list[Floats]) -> Floats:
 
 
 def _between(left: Floats, right: Floats) -> tuple[Floats, Floats]:
-    """Return the parts (n, 3) of two boundaries that lie beside each other, at equal shares of their lengths."""
+    """Return the parts (n, 3) of two boundaries that are beside each other, sampled at equal shares of their lengths."""
     left = _along(left, right)
     right = _along(right, left)
     shares = [s / s[-1] for s in map(stations, (left, right))]
@@ -134,7 +130,7 @@ def _between(left: Floats, right: Floats) -> tuple[Floats, Floats]:
 
 
 def _along(side: Floats, opposite_side: Floats) -> Floats:
-    """Return the part of a boundary that another lies beside. Errors: `UnbuildableError` where there is none."""
+    """Return the part of a boundary beside the opposite boundary. Errors: `UnbuildableError` if there is none."""
     s = stations(side)
     line = shapely.LineString(side[:, :2])
     begin, end = (float(line.project(shapely.Point(p))) for p in (opposite_side[0, :2], opposite_side[-1, :2]))
@@ -145,12 +141,12 @@ def _along(side: Floats, opposite_side: Floats) -> Floats:
 
 
 def _bound(centre: Floats, points: Floats) -> Floats:
-    """Return one side's points in the order of the centre line. Errors: `UnbuildableError`: fewer than two beside it."""
+    """Return one side's points, sorted along the centre line. Errors: `UnbuildableError` if fewer than two are beside it."""
     line = shapely.LineString(centre)
     station = np.asarray(shapely.line_locate_point(line, shapely.points(points)), np.float64)
     order = np.argsort(station, kind="stable")
     points, station = points[order], station[order]
-    # of what lies before or beyond the lane only the nearest point belongs to it
+    # before the lane's start and after its end, only the nearest point belongs to the lane
     inside = (station > 1e-6) & (station < line.length - 1e-6)
     first, last = points[station <= 1e-6], points[station >= line.length - 1e-6]
     kept = np.vstack([_nearest(first, centre[:1]), points[inside], _nearest(last, centre[-1:])])
@@ -160,9 +156,9 @@ def _bound(centre: Floats, points: Floats) -> Floats:
 
 
 def _whole(side: Floats, centre: Floats) -> Floats:
-    """Return a side (n, 2) extended parallel to the centre line (m, 2) up to both ends: a boundary that is cut off there is no gap.
+    """Return a side (n, 2), extended parallel to the centre line (m, 2) up to both its ends.
 
-    esmini draws a boundary up to its last marked point, which may be metres before the lane's end.
+    esmini draws a boundary only up to its last marked point, which may be metres before the lane's end.
     """
     way = np.gradient(centre, axis=0)
     left = np.column_stack([-way[:, 1], way[:, 0]]) / np.maximum(np.hypot(*way.T), 1e-9)[:, None]
@@ -178,7 +174,7 @@ def _whole(side: Floats, centre: Floats) -> Floats:
 
 
 def _nearest(points: Floats, to: Floats) -> Floats:
-    """Return the one point (1, 2) nearest to another (1, 2), or none (0, 2)."""
+    """Return the point (1, 2) that is nearest to `to` (1, 2), or an empty array (0, 2) without points."""
     return points[np.argsort(np.hypot(*(points - to).T), kind="stable")[:1]]
 
 
@@ -193,7 +189,7 @@ def _kind(classification: Any) -> tuple[str, bool]:
 def lanelets(
     physical: Mapping[int, PhysicalLane], truth: Any, through_lanes: Sequence[BoundedLane]
 ) -> Iterable[BoundedLane]:
-    """Yield the lanes, then the lanes drawn through intersections; each lane links to those that continue it."""
+    """Yield the physical lanes with their links, neighbours and markings, then the lanes through intersections."""
     bounds = {b.id.value: b for b in truth.lane_boundary}
     linked = _linked(physical)
     for i, lane in physical.items():
@@ -219,7 +215,7 @@ def lanelets(
 
 
 def _linked(physical: Mapping[int, PhysicalLane]) -> list[tuple[int, int]]:
-    """Return (a, b) where b follows a, as either of the two says: esmini names some links only at the later lane."""
+    """Return the pairs (a, b) in which b follows a. One of the two must state the link: esmini states some only at b."""
     pairs = set()
     for i, lane in physical.items():
         names = ["antecessor_lane_id", "successor_lane_id"]
@@ -244,7 +240,7 @@ def _neighbour(
 
 
 def _marking(ids: Iterable[Any], bounds: Mapping[int, Any]) -> str | None:
-    """Return the marking of a side; None where it is not known or changes along the lane."""
+    """Return the marking of one side of a lane; None if it is unknown or changes along the lane."""
     found = {bounds[i.value].classification.type for i in ids if i.value in bounds}
     return kinds.marking(sorted(found)) if len(found) == 1 else None
 
@@ -254,7 +250,7 @@ def _leads_into(lane: PhysicalLane, next_lane: PhysicalLane) -> bool:
 
 
 def intersection_lanes(truth: Any, physical: Mapping[int, PhysicalLane]) -> list[tuple[BoundedLane, Floats]]:
-    """Return a lane through the intersection for each pair of lanes that it joins, and the two points (2, 3) between which it rises."""
+    """Return a lane for each pair of lanes that an intersection joins, with its two end points (2, 3), which give its heights."""
     joining_lanes = []
     for area in truth.lane:
         if area.classification.type != kinds.INTERSECTION or area.id.value in physical:
@@ -263,7 +259,7 @@ def intersection_lanes(truth: Any, physical: Mapping[int, PhysicalLane]) -> list
         for into, out in sorted(pairs):
             a, b = physical.get(into), physical.get(out)
             if a is None or b is None or not all(_kind(each.message.classification)[1] for each in (a, b)):
-                continue  # not two lanes for driving
+                continue  # the pair is not two lanes for driving
             sides = (a.left, b.left), (a.right, b.right)
             left, right = (_curve(p[-1], p[-1] - p[-2], q[0], q[1] - q[0]) for p, q in sides)
             name = f"{area.id.value}.{into}.{out}"
@@ -273,7 +269,7 @@ def intersection_lanes(truth: Any, physical: Mapping[int, PhysicalLane]) -> list
 
 
 def _curve(start: Floats, leaving: Floats, end: Floats, arriving: Floats) -> Floats:
-    """Return points (n, 2) of the cubic with these ends and directions, each (1, 2)."""
+    """Return points (n, 2) on the cubic curve with these end points and end directions, each of shape (2,)."""
     reach = float(np.linalg.norm(end - start))
     v0 = leaving / max(float(np.linalg.norm(leaving)), 1e-9) * reach
     v1 = arriving / max(float(np.linalg.norm(arriving)), 1e-9) * reach

@@ -1,9 +1,8 @@
-"""Data without a field in OSI: written beside the messages of a converted log, and read from there.
+"""Writes and reads data of a converted log for which OSI has no field: two MCAP metadata records, and a channel of declared events.
 
-Two MCAP metadata records. `drivelint.trace`: the source of the log, the map offset and sensor range of its mapping, the projection of its
-coordinates, the conditions of the drive, the findings from reading it. `drivelint.actors`: OSI id -> the row of `actor` in JSON, since
-OSI's ids are numbers and its classes and hosts are fewer than ours. One channel of JSON messages, `drivelint.DeclaredEvent`, for declared
-events.
+`drivelint.trace`: the source of the log, the map offset and sensor range of its mapping, the projection of its coordinates, the
+conditions of the drive, and the findings from reading. `drivelint.actors`: OSI id -> the row of `actor` in JSON, because OSI has only
+numbers as ids, fewer classes, and only one ego. The channel has JSON messages `drivelint.DeclaredEvent`.
 """
 
 from __future__ import annotations
@@ -27,14 +26,14 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import Recording, Trace
 
 LIBRARY: Final = "drivelint convert"
-"""What converted logs say that they were written by."""
+"""The library in the header of converted logs."""
 TRACE_RECORD: Final = "drivelint.trace"
 ACTORS_RECORD: Final = "drivelint.actors"
 EVENT_MESSAGE: Final = "drivelint.DeclaredEvent"
 EGO_CHECK_IDS: Final = frozenset({"no_ego", "ego_count", "no_indicator", "no_brake_light"})
-"""Findings about the ego of the original log: they are found again for the present ego, and so not carried."""
+"""Checks of findings that depend on the ego. Converted logs omit them; reading finds them again for the chosen ego."""
 OPTIONAL_COORDINATES: Final = ("z_m",)
-"""Coordinates that OSI has no way to leave out of a vector; named in the record where no state has them."""
+"""Coordinates that cannot be left out of an OSI vector. The record lists a coordinate that no state has."""
 
 
 class _Actor(msgspec.Struct, forbid_unknown_fields=True, frozen=True, kw_only=True):
@@ -47,7 +46,7 @@ class _Actor(msgspec.Struct, forbid_unknown_fields=True, frozen=True, kw_only=Tr
 
 
 class _TraceFacts(msgspec.Struct, frozen=True, kw_only=True):
-    """The record `drivelint.trace`: MCAP keeps texts, each of these is JSON. Unknown keys are of newer versions."""
+    """The record `drivelint.trace`, with each value as JSON. Unknown keys come from newer versions, and are ignored."""
 
     map_offset_m: tuple[float, float] | None = None
     geo_reference: str | None = None
@@ -62,7 +61,7 @@ class _TraceFacts(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Event(msgspec.Struct, forbid_unknown_fields=True, frozen=True, kw_only=True):
-    """One message of the channel of declared events: a row of `declared_event`."""
+    """A declared event: one message of the channel, and one row of `declared_event`."""
 
     t_ns: int
     actor_id: str
@@ -76,7 +75,7 @@ EVENT_SCHEMA: Final = msgspec.json.encode(msgspec.json.schema(Event), order="sor
 
 
 def metadata_records(trace: Trace, numbers: Mapping[str, int], *, as_recorded: bool) -> dict[str, dict[str, str]]:
-    """Return the metadata records of a trace; `numbers`: actor id -> OSI id, `as_recorded`: its states are those that were recorded."""
+    """Return the metadata records of a trace. `numbers`: actor id -> OSI id; `as_recorded`: whether its states are as recorded."""
     log = trace.tables["data_log"].to_pylist()[0]
     states = trace.tables["actor_state"]
     trace_facts: dict[str, Any] = {
@@ -102,13 +101,13 @@ def metadata_records(trace: Trace, numbers: Mapping[str, int], *, as_recorded: b
 
 
 def ego_independent_quality(trace: Trace) -> pa.Table:
-    """Return the rows of `quality` that a converted log carries: those that do not depend on who is the ego."""
+    """Return the rows of `quality` that do not depend on the ego; converted logs contain them."""
     rows = trace.tables["quality"]
     return rows.filter(pa.array([check not in EGO_CHECK_IDS for check in rows["check_id"].to_pylist()], pa.bool_()))
 
 
 def apply_metadata(path: Path, metadata: Mapping[str, Mapping[str, str]], recording: Recording) -> None:
-    """Add the content of the metadata records to a recording of OSI messages. Errors: `TraceError` where they do not fit it."""
+    """Add the content of the metadata records to a recording. Errors: `TraceError` if a record is invalid."""
     if TRACE_RECORD in metadata:
         _apply_trace(path, _read(path, TRACE_RECORD, metadata[TRACE_RECORD], _TraceFacts), recording)
     if ACTORS_RECORD in metadata:
@@ -120,7 +119,7 @@ def apply_metadata(path: Path, metadata: Mapping[str, Mapping[str, str]], record
 
 
 def read_declared_events(path: Path, messages: Sequence[bytes]) -> pa.Table | None:
-    """Return declared events as rows; None for no message. Errors: `TraceError` for one that cannot be read."""
+    """Return declared events as rows; None without messages. Errors: `TraceError` for a message that cannot be read."""
     if not messages:
         return None
     try:
@@ -132,9 +131,9 @@ def read_declared_events(path: Path, messages: Sequence[bytes]) -> pa.Table | No
 
 
 def parse_conditions(path: Path, rows: Iterable[tuple[str | None, str | None]]) -> dict[str, str]:
-    """Return the drive's conditions that a log gives, by name, in drivelint's spelling.
+    """Return name -> value of the drive's conditions in a log, in drivelint's spelling. `rows`: pairs of name and value.
 
-    Errors: `TraceError` for what is not understood.
+    Errors: `TraceError` for an unknown name or value, and for contradictions.
     """
     condition_words: dict[str, str] = {}
     for given in rows:
@@ -149,7 +148,7 @@ def parse_conditions(path: Path, rows: Iterable[tuple[str | None, str | None]]) 
 
 
 def known_findings(path: Path, findings: Sequence[QualityFinding]) -> list[QualityFinding]:
-    """Return findings that a log carries of its conversion. Errors: `TraceError` for one of a check that there is not."""
+    """Return the findings that a converted log contains. Errors: `TraceError` for a finding of an unknown check."""
     for finding in findings:
         if wrong := vocabularies()["log_check"].problem(finding.check_id):
             raise TraceError(f"{path}: quality: {wrong}: convert the log again with this version")
@@ -168,7 +167,7 @@ def _apply_trace(path: Path, facts: _TraceFacts, recording: Recording) -> None:
     recording.sensor_range_m = facts.sensor_range_m
     for name in set(facts.unknown) & set(OPTIONAL_COORDINATES):
         recording.states.numbers[name] = np.full(len(recording.states), np.nan)
-    # a frame that holds traffic lights alone was none of the log that was converted
+    # only these empty frames were in the original log; the conversion added frames for traffic lights
     recording.frames_ns = np.array(facts.nobody_ns, np.int64)
     kept = [f for f in facts.quality if not facts.as_recorded or f.check_id not in FOUND_ANEW]
     recording.findings += known_findings(path, kept)

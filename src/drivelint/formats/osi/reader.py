@@ -1,7 +1,7 @@
-"""ASAM OSI ground truth in MCAP, where the channel is known by its schema and encoding, never by its topic, and in trace files.
+"""Reads ASAM OSI ground truth in MCAP files and in OSI trace files.
 
-Trace files (`.osi`) are messages one after another, each behind its length, without a schema of their own. A moving object's position is
-the centre of its box, and its dimensions are those of the box.
+In MCAP, channels are recognised by schema and encoding, not by topic. Trace files (`.osi`) have no schema; each message follows its length.
+A moving object's position is the centre of its box, and its dimensions are those of the box.
 """
 
 from __future__ import annotations
@@ -49,15 +49,14 @@ _READ_MESSAGES: Final = frozenset({*FIELD_TREES, OPEN_DRIVE, metadata.EVENT_MESS
 
 
 def accepts(probe: Probe) -> bool:
-    """Accept by the first length and the message behind it."""
+    """Return whether the file begins with a plausible length and OSI message."""
     return not probe.path.is_dir() and trace_file.is_osi_trace(probe.head, probe.path.stat().st_size)
 
 
 def read_mcap(path: Path, topic: str | None) -> Recording:
-    """Read the ground truth of an MCAP file, and the OpenDRIVE beside it if there is one.
+    """Read the ground truth of an MCAP file, and its OpenDRIVE map if it has exactly one.
 
-    Of several different OpenDRIVE maps none is taken. Errors: `TraceError` for a damaged file, no or several ground-truth
-    topics, or a schema without the fields needed.
+    Errors: `TraceError` for a damaged file, no or several ground-truth topics, or a schema without the necessary fields.
     """
     container = Container(path, salvage=True)
     truths: list[str] = []  # topics of ground truth
@@ -72,7 +71,7 @@ def read_mcap(path: Path, topic: str | None) -> Recording:
         if kind in FIELD_TREES:
             _check_topics(container, truths, topic)
             schema = container.schemas[packets[0].channel.schema_id]
-            if not batches:  # lanes stand in the first message, if anywhere
+            if not batches:  # only the first message can have lanes
                 head = read_first_message(packets[0].data, kind)
             if decoder is None or decoder.schema_id != schema.id:
                 decoder = Decoder(path, schema.id, schema.name, schema.data)
@@ -112,7 +111,7 @@ def read_mcap(path: Path, topic: str | None) -> Recording:
 
 
 def _refuse_lost_end_of_converted(container: Container) -> None:
-    """Refuse a log of `drivelint convert` that lost its end: its declared events, of any time, stand there."""
+    """Raise `TraceError` for a log of `drivelint convert` whose end is lost, because the end contains all declared events."""
     if container.library == metadata.LIBRARY and any(each.until_ns is None for each in container.losses.lost_bytes):
         raise TraceError(
             f"{container.path}: the end of this converted log, with its declared events, is lost "
@@ -121,7 +120,7 @@ def _refuse_lost_end_of_converted(container: Container) -> None:
 
 
 def _kind(truths: list[str], topic: str | None, unread: UnreadTopics, channel: Channel, schema: Schema) -> str | None:
-    """Return the type of the messages on a channel that are read; None: none are. Topics of ground truth go to `truths`."""
+    """Return the message type of a channel; None if it is not read. Topics of ground truth are added to `truths`."""
     if schema.name not in _READ_MESSAGES:
         return None
     encoding = "json" if schema.name == metadata.EVENT_MESSAGE else "protobuf"
@@ -137,7 +136,7 @@ def _kind(truths: list[str], topic: str | None, unread: UnreadTopics, channel: C
 
 
 def _map_text(container: Container, packet: Packet) -> bytes | QualityFinding:
-    """Return the OpenDRIVE of a message, or why there is none."""
+    """Return the OpenDRIVE map in a message, or the finding that it cannot be used."""
     types = parse_schema(container.path, OPEN_DRIVE, container.schemas[packet.channel.schema_id].data)
     decode = message_decoder(container.path, types, OPEN_DRIVE, {"open_drive_xml_content": None})
     try:
@@ -153,7 +152,7 @@ def _map_text(container: Container, packet: Packet) -> bytes | QualityFinding:
 
 
 def _check_topics(container: Container, truths: list[str], topic: str | None) -> None:
-    """Refuse a log in which the topic of ground truth is missing or not the only one. Errors: `TraceError`."""
+    """Raise `TraceError` if there is no topic of ground truth, or several without a choice."""
     path, topics = container.path, ", ".join(sorted(truths))
     if topic is not None and topic not in truths:
         found = f"ground truth is on {topics}" if truths else _foreign_content(container)
@@ -165,7 +164,7 @@ def _check_topics(container: Container, truths: list[str], topic: str | None) ->
 
 
 def _foreign_content(container: Container) -> str:
-    """Describe the content of an MCAP file without OSI messages: other kinds of messages, or a topic without any."""
+    """Return words for the content of an MCAP file without OSI messages: its message types, or topics without messages."""
     names = {0: "no schema", **{number: schema.name for number, schema in container.schemas.items()}}
     kinds = {f"{names[c.schema_id]} in {c.message_encoding or 'no encoding'}" for c in container.channels.values()}
     needed = f"{GROUND_TRUTH} or {SENSOR_VIEW} in protobuf is needed"
@@ -175,9 +174,9 @@ def _foreign_content(container: Container) -> str:
 
 
 def read(probe: Probe) -> Recording:
-    """Read a trace of `osi3.GroundTruth` or `osi3.SensorView` messages: the first messages show which of the two.
+    """Read a trace file of `osi3.GroundTruth` or `osi3.SensorView` messages; the first messages show which type it has.
 
-    Errors: `TraceError` with the byte where no message can be read, for messages that are neither kind, or without time stamps.
+    Errors: `TraceError` if no message can be read, if messages have another type, or if time stamps are missing.
     """
     path = probe.path
     channel = Channel(id=1, topic=path.name, message_encoding="protobuf", schema_id=1, metadata={})
@@ -214,8 +213,11 @@ def read(probe: Probe) -> Recording:
 
 
 def _decoder(path: Path, packets: list[Packet]) -> tuple[Decoder, str]:
-    """Return the decoder of the kind of message in which objects with positions are found, and its name."""
-    for some in (packets, packets[:1]):  # where a later one is garbled, who reads it names it
+    """Return the decoder and the name of the message type with which these messages have objects with positions.
+
+    Errors: `TraceError` if neither type fits.
+    """
+    for some in (packets, packets[:1]):  # a damaged later message is reported when it is decoded
         for name in (GROUND_TRUTH, SENSOR_VIEW):
             decoder = Decoder(path, 1, name, descriptor_set("read"))
             if _places_objects(decoder, some):
@@ -235,7 +237,7 @@ def _places_objects(decoder: Decoder, packets: list[Packet]) -> bool:
 
 
 def _recording(name: str, batches: list[FrameBatch], head: FirstMessage, log_ns: NDArray[np.uint64]) -> Recording:
-    """Join batches into one recording of format `name`, in the order of the file, on the map that the first message has."""
+    """Return one recording of format `name` from all batches, in the order of the file. `head`: what only the first message has."""
     findings: list[QualityFinding] = []
     t_ns = _clock(batches, log_ns.astype(np.int64), findings)
     offsets = np.cumsum([0, *(len(batch.t_ns) for batch in batches)])
@@ -284,9 +286,9 @@ def _recording(name: str, batches: list[FrameBatch], head: FirstMessage, log_ns:
 
 
 def _zeros(batches: list[FrameBatch]) -> list[dict[str, Floats]]:
-    """Return the numbers of each batch, with 0 for coordinates that the log leaves out if it never writes a zero.
+    """Return the numbers of each batch, with 0 for missing coordinates if the log contains no zero.
 
-    Some writers leave zeros out, as proto3 does. One that writes zeros means by a coordinate without a value that it is not known.
+    Some writers omit zeros, as proto3 does. In a log with zeros, a missing coordinate is unknown.
     """
     if any(batch.says_zero for batch in batches):
         return [batch.numbers for batch in batches]
@@ -297,7 +299,7 @@ def _zeros(batches: list[FrameBatch]) -> list[dict[str, Floats]]:
 
 
 def _clock(batches: list[FrameBatch], log_ns: Times, findings: list[QualityFinding]) -> Times:
-    """Return each frame's time: the messages' own where they all have one that runs, else the log's."""
+    """Return each frame's time: its own time stamp, or the log time for all frames if time stamps are missing or do not advance."""
     stamps = np.concatenate([batch.t_ns for batch in batches])
     timed = np.concatenate([batch.timed for batch in batches])
     if not timed.all() or (len(stamps) > 1 and stamps.min() == stamps.max()):
@@ -311,7 +313,7 @@ def _clock(batches: list[FrameBatch], log_ns: Times, findings: list[QualityFindi
 
 
 def _host(hosts: list[int | None], t_ns: Times, findings: list[QualityFinding]) -> list[str]:
-    """Return the host vehicle's id, that of most frames if it changes; of several that are as often said, the first."""
+    """Return the most frequent host vehicle's id, of equally frequent ids the earliest, as a list; empty without any id."""
     host_counts = Counter(host for host in hosts if host is not None)
     if not host_counts:
         return []

@@ -1,6 +1,6 @@
-"""The part of ASAM OSI 3 that we write, and that we read where the log brings no schema, as protobuf descriptors.
+"""Protobuf descriptors for the part of ASAM OSI 3 that drivelint writes, and that it reads from logs without a schema.
 
-`schema.toml` declares it. What is written is the smaller part.
+They are built from `schema.toml`. Some messages are only read.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ GROUND_TRUTH: Final = f"{PACKAGE}.GroundTruth"
 SENSOR_VIEW: Final = f"{PACKAGE}.SensorView"
 OPEN_DRIVE: Final = f"{PACKAGE}.MapAsamOpenDrive"
 OPEN_DRIVE_REFERENCE: Final = "net.asam.opendrive"
-"""Type of an `ExternalReference` to what is in an OpenDRIVE map."""
+"""The type of an `ExternalReference` to an object in an OpenDRIVE map."""
 LIGHT_REFERENCE: Final = "drivelint.light"
-"""Type of ours that names the light to which a bulb belongs that refers to no OpenDRIVE signal."""
+"""drivelint's own type of an `ExternalReference`, from a bulb without an OpenDRIVE signal to its light."""
 VERSION: Final = (3, 7, 0)
 """The version of OSI that is written."""
 
@@ -33,7 +33,7 @@ def _declared(*parts: str) -> Declarations:
 
 @cache
 def enum_numbers(name: str) -> dict[str, int]:
-    """Return the values of an enumeration that is written: name, as `schema.toml` has it, -> number."""
+    """Return name -> number for a written enumeration; names are those in `schema.toml`."""
     return {word: int(number) for word, number in _declared("written").enums[name]}
 
 
@@ -58,7 +58,7 @@ def _file(*parts: str) -> descriptor_pb2.FileDescriptorProto:
 
 @cache
 def descriptor_set(*more: str) -> bytes:
-    """Return the serialised `FileDescriptorSet` of the written messages, for an MCAP schema record; with "read" also of those read."""
+    """Return the serialised `FileDescriptorSet` of the written messages, for an MCAP schema record. "read" adds the read messages."""
     return descriptor_pb2.FileDescriptorSet(file=[_file("written", *more)]).SerializeToString(deterministic=True)
 
 
@@ -68,5 +68,5 @@ def _classes() -> dict[str, Any]:
 
 
 def message_class(name: str) -> Any:
-    """Return the class of a message that is read, such as GroundTruth: for one message; thousands are decoded by columns."""
+    """Return the Python class of an OSI message, such as GroundTruth. It is for single messages; batches are decoded by columns."""
     return _classes()[f"{PACKAGE}.{name}"]

@@ -1,7 +1,7 @@
-"""This module groups OSI's bulbs into the traffic lights that drivers see.
+"""Groups OSI's bulbs, each of which is a `TrafficLight` message, into the traffic lights that drivers see.
 
-A bulb that refers to an OpenDRIVE signal belongs to that one. Of others, those that hold for the same lanes, show the same icon,
-face the same way and hang beside each other are one light.
+A bulb that refers to an OpenDRIVE signal belongs to that signal. Other bulbs form one light if they apply to the same lanes, show the
+same icon, face the same direction and are next to each other.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from drivelint.formats.osi.schema import LIGHT_REFERENCE, OPEN_DRIVE_REFERENCE
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-_BESIDE_M: Final = 0.6  # from the middle of a bulb to that of the next one
+_BESIDE_M: Final = 0.6  # largest distance between the centres of two bulbs of one light
 _TURNED_RAD: Final = 0.2
 
 
 def light_by_bulb(bulbs: Iterable[Any]) -> dict[str, str]:
-    """Group the bulbs into traffic lights, and return each grouped bulb's id with its light's id."""
+    """Return bulb id -> light id, for bulbs without an OpenDRIVE signal that form a light with other bulbs."""
     rows: dict[Any, list[Any]] = {}
     for bulb in bulbs:
         classification = bulb.classification
@@ -38,7 +38,7 @@ def light_by_bulb(bulbs: Iterable[Any]) -> dict[str, str]:
         waiting = sorted(row, key=lambda bulb: bulb.id.value)
         while waiting:
             light = [waiting.pop(0)]
-            for bulb in light:  # grows while it is gone through
+            for bulb in light:  # the list grows during the loop
                 near = [each for each in waiting if _beside(bulb, each)]
                 light += near
                 waiting = [each for each in waiting if each not in near]
@@ -48,7 +48,7 @@ def light_by_bulb(bulbs: Iterable[Any]) -> dict[str, str]:
 
 
 def bulb_for_map(bulb: Any, names: Mapping[str, str]) -> Any:
-    """Return a copy of a bulb for a map, with its light's id and without its state."""
+    """Return a copy of a bulb without its state, for a map; a reference to its light is added. `names`: bulb id -> light id."""
     map_bulb = type(bulb).FromString(bulb.SerializeToString())
     for field in ("color", "mode"):
         map_bulb.classification.ClearField(field)

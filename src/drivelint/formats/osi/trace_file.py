@@ -1,7 +1,7 @@
-"""Cuts an OSI trace file into its messages, each of which follows its length; of a damaged file, those before the damage.
+"""Splits an OSI trace file into its messages, up to the first damage.
 
-Nothing marks the beginning of a message but the length of the one before. If a length is impossible, everything after it is lost:
-whatever looks like another message there may be the inside of one.
+Each message follows its length, and nothing else marks where a message begins. So everything after an impossible length is lost:
+bytes there that look like a message may be the inside of another.
 """
 
 from __future__ import annotations
@@ -25,23 +25,23 @@ if TYPE_CHECKING:
     from drivelint.formats.mcap.losses import Losses
 
 LENGTH: Final = 4
-"""The bytes of a length."""
+"""The number of bytes of a message's length field."""
 MOST_MESSAGE_BYTES: Final = 512 << 20
-"""No message with a map in it comes near to that."""
+"""A longer message is impossible: even messages with a map are much shorter."""
 _FIRST_TAGS: Final = frozenset({0x0A, 0x12, 0x1A})
-"""What an OSI message begins with: its version, time stamp or an id (fields 1 to 3, length-delimited)."""
+"""The possible first bytes of an OSI message: the tags of version, time stamp or an id (fields 1 to 3, length-delimited)."""
 
 
 def is_osi_trace(head: bytes, size: int) -> bool:
-    """Say whether a file of `size` bytes that begins with `head` can be an OSI trace: a length that fits, then a message."""
+    """Return whether a file of `size` bytes that begins with `head` can be an OSI trace: a possible length, then a message."""
     length = int.from_bytes(head[:LENGTH], "little")
     return 2 <= length <= min(size - LENGTH, MOST_MESSAGE_BYTES) and len(head) > LENGTH and head[LENGTH] in _FIRST_TAGS
 
 
 def message_batches(channel: Channel, content: mmap.mmap, losses: Losses) -> Iterator[list[Packet]]:
-    """Yield the messages up to the damage, some tens of megabytes at a time; then add the loss after them to `losses`.
+    """Yield batches of messages of about `BATCH_BYTES` up to the damage; then add the lost bytes after them to `losses`.
 
-    The caller adds the times of the messages that it has read to `losses` before it takes more.
+    After each batch, the caller must add the times of the decoded messages to `losses`.
     """
     waiting: list[Packet] = []
     at = size = 0
@@ -59,16 +59,16 @@ def message_batches(channel: Channel, content: mmap.mmap, losses: Losses) -> Ite
     if at < len(content):
         while (
             losses.lost_bytes and losses.lost_bytes[-1].end == at
-        ):  # nothing vouches for the length of what cannot be decoded
+        ):  # the length of a message that cannot be decoded may be wrong, too
             at = losses.lost_bytes.pop().start
         since = losses.last_ns
         if since is not None and len(content) > at + LENGTH and content[at + LENGTH] not in _FIRST_TAGS:
-            since -= 1  # no message begins here: the last one may be longer than its length said, and so may say less than was recorded
+            since -= 1  # no message begins here: a wrong length may have cut off the last message
         losses.lost_bytes.append(LostBytes(at, len(content), str(why), since))
 
 
 def _doubt(content: mmap.mmap, at: int) -> str | None:
-    """Return why the length at byte `at` cannot be right; None where it can."""
+    """Return the reason why the length at byte `at` cannot be right; None if it can."""
     start = at + LENGTH
     length = int.from_bytes(content[at:start], "little")
     if start > len(content):
@@ -91,9 +91,10 @@ def _begins(content: mmap.mmap, at: int) -> bool:
 
 
 def lost_times(path: Path, losses: Losses, t_ns: Times) -> list[LostTime]:
-    """Return the losses in the clock of the messages that were read, whose times in the order of the file are `t_ns`.
+    """Return the losses as ranges of the messages' own time. `t_ns`: the times of the messages that were read, in the file's order.
 
-    Where their clock goes back, messages come late: a lost one may have come as late. A clock that stands still bounds nothing.
+    If times go back, messages were written late. Lost messages may have been late, too, so the ranges are widened by the largest delay.
+    If all times are equal, the ranges have no bounds.
     """
     steps = np.diff(t_ns)
     late = -min(int(steps.min(initial=0)), 0)

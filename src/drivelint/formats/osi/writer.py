@@ -1,4 +1,4 @@
-"""This module writes a trace as an MCAP log of ASAM OSI ground truth, with drivelint's own records beside it."""
+"""Writes a trace as an MCAP log of ASAM OSI ground truth, with drivelint's metadata records and declared events."""
 
 from __future__ import annotations
 
@@ -28,15 +28,15 @@ GROUND_TRUTH_TOPIC: Final = "ground_truth"
 MAP_TOPIC: Final = "ground_truth_map"
 EVENT_TOPIC: Final = "declared_event"
 BATCH_STATES: Final = 200_000
-"""States encoded at a time, cut between frames: bounds the memory that a long log needs."""
+"""This many states, in whole frames, are encoded at a time, which bounds the memory."""
 _MAX_ID: Final = (1 << 64) - 1
 
 
 def write(sink: BinaryIO, trace: Trace, road: MapSource | None, *, as_recorded: bool = False) -> int:
-    """Write the log and return the number of ground-truth messages: one per time stamp of any actor or signal, and per empty frame.
+    """Write the log, and return the number of ground-truth messages: one per time of any actor or signal, and per empty frame.
 
-    The same trace and map give the same bytes. `road` must be UTF-8, as OSI's text fields are. A vector of which x or y is
-    not known is left out as a whole.
+    The same trace and map give the same bytes. `road` must be UTF-8, as OSI's text fields are. A vector with an unknown x or y is
+    left out as a whole.
     """
     numbers = osi_ids(trace.tables["actor"]["actor_id"].to_pylist())
     writer = Writer(sink, compression=CompressionType.ZSTD, enable_crcs=True, enable_data_crcs=True)
@@ -57,7 +57,7 @@ def write(sink: BinaryIO, trace: Trace, road: MapSource | None, *, as_recorded: 
         channel = writer.register_channel(MAP_TOPIC, "protobuf", schema, described)
         message = nested(1, road.name.encode()) + nested(2, road.content)
         writer.add_message(channel, max(earliest, 0), message, max(earliest, 0))
-    shift = min(earliest, 0)  # log times are unsigned; the messages' own are not
+    shift = min(earliest, 0)  # log times are unsigned, while times of states may be negative
     count = 0
     for t_ns, message in _frames(trace, numbers):
         writer.add_message(truth, t_ns - shift, message, t_ns - shift)
@@ -68,14 +68,14 @@ def write(sink: BinaryIO, trace: Trace, road: MapSource | None, *, as_recorded: 
 
 
 def osi_ids(actors: list[str]) -> dict[str, int]:
-    """Return actor id -> OSI id: the number that the id is, where all are numbers, else 1, 2, ... in order of the ids."""
+    """Return actor id -> OSI id: the same number if all ids are numbers, otherwise 1, 2, ... in the order of the sorted ids."""
     if all(name.isascii() and name.isdigit() and str(int(name)) == name and int(name) <= _MAX_ID for name in actors):
         return {name: int(name) for name in actors}
     return {name: number for number, name in enumerate(sorted(actors), 1)}
 
 
 def _frames(trace: Trace, numbers: dict[str, int]) -> Iterator[tuple[int, bytes]]:
-    """Yield time and message of every frame, in order of time; in the order of the log where its clock begins again."""
+    """Yield time and message of every frame, in the order of time; in the log's order if its clock restarts."""
     states = trace.tables["actor_state"]
     t_ns = states["t_ns"].to_numpy()
     lights = _lights(trace.tables["signal_state"])
@@ -87,7 +87,7 @@ def _frames(trace: Trace, numbers: dict[str, int]) -> Iterator[tuple[int, bytes]
         times = np.r_[t_ns[starts], actorless_ns]
         bounds = np.r_[starts, np.full(len(actorless_ns) + 1, len(t_ns))]
     else:
-        order = np.argsort(t_ns, kind="stable")  # within a frame by actor, as the table is
+        order = np.argsort(t_ns, kind="stable")  # a stable sort keeps the table's order of actors within a frame
         times = np.unique(np.concatenate([t_ns, actorless_ns]))
         bounds = np.append(np.searchsorted(t_ns[order], times), len(order))
     objects = _objects(trace, numbers)
@@ -124,7 +124,7 @@ def _codes(column: pa.ChunkedArray, words: tuple[str, ...]) -> Codes:
 
 
 def _lights(signals: pa.Table) -> dict[int, list[bytes]]:
-    """Return time -> the traffic lights of that frame. Signals are few; actor states never come this way."""
+    """Return time -> the encoded traffic lights of that frame."""
     place = {name: 2 * k + 1 for k, name in enumerate(sorted(set(signals["signal_id"].to_pylist())))}
     t_ns, *said = (signals[name].to_pylist() for name in ("t_ns", "signal_id", "state"))
     shown = list(zip(*said, strict=True))

@@ -1,1 +1,1 @@
-"""Protobuf: schemas cut down to the fields that are read, and messages written by column."""
+"""Decodes protobuf messages by schemas that are cut down to the fields that are read, and encodes messages by column."""

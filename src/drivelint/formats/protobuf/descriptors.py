@@ -1,8 +1,7 @@
-"""Protobuf schemas, and messages to Arrow structs by a schema cut down to the fields that are read.
+"""Reads protobuf schemas, and decodes messages to Arrow structs that have only the fields that are read.
 
-The parser then skips all other fields, three times faster.
-The schema record of the log carries the descriptor set. Field numbers and types come from it, so any version of the
-messages is read that still has fields of these names.
+Skipping all other fields makes decoding three times faster. Field numbers and types come from the descriptor set in the log's schema
+record, so any version of a message can be read that has fields with these names.
 """
 
 from __future__ import annotations
@@ -36,14 +35,14 @@ FieldTree = dict[str, Any]
 _FIELD = descriptor_pb2.FieldDescriptorProto
 PACKAGE = "pruned"
 _SCALARS = {name.removeprefix("TYPE_").lower(): number for name, number in _FIELD.Type.items()}
-"""Type of a value as it is written in a schema -> its number."""
+"""Scalar type, as in a .proto file -> its number in a descriptor."""
 
 
 class Declarations:
-    """Messages and enumerations declared in TOML tables `messages` and `enums`: name -> the words of each field or value."""
+    """Messages and enumerations that are declared in TOML: name -> the words of each field or value."""
 
     def __init__(self, *tables: Mapping[str, Any]) -> None:
-        """Take several tables together."""
+        """Merge several tables, each with the subtables `messages` and `enums`."""
         self.messages: dict[str, list[list[str]]] = {}
         self.enums: dict[str, list[list[str]]] = {}
         for table in tables:
@@ -55,7 +54,10 @@ class Declarations:
 def add_field(
     message: DescriptorProto, declaration: Sequence[str], package: str, enums: Container[str]
 ) -> descriptor_pb2.FieldDescriptorProto:
-    """Add a field: `declaration` is its name, number and type (`[]`: repeated); a message or enumeration type is of `package`."""
+    """Add a field to `message`, and return it. `declaration`: name, number and type (`[]`: repeated).
+
+    A type that is no scalar belongs to `package`; `enums`: the names of enumerations.
+    """
     name, number, kind = declaration
     plain = kind.removesuffix("[]")
     added = message.field.add(name=name, number=int(number))
@@ -68,13 +70,13 @@ def add_field(
 
 @dataclass
 class Types:
-    """The messages and enumerations of a descriptor set by full name, with a leading dot as in type references."""
+    """The messages and enumerations of a descriptor set, by full name with a leading dot."""
 
     messages: dict[str, DescriptorProto] = field(default_factory=dict)
     enums: dict[str, EnumDescriptorProto] = field(default_factory=dict)
 
     def add(self, scope: str, messages: Iterable[DescriptorProto], enums: Iterable[EnumDescriptorProto]) -> None:
-        """Add messages, enumerations and nested declarations."""
+        """Add messages and enumerations, including nested ones, that are declared in `scope`."""
         self.enums.update({f"{scope}.{enum.name}": enum for enum in enums})
         for message in messages:
             name = f"{scope}.{message.name}"
@@ -83,7 +85,7 @@ class Types:
 
 
 def parse_schema(path: Path, name: str, descriptor_set: bytes) -> Types:
-    """Read the schema record of message `name`. Errors: `TraceError` when it does not describe that message."""
+    """Return the types in the schema record of message `name`. Errors: `TraceError` if they do not include that message."""
     types = Types()
     try:
         files = descriptor_pb2.FileDescriptorSet.FromString(descriptor_set).file
@@ -100,9 +102,10 @@ def parse_schema(path: Path, name: str, descriptor_set: bytes) -> Types:
 
 
 def message_decoder(path: Path, types: Types, name: str, tree: FieldTree) -> Decode:
-    """Return a function that decodes messages `name`, one struct each, with those fields of `tree` that their schema has: enums as int32.
+    """Return a function that decodes messages `name` to one struct each, with the fields of `tree` that the schema has.
 
-    Errors: `TraceError` when the log's schema contradicts itself. The function raises `ValueError`.
+    Enumerations are int32. Errors: `TraceError` if the log's schema contradicts itself. The function raises `ValueError` for a
+    message that cannot be decoded.
     """
     file = descriptor_pb2.FileDescriptorProto(name=f"{PACKAGE}.proto", package=PACKAGE, syntax="proto2")
     _add(file, types, f".{name}", tree, "Root")
@@ -143,9 +146,9 @@ def _add(file: FileDescriptorProto, types: Types, source: str, tree: FieldTree, 
 
 
 def enum_names(types: Types, name: str, *path: str) -> dict[int, str]:
-    """Return number -> name of the enumeration at field `path` of message `name`; empty where there is no such field.
+    """Return number -> name for the enumeration at field `path` of message `name`; empty if there is no such field.
 
-    Where two names share a number, the last one counts: OSI keeps its old name beside the new one.
+    If two names have the same number, the last name is returned: OSI keeps a replaced name beside its replacement.
     """
     source = f".{name}"
     for step in path:
@@ -156,26 +159,26 @@ def enum_names(types: Types, name: str, *path: str) -> dict[int, str]:
 
 
 def decoded(path: Path, packets: list[Packet], decode: Decode) -> pa.StructArray:
-    """Decode a batch. Errors: `TraceError` naming topic and byte of the first message that cannot be decoded."""
+    """Decode a batch. Errors: `TraceError` with topic and byte of the first message that cannot be decoded."""
     try:
         return decode([packet.data for packet in packets])
     except ValueError as error:
         if len(packets) == 1:
             raise packets[0].error(path, str(error).splitlines()[0]) from error
-        for packet in packets:  # one of them spoilt the batch
+        for packet in packets:  # find the message that cannot be decoded
             decoded(path, [packet], decode)
         raise TraceError(f"{path}: {len(packets)} messages cannot be decoded together: {error}") from error
 
 
 def struct_field(parent: pa.Array, name: str) -> pa.Array:
-    """Return a field of a struct array, null where the parent is; all null where the schema has no such field."""
+    """Return a field of a struct array; NULL where the parent is NULL, and in all rows if the schema lacks the field."""
     if pa.types.is_struct(parent.type) and parent.type.get_field_index(name) >= 0:
         return pc.struct_field(parent, [parent.type.get_field_index(name)])
     return pa.nulls(len(parent))
 
 
 def list_items(rows: pa.Array, name: str) -> tuple[pa.Array, NDArray[np.int64]]:
-    """Return the items of all lists called `name`, and the row that each is in."""
+    """Return the items of the lists in field `name`, and for each item the row that contains it."""
     lists = struct_field(rows, name)
     if not pa.types.is_list(lists.type):
         return pa.nulls(0), np.zeros(0, np.int64)
@@ -183,6 +186,6 @@ def list_items(rows: pa.Array, name: str) -> tuple[pa.Array, NDArray[np.int64]]:
 
 
 def integers(rows: pa.Array, name: str, kind: pa.DataType) -> NDArray[Any]:
-    """Return a field as integers, 0 where it is not there."""
+    """Return a field as integers; 0 if it is missing."""
     values: NDArray[Any] = pc.fill_null(struct_field(rows, name).cast(kind), 0).to_numpy(zero_copy_only=False)
     return values

@@ -1,4 +1,4 @@
-"""This module finds the fields of a protobuf message without decoding their content."""
+"""Finds the fields of a protobuf message without decoding their content."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _MOST_VARINT_BYTES: Final = 10
 
 
 class Field(NamedTuple):
-    """A field: its number, its value if it is an integer (unsigned, 64 bits) else 0, and the bytes of its content."""
+    """A field. `value`: the unsigned 64-bit integer of a varint field, otherwise 0; `start`, `end`: the bytes of the content."""
 
     number: int
     value: int
@@ -23,7 +23,7 @@ class Field(NamedTuple):
 
 
 def fields(data: bytes, start: int = 0, end: int | None = None) -> Iterator[Field]:
-    """Yield the fields of the message in bytes `start` to `end`. Errors: `ValueError` where no field begins."""
+    """Yield the fields of the message in bytes `start` to `end`. Errors: `ValueError` for bytes that are no field."""
     at, stop = start, len(data) if end is None else end
     while at < stop:
         key, at = _varint(data, at, stop)
@@ -47,13 +47,13 @@ def fields(data: bytes, start: int = 0, end: int | None = None) -> Iterator[Fiel
 
 
 def signed(value: int) -> int:
-    """Return the number that an unsigned one of 64 bits stands for in a signed field."""
+    """Return the signed integer with the same 64 bits as an unsigned integer."""
     number: int = struct.unpack("<q", struct.pack("<Q", value))[0]
     return number
 
 
 def _varint(data: bytes, at: int, stop: int) -> tuple[int, int]:
-    """Return the integer in base 128 at a byte, and the byte behind it."""
+    """Return the varint at byte `at`, and the position of the next byte."""
     value = 0
     for shift in range(min(_MOST_VARINT_BYTES, stop - at)):
         byte = data[at + shift]

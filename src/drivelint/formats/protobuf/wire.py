@@ -1,4 +1,4 @@
-"""This module encodes protobuf fields, one at a time or as whole columns."""
+"""Encodes protobuf fields, one at a time or as columns with one row per message."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-VARINT, FIXED64, BYTES = 0, 1, 2  # kinds of fields
+VARINT, FIXED64, BYTES = 0, 1, 2  # protobuf's wire types
 _SMALL: Final = [bytes([value]) for value in range(0x80)]
 _NS: Final = 1_000_000_000
 _PADDED: Final = 5  # bytes of a varint of fixed width: 35 bits, seconds until the year 3058
@@ -16,7 +16,7 @@ Bytes = NDArray[np.uint8]
 
 
 def varint(value: int) -> bytes:
-    """Return a non-negative integer in base 128, least significant group first."""
+    """Return a non-negative integer as protobuf's varint."""
     if value < 0x80:
         return _SMALL[value]
     out = bytearray()
@@ -28,33 +28,33 @@ def varint(value: int) -> bytes:
 
 
 def nested(number: int, content: bytes) -> bytes:
-    """Return a field that holds a message or bytes."""
+    """Return a field with a message or bytes."""
     return tag(number, BYTES) + varint(len(content)) + content
 
 
 def text(number: int, content: str) -> bytes:
-    """Return a field that holds text."""
+    """Return a field with text."""
     return nested(number, content.encode("utf-8", "replace"))
 
 
 def integer(number: int, value: int) -> bytes:
-    """Return a field that holds a non-negative integer, an enumeration or a truth value."""
+    """Return a field with a non-negative integer, an enumeration value or a Boolean."""
     return tag(number, VARINT) + varint(value)
 
 
 def doubles(*values: float, first: int = 1) -> bytes:
-    """Return consecutive fields from number `first` on (all below 16), a double each."""
+    """Return one field of type double per value, with consecutive numbers from `first` on (all below 16)."""
     keyed = [part for number, value in enumerate(values, first) for part in (number << 3 | FIXED64, value)]
     return struct.pack("<" + "Bd" * len(values), *keyed)
 
 
 def time(number: int, t_ns: int) -> bytes:
-    """Return a field that holds a Timestamp or a Duration."""
+    """Return a field with a Timestamp or a Duration."""
     return nested(number, integer(1, t_ns // _NS) + integer(2, t_ns % _NS))
 
 
 def points(number: int, xyz: NDArray[np.float64]) -> bytes:
-    """Return a repeated field of points: `xyz` has a row of three doubles each."""
+    """Return a repeated field of points. `xyz`: shape (n, 3)."""
     head = tag(number, BYTES) + varint(27)
     parts = [part for axis in range(3) for part in (tag(axis + 1, FIXED64), double_column(xyz[:, axis]))]
     return join_columns(len(xyz), head, *parts).tobytes()
@@ -66,18 +66,18 @@ def indices(number: int, values: NDArray[np.uint32]) -> bytes:
 
 
 def double_column(values: NDArray[np.float64]) -> Bytes:
-    """Return the bytes of doubles, a row of eight each."""
+    """Return the bytes of n doubles, with the shape (n, 8)."""
     return np.ascontiguousarray(values, "<f8").view(np.uint8).reshape(len(values), 8)
 
 
 def timestamps(number: int, t_ns: NDArray[np.uint64]) -> Bytes:
-    """Return a field that holds a Timestamp, a row each, all of one width: unused high groups are written as zeros."""
+    """Return Timestamp fields, one per row; all rows have the same length, because their integers are padded with zero groups."""
     parts = [integer_column(1, t_ns // _NS), integer_column(2, t_ns % _NS)]
     return join_columns(len(t_ns), tag(number, BYTES) + varint(2 * (_PADDED + 1)), *parts)
 
 
 def integer_column(number: int, values: NDArray[np.uint64]) -> Bytes:
-    """Return a field that holds an integer below 2^35, a row each, all of one width."""
+    """Return fields with integers below 2^35, one per row; all rows have the same length."""
     shifts = np.arange(_PADDED, dtype=np.uint64) * np.uint64(7)
     groups = ((values[:, None] >> shifts) & np.uint64(0x7F)).astype(np.uint8)
     groups[:, :-1] |= 0x80
@@ -85,7 +85,7 @@ def integer_column(number: int, values: NDArray[np.uint64]) -> Bytes:
 
 
 def join_columns(n: int, *parts: bytes | Bytes) -> Bytes:
-    """Join the parts row by row; plain bytes are repeated in every row."""
+    """Return the parts joined row by row; parts of type `bytes` are repeated in all n rows."""
     widths = [len(part) if isinstance(part, bytes) else part.shape[1] for part in parts]
     out = np.empty((n, sum(widths)), np.uint8)
     at = 0
@@ -96,5 +96,5 @@ def join_columns(n: int, *parts: bytes | Bytes) -> Bytes:
 
 
 def tag(number: int, kind: int) -> bytes:
-    """Return the tag of a field: its number and kind."""
+    """Return the tag of a field with its number and wire type."""
     return varint(number << 3 | kind)

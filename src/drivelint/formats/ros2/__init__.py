@@ -1,1 +1,1 @@
-"""ROS 2 messages in MCAP."""
+"""Reads ROS 2 messages in MCAP files."""

@@ -1,9 +1,9 @@
-"""CDR messages (ROS 2) to columns: a batch of messages is read in step, each by a cursor of its own.
+"""Decodes batches of CDR messages (ROS 2) to columns.
 
-A message definition is compiled into a few steps; numpy takes every step for all messages at once, and within a sequence for its first
-items, then its second ones, and so on. So strings and sequences may be of any length, and no message is read by itself. The steps only
-find the place of each value; the kept values are then read for all items at once. Rules of alignment: CDR of the OMG (XCDR1), positions
-counted behind the four bytes of the header.
+A message definition is compiled into a few steps. numpy runs each step for all messages of a batch at once, with one cursor per message;
+within a sequence, first for the first items, then for the second items, and so on. So strings and sequences may have any length. The steps
+only find the place of each value; then the wanted values are read for all items at once. Alignment follows OMG's CDR (XCDR1), with
+positions counted from the end of the four-byte header.
 """
 
 from __future__ import annotations
@@ -42,22 +42,22 @@ T = TypeVar("T")
 
 HEADER_BYTES = 4
 BYTE_ORDERS: Final = {0: ">", 1: "<"}
-"""Second byte of the header -> byte order; others are encodings that ROS 2 recorders do not write."""
+"""Second byte of the header -> numpy's sign for the byte order. Other values mean encodings that ROS 2 recorders do not write."""
 MAX_KEPT_NUMBERS = 3
-"""How many numbers of a sequence are kept: a box has three dimensions."""
+"""Only this many numbers of a sequence are read: a box has three dimensions."""
 _MAX_ALIGN = 8
 _PADS: Final = [b"\0" * n for n in range(_MAX_ALIGN)]
 _TEXT = "S1"
 _SIZES: Final = {name: int(code[1]) for name, code in NUMPY_CODES.items()} | dict.fromkeys(TEXT_TYPES, 0)
-"""Type of a member that is no message -> its bytes; 0: not always the same."""
+"""Primitive or text type -> its size in bytes; 0: variable."""
 
 
 @dataclass
 class Table:
-    """Members of all messages, or of all items of a sequence, as columns.
+    """The members of all messages, or of all items of a sequence, as columns.
 
-    `columns`: member path, joined by dots -> values, one row per item; of an array of numbers, one row of them. Texts are
-    bytes. `parent`: each item's row in the table above it. `children`: path of a sequence -> its items.
+    `columns`: member path, joined by dots -> values, one row per message or item; for an array of numbers, a 2-D array. Texts are
+    bytes. `parent`: for each item, the row that contains it in the parent table. `children`: path of a sequence -> the table of its items.
     """
 
     n: int
@@ -65,14 +65,14 @@ class Table:
     parent: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, np.intp))
     children: dict[str, Table] = field(default_factory=dict)
     where: str = ""
-    """The file and the definition, as errors name them."""
+    """File and message definition, for errors."""
 
     def column(self, path: str) -> NDArray[Any]:
-        """Return a column that must be there. Errors: `TraceError` where the definition does not have it."""
+        """Return the column of a member. Errors: `TraceError` if the definition does not have the member."""
         return self._has(self.columns, path)
 
     def items(self, path: str) -> Table:
-        """Return a sequence that must be there. Errors: `TraceError` where the definition does not have it."""
+        """Return the items of a sequence. Errors: `TraceError` if the definition does not have the sequence."""
         return self._has(self.children, path)
 
     def _has(self, members: dict[str, T], path: str) -> T:
@@ -90,7 +90,7 @@ class _Align:
 
 @dataclass
 class _Block:
-    """Bytes of a known number, and what to keep of them: (path, numpy code, offset, how many or None for one)."""
+    """A step over `size` bytes. `keep`: the values to read in them, as (path, numpy code, offset, count; None: a scalar)."""
 
     size: int = 0
     keep: list[tuple[str, str, int, int | None]] = field(default_factory=list)
@@ -98,7 +98,10 @@ class _Block:
 
 @dataclass(frozen=True)
 class _Numbers:
-    """A sequence of primitives, `per_item` of them to an item; kept are the first `MAX_KEPT_NUMBERS`, NaN where fewer, or a text."""
+    """A step over a text, or a sequence whose items have `per_item` primitives each.
+
+    `keep`: the path under which the text or the first `MAX_KEPT_NUMBERS` numbers (NaN if there are fewer) are stored; None: not stored.
+    """
 
     code: str
     per_item: int
@@ -106,7 +109,7 @@ class _Numbers:
 
     @property
     def size(self) -> int:
-        """Bytes of a primitive."""
+        """The bytes of one primitive."""
         return int(self.code[1])
 
 
@@ -118,7 +121,7 @@ class _Items:
 
 @dataclass
 class _Walk:
-    """Where steps stand, by the number of the step: of n messages or items, where what is kept begins and how much there is."""
+    """The places of values in n messages or items: for each step by its index, the first byte (`start`) and the item count (`length`)."""
 
     n: int
     parent: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, np.intp))
@@ -128,7 +131,7 @@ class _Walk:
 
 
 class _Compiler:
-    """Turns a type into steps, offsets fixed wherever the alignment is known: the cursor is `rest` modulo `modulus`."""
+    """Compiles a message type to steps, with fixed offsets wherever the alignment is known: the cursor is `rest` modulo `modulus`."""
 
     def __init__(self, types: Types) -> None:
         self._types = types
@@ -187,7 +190,7 @@ class _Compiler:
             self._then(_Items(keep, _Compiler(self._types).program(kind, subtree)))
 
     def _sizes(self, kind: str) -> list[int]:
-        """Return the sizes of all primitives of a type, 0 for texts and sequences."""
+        """Return the sizes in bytes of all members of a type, with nested messages expanded; 0 for texts and sequences."""
         sizes: list[int] = [] if self._types[kind] else [1]  # an empty message is sent as one byte
         for member in self._types[kind]:
             if member.count == SEQUENCE:
@@ -198,7 +201,7 @@ class _Compiler:
         return sizes
 
     def _then(self, step: Any) -> None:
-        """Add a step behind which nothing is known of the alignment."""
+        """Add a step of variable length, after which the alignment is unknown."""
         self._steps.append(step)
         self._modulus, self._rest = 1, 0
 
@@ -207,19 +210,19 @@ class Decoder:
     """Decodes messages of one type."""
 
     def __init__(self, path: Path, schema: Schema, tree: FieldTree) -> None:
-        """Compile the definition; of `tree` is kept what the definition has. Errors: `TraceError` where it is not understood."""
+        """Compile a message definition, to read those fields of `tree` that it has. Errors: `TraceError` for invalid definitions."""
         self._path, self._name = path, schema.name
         types = parse(path, schema.name, schema.data)
         self.constants = whole_number_constants(path, schema.name, schema.data)
         self._program = _Compiler(types).program(short_type_name(schema.name), tree)
 
     def table(self, packets: Sequence[Packet]) -> Table:
-        """Decode a batch. Errors: `TraceError` naming topic and byte of the first message that does not fit its definition."""
+        """Decode a batch of messages. Errors: `TraceError` with topic and byte of the first message that does not fit the definition."""
         return _Batch(self._path, self._name, packets).table(self._program)
 
 
 class _Batch:
-    """Messages in one buffer, each beginning at a multiple of eight bytes, so that every number lies where numpy wants it."""
+    """Messages in one buffer. Each body begins at a multiple of eight bytes, so that numpy can read every number as aligned."""
 
     def __init__(self, path: Path, name: str, packets: Sequence[Packet]) -> None:
         self._path, self._name, self._packets = path, name, packets
@@ -232,7 +235,7 @@ class _Batch:
             odd = next(i for i, head in enumerate(heads) if head in wrong)
             header = packets[odd].data[:4].hex()
             raise self._misfit(odd, f"is encoded otherwise than plain CDR like the others (header {header})")
-        # four bytes before the first header bring its body, and so every other one, to a multiple of eight
+        # with four bytes before the first header, every message body begins at a multiple of eight bytes
         padded = -(-(sizes + HEADER_BYTES) // _MAX_ALIGN) * _MAX_ALIGN
         self._start = np.cumsum(padded) - padded + 2 * HEADER_BYTES
         self._end = self._start + sizes
@@ -255,9 +258,10 @@ class _Batch:
         return self._read(program, walk)
 
     def _run(self, program: list[Any], cursor: Offsets, message: Rows) -> tuple[Offsets, _Walk]:
-        """Take the steps from each cursor on (owned, changed in place); `message`: the message each is in.
+        """Run the steps from each cursor on, and return the moved cursors and the places of values.
 
-        A cursor may leave its message until the next length is read there, or the message ends: nothing else is read on the way.
+        `cursor` is changed in place; `message`: the message of each cursor. A cursor that leaves its message is only noticed
+        at the next length field, or at the message's end; no other value is read before.
         """
         walk = _Walk(len(cursor))
         end = self._end[message]
@@ -282,7 +286,7 @@ class _Batch:
         return cursor, walk
 
     def _items(self, step: _Items, cursor: Offsets, end: Offsets, message: Rows) -> list[_Walk]:
-        """Walk through the first items of all sequences, then through the second ones, and so on, and return these walks."""
+        """Run the steps of an item for the first items of all sequences, then for the second items, and so on; return these walks."""
         length = self._length(cursor, end, message, 1)
         parts: list[_Walk] = []
         for k in range(int(length.max(initial=0))):
@@ -291,11 +295,11 @@ class _Batch:
             cursor[active] = after
             part.parent = active
             parts.append(part)
-        # of no items at all, an empty table has the columns
+        # without items, an empty walk still yields a table with all columns
         return parts or [self._run(step.program, cursor[:0].copy(), message[:0])[1]]
 
     def _read(self, program: list[Any], walk: _Walk) -> Table:
-        """Read the kept fields, at the places that a walk found."""
+        """Return the table of the wanted fields, read at the places in `walk`."""
         table = Table(walk.n, parent=walk.parent, where=f"{self._path}: the definition of {self._name}")
         for i, step in enumerate(program):
             if isinstance(step, _Block):
@@ -321,7 +325,7 @@ class _Batch:
         return view[index] if count is None else view[index[:, None] + np.arange(count)]
 
     def _length(self, cursor: Offsets, end: Offsets, message: Rows, item_bytes: int) -> Offsets:
-        """Read a length, move on behind it, and check that so many items can follow (an item has a byte at least)."""
+        """Return the length field at each cursor, move the cursors past it, and check that the items fit into the message."""
         cursor += -cursor & 3
         self._check(cursor + 4, end, message)
         length = self._values_at("u4", cursor, None).astype(np.int64)
@@ -330,7 +334,7 @@ class _Batch:
         return length
 
     def _texts(self, start: Offsets, length: Offsets) -> NDArray[Any]:
-        """Return texts as fixed-width bytes; numpy drops the zero at their ends."""
+        """Return texts as fixed-width bytes; numpy drops the zero byte that ends each text."""
         width = max(int(length.max(initial=0)), 1)
         place = np.arange(width)
         index = np.minimum(start[:, None] + place, len(self._bytes) - 1)
@@ -347,9 +351,9 @@ class _Batch:
 
 
 def _stacked(parts: list[_Walk], offsets: Sequence[int], place: NDArray[np.intp]) -> _Walk:
-    """Put the first, second, ... items of all sequences, with their content, into the order of their sequences.
+    """Join the walks of the first items, the second items, and so on, and sort the items by the sequence that contains them.
 
-    `offsets`: how many rows above belong to earlier parts; `place`: where each row above has gone.
+    `offsets`: for each part, the number of parent rows in earlier parts; `place`: the new row of each parent row.
     """
     parent = place[np.concatenate([part.parent + offset for part, offset in zip(parts, offsets, strict=False)])]
     order = np.argsort(parent, kind="stable")

@@ -1,4 +1,4 @@
-"""The messages of ROS 2 about the ego and its surroundings: odometry, transforms, its lights, whether the system drives."""
+"""Converts ROS 2 messages about the ego: odometry, transforms, reports of its lights, and whether the automated system drives."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from drivelint.formats.ros2.cdr import Table
 
 STALE_NS: Final = 1_000_000_000
-"""A report of lights holds for no longer than this: vehicles report them ten times a second or more."""
+"""A report of lights is valid for at most this time: vehicles send ten or more per second."""
 _AUTONOMOUS = 1
 _HAZARD_ON = 2
 _OFF, _HAZARD = INDICATORS.index("off"), INDICATORS.index("hazard")
@@ -29,10 +29,10 @@ _INDICATOR: Final = {1: _OFF, 2: INDICATORS.index("left"), 3: INDICATORS.index("
 
 
 def odometry(table: Table, log_ns: Times, box: VehicleBox | None, option_ahead_m: float) -> RecordedPoses:
-    """Return the poses of an odometry as rows of one actor without a name, at the centre of its box.
+    """Return the poses of odometry messages as rows of one actor, moved to the centre of its box.
 
-    `box`: the vehicle's, around the frame `AXLE_FRAME`; `option_ahead_m`: its centre lies so far ahead of any other frame. Twist is in
-    the child frame, as the message says; in the header's where that is what the child frame is called.
+    `box`: the vehicle's box relative to `AXLE_FRAME`; `option_ahead_m`: the distance of the centre ahead of any other child frame.
+    Twist is in the child frame, as the message's definition says; if no child frame is named, in the header's frame.
     """
     n = table.n
     frames = table.column("header.frame_id")
@@ -63,7 +63,7 @@ def odometry(table: Table, log_ns: Times, box: VehicleBox | None, option_ahead_m
 
 
 def add_transforms(frames: TransformTree, table: Table, log_ns: Times, *, static: bool, own_times: bool) -> None:
-    """Add the transforms of TFMessages, in the order of the log."""
+    """Add the transforms of TFMessages to `frames`. `own_times`: with the messages' stamps, otherwise with log times."""
     items = table.items("transforms")
     if not items.n:
         return
@@ -85,15 +85,15 @@ def add_transforms(frames: TransformTree, table: Table, log_ns: Times, *, static
 
 
 def indicators(t_ns: Times, reports: dict[str, tuple[Times, NDArray[Any]]]) -> Codes:
-    """Return the ego's indicator at given times, by the last reports no older than `STALE_NS`; -1 where not known.
+    """Return the ego's indicator at the given times, from the last reports of at most `STALE_NS` before; -1 if unknown.
 
-    Hazard lights count before a side; a hazard report alone does not show that no side is on.
+    Hazard lights take precedence over left and right. A report of hazard lights alone does not show that both indicators are off.
     """
     side, hazard = (_last(t_ns, reports.get(name)) for name in (TURN_INDICATORS, HAZARD_LIGHTS))
     result = np.full(len(t_ns), -1, np.int8)
     for number, code in _INDICATOR.items():
         result[side == number] = code
-    if HAZARD_LIGHTS in reports:  # a vehicle that reports hazard lights may have them on while no report is there
+    if HAZARD_LIGHTS in reports:  # without a recent report, the hazard lights may be on
         result[hazard < 0] = -1
     result[hazard == _HAZARD_ON] = _HAZARD
     return result
@@ -110,9 +110,9 @@ def _last(t_ns: Times, reports: tuple[Times, NDArray[Any]] | None) -> Times:
 
 
 def engagement(reports: dict[str, tuple[Times, NDArray[Any]]], ego: str) -> pa.Table | None:
-    """Return whether the system drives, as declared events `engaged` on and off, where it changes; None if it is not known.
+    """Return events `engaged` (on or off) at the first report and whenever the automated system starts or stops driving; None: no reports.
 
-    The report of the vehicle takes precedence over the command to it. Only full automation is engaged.
+    The vehicle's report takes precedence over the command to the vehicle. Only full automation is `engaged`.
     """
     if CONTROL_MODE in reports:
         t_ns, on = reports[CONTROL_MODE][0], reports[CONTROL_MODE][1] == _AUTONOMOUS

@@ -34,17 +34,17 @@ if TYPE_CHECKING:
 LIGHTS: Final = (LIGHT_GROUPS, OLD_LIGHT_GROUPS)
 _CARLA = "carla_msgs/"
 Topics = dict[str, list[Any]]
-"""Topic -> the content of each batch of its messages."""
+"""Topic -> the decoded content of each batch of its messages."""
 
 
 class Log:
-    """What a drive's messages hold. `requested_topics`: the topics that the user chose."""
+    """The decoded messages of a drive. `requested_topics`: the topics that the user chose."""
 
     def __init__(self, path: Path, requested_topics: list[str]) -> None:
         self.path = path
         self.requested_topics = requested_topics
-        self.topics: dict[str, Topics] = {}  # by the type of their messages
-        self.detections: dict[str, int] = {}  # topic of detections without ids -> messages
+        self.topics: dict[str, Topics] = {}  # by message type
+        self.detections: dict[str, int] = {}  # topic of detections without ids -> number of messages
         self.findings: list[QualityFinding] = []
         self.notes: list[str] = []
         self.lost_times: list[LostTime] = []
@@ -53,7 +53,7 @@ class Log:
         self._times: dict[str, list[tuple[Times, Mask, Times]]] = {}
 
     def read(self, files: Iterable[Path]) -> None:
-        """Read the files of a drive. Errors: `TraceError` for damage and for definitions that cannot be read."""
+        """Read the files of a drive. Errors: `TraceError` for damaged files and invalid message definitions."""
         parts: list[Container] = []
         for file in files:
             container = Container(file, salvage=True)
@@ -76,7 +76,7 @@ class Log:
         self.lost_times = times_of_parts([(part.path, part.losses) for part in parts])
 
     def _kind(self, path: Path, decoders: dict[int, Decoder], channel: Channel, schema: Schema) -> str | None:
-        """Return the type of ROS messages that are read on a channel, its decoder made; None for any other."""
+        """Return the message type of a channel, and add its decoder to `decoders`; None for a channel that is not read."""
         kind = message_kind(schema.name)
         if kind == DETECTED:
             self.detections[channel.topic] = self.detections.get(channel.topic, 0) + 1
@@ -84,7 +84,7 @@ class Log:
         if kind not in MESSAGES:
             return None
         if MESSAGES[kind].role == EGO_SIZE and (channel.message_encoding, schema.encoding) != ("cdr", "ros2msg"):
-            return None  # the drive is whole without it: its size is not known then
+            return None  # without these messages only the ego's size is unknown, so nothing is reported
         if channel.message_encoding != "cdr":
             if kind not in OBJECT_ROWS or not self.requested_topics or channel.topic in self.requested_topics:
                 self.unread.add(channel, kind)
@@ -99,7 +99,7 @@ class Log:
         return kind
 
     def refuse_unknown_topics(self) -> None:
-        """Refuse chosen topics that are not read. Errors: `TraceError`."""
+        """Raise `TraceError` if a topic that the user chose is not read."""
         read_topics = {topic for topics in self.topics.values() for topic in topics}
         for topic in self.requested_topics:
             if topic in self.detections:
@@ -113,28 +113,31 @@ class Log:
                 )
 
     def frames(self, topics: Iterable[str], *, own_times: bool) -> Times:
-        """Return the times of the messages of some topics of poses, including messages without objects."""
+        """Return the times of all messages on the given topics of road users or odometry, including messages without objects.
+
+        `own_times`: the messages' stamps, otherwise log times.
+        """
         parts = [part for topic in topics for part in self._times.get(topic, ())]
         times = [stamp_ns[stamped & (stamp_ns != 0)] if own_times else log_ns for stamp_ns, stamped, log_ns in parts]
         return np.concatenate([np.zeros(0, np.int64), *times])
 
     def silences(self, objects: Iterable[str], odometry: Iterable[str]) -> Iterator[LostTime]:
-        """Yield the times in which a topic of road users is silent that also sends messages without objects."""
+        """Yield the times in which a topic of road users has no messages, if its sender also sends messages without objects."""
         steady = {topic for kind in SENT_WHERE_NOBODY_IS for topic in self.topics.get(kind, ())}
         for topic in sorted(steady.intersection(objects)):
             sent_ns, own_ns = (self.frames(topics, own_times=False) for topics in ([topic], odometry))
             yield from silences(topic, sent_ns, own_ns)
 
     def parts(self, kind: str) -> Iterator[tuple[str, Any]]:
-        """Yield topic and batch of the messages of a kind, by topic."""
+        """Yield topic and batch content of the messages of a type, sorted by topic."""
         for topic, parts in sorted(self.topics.get(kind, {}).items()):
             yield from ((topic, part) for part in parts)
 
     def select_topic(self, kinds: Iterable[str], content: str) -> Topics:
-        """Return the one topic with messages of some kinds, if any; a note names those that are left out.
+        """Return the one topic with messages of `kinds`, or none; a note lists the topics that are left out.
 
-        Of several, what was chosen counts, then the usual topic of its type; predictions count before tracks, which have the same
-        bodies. Errors: `TraceError` where more than one is left.
+        Of several topics, the user's choice wins, then the usual topic of the type. Predictions win over tracks of the same objects.
+        Errors: `TraceError` if several topics remain.
         """
         of_kind = {kind: self.topics[kind] for kind in kinds if kind in self.topics}
         candidates = {topic: parts for topics in of_kind.values() for topic, parts in topics.items()}
@@ -152,7 +155,7 @@ class Log:
 
 
 def _part(kind: str, decoder: Decoder, table: Table, log_ns: Times) -> Any:
-    """Return the kept part of a batch: for road users and lights their rows, for others their fields and times."""
+    """Return the content of a batch: rows for road users, group states for traffic lights, otherwise fields and log times."""
     if kind in LIGHTS:
         return traffic_lights.group_states(table, log_ns, decoder.constants)
     if kind not in OBJECT_ROWS:
@@ -163,7 +166,7 @@ def _part(kind: str, decoder: Decoder, table: Table, log_ns: Times) -> Any:
 
 
 def _usual(of_kind: dict[str, Topics]) -> str | None:
-    """Return the topic that counts by default: the only one of its type, or the usual one; None if there is no such topic."""
+    """Return the topic to read by default: the only topic of its type, or the type's usual topic; None if it is not clear."""
     bodies = len(of_kind.keys() & set(SAME_BODIES))
     if len(of_kind) > max(bodies, 1):
         return None

@@ -1,4 +1,4 @@
-"""One actor for the ego, whether a ROS log has it as odometry, among the objects, or as both."""
+"""Merges the ego's odometry and the ego among the objects of a ROS log into one actor."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 FORMAT = "ros2-mcap"
 DEFAULT_EGO_ID = "ego"
-"""The id of the odometry's vehicle if no message has one."""
+"""The id of the vehicle with the odometry, if no message gives its id."""
 
 
 def merge_ego(
@@ -27,10 +27,10 @@ def merge_ego(
     carla: bool,
     is_centre: bool,
 ) -> Recording:
-    """Merge the objects and the odometry, each with its topic, into one recording with one track of the ego.
+    """Merge objects and odometry, each given with its topic, into one recording with one track of the ego.
 
-    `infos`: topic of the CARLA bridge's ego info -> the id of the ego; `carla`: the objects are the bridge's; `is_centre`: the
-    odometry's places are known to be those of the centre of the ego's box.
+    `infos`: topic of the CARLA bridge's ego info -> the ego's id; `carla`: whether the objects come from the CARLA bridge;
+    `is_centre`: whether the odometry's positions are known to be box centres.
     """
     names = _carla_ego_ids(infos, odometry)
     if carla and objects is not None:
@@ -60,7 +60,7 @@ def merge_ego(
 
 
 def _with_one_ego_track(ego: States, object_states: States, topic: str, findings: list[QualityFinding]) -> Recording:
-    """Keep of the ego's two tracks the one with more states, in the log's own order, and the size that is known."""
+    """Return a recording with the longer of the ego's two tracks. If it is the odometry's, size and class come from the objects."""
     (name,) = ego.ids
     twin = object_states.actor == object_states.ids.index(name)
     n = int(twin.sum())
@@ -83,7 +83,7 @@ def _with_one_ego_track(ego: States, object_states: States, topic: str, findings
 
 
 def concatenate_states(first: States, second: States) -> States:
-    """Return the rows of two sets of states; an actor of both is one actor."""
+    """Return the rows of both sets of states; actors with the same id become one actor."""
     ids = list(dict.fromkeys([*first.ids, *second.ids]))
     place = {name: i for i, name in enumerate(ids)}
     moved = np.array([place[name] for name in second.ids], np.int32)
@@ -97,7 +97,7 @@ def _free_id(name: str, ids: list[str]) -> str:
 
 
 def _carla_ego_ids(ego_by_topic: Mapping[str, str], odometry: tuple[str, States] | None) -> list[str]:
-    """Return the ids that the CARLA bridge gives its egos; of several, that of the odometry's vehicle."""
+    """Return the ids of the CARLA bridge's egos; of several ids, those from a topic beside the odometry's."""
     if odometry is not None and len(set(ego_by_topic.values())) > 1:
         beside = odometry[0].rpartition("/")[0]
         ego_by_topic = {topic: name for topic, name in ego_by_topic.items() if topic.rpartition("/")[0] == beside}
@@ -105,7 +105,7 @@ def _carla_ego_ids(ego_by_topic: Mapping[str, str], odometry: tuple[str, States]
 
 
 def _carla_origins(topic: str, states: States, findings: list[QualityFinding]) -> None:
-    """Report the meaning of CARLA's origins, and lift those of vehicles from the ground to the middle of the box."""
+    """Add a finding on CARLA's reference points, and lift vehicles' positions from the ground to the box centre."""
     walks = states.codes["actor_class"] == ACTOR_CLASSES.index("pedestrian")
     lift = np.where(walks, 0.0, np.nan_to_num(0.5 * states.numbers["height_m"]))
     states.numbers["z_m"] = states.numbers["z_m"] + lift

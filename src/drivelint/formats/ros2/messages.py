@@ -1,6 +1,6 @@
-"""The messages of ROS 2 that are read: their roles, usual topics and fields that are read.
+"""The ROS 2 messages that are read, with their roles, usual topics and the fields that are read.
 
-The guide to traces lists them; a test compares its table with this one.
+The guide on traces lists them, and a test compares the two lists.
 """
 
 from __future__ import annotations
@@ -41,11 +41,11 @@ _HYPOTHESIS: Final[FieldTree] = {"class_id": None, "score": None}
 VEHICLE_LENGTHS: Final = (
     "wheel_base", "front_overhang", "rear_overhang", "wheel_tread", "left_overhang", "right_overhang",
 )  # fmt: skip
-"""Parameters of Autoware's `vehicle_info`, all in metres, that give a vehicle's box around its rear axle."""
+"""The parameters of Autoware's `vehicle_info`, in metres, that state a vehicle's box relative to its rear axle."""
 
 
 class MessageType(NamedTuple):
-    """What is read of a message type: `role` is what `inspect` calls it, `topic` the usual one."""
+    """A message type that is read. `role`: the word for it in the output of `inspect`; `topic`: its usual topic."""
 
     role: str
     topic: str
@@ -53,7 +53,7 @@ class MessageType(NamedTuple):
 
 
 def _autoware_objects(prefix: str, **kinematics: FieldTree | None) -> FieldTree:
-    """Return the fields of Autoware's road users; those of the kinematics begin with `prefix`."""
+    """Return the fields of Autoware's road users; names of kinematic fields begin with `prefix`."""
     return {
         "header": HEADER,
         "objects": {
@@ -147,4 +147,4 @@ MESSAGES: Final[dict[str, MessageType]] = {
     EGO_INFO: MessageType("ego", "/carla/<role name>/vehicle_info", {"id": None, "rolename": None}),
     WORLD_INFO: MessageType("map", "/carla/world_info", {"map_name": None, "opendrive": None}),
 }  # fmt: skip
-"""Message type, as `message_kind` names it -> the fields that are read."""
+"""Message type, as `message_kind` returns it -> its role, usual topic and fields."""

@@ -1,7 +1,7 @@
-"""The messages of ROS 2 that list other road users, each read into the same rows.
+"""Converts the ROS 2 messages that list other road users to `RecordedPoses`.
 
 Definitions: astuff_sensor_msgs/derived_object_msgs (as the CARLA bridge fills them), autoware_msgs/autoware_perception_msgs,
-ros-perception/vision_msgs (before and after its version 4).
+ros-perception/vision_msgs (before version 4 and since).
 """
 
 from __future__ import annotations
@@ -48,13 +48,16 @@ _WORDS: Final = {
 
 
 def class_code(word: str) -> int:
-    """Return our class code of a word such as `Car`, `vehicle.car` or `PERSON`; -1 for one that is not known."""
+    """Return the index in `ACTOR_CLASSES` of a word such as `Car`, `vehicle.car` or `PERSON`; -1 if the word is unknown."""
     known = _WORDS.get(word.strip().lower().replace("/", ".").rsplit(".", 1)[-1])
     return _UNKNOWN if known is None else ACTOR_CLASSES.index(known)
 
 
 def stamps(table: Table, path: str) -> tuple[Times, Mask]:
-    """Return a time in nanoseconds, from seconds and nanoseconds or one number of seconds, and whether there is one."""
+    """Return times in nanoseconds, and for each row whether it has a time.
+
+    The definition may have seconds and nanoseconds, or one number of seconds.
+    """
     columns = table.columns
     whole = columns.get(f"{path}.sec", columns.get(path))
     if whole is None:
@@ -68,7 +71,7 @@ def stamps(table: Table, path: str) -> tuple[Times, Mask]:
 
 
 def vectors(table: Table, path: str, axes: str = "xyz") -> Vectors:
-    """Return the coordinates of a vector as columns; NaN for those that the definition does not have."""
+    """Return vectors with one column per axis; NaN for axes that the definition does not have."""
     missing = np.full(table.n, np.nan)
     return np.stack(
         [
@@ -80,7 +83,10 @@ def vectors(table: Table, path: str, axes: str = "xyz") -> Vectors:
 
 
 def _rows(top: Table, items: Table, ids: NDArray[Any], frame: str | None, pose: str) -> RecordedPoses:
-    """Fill in what all kinds have alike: times and frames of the message, unless an item says its own frame, and poses."""
+    """Return rows with the columns that all message types share: times, ids, frames and poses.
+
+    `frame`: the path of an item's own frame, which takes precedence over the message's frame.
+    """
     stamp_ns, stamped = stamps(top, "header.stamp")
     frames = top.columns.get("header.frame_id", np.zeros(top.n, "S1"))[items.parent]
     own = items.columns.get(frame) if frame is not None else None
@@ -107,8 +113,8 @@ def _derived(top: Table) -> RecordedPoses:
 def _autoware(top: Table, prefix: str = "") -> RecordedPoses:
     """Return Autoware's road users.
 
-    Twist and acceleration are along the body's own axes: so multi_object_tracker writes them, and planners read them. The paths of a
-    prediction are no states. A detection has no id, so it belongs to no track, and its messages are not read.
+    Twist and acceleration are along the object's own axes, as multi_object_tracker writes and planners read them. Predicted paths
+    are not read, as they are no states.
     """
     items = top.items("objects")
     ids = np.ascontiguousarray(items.column("object_id.uuid")).view("V16").reshape(-1)
@@ -127,7 +133,10 @@ def _autoware(top: Table, prefix: str = "") -> RecordedPoses:
 
 
 def _fit_boxes(rows: RecordedPoses, items: Table) -> None:
-    """Give Autoware's cylinders and polygons their boxes, in place: that of a polygon lies around its footprint, along the body's axes."""
+    """Set size and place of Autoware's cylinders and polygons to those of a box, in place.
+
+    The box of a polygon encloses its footprint, along the object's axes.
+    """
     form = items.columns.get("shape.type", np.zeros(items.n, np.uint8))
     rows.outlined = form == _POLYGON
     rows.size[:, 1] = np.where(form == _ROUND, rows.size[:, 0], rows.size[:, 1])  # both are the diameter
@@ -146,7 +155,7 @@ def _fit_boxes(rows: RecordedPoses, items: Table) -> None:
     shift = rotated(unit_quaternions(rows.turn[polygon_rows]), middle)
     rows.place[polygon_rows] += np.where(
         np.isfinite(shift), shift, 0.0
-    )  # a body without any orientation stays where it is
+    )  # an object without an orientation keeps its place
 
 
 def _detections(top: Table) -> RecordedPoses:
@@ -164,7 +173,7 @@ def _detections(top: Table) -> RecordedPoses:
 
 
 def _likeliest(items: Table, path: str, label: str, score: str, default: Any) -> NDArray[Any]:
-    """Return, per item, the label with the highest score of those listed in it, the first of equals; `default` for none."""
+    """Return for each item the label with the highest score, of equal scores the first; `default` for an item without labels."""
     listed = items.items(path)
     labels = listed.column(label)
     result = np.full(items.n, default, labels.dtype)
@@ -186,7 +195,7 @@ OBJECT_ROWS: Final[dict[str, Callable[[Table], RecordedPoses]]] = {
     CARLA_OBJECTS: _derived,
     VISION: _detections,
 }
-"""Message type -> the function that makes rows of it; `log_ns` of each row is its message."""
+"""Message type -> the function that converts its messages to rows. `log_ns` of a row is at first the index of its message."""
 SAME_BODIES: Final = (PREDICTED, TRACKED)
-"""Message types with which one perception gives the same bodies, the one to take first: a prediction's headings are turned the way
-that a body moves, which a tracker leaves open."""
+"""Message types in which one perception system sends the same objects, the preferred type first: predictions have headings in the
+direction of motion, while those of tracks may be reversed."""

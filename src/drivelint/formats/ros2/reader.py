@@ -1,8 +1,8 @@
-"""ROS 2 logs in MCAP: road users, odometry, transforms and the rest, each found by its schema's name, never by its topic.
+"""Reads ROS 2 logs in MCAP. Messages are recognised by the names of their schemas, not by topics.
 
-Places are the centres of the boxes: of Autoware's tracks and of vision's detections by their definition, of the CARLA bridge's objects by
-assumption (see `merge`). The odometry's place is that of its child frame, `--ego-size` states how far ahead of it the centre of the ego's
-box lies, as from the rear axle. Shapes have their origin in that place.
+Positions are box centres: of Autoware's tracks and of vision_msgs' detections by their definition, of the CARLA bridge's objects by
+assumption (see `merge`). The odometry gives the position of its child frame; `--ego-size` states how far ahead of that frame, for example
+of the rear axle, the centre of the ego's box lies.
 """
 
 from __future__ import annotations
@@ -60,15 +60,15 @@ if TYPE_CHECKING:
     from drivelint.formats.ros2.vehicle import VehicleBox
 
 STATIC_TOPIC_SUFFIX = "tf_static"
-"""What the topic of transforms that always hold ends with: nothing in the messages says it."""
+"""The end of the topic name of static transforms; the messages themselves do not show that they are static."""
 TOPICS_APART_NS = 1_000_000_000
-"""A recorder finds one topic after the other: one may begin, and end, a second before the other."""
+"""A recorder subscribes to topics one after another, so their recordings may begin and end a second apart."""
 _REPORTS = {TURN_INDICATORS: "report", HAZARD_LIGHTS: "report", CONTROL_MODE: "mode", ENGAGE: "engage"}
-"""Reports of the ego -> the field that says it."""
+"""Message type of a report about the ego -> the field with its value."""
 
 
 def read(path: Path, options: IngestOptions) -> Recording:
-    """Read a file or a bag. Errors: `TraceError` for damage, for nothing that can be judged, for topics to choose from."""
+    """Read a file or a bag. Errors: `TraceError` if it is damaged, has no usable poses, or has several topics without a choice."""
     requested_topics = [] if options.topic is None else [part.strip() for part in options.topic.split(",")]
     log = Log(path, requested_topics)
     log.read(bag.mcap_files(path))
@@ -107,7 +107,7 @@ def read(path: Path, options: IngestOptions) -> Recording:
         next(((topic, states[topic]) for topic in source if len(states[topic])), None) for source in (objects, odometry)
     )
     carla = log.carla and not objects.keys().isdisjoint(log.topics.get(CARLA_OBJECTS, ()))
-    # the id of the ego that each topic of the CARLA bridge's ego info gives last
+    # topic of the CARLA bridge's ego info -> the ego's id in its last message
     infos = {topic: str(number) for topic, (table, _) in log.parts(EGO_INFO) for number in table.column("id").tolist()}
     recording = merge_ego(object_states, odometry_states, infos, findings, carla=carla, is_centre=is_centre)
     reports = _reports(log, own_times=own_times)
@@ -133,7 +133,7 @@ def read(path: Path, options: IngestOptions) -> Recording:
 
 
 def _maps(log: Log) -> dict[bytes, str]:
-    """Return each OpenDRIVE map of a log and the topic on which it was first."""
+    """Return the distinct OpenDRIVE maps of a log, each with the first topic that has it."""
     maps: dict[bytes, str] = {}
     for topic, (table, _) in log.parts(WORLD_INFO):
         for text in filter(bytes.strip, table.column("opendrive").tolist()):
@@ -142,9 +142,9 @@ def _maps(log: Log) -> dict[bytes, str]:
 
 
 def _ego_rows(log: Log, odometry: Topics, option: EgoSize | None) -> tuple[dict[str, RecordedPoses], bool]:
-    """Return the ego's states by their topic, and whether they are known to be those of the centre of its box.
+    """Return the ego's rows by topic, and whether their positions are known to be box centres.
 
-    The box is the vehicle's where the log has it, in the axle's frame; else the centre lies where the option says.
+    In the axle's frame, the log's own vehicle box gives the centre, if there is one; otherwise `option` does.
     """
     box, found = vehicle_box(
         (table for _, (table, _) in log.parts(PARAMETERS)),
@@ -173,7 +173,7 @@ def _other_centre(box: VehicleBox, ahead_m: float) -> list[QualityFinding]:
 
 
 def _no_road_users(log: Log) -> QualityFinding:
-    """Return the finding that no other actor is known: a detection without an id may be the one before it, or another actor."""
+    """Return the finding that no other actor is known. Detections without ids do not count, because they cannot be linked to tracks."""
     n = sum(log.detections.values())
     cause = "no topic of this log has road users"
     if n:

@@ -1,4 +1,4 @@
-"""This module transforms recorded poses, each with its own frame and time, into the fixed frame."""
+"""Transforms recorded poses, each with its own frame and time, into one fixed frame."""
 
 from __future__ import annotations
 
@@ -22,26 +22,26 @@ if TYPE_CHECKING:
     from drivelint.formats.coordinate_frames import TransformTree, Vectors
 
 MOVING_MPS = 2.0
-"""Below this speed the two ways to read a velocity differ by no more than positions tremble."""
+"""Below this speed, noise of the positions hides in which frame a velocity is given."""
 FIT_RATIO = 3.0
-"""A velocity is read in the other frame where that fits the positions this many times better, and well."""
+"""Velocities that should be along the actor's axes are read as along the frame's, or vice versa, if that fits this many times better."""
 MAX_FIT_ERROR_MPS = 0.5
+"""The largest median difference to the positions' changes in the frame that is then used."""
 SAMPLED_ACTORS = 8
-"""Of so many actors, those that move most."""
+"""Only this many actors are compared: those that move most."""
 MIN_SAMPLES = 20
-"""This many moving samples show in which frame velocities are."""
+"""The fewest moving samples that can show in which frame velocities are given."""
 
 
 @dataclass
 class RecordedPoses:
     """n poses in the order of the log. Vectors have three columns; NaN: unknown.
 
-    `stamp_ns` is the messages' own time (`stamped`: they have one), `log_ns` the container's. `ids` and `frames` are bytes.
-    `along`: velocity and acceleration are given along the actor's own axes, else along those of `frames`. `faces`: the
-    front is known, not only the axis. `classes` index `ACTOR_CLASSES`, -1: unknown. `t_ns` is filled in by `common_clock`.
-    `at_ns`: when a frame that moves is looked up, if not at the pose's own time. `outlined`: the size is that of the box around a
-    polygon. Of a scene: `lifetime_ns` (0: for ever), `locked`:
-    the entity goes with its frame.
+    `stamp_ns`: the message's own time, if it has one (`stamped`); `log_ns`: the time in the container. `ids` and `frames` are bytes.
+    `along`: velocity and acceleration are along the actor's own axes, otherwise along those of its frame. `faces`: the front is
+    known, not only the axis. `classes`: indices in `ACTOR_CLASSES`; -1: unknown. `choose_clock` sets `t_ns`.
+    `at_ns`: the time at which a moving frame is looked up; None: `t_ns`. `outlined`: the size is that of the box around a
+    polygon. For entities of a scene: `lifetime_ns` (0: unlimited); `locked`: the entity moves with its frame.
     """
 
     stamp_ns: Times
@@ -67,20 +67,20 @@ class RecordedPoses:
         return len(self.stamp_ns)
 
     def take(self, rows: Indices | Mask) -> RecordedPoses:
-        """Return the chosen rows."""
+        """Return only the given rows."""
         chosen: dict[str, Any] = {name: None if v is None else v[rows] for name, v in vars(self).items()}
         return RecordedPoses(**chosen)
 
 
 def join_batches(parts: Sequence[RecordedPoses]) -> RecordedPoses:
-    """Return the rows of several batches."""
+    """Return the rows of all batches, concatenated."""
     lists = {name: [vars(part)[name] for part in parts] for name in vars(parts[0])}
     joined: dict[str, Any] = {name: None if v[0] is None else np.concatenate(v) for name, v in lists.items()}
     return RecordedPoses(**joined)
 
 
 def recorded_poses(stamps: tuple[Times, Mask], poses: tuple[Vectors, Vectors], **columns: Any) -> RecordedPoses:
-    """Return poses (place, turn) with their own times; columns that are not given are unknown."""
+    """Return `RecordedPoses`. `stamps`: times, and whether they exist; `poses`: places and quaternions. Missing columns are unknown."""
     n = len(poses[0])
     unknown: dict[str, Any] = {
         **{name: np.full((n, 3), np.nan) for name in ("size", "velocity", "acceleration")},
@@ -91,9 +91,9 @@ def recorded_poses(stamps: tuple[Times, Mask], poses: tuple[Vectors, Vectors], *
 
 
 def distinct(values: NDArray[Any]) -> tuple[list[str], NDArray[np.int32]]:
-    """Return the distinct values as text, in the order in which they appear, and each row's index into them.
+    """Return the distinct values as text, in the order in which they first appear, and each row's index in them.
 
-    Bytes are texts, or UUIDs where they are sixteen of any value (numpy's kind V). Hashed, not sorted: four times faster.
+    Values of numpy's kind S are texts; values of kind V, with sixteen bytes, are UUIDs. Hashing is four times faster than sorting.
     """
     if not len(values):
         return [], np.zeros(0, np.int32)
@@ -116,9 +116,9 @@ def distinct(values: NDArray[Any]) -> tuple[list[str], NDArray[np.int32]]:
 def states_in_fixed_frame(
     rows: RecordedPoses, frames: TransformTree, fixed: str, topic: str
 ) -> tuple[States, list[QualityFinding]]:
-    """Bring poses into the fixed frame. Those whose frame cannot be followed at their time stay in without a place.
+    """Return states in the fixed frame, and findings that name the `topic`.
 
-    The findings name the `topic` of the poses.
+    A pose without a transform to the fixed frame at its time is kept as a state without a position.
     """
     ids, actor = distinct(rows.ids)
     place, turn = rows.place.copy(), unit_quaternions(rows.turn)
@@ -174,7 +174,10 @@ def _unresolved_frame(topic: str, frame: str, fixed: str, frames: TransformTree,
 
 
 def _other_frame(states: States, swapped: Vectors, along: Mask, topic: str) -> list[QualityFinding]:
-    """Take velocities as given in the other frame if they fit the positions there, and do not in the frame that they should be in."""
+    """Replace velocities by `swapped` if only these fit the positions, and return the finding.
+
+    `swapped`: the velocities under the assumption that the log gives them in the other frame.
+    """
     vx, vy = states.numbers["vx_mps"], states.numbers["vy_mps"]
     fast = np.bincount(states.actor[np.hypot(swapped[:, 0], swapped[:, 1]) > MOVING_MPS], minlength=len(states.ids))
     chosen = np.zeros(len(states.ids), np.bool_)
@@ -207,16 +210,16 @@ def _other_frame(states: States, swapped: Vectors, along: Mask, topic: str) -> l
 
 
 def choose_clock(parts: dict[str, RecordedPoses], findings: list[QualityFinding]) -> bool:
-    """Return whether the messages' own times can be used: all have one, it advances, and all count from the same moment.
+    """Set `t_ns` of the rows to the messages' own times or to log times; return whether own times are used.
 
-    Else the times of the container count, for all of them, and a finding says why. Fills `t_ns` of the rows.
+    Own times are used if all messages have one, they advance, and the topics overlap. Otherwise a finding states the reason.
     """
     why = None
     ranges = []
     for topic, rows in parts.items():
         if not len(rows):
             continue
-        # 0 is a time where a simulation's clock starts, and none where the others count from 1970
+        # 0 can be the start of a simulation's clock; but if other stamps are in UTC, 0 means that there is no time
         missing = ~rows.stamped | ((rows.stamp_ns == 0) & (rows.stamp_ns.max() >= LEAST_UTC_NS))
         if missing.any():
             why = f"{topic}: {int(missing.sum())} of {len(rows)} poses are without a time stamp"
@@ -242,7 +245,7 @@ def choose_clock(parts: dict[str, RecordedPoses], findings: list[QualityFinding]
 
 
 def message_times(parts: Sequence[RecordedPoses]) -> tuple[FrameTimes, int | None]:
-    """Return the times of each message in the order of the file, and the start of the log in UTC if it is known."""
+    """Return the messages' own times and log times, sorted by log time, and the log's start in UTC (None: unknown)."""
     t_ns, log_ns = np.concatenate([part.t_ns for part in parts]), np.concatenate([part.log_ns for part in parts])
     new = np.r_[True, (t_ns[1:] != t_ns[:-1]) | (log_ns[1:] != log_ns[:-1])]
     pairs = np.unique(np.stack([log_ns[new], t_ns[new]]), axis=1)
@@ -251,7 +254,7 @@ def message_times(parts: Sequence[RecordedPoses]) -> tuple[FrameTimes, int | Non
 
 
 def ids_at_ego(ego: States, object_states: States) -> list[str]:
-    """Return the ids of the objects whose positions are almost always the ego's."""
+    """Return the ids of the objects that are within 0.5 m of the ego in at least 95 % of their states."""
     times, first = np.unique(ego.t_ns, return_index=True)
     if len(times) < 2 or not len(object_states):
         return []

@@ -1,4 +1,4 @@
-"""Finds the time in which a topic of road users is silent while the ego's odometry continues: the actors in that time are not known."""
+"""Finds the times in which a topic of road users has no messages while the odometry continues: the actors are unknown then."""
 
 from __future__ import annotations
 
@@ -15,13 +15,16 @@ if TYPE_CHECKING:
 SENT_WHERE_NOBODY_IS: Final = frozenset({
     "autoware_perception_msgs/PredictedObjects", "autoware_perception_msgs/TrackedObjects", "derived_object_msgs/ObjectArray",
 })  # fmt: skip
-"""Messages that come all the time, without objects if no actor is there. A detector may send nothing if it sees no actor."""
+"""Message types whose senders also send messages without objects. A sender of detections may send nothing if there is no actor."""
 LEAST_SILENCE_NS: Final = 1_000_000_000
-"""Topics of one recording begin and end within a second of each other."""
+"""Shorter times are not reported: topics of one recording begin and end up to a second apart."""
 
 
 def silences(topic: str, sent_ns: Times, odometry_ns: Times) -> list[LostTime]:
-    """Return when a topic is silent, by the log times of its messages and of those of the odometry."""
+    """Return the times in which a topic has no messages while the odometry continues.
+
+    `sent_ns`, `odometry_ns`: log times of the topic's and of the odometry's messages.
+    """
     sent, others = np.unique(sent_ns), np.sort(odometry_ns)
     if len(sent) < 2 or not len(others):
         return []

@@ -1,6 +1,7 @@
-"""Traffic lights as Autoware records them: a group is the regulatory element of the Lanelet2 map with the same id.
+"""Converts Autoware's traffic light messages to states of signals.
 
-Every message lists all groups that are seen or said then; a group has an element for each lit lamp, an arrow or a full one (circle).
+A group has the id of a regulatory element of the Lanelet2 map. Each message lists all groups that are known at its time. A group has an
+element for each lit lamp, which is a full lamp (circle) or an arrow.
 """
 
 from __future__ import annotations
@@ -22,17 +23,17 @@ if TYPE_CHECKING:
     from drivelint.formats.ros2.cdr import Table
 
 LONGEST_HOLD_NS: Final = 5_000_000_000
-"""A state holds for no longer without a message: Autoware takes lights that roadside units report for so long."""
+"""Without a new message, a state is valid for at most this time, as in Autoware for lights that roadside units report."""
 NUMBERS: Final = {
     "RED": 1, "AMBER": 2, "GREEN": 3,
     "CIRCLE": 1, "LEFT_ARROW": 2, "RIGHT_ARROW": 3, "UP_ARROW": 4, "UP_LEFT_ARROW": 5, "UP_RIGHT_ARROW": 6, "DOWN_ARROW": 7,
     "DOWN_LEFT_ARROW": 8, "DOWN_RIGHT_ARROW": 9,
     "SOLID_OFF": 1, "SOLID_ON": 2, "FLASHING": 3,
 }  # fmt: skip
-"""Constants of an element; a definition in the log counts before them, for older ones number otherwise."""
+"""The constants of an element. Those in the log's definition take precedence, as older versions have other numbers."""
 _COLOURS: Final = ("RED", "AMBER", "GREEN")
 _FULL, _DARK, _ARROW = 1, 8, 64
-"""The bits of red, of which amber's and green's are the next: a full lamp is lit, a full lamp is dark, an arrow is lit."""
+"""The bits for red: a full lamp is lit, a full lamp is dark, an arrow is lit. The next two bits are those of amber and green."""
 _ALL_COLOURS: Final = 7
 _FLASHING, _DOUBT = 512, 1024
 _FULL_STATES: Final = {1: "red", 3: "red_amber", 2: "amber", 4: "green"}
@@ -40,7 +41,7 @@ _GROUPS: Final = (("traffic_light_groups", "traffic_light_group_id"), ("signals"
 
 
 class GroupStates(NamedTuple):
-    """What the groups of a batch of messages show: for each message its times, for each group its message, its id and its state."""
+    """The groups in a batch of messages. Per message: `stamp_ns` and `log_ns`; per group: index of its message, id and state."""
 
     stamp_ns: Times
     log_ns: Times
@@ -50,7 +51,10 @@ class GroupStates(NamedTuple):
 
 
 def group_states(table: Table, log_ns: Times, constants: Mapping[str, Mapping[str, int]]) -> GroupStates:
-    """Return the states of the groups of messages, codes into `SIGNAL_STATES`, -1 where not known. `constants`: those of the definition."""
+    """Return the states of the groups in messages, as indices in `SIGNAL_STATES`; -1: unknown.
+
+    `constants`: message type -> constant -> value, from the log's definition.
+    """
     path, name = next((pair for pair in _GROUPS if pair[0] in table.children), _GROUPS[0])
     groups = table.items(path)
     state = _states(groups, _element_numbers(constants))
@@ -74,7 +78,7 @@ def _states(groups: Table, number: Mapping[str, int]) -> Codes:
         for which, bit in ((full & lit, _FULL), (full & dark, _DARK), (arrow & lit, _ARROW)):
             bits[of_color & which] |= bit << k
     bits[full & flashing & np.isin(color, [number[name] for name in _COLOURS])] |= _FLASHING
-    # a lamp of another kind, colour or shape, an arrow that flashes, what is not known
+    # any other element: another colour, shape or status, an unknown value, or a flashing arrow
     bits[(bits == 0) & ~(dark & (full | arrow))] = _DOUBT
     of_group = np.zeros(groups.n, np.int64)
     np.bitwise_or.at(of_group, elements.parent, bits)
@@ -82,11 +86,10 @@ def _states(groups: Table, number: Mapping[str, int]) -> Codes:
 
 
 def _state(bits: int) -> int:
-    """Return the state of a light that applies to every turn; -1 if turns differ.
+    """Return the state of a light that applies to every turn, as an index in `SIGNAL_STATES`; -1 if turns differ or it is unknown.
 
-    The map's light does not say for which turns an arrow of it holds. So an arrow that shows another colour than the full lamp decides
-    nothing: red with a green arrow is neither red, for it lets some go, nor green, for it holds the others. Arrows alone do not show
-    whether other turns may go.
+    The map does not state to which turns an arrow applies. So the state is unknown if an arrow has another colour than the full lamp:
+    red with a green arrow is red for some turns and green for others. It is also unknown if only arrows are lit.
     """
     full, dark, arrows = bits & _ALL_COLOURS, bits // _DARK & _ALL_COLOURS, bits // _ARROW & _ALL_COLOURS
     word = None
@@ -96,7 +99,7 @@ def _state(bits: int) -> int:
         word = "flashing" if not (full or arrows) else None
     elif full:
         word = _FULL_STATES.get(full) if arrows in {0, full} else None
-    elif dark == _ALL_COLOURS and not arrows:  # a lamp that is not listed may be lit
+    elif dark == _ALL_COLOURS and not arrows:  # with fewer dark lamps listed, another may be lit
         word = "off"
     return -1 if word is None else SIGNAL_STATES.index(word)
 
@@ -107,10 +110,10 @@ _STATE_OF_BITS: Final = np.array([_state(bits) for bits in range(2 * _DOUBT)], n
 def signal_states(
     batches: Sequence[GroupStates], span_ns: tuple[int, int], topic: str, *, own_times: bool
 ) -> tuple[pa.Table | None, list[QualityFinding]]:
-    """Return `signal_id`, `t_ns` and `state` of all groups, and findings on unusable messages.
+    """Return a table of `signal_id`, `t_ns` and `state` of all groups, and findings on unusable messages.
 
-    `span_ns`: first and last time of the drive. A row without a state ends what a group showed: where the next message does not
-    list it, or none comes.
+    `span_ns`: first and last time of the drive. A row with a NULL state ends a group's last state, if the next message does not list
+    the group, or there is no next message.
     """
     t_ns = np.concatenate([batch.stamp_ns if own_times else batch.log_ns for batch in batches])
     first = np.cumsum([0, *(len(batch.log_ns) for batch in batches)])
@@ -149,9 +152,10 @@ def signal_states(
 
 
 def _ends(times: Times, step: NDArray[np.intp], group: NDArray[np.int64]) -> Times:
-    """Return when each state of a group ends that the next message does not follow up; the far future where it does.
+    """Return the time at which each state ends: at the next message, but at most `LONGEST_HOLD_NS` after its own.
 
-    Rows are ordered by group and step; `times`: those of the messages.
+    If the next message is in time and has the group, the end is the far future. Rows are sorted by group and step.
+    `times`: the sorted times of the messages; `step`: each row's index in `times`.
     """
     following = np.append(times[1:], np.iinfo(np.int64).max)[step]
     again = np.append((group[1:] == group[:-1]) & (step[1:] <= step[:-1] + 1), False)

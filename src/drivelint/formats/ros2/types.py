@@ -1,4 +1,4 @@
-"""ROS 2 message definitions as text (`ros2msg` schema records of MCAP) to types.
+"""Parses ROS 2 message definitions, which MCAP has as text in its `ros2msg` schema records.
 
 Syntax: https://docs.ros.org/en/rolling/Concepts/Basic/About-Interfaces.html
 """
@@ -22,14 +22,14 @@ NUMPY_CODES: Final = {
     "bool": "u1", "byte": "u1", "char": "u1", "uint8": "u1", "int8": "i1", "uint16": "u2", "int16": "i2", "uint32": "u4",
     "int32": "i4", "uint64": "u8", "int64": "i8", "float32": "f4", "float64": "f8",
 }  # fmt: skip
-"""Primitive type -> numpy code without byte order. The number in it is the size, and in CDR the alignment."""
+"""Primitive type -> numpy code without byte order. The digit is the size in bytes, which is also the alignment in CDR."""
 TEXT_TYPES: Final = ("string", "wstring")
 SEQUENCE: Final = -1
 _STAMPS: Final = ("time", "duration", "builtin_interfaces/Time", "builtin_interfaces/Duration")
-"""Times that a definition may use without describing them."""
+"""Types of times that a definition may use without containing their definition."""
 _OTHER_IN_OLDER: Final = frozenset({"autoware_auto_perception_msgs/TrafficSignalArray"})
-"""Older messages that mean something else than the newer ones of their name: ids of these lights are those of their lines in
-the map, not of the regulatory elements."""
+"""Messages of older packages whose meaning differs from the newer message with the same name: these lights have the ids of lines
+in the map, not of regulatory elements."""
 _NOT_UNDERSTOOD: Final = "has a line that is not understood: {!r}"
 _CONSTANT = re.compile(r"^[a-z]\w*\s+(?P<name>[A-Za-z]\w*)\s*=\s*(?P<value>-?\d+)$")
 _RULE = re.compile(r"^={10,}\s*$", re.MULTILINE)
@@ -40,7 +40,10 @@ _FIELD = re.compile(
 
 @dataclass(frozen=True)
 class Field:
-    """A member: `kind` is a primitive, `string`, or a message's full name; `count` None: one, `SEQUENCE`, or how many."""
+    """A member of a message. `kind`: a primitive, a text type, or a message's full name.
+
+    `count`: the length of an array; `SEQUENCE` for a variable length; None: no array.
+    """
 
     name: str
     kind: str
@@ -48,23 +51,23 @@ class Field:
 
 
 Types = dict[str, list[Field]]
-"""Full name (`package/Name`) -> its members in order."""
+"""Full name (`package/Name`) of a message -> its members in order."""
 
 
-@lru_cache(maxsize=1024)  # asked for every message
+@lru_cache(maxsize=1024)  # called for every message
 def message_kind(schema: str) -> str:
-    """Return the type of a schema's messages: of Autoware's older packages the newer one, which has the same fields."""
+    """Return the message type `package/Name` of a schema; for Autoware's older packages, the newer type with the same fields."""
     name = short_type_name(schema)
     return name if name in _OTHER_IN_OLDER else name.replace("autoware_auto_", "autoware_")
 
 
 def short_type_name(name: str) -> str:
-    """Return `package/Name` of a schema that may be called `package/msg/Name`."""
+    """Return `package/Name` for a schema named `package/msg/Name` or `package/Name`."""
     return name.replace("/msg/", "/")
 
 
 def parse(path: Path, name: str, text: bytes) -> Types:
-    """Read the definition of `name` and of all it uses. Errors: `TraceError` for a line or a type that is not understood."""
+    """Parse the definition of `name` and of all messages that it contains. Errors: `TraceError` for an invalid line or unknown type."""
 
     def wrong(problem: str) -> TraceError:
         return TraceError(f"{path}: the definition of {name} in the log {problem}")
@@ -79,7 +82,7 @@ def parse(path: Path, name: str, text: bytes) -> Types:
 
 
 def whole_number_constants(path: Path, name: str, text: bytes) -> dict[str, dict[str, int]]:
-    """Return the constants of `name` and of all it uses that are whole numbers: full name of the message -> constant -> its value."""
+    """Return the integer constants of `name` and of all messages that it contains: message's full name -> constant -> value."""
 
     def wrong(problem: str) -> TraceError:
         return TraceError(f"{path}: the definition of {name} in the log {problem}")
@@ -92,7 +95,7 @@ def whole_number_constants(path: Path, name: str, text: bytes) -> dict[str, dict
 
 
 def _sections(name: str, text: bytes, wrong: MakeError) -> list[tuple[str, str]]:
-    """Return the full name and the body of each message that a definition describes, `name` first."""
+    """Return the full name and the text of each message in a definition, `name` first."""
     try:
         first, *others = _RULE.split(text.decode())
     except UnicodeDecodeError as error:
@@ -124,7 +127,7 @@ def _fields(body: str, wrong: MakeError) -> Iterator[Field]:
 
 
 def _resolved(kind: str, container: str, defined: set[str], wrong: MakeError) -> str:
-    """Return the full name of a member's type: another package's, the same package's, or a primitive."""
+    """Return a member's type with its package. A type without a package is a primitive or belongs to the container's package."""
     if kind in NUMPY_CODES or kind in TEXT_TYPES:
         return kind
     full = short_type_name(kind)

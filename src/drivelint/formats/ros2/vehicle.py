@@ -1,7 +1,7 @@
-"""The ego's box around its rear axle, by Autoware's parameters `vehicle_info`.
+"""Reads the ego's box relative to its rear axle from Autoware's parameters `vehicle_info`.
 
-Autoware has no topic for it. Each of its nodes that needs it declares the parameters, and ROS 2 publishes them then
-(`/parameter_events`): a bag that was recorded from the start has them. What they mean:
+Autoware's nodes that need the box declare the parameters at their start, and ROS 2 then publishes them on `/parameter_events`.
+So a bag that was recorded from the start contains them. Their meaning:
 https://autowarefoundation.github.io/autoware-documentation/main/design/autoware-interfaces/components/vehicle-dimensions/
 """
 
@@ -26,24 +26,25 @@ if TYPE_CHECKING:
     from drivelint.formats.ros2.cdr import Table
 
 AXLE_FRAME: Final = b"base_link"
-"""Autoware's frame on the ground below the middle of the rear axle."""
+"""Autoware's frame on the ground, below the middle of the rear axle."""
 _HEIGHT: Final = "vehicle_height"
 _WHOLE, _DOUBLE = 2, 3
-"""Types of a parameter's value, in ParameterType."""
+"""The values of `rcl_interfaces/ParameterType` for integers and doubles."""
 _SAME_M: Final = 0.001
-"""Lengths that differ by less are one: some are recorded in single precision."""
+"""Lengths that differ by less are equal: some are recorded in single precision."""
 _MOST_M: Final = 50.0
-"""No vehicle on the road is as long or as wide."""
+"""A longer or wider box is implausible."""
 
 
 class VehicleBox(NamedTuple):
-    """The box of a vehicle in metres: `size` is length, width and height (NaN: not known), `centre` where its middle lies from the axle
-    frame: ahead, left, up (0 where the height is not known)."""
+    """The box of a vehicle, in metres. `size`: length, width and height (NaN: unknown).
+
+    `centre`: the box centre in the axle frame: ahead, left, up (0 if the height is unknown)."""
 
     size: tuple[float, float, float]
     centre: tuple[float, float, float]
     source: str
-    """The node or topic that says so."""
+    """The node or topic from which the box comes."""
 
     def described(self) -> str:
         """Return the box in words."""
@@ -53,7 +54,7 @@ class VehicleBox(NamedTuple):
 
 
 def at_axle(frames: NDArray[Any]) -> Mask:
-    """Say which frames are that of the axle, whatever a robot's name stands before it."""
+    """Return for each frame name whether it is `AXLE_FRAME`, with or without a robot's name as prefix."""
     names = np.unique(frames)
     last = np.array([name.rpartition(b"/")[2] for name in names.tolist()], "S")
     result: Mask = np.isin(frames, names[last == AXLE_FRAME])
@@ -63,9 +64,10 @@ def at_axle(frames: NDArray[Any]) -> Mask:
 def vehicle_box(
     parameters: Iterable[Table], dimensions: Iterable[tuple[str, Table]]
 ) -> tuple[VehicleBox | None, list[QualityFinding]]:
-    """Return the box on which the nodes' parameters and recorded dimensions agree; None if there is none, or they differ.
+    """Return the ego's box and findings. The box is None if no source gives one, or if sources differ.
 
-    A node that gives only some of the lengths gives no box: another node may mean another vehicle.
+    `parameters`: parameter events of nodes; `dimensions`: topic and messages of recorded dimensions. Lengths of several nodes are not
+    combined into a box, because the nodes may mean different vehicles.
     """
     said = {**_by_node(parameters), **_by_topic(dimensions)}
     boxes = [box for source, lengths in sorted(said.items()) if (box := _box(source, lengths)) is not None]
@@ -79,7 +81,7 @@ def vehicle_box(
 
 
 def _by_node(parameters: Iterable[Table]) -> dict[str, dict[str, float]]:
-    """Return node -> length -> metres, the value that was set last."""
+    """Return node -> name of a length -> its last value in metres."""
     values_by_node: dict[str, dict[str, float]] = {}
     for events in parameters:
         nodes = events.column("node")
@@ -91,7 +93,7 @@ def _by_node(parameters: Iterable[Table]) -> dict[str, dict[str, float]]:
 
 
 def _lengths(items: Table) -> Iterator[tuple[int, str, float]]:
-    """Yield row, name and value of the parameters that are lengths of the vehicle."""
+    """Yield row, name and value of each parameter that is a length of the vehicle."""
     names, kind = items.column("name"), items.column("value.type")
     wanted = np.isin(names, [name.encode() for name in (*VEHICLE_LENGTHS, _HEIGHT)]) & np.isin(kind, (_WHOLE, _DOUBLE))
     for i in np.flatnonzero(wanted).tolist():
@@ -109,7 +111,7 @@ def _by_topic(dimensions: Iterable[tuple[str, Table]]) -> dict[str, dict[str, fl
 
 
 def _box(source: str, lengths: Mapping[str, float]) -> VehicleBox | None:
-    """Return the box, None where a length is missing, no number or of no vehicle."""
+    """Return the box with these lengths; None if a length is missing, not a number, or implausible."""
     if not lengths.keys() >= set(VEHICLE_LENGTHS):
         return None
     base, front, rear, tread, left, right = (lengths[name] for name in VEHICLE_LENGTHS)

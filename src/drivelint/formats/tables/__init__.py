@@ -1,1 +1,1 @@
-"""CSV and Parquet tables, through a mapping; the canonical Parquet tables."""
+"""Reads CSV and Parquet tables through a mapping, and drivelint's canonical Parquet tables."""

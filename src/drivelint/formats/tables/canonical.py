@@ -1,6 +1,6 @@
-"""Canonical Parquet: the tables of `schemas/model.sql` as files, a folder of them or a single `actor_state` one.
+"""Reads canonical Parquet: a folder with tables of `schemas/model.sql` as files, or a single file with `actor_state`.
 
-Places are box centres, as in the tables.
+Positions are box centres, as in the tables.
 """
 
 from __future__ import annotations
@@ -44,16 +44,16 @@ if TYPE_CHECKING:
 formats: Final = {"canonical-parquet": ("drivelint's own Parquet tables", "marked is_ego in the log")}
 takes_mapping: Final = False
 AS_RECORDED: Final = "drivelint.as_recorded"
-"""Key in the metadata of the tables of a converted log of which the states are those that were recorded."""
+"""Key in the metadata of a converted log's tables, if its states are as recorded, without corrections or derived values."""
 REQUIRED_COLUMNS = ("t_ns", "actor_id", "x_m", "y_m", "yaw_rad")
-"""What makes a Parquet table canonical; every other column may be missing and is then unknown."""
+"""A Parquet table with these columns is canonical. Any other column may be missing, and is then unknown."""
 _OF_A_STATE = {"indicator": INDICATORS, "brake_light": BRAKE_LIGHTS, "actor_class": ACTOR_CLASSES}
 _WORDS = {**_OF_A_STATE, "state": SIGNAL_STATES}
-"""Column -> its words; a log may write them in any case."""
+"""Column -> its allowed words, in which upper and lower case do not matter."""
 
 
 def accepts(probe: Probe) -> bool:
-    """Accept a folder, or Parquet with canonical columns unless a mapping was asked for."""
+    """Return whether the trace is a canonical folder, or Parquet with canonical columns and without a chosen mapping."""
     if probe.path.is_dir():
         return is_canonical_folder(probe.path)
     if probe.options.mapping is not None or not probe.head.startswith(b"PAR1"):
@@ -64,7 +64,7 @@ def accepts(probe: Probe) -> bool:
 def read(probe: Probe) -> Recording:
     """Read a canonical folder or file.
 
-    Errors: `TraceError` for damaged files, missing or ill-typed columns, several drives in one.
+    Errors: `TraceError` for damaged files, missing columns, columns of a wrong type, and several drives in one file.
     """
     path = probe.path
     recording = _states(path / "actor_state.parquet" if path.is_dir() else path)
@@ -84,7 +84,7 @@ def read(probe: Probe) -> Recording:
     if (path / "data_log.parquet").is_file():
         log = (parquet.table(path / "data_log.parquet").to_pylist() or [{}])[0]
         counted, found = log.get("n_states"), len(states) + sum(f.n for f in findings if f.check_id == "dropped_row")
-        if counted is not None and counted != found:  # it is not known which actor is missing, and when
+        if counted is not None and counted != found:  # it is unknown which states are missing
             raise TraceError(
                 f"{path / 'actor_state.parquet'}: {found} rows, and data_log.parquet counts {counted} states: copy or "
                 "convert the folder again"
@@ -112,7 +112,7 @@ def _offset(path: Path, offset: tuple[object, object]) -> tuple[float, float]:
 
 
 def _quality(path: Path) -> list[QualityFinding]:
-    """Read the findings from when the log was converted that cannot be found any more."""
+    """Return the findings from before the conversion, without those that are found again in the converted log."""
     if not path.is_file():
         return []
     rows = parquet.table(path)
@@ -136,7 +136,7 @@ def _column(path: Path, table: pa.Table, name: str, kind: pa.DataType) -> pa.Arr
 
 
 def _columns(path: Path, table: pa.Table, names: Iterable[str], kind: pa.DataType) -> dict[str, pa.Array]:
-    """Return those of the columns that the table has."""
+    """Return name -> column, cast to `kind`, for the names that the table has."""
     return {name: _column(path, table, name, kind) for name in names if name in table.schema.names}
 
 
@@ -150,7 +150,7 @@ def _need(path: Path, table: pa.Table, names: tuple[str, ...]) -> None:
 
 
 def _states(path: Path) -> Recording:
-    """Read the states. A row with a time and nothing else is a frame without actors."""
+    """Read the states. A row with only a time is a frame without actors."""
     table = parquet.table(path)
     _need(path, table, REQUIRED_COLUMNS)
     ids = _column(path, table, "actor_id", pa.string())
@@ -189,7 +189,7 @@ def _states(path: Path) -> Recording:
 
 
 def with_frames_of_nobody(states: pa.Table, trace: Trace) -> pa.Table:
-    """Return states with a row for each frame without actors, as `_states` reads it."""
+    """Return the states with an added row, which has only a time, for each frame without actors."""
     n = len(trace.nobody_ns)
     if not n:
         return states
@@ -199,7 +199,7 @@ def with_frames_of_nobody(states: pa.Table, trace: Trace) -> pa.Table:
 
 
 def _nothing_else(table: pa.Table, n: int) -> Mask:
-    """Return which rows of a table have no value in any column about an actor."""
+    """Return for each row whether all columns on actors are NULL."""
     columns = set(table.schema.names) & {*STATE_COLUMNS, *SIZE_COLUMNS, *_OF_A_STATE, "is_ego"}
     empty = [table[name].is_null().to_numpy() for name in sorted(columns)]
     nothing: Mask = np.logical_and.reduce([np.ones(n, np.bool_), *empty])
@@ -218,7 +218,7 @@ def _codes(path: Path, column: pa.Array, name: str) -> Codes:
 
 
 def _extra(path: Path, required: tuple[str, ...], optional: tuple[str, ...] = ()) -> pa.Table | None:
-    """Return the required columns of a table and those of the optional ones that it has; None: there is no such file."""
+    """Return the required columns of a file and its available optional columns; None if there is no such file."""
     if not path.is_file():
         return None
     table = parquet.table(path)
@@ -233,7 +233,10 @@ def _extra(path: Path, required: tuple[str, ...], optional: tuple[str, ...] = ()
 
 
 def _every_cell(path: Path, required: tuple[str, ...], optional: str) -> pa.Table | None:
-    """Return a table whose required columns have no empty cell, and the optional one, of text, even if the file lacks it."""
+    """Return required columns and an optional text column, which is NULL if the file lacks it; None if there is no such file.
+
+    Errors: `TraceError` for NULL in a required column.
+    """
     table = _extra(path, required, (optional,))
     if table is None:
         return None

@@ -1,4 +1,4 @@
-"""From a log's own frame and reference point to the right-handed map frame and box centres."""
+"""Converts states from a log's own frame and reference point to the right-handed map frame and box centres."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ _SOURCE = {
 def to_map_frame(states: States, mapping: Mapping) -> None:
     """Replace the mapping's quantities (SI, log's frame and reference point) by the columns of `STATE_COLUMNS` and `SIZE_COLUMNS`.
 
-    Order: axes and heading are turned, velocities given along the vehicle brought into the world frame, the reference
-    point moved to the box centre. The centre's velocity is that of the reference point plus yaw rate times lever; the
-    yaw rate is the log's or, without one, the heading's derivative. Accelerations are kept as recorded.
+    Order: axes and heading are flipped, velocities along the vehicle's axes are turned into the world frame, and the reference
+    point is moved to the box centre. The centre's velocity is that of the reference point plus yaw rate times lever arm. The yaw
+    rate is the log's, or the derivative of the heading. Accelerations are only turned, not moved to the centre.
     """
     log = states.numbers
     unknown_values = np.full(len(states), np.nan)

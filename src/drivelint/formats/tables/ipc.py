@@ -1,4 +1,4 @@
-"""This module reads tables in Arrow's file format (`.arrow`, and `.feather` of version 2)."""
+"""Reads tables in Arrow's file format (`.arrow`, and `.feather` of version 2)."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ T = TypeVar("T")
 
 
 def table(path: Path, required: Iterable[str] = (), optional: Iterable[str] = ()) -> pa.Table:
-    """Read a file, or the required columns and those of the optional ones that it has.
+    """Return the required columns of a file and its available optional columns; all columns if none is given.
 
-    Errors: `TraceError` for a damaged file, a column that stands twice, and a required column that is missing.
+    Errors: `TraceError` for a damaged file, a duplicate column, and a missing required column.
     """
     return _open(path, lambda file: chosen_columns(path, file.read_all(), required, optional))
 
 
 def chosen_columns(path: Path, rows: pa.Table, required: Iterable[str], optional: Iterable[str]) -> pa.Table:
-    """Return the required columns of a table and those of the optional ones that it has, or all. Errors: as `table`."""
+    """Return the required columns of a table and its available optional columns; all if none is given. Errors: those of `table`."""
     names = rows.schema.names
     required, optional = list(required), list(optional)
     if missing := [name for name in required if name not in names]:
@@ -33,7 +33,7 @@ def chosen_columns(path: Path, rows: pa.Table, required: Iterable[str], optional
     if twice := [name for name in chosen if names.count(name) > 1]:
         raise TraceError(f"{path}: the column {twice[0]!r} stands twice: rename one, or remove it")
     rows = rows.select(chosen)
-    rows.validate(full=True)  # of a damaged file, offsets may lead outside of its buffers
+    rows.validate(full=True)  # in a damaged file, offsets may point outside of the buffers
     return rows.combine_chunks()
 
 

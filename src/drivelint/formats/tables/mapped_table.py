@@ -1,7 +1,7 @@
-"""Any CSV or Parquet table through a mapping: long (a row per actor and step) or wide (a column group per actor).
+"""Reads CSV and Parquet tables through a mapping: long tables (a row per actor and step) or wide tables (a column group per actor).
 
 The mapping states the reference point of the positions (`[reference]`): the box centre, the rear axle or the front bumper. `geometry`
-converts them to the box centre.
+converts the positions to box centres.
 """
 
 from __future__ import annotations
@@ -44,25 +44,25 @@ if TYPE_CHECKING:
 formats: Final[dict[str, tuple[str, str]]] = {}
 takes_mapping: Final = True
 _NO_CLASS: Final = frozenset({-1, ACTOR_CLASSES.index("vehicle")})
-"""Codes of actors whose class is not known."""
+"""The codes for an unknown class, and for a vehicle of unknown class."""
 _MOST_TEXTS: Final = 5
-"""Texts that a message names."""
+"""A message lists at most this many texts."""
 MAX_HEADING_RAD: Final = 4 * np.pi
-"""A heading that is never wrapped goes beyond one turn, on a roundabout or a ramp of a car park."""
+"""The largest plausible heading: without wrapping, it exceeds one turn on roundabouts and ramps of car parks."""
 
 
 def accepts(probe: Probe) -> bool:
-    """Accept Parquet, and whatever reads as text without markup."""
+    """Return whether the file is Parquet, or text that is neither XML nor JSON."""
     head = probe.head
-    written = head.rstrip(b"\0")  # zeros are what is left of a file that was not written to its end
+    written = head.rstrip(b"\0")  # a file that was not written to its end may end in zero bytes
     text = written if written.count(b"\n") > 1 else head
     return head.startswith(b"PAR1") or not (b"\0" in text or text.lstrip()[:1] in {b"<", b"{"})
 
 
 def read(probe: Probe) -> Recording:
-    """Read a table through the mapping named, or through the only shipped mapping whose columns it has.
+    """Read a table through the mapping that the user chose, otherwise through the only shipped mapping whose columns the table has.
 
-    Errors: `UsageError` for a bad mapping, `TraceError` for a table that does not fit it or cannot be read.
+    Errors: `UsageError` for an invalid mapping; `TraceError` for a table that does not fit the mapping or cannot be read.
     """
     path, name = probe.path, probe.options.mapping
     if name is None:
@@ -84,7 +84,7 @@ def read(probe: Probe) -> Recording:
 
 
 def _assumptions(name: str, mapping: Mapping) -> list[QualityFinding]:
-    """Return findings about facts from the mapping instead of the log: sizes, and a left-handed frame."""
+    """Return findings on facts that come from the mapping, not from the log: sizes, and a left-handed frame."""
     findings = []
     given = mappings.fields(mapping)
     if any(side in given and given[side].value is not None for side in ("length", "width")):
@@ -97,10 +97,7 @@ def _assumptions(name: str, mapping: Mapping) -> list[QualityFinding]:
 
 
 def _refuse_misread(path: Path, name: str, recording: Recording) -> None:
-    """Refuse a table if the mapping cannot read most of its rows: it is of another kind, and the rest would mislead.
-
-    Errors: `TraceError`.
-    """
+    """Raise `TraceError` if most rows cannot be read: the mapping is wrong, and the other rows would mislead."""
     lost = sum(finding.n for finding in recording.findings if finding.check_id in LOSS_CHECKS)
     kept = len(recording.states)
     if lost > kept > 0:
@@ -111,7 +108,7 @@ def _refuse_misread(path: Path, name: str, recording: Recording) -> None:
 
 
 def open_sheet(path: Path, mapping: Mapping) -> Sheet:
-    """Return a table laid out as the mapping says, or Parquet; no row is read. Errors: `TraceError`."""
+    """Return a Parquet table, or a CSV table with the mapping's layout, without reading rows. Errors: `TraceError` if it is invalid."""
     with path.open("rb") as file:
         is_parquet = file.read(4) == b"PAR1"
     return ParquetSheet(path) if is_parquet else CsvSheet(path, mapping.table)
@@ -125,7 +122,7 @@ def _fitting(path: Path) -> tuple[str, Mapping, Sheet]:
             sheet = open_sheet(path, mapping)
             _groups(path, name, mapping, sheet)
         except TraceError:
-            continue  # it is not this table; if none fits, there is an error
+            continue  # the mapping does not fit; an error is raised below if no mapping fits
         fits.append((name, mapping, sheet))
     if len(fits) == 1:
         return fits[0]
@@ -137,9 +134,9 @@ def _fitting(path: Path) -> tuple[str, Mapping, Sheet]:
 
 
 def _groups(path: Path, name: str, mapping: Mapping, sheet: Sheet) -> list[str]:
-    """Return the numbers of the column groups ('' alone for a long table), every needed column being there.
+    """Return the numbers of the column groups; only '' for a long table.
 
-    Errors: `TraceError` naming the column that is missing or there twice.
+    Errors: `TraceError` for a needed column that is missing or duplicate.
     """
     columns = mappings.needed_columns(mapping)
     templates = [column for column in columns if GROUP_PLACEHOLDER in column]
@@ -167,14 +164,14 @@ class _Body:
     groups: list[str]
     findings: list[QualityFinding] = field(default_factory=list)
     unmapped_classes: set[str] = field(default_factory=set)
-    """Texts of the class that are neither among the mapping's values nor of its patterns."""
+    """The texts in the class column that match neither values nor patterns of the mapping."""
 
     def read(self) -> Recording:
         columns = mappings.needed_columns(self.mapping)
         names = dict.fromkeys(column.replace(GROUP_PLACEHOLDER, k) for k in self.groups for column in columns)
         n = self.sheet.load(names)
         t_ns, bad_time = self.sheet.time(self.mapping.time.column, self.mapping.time.unit)
-        blank = np.ones(n, np.bool_)  # the rows that hold nothing in any mapped column
+        blank = np.ones(n, np.bool_)  # the rows whose mapped columns are all empty
         for name in names:
             blank &= ~self.sheet.filled(name)
         self._report_rows(bad_time & ~blank, "the time is missing or not a number", "dropped_row")
@@ -184,7 +181,7 @@ class _Body:
         for k in self.groups:
             ids = self._ids(k, n)
             absent = ids.is_null().to_numpy(zero_copy_only=False)
-            # in a wide table, an actor that is absent has neither a name nor a place
+            # in a wide table, an actor without name and place is absent
             nameless = absent & ~bad_time & ~blank & (True if k == "" else self._has_place(k, n))
             self._report_rows(nameless, "the actor id is missing", "dropped_row")
             lost_rows |= nameless
@@ -202,7 +199,7 @@ class _Body:
             ego_ids=self._egos(states),
             findings=self.findings,
             lost_times=self._lost_times(t_ns, ~bad_time, lost_rows),
-            # a row of a wide table is a frame, whatever actors it has
+            # each row of a wide table is a frame, also without actors
             frames_ns=t_ns[~bad_time] if self.groups != [""] else None,
             embedded_map=self.sheet.metadata.get(b"xodr"),
             strict_units=True,
@@ -218,7 +215,7 @@ class _Body:
         return placed
 
     def _lost_times(self, t_ns: Times, timed: Mask, lost_rows: Mask) -> list[LostTime]:
-        """Return when the lost rows were recorded, and the lines that are no rows: what the cells of these mean is not known."""
+        """Return the time ranges of lost rows and of malformed lines, whose times are unknown."""
         cause = f"{self.path.name}: rows that cannot be read"
         if self.sheet.has_zeros_within:
             return [LostTime(None, None, f"{cause}, for zero bytes stand there")]
@@ -244,7 +241,7 @@ class _Body:
         return States([], np.zeros(0, np.int32), t_ns[keep], numbers, codes, not_finite[keep])
 
     def _values(self, name: str, spec: Field, k: str, n: int, keep: Mask) -> tuple[Floats, Mask]:
-        """Return SI values, unknown as NaN, and where the log itself says NaN or infinity (an empty cell does not)."""
+        """Return SI values (NaN: unknown), and for each row whether the log contains NaN or infinity; an empty cell does not count."""
         units = UNITS[FIELD_QUANTITIES[name]]
         factor = units[spec.unit] if spec.unit is not None else 1.0
         if spec.column is None:
@@ -261,7 +258,7 @@ class _Body:
         return (values * factor if factor != 1.0 else values), odd
 
     def _refuse_degrees(self, column: str, values: Floats) -> None:
-        """Refuse a heading beyond two turns: it cannot be in radians. Errors: `TraceError`."""
+        """Raise `TraceError` if a heading in radians exceeds two turns: it is probably in degrees."""
         largest = float(np.nanmax(np.abs(values), initial=0.0))
         if largest > MAX_HEADING_RAD:
             raise TraceError(
@@ -270,7 +267,7 @@ class _Body:
             )
 
     def _codes(self, spec: WordMapping, words: tuple[str, ...], k: str) -> Codes:
-        """Translate texts to indices into `words`: each distinct text once."""
+        """Return the column's texts as indices in `words`; -1: unknown. Each distinct text is translated only once."""
         texts = [self.sheet.text(column.replace(GROUP_PLACEHOLDER, k)) for column in spec.columns]
         if len(texts) > 1:
             texts = [pc.binary_join_element_wise(*texts, "/", null_handling="emit_null")]
@@ -294,7 +291,7 @@ class _Body:
         for name in self.mapping.ego.ids:
             if name in states.ids:
                 return [name]
-        # as omega-prime's Parquet has it
+        # omega-prime's Parquet has the ego in its metadata
         host = self.sheet.metadata.get(b"host_vehicle_idx", b"").decode("utf-8", "replace")
         if host in states.ids:
             return [host]
@@ -319,7 +316,7 @@ class _Body:
             self.findings.append(QualityFinding(check, "warning" if check == "malformed_cell" else "error", message, n))
 
     def _report_unmapped_classes(self, states: States) -> None:
-        """Report the texts of a class column, of which the mapping makes no class at all."""
+        """Add a finding with the unmapped texts of the class column, if the mapping finds no class for any actor."""
         spec, codes = self.mapping.actor_class, states.codes.get("actor_class")
         if spec is None or codes is None or not self.unmapped_classes or not set(np.unique(codes)) <= _NO_CLASS:
             return

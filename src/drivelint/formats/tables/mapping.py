@@ -1,8 +1,8 @@
-"""Mapping files: how the columns of a table become actor states. TOML, checked key by key, shipped ones found by name.
+"""Loads and checks mapping files: TOML that states how the columns of a table become actor states.
 
 A field is a column name (`x = "pos_x"`), a constant in SI (`length = 4.8`) or a table
-`{ column = "v", unit = "km/h" }` / `{ value = "7" }`. `{k}` in a column name stands for the number of a column group:
-such a table is wide, one group per actor.
+`{ column = "v", unit = "km/h" }` / `{ value = "7" }`. `{k}` in a column name means the number of a column group:
+the table is wide, with one group per actor.
 """
 
 from __future__ import annotations
@@ -34,14 +34,14 @@ UNITS: dict[str, dict[str, float]] = {
     "acceleration": {"m/s2": 1.0, "g": 9.80665, "ft/s2": 0.3048},
     "rate": {"rad/s": 1.0, "deg/s": 0.017453292519943295},
 }
-"""Quantity -> unit -> factor to SI; the first unit of each is SI and the default."""
+"""Quantity -> unit -> factor to SI. The first unit of each quantity is the SI unit and the default."""
 TIME_UNITS = {"s": 1_000_000_000, "ms": 1_000_000, "us": 1_000, "ns": 1, "min": 60_000_000_000}
 """Unit of time -> nanoseconds."""
 GROUP_PLACEHOLDER = "{k}"
 
 
 class Field(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """Where one quantity comes from: a column or a constant `value`, in `unit` (default: SI)."""
+    """The source of one quantity: a column or a constant `value`, in `unit` (default: SI)."""
 
     column: str | None = None
     value: str | float | None = None
@@ -52,7 +52,7 @@ FieldSpec = str | float | Field
 
 
 class TextLayout(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """How the text is laid out: cell separator, lines before the header, words that mean no value."""
+    """The layout of a text file: cell separator, number of lines before the header, and words that mean: no value."""
 
     separator: str = ","
     skip_rows: int = 0
@@ -67,11 +67,11 @@ class TimeColumn(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class Frame(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """The log's frame and how it lies to the map's.
+    """The log's frame relative to the map's.
 
-    `flip_y` turns y, vy and ay, `flip_yaw` the heading's sign; `yaw_zero` is where heading 0 points; `velocity` says
-    whether velocity and acceleration are given in the world frame or along the vehicle's own axes; `map_offset_m` is
-    added to the map's coordinates to bring it to the log.
+    `flip_y`: change the signs of y, vy and ay; `flip_yaw`: change the sign of the heading. `yaw_zero`: the direction of heading 0.
+    `velocity`: whether velocity and acceleration are in the world frame or along the vehicle's own axes. `map_offset_m`: added to
+    the map's coordinates to get the log's.
     """
 
     flip_y: bool = False
@@ -82,7 +82,7 @@ class Frame(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class PositionReference(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """The point of the vehicle that a position refers to, and the offset from it to the box centre."""
+    """The point of the vehicle whose position the log has, and the offset from this point to the box centre."""
 
     point: Literal["centre", "rear_axle", "front_bumper"] = "centre"
     forward: FieldSpec | None = None
@@ -91,7 +91,7 @@ class PositionReference(msgspec.Struct, forbid_unknown_fields=True, frozen=True)
 
 
 class Columns(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """The quantities of an actor state. Velocity: `vx` and `vy`, `speed` along the heading, or none (then derived)."""
+    """The quantities of an actor state. Velocity is `vx` and `vy`, or `speed` along the heading; without these, it is derived."""
 
     actor_id: FieldSpec
     x: FieldSpec
@@ -110,16 +110,16 @@ class Columns(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class Pattern(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """A regular expression, searched in the column's text, and the word it stands for."""
+    """A regular expression that is searched in the column's text, and the word for a text that matches."""
 
     match: str
     word: str = msgspec.field(name="is")
 
 
 class WordMapping(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """How the text of a column becomes one of drivelint's words: `values` first, then `patterns`, then `default`.
+    """The translation of a column's text to one of drivelint's words: by `values` first, then `patterns`, then `default`.
 
-    Several columns are joined by `/` before they are looked up.
+    The texts of several columns are joined by `/` before the translation.
     """
 
     column: str | list[str]
@@ -134,7 +134,7 @@ class WordMapping(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class EgoChoice(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """Ids of the ego, the first present counts; `otherwise = "first"` takes the first column group with a vehicle."""
+    """The choice of the ego: the first of `ids` that the log has; without any, if `otherwise = "first"`, the first vehicle of the table."""
 
     ids: list[str] = []
     otherwise: Literal["first"] | None = None
@@ -155,14 +155,14 @@ class Mapping(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     ego: EgoChoice = EgoChoice()
 
 
-# logs are read in several threads, and msgspec plans a type at its first use without a lock: two threads at once crash
+# built at import, because msgspec analyses a type at its first use without a lock, and crashes if two threads do so at once
 DECODER = msgspec.json.Decoder(Mapping)
 FIELD_QUANTITIES = {
     "x": "length", "y": "length", "z": "length", "yaw": "angle", "vx": "speed", "vy": "speed", "speed": "speed",
     "ax": "acceleration", "ay": "acceleration", "yaw_rate": "rate",
     "length": "length", "width": "length", "height": "length", "forward": "length", "left": "length", "up": "length",
 }  # fmt: skip
-"""Field -> quantity, which decides its units."""
+"""Field -> its quantity, as in `UNITS`."""
 
 
 def shipped_mappings() -> list[str]:
@@ -171,8 +171,8 @@ def shipped_mappings() -> list[str]:
 
 
 def refuse_if_none(name: str) -> None:
-    """Refuse a name that is neither a file's nor a shipped mapping's. Errors: `UsageError` with the nearest."""
-    known = sorted(file.stem for file in MAPPINGS_FOLDER.parents[1].glob("*/mappings/*.toml"))  # those of films too
+    """Raise `UsageError` if `name` is neither a file nor a shipped mapping; it proposes the most similar name."""
+    known = sorted(file.stem for file in MAPPINGS_FOLDER.parents[1].glob("*/mappings/*.toml"))  # also mappings of films
     if is_pipe_or_device(name):
         raise UsageError(f"mapping {name}: a pipe or a device: write its output to a file, and name that file")
     if not os.path.isfile(name) and name not in known:  # noqa: PTH113 - also of a name that is too long for a file
@@ -180,9 +180,9 @@ def refuse_if_none(name: str) -> None:
 
 
 def load(name: str) -> tuple[str, Mapping]:
-    """Return a mapping and its name: that of a file, else of a shipped mapping.
+    """Return name and content of a mapping. `name`: a path, or if there is no such file, the name of a shipped mapping.
 
-    Errors: `UsageError` naming file, key and the nearest valid one.
+    Errors: `UsageError` with file, wrong key and the most similar valid key.
     """
     path = Path(name)
     if not os.path.isfile(name):  # noqa: PTH113 - as above
@@ -199,7 +199,7 @@ def load(name: str) -> tuple[str, Mapping]:
 
 
 def read_toml(path: Path) -> dict[str, Any]:
-    """Return the content of a mapping file. Errors: `UsageError` where it cannot be read or is no TOML."""
+    """Return the content of a mapping file. Errors: `UsageError` if it cannot be read or is not TOML."""
     try:
         return parse_toml(path.read_text(encoding="utf-8"))
     except OSError as error:
@@ -216,13 +216,13 @@ def as_field(spec: FieldSpec) -> Field:
 
 
 def fields(mapping: Mapping) -> dict[str, Field]:
-    """Return every field that the mapping sets, the offsets of the reference point among them."""
+    """Return name -> field for all fields in the mapping, including the offsets of the reference point."""
     specs = {**msgspec.structs.asdict(mapping.columns), **msgspec.structs.asdict(mapping.reference)}
     return {name: as_field(spec) for name, spec in specs.items() if spec is not None and name != "point"}
 
 
 def word_mappings(mapping: Mapping) -> dict[str, tuple[WordMapping, tuple[str, ...]]]:
-    """Return, for each column of words, how the mapping reads it and which words are allowed."""
+    """Return drivelint's column -> its translation in the mapping, and the allowed words."""
     found = {
         "actor_class": (mapping.actor_class, ACTOR_CLASSES),
         "indicator": (mapping.indicator, INDICATORS),
@@ -232,7 +232,7 @@ def word_mappings(mapping: Mapping) -> dict[str, tuple[WordMapping, tuple[str, .
 
 
 def needed_columns(mapping: Mapping) -> list[str]:
-    """Return every column name the mapping reads, `{k}` left in, in the order of the file."""
+    """Return the distinct names of all columns that the mapping reads; `{k}` is not replaced."""
     names = [mapping.time.column, *(f.column for f in fields(mapping).values() if f.column is not None)]
     names += [name for spec, _ in word_mappings(mapping).values() for name in spec.columns]
     return list(dict.fromkeys(names))
@@ -256,7 +256,7 @@ def _parts(kind: Any) -> tuple[Any, ...]:
 
 
 def _validate(path: Path, mapping: Mapping) -> None:
-    """Refuse errors that the types do not detect. Errors: `UsageError`."""
+    """Raise `UsageError` for mistakes that the types do not detect."""
     if len(mapping.table.separator) != 1 or mapping.table.skip_rows < 0:
         raise UsageError(f"mapping {path}: table.separator must be one character and table.skip_rows not negative")
     for name, spec in fields(mapping).items():
@@ -279,7 +279,7 @@ def _validate_field(path: Path, name: str, spec: Field) -> None:
 
 
 def _contradictions(mapping: Mapping, names: AbstractSet[str]) -> list[tuple[bool, str]]:
-    """List contradictions, each with whether it is present here. `names`: the fields that the mapping gives."""
+    """Return each possible contradiction: whether the mapping has it, and its description. `names`: the fields of the mapping."""
     point = mapping.reference.point
     heading = "speed" in names or mapping.frame.velocity == "vehicle" or point != "centre"
     has_groups = any(GROUP_PLACEHOLDER in name for name in needed_columns(mapping))

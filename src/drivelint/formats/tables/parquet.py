@@ -1,4 +1,4 @@
-"""This module reads Parquet files through an open handle, so that no part of a path is taken for partition data."""
+"""Reads Parquet files through an open handle, because pyarrow would read parts of a path such as `key=value` as partition columns."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 MOST_BYTES: Final = 512 << 20
 MOST_UNPACKED: Final = 500
-"""A file is refused that unpacks to more than that many bytes and to so many times its own size: no positions pack like that."""
+"""A file is refused if it unpacks to more than `MOST_BYTES` and this many times its size: recorded positions do not pack so well."""
 _MAGIC: Final = b"PAR1"
 
 
 def schema(path: Path) -> pa.Schema:
-    """Return the schema of a file. Errors: `TraceError` where the file is damaged."""
+    """Return the schema of a file. Errors: `TraceError` if the file is damaged."""
     return _open(path, lambda file: file.schema_arrow)
 
 
 def n_rows(path: Path) -> int:
-    """Return the number of rows of a file. Errors: `TraceError` where the file is damaged."""
+    """Return the number of rows of a file. Errors: `TraceError` if the file is damaged."""
     return _open(path, lambda file: int(file.metadata.num_rows))
 
 
 def table(path: Path, columns: Iterable[str] | None = None) -> pa.Table:
-    """Read a file, or some columns of it. Errors: `TraceError` where the file is damaged."""
+    """Return all or the given columns of a file. Errors: `TraceError` if the file is damaged or would unpack to too many bytes."""
     names = None if columns is None else list(columns)
 
     def read(file: pq.ParquetFile) -> pa.Table:
@@ -44,7 +44,7 @@ def table(path: Path, columns: Iterable[str] | None = None) -> pa.Table:
 
 
 def column(rows: pa.Table, name: str) -> pa.Array:
-    """Return a column as one array, dictionaries spelled out."""
+    """Return a column as one array, with dictionary-encoded values decoded."""
     array = rows.column(name).combine_chunks()
     return array.cast(array.type.value_type) if pa.types.is_dictionary(array.type) else array
 
@@ -76,9 +76,9 @@ def _refuse_bomb(path: Path, metadata: pq.FileMetaData, n_columns: int) -> None:
 
 
 def _refuse_second_file(path: Path, file: BufferedReader) -> None:
-    """Refuse two files in one: the footer is that of the last, and counts from the beginning of the first.
+    """Raise `TraceError` if two Parquet files are concatenated, because the last footer's offsets would be applied to the first file.
 
-    The end of a file's data is not asked of its metadata: on damaged statistics of a column, the library ends the process.
+    The file is searched for magic bytes, because pyarrow ends the process if it reads column metadata with damaged statistics.
     """
     with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
         at = data.find(_MAGIC * 2)

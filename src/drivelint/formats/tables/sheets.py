@@ -1,4 +1,4 @@
-"""This module reads CSV and Parquet tables column by column through one interface."""
+"""Reads CSV and Parquet tables column by column through one interface."""
 
 from __future__ import annotations
 
@@ -25,23 +25,23 @@ if TYPE_CHECKING:
 MAX_NS = 2.0**63
 TEXT_BLOCK = 1 << 20
 _MOST_PLACES = 5
-"""How many places a message names."""
+"""A message lists at most this many places."""
 
 
 class CsvSheet:
-    """A CSV file of UTF-8 text. Every cell is read as text first: nothing is guessed, nothing dropped unseen."""
+    """A CSV file in UTF-8. Every cell is first read as text, so that no type is guessed and no invalid cell is missed."""
 
     def __init__(self, path: Path, layout: TextLayout) -> None:
-        """Read the header. Errors: `TraceError` where there is none."""
+        """Read the header. Errors: `TraceError` if there is none."""
         self._path, self._layout = path, layout
-        self.bad_lines: list[int] = []  # their number of cells is wrong; they are not among the rows
+        self.bad_lines: list[int] = []  # lines with a wrong number of cells, which are left out of the rows
         self.zeros_at: int | None = None
         self.metadata: dict[bytes, bytes] = {}
         self._skipped: list[int] = []
         self._columns: dict[str, pl.Series] = {}
         header, following = self._first_lines()
         self.names = [name.strip() for name in header]
-        # a comma at the end of every line but the header's is a habit of some writers, not a broken line
+        # some writers put a separator at the end of every line except the header
         self._spare = int(len(following) == len(header) + 1 and not following[-1].strip())
 
     def _first_lines(self) -> tuple[list[str], list[str]]:
@@ -64,7 +64,7 @@ class CsvSheet:
         return header, following
 
     def _check_text(self) -> None:
-        """Refuse bytes that are not UTF-8, naming the place: the CSV parser itself would ignore them in broken lines."""
+        """Raise `TraceError` with the place of bytes that are not UTF-8: in malformed lines, the CSV parser ignores them."""
         decoder, at = codecs.getincrementaldecoder("utf-8")(), 0
         with self._path.open("rb") as file:
             while True:
@@ -82,7 +82,7 @@ class CsvSheet:
                 at += len(block)
 
     def load(self, names: Iterable[str]) -> int:
-        """Read these columns as text."""
+        """Read these columns as text, and return the number of rows."""
         import pyarrow.csv as arrow_csv
 
         self._check_text()
@@ -114,7 +114,7 @@ class CsvSheet:
         return int(table.num_rows)
 
     def rows_before_bad_lines(self) -> list[int]:
-        """Return how many rows stand before each line that is not among them."""
+        """Return for each malformed line the number of rows before it."""
         skipped = np.array(self._skipped, np.int64)
         return [line - self._layout.skip_rows - 2 - int(np.searchsorted(skipped, line)) for line in self.bad_lines]
 
@@ -128,22 +128,22 @@ class CsvSheet:
             return bool(file.read().strip(b"\0\r\n"))
 
     def _refuse(self, row: Any) -> str:
-        """Note a line with the wrong number of cells (pyarrow's callback); blank lines are no loss."""
+        """Record a line with the wrong number of cells, as pyarrow's callback, and skip it; a blank line is no loss."""
         if row.text.strip(f" \t\r\n{self._layout.separator}"):
             self.bad_lines.append(row.number)
         self._skipped.append(row.number)
         return "skip"
 
     def text(self, name: str) -> pa.Array:
-        """Return the column as trimmed strings, empty ones as null."""
+        """Return the column as trimmed strings; NULL for empty cells."""
         return self._columns[name].to_arrow().cast(pa.string())
 
     def filled(self, name: str) -> Mask:
-        """Say which cells hold anything but blanks."""
+        """Return for each cell whether it is not empty."""
         return self._columns[name].is_not_null().to_numpy()
 
     def number(self, name: str) -> tuple[Floats, Mask]:
-        """Return values (NaN: empty or bad) and which cells are not numbers."""
+        """Return values (NaN: empty or not a number), and for each cell whether it is text that is not a number."""
         import polars as pl
 
         column = self._columns[name]
@@ -151,7 +151,7 @@ class CsvSheet:
         return values.fill_null(float("nan")).to_numpy(), (column.is_not_null() & values.is_null()).to_numpy()
 
     def time(self, name: str, unit: str) -> tuple[Times, Mask]:
-        """Return nanoseconds, whole ones exactly, and which cells are empty or not times."""
+        """Return nanoseconds (exact for integers), and for each cell whether it is empty or not a time."""
         import polars as pl
 
         t_ns, bad = _nanoseconds(*self.number(name), factor=TIME_UNITS[unit])
@@ -161,7 +161,7 @@ class CsvSheet:
         return np.where(exact.is_not_null().to_numpy(), exact.fill_null(0).to_numpy(), t_ns), bad
 
     def describe_rows(self, rows: Indices) -> str:
-        """Return the line numbers of the first of these rows."""
+        """Return words with the line numbers of the first rows in `rows`."""
         return describe_places("line", [self._line(int(row)) for row in rows[:_MOST_PLACES]], len(rows))
 
     def _line(self, row: int) -> int:
@@ -172,10 +172,10 @@ class CsvSheet:
 
 
 class ParquetSheet:
-    """A Parquet file, opened by its handle so that no part of its path is taken for data."""
+    """A Parquet file with the interface of `CsvSheet`."""
 
     def __init__(self, path: Path) -> None:
-        """Read the schema. Errors: `TraceError` where the file is damaged."""
+        """Read the schema. Errors: `TraceError` if the file is damaged."""
         self._path = path
         self.bad_lines: list[int] = []
         self.zeros_at: int | None = None
@@ -185,19 +185,19 @@ class ParquetSheet:
         self.metadata: dict[bytes, bytes] = dict(schema.metadata or {})
 
     def load(self, names: Iterable[str]) -> int:
-        """Read these columns."""
+        """Read these columns, and return the number of rows."""
         self._table = parquet.table(self._path, names)
         return int(self._table.num_rows)
 
     def rows_before_bad_lines(self) -> list[int]:
-        """Return none: a table of Parquet has no lines."""
+        """Return an empty list: Parquet has no malformed lines."""
         return []
 
     def _column(self, name: str) -> pa.Array:
         return parquet.column(self._table, name)
 
     def text(self, name: str) -> pa.Array:
-        """Return the column as trimmed strings; whole numbers without a decimal point."""
+        """Return the column as trimmed strings. A column of only whole numbers has no decimal points."""
         column = self._column(name)
         try:
             if pa.types.is_floating(column.type) and not pc.any(pc.not_equal(column, pc.floor(column))).as_py():
@@ -207,11 +207,11 @@ class ParquetSheet:
             raise TraceError(f"{self._path}: column {name!r} is {column.type}, not text: map another column") from error
 
     def filled(self, name: str) -> Mask:
-        """Say which cells are not null."""
+        """Return for each cell whether it is not NULL."""
         return np.asarray(self._column(name).is_valid().to_numpy(zero_copy_only=False), np.bool_)
 
     def number(self, name: str) -> tuple[Floats, Mask]:
-        """Return values; the type of the column decides whether they are numbers."""
+        """Return values (NaN: NULL), and False for each cell. Errors: `TraceError` if the column's type is not numeric."""
         column = self._column(name)
         try:
             values = column.cast(pa.float64(), safe=False)
@@ -222,7 +222,7 @@ class ParquetSheet:
         return pc.fill_null(values, float("nan")).to_numpy(zero_copy_only=False), np.zeros(len(column), np.bool_)
 
     def time(self, name: str, unit: str) -> tuple[Times, Mask]:
-        """Return nanoseconds; a column of time stamps or durations knows its own unit."""
+        """Return nanoseconds, and for each cell whether it is NULL or out of range. Time stamps and durations ignore `unit`."""
         column = self._column(name)
         if pa.types.is_timestamp(column.type) or pa.types.is_duration(column.type):
             column, unit = column.cast(pa.int64()), column.type.unit
@@ -235,12 +235,12 @@ class ParquetSheet:
         return np.where(beyond, 0, whole) * factor, beyond | column.is_null().to_numpy(zero_copy_only=False)
 
     def describe_rows(self, rows: Indices) -> str:
-        """Return the numbers of the first of these rows."""
+        """Return words with the numbers of the first rows in `rows`."""
         return describe_places("row", [int(row) + 1 for row in rows[:_MOST_PLACES]], len(rows))
 
 
 Sheet = CsvSheet | ParquetSheet
-"""A table on disk whose columns are read by name; an empty cell gives NaN or null."""
+"""A table on disk whose columns are read by name. Empty cells become NaN or NULL."""
 
 
 def describe_places(noun: str, first: list[int], n: int) -> str:
@@ -257,7 +257,7 @@ def _trimmed(column: pa.Array | pa.ChunkedArray, null_texts: list[str]) -> pl.Se
 
 
 def _nanoseconds(values: Floats, bad: Mask, *, factor: int) -> tuple[Times, Mask]:
-    """Scale to nanoseconds and round: 8.3 s is 8,300,000,000 ns."""
+    """Return values scaled to nanoseconds and rounded (8.3 s is 8,300,000,000 ns), and for each cell whether it is bad or too large."""
     with np.errstate(invalid="ignore", over="ignore"):
         scaled = np.rint(values * float(factor))
         lost = bad | ~(np.abs(scaled) < MAX_NS)
