@@ -79,7 +79,7 @@ def _exists(path: Path) -> bool:
 
 
 def _inside(path: Path) -> list[Path]:
-    """Return the logs of a folder, and the paths in it that may contain logs but cannot be searched. Reading these raises the reason."""
+    """Return the logs of a folder, and the paths in it that may contain logs but cannot be searched. Reading such a path reports why."""
     if not path.is_dir() or why_not_here(path) is not None or is_drive_folder(path):
         return [path]
     content = tree(path, _SEARCHED_SUFFIXES)
@@ -102,7 +102,7 @@ def _inside(path: Path) -> list[Path]:
 
 
 def is_log_name(name: str) -> bool:
-    """Return whether a file or URL has a suffix of traces; a pickle needs a name that ScenarioNet gives to scenarios."""
+    """Return whether a file or URL has a suffix of traces; a pickle must have a name that ScenarioNet gives to scenarios."""
     file = PurePath(name)
     if file.suffix.lower() == ".pkl":
         return file.name.startswith("sd_") or file.stem.isdecimal()

@@ -21,8 +21,8 @@ CANONICAL_FILES = (
 class FolderKind(NamedTuple):
     """A kind of folder that is one drive.
 
-    `marks`: patterns of `Path.glob`; the folder has a file for each. `files`: patterns of the files that are read, in the order in which
-    they are hashed.
+    `marks`: patterns of `Path.glob`; the folder has a file for each pattern. `files`: patterns of the files that are read, in the order in
+    which they are hashed.
     """
 
     name: str

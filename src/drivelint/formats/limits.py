@@ -42,7 +42,7 @@ class _BeyondError(BaseException):
 
 
 class _Watch:
-    """Measures, in a thread of its own, the thread that created it, and interrupts that thread once if it exceeds a limit."""
+    """Measures, in a thread of its own, time and memory of the thread that created it, and interrupts that thread at a limit."""
 
     def __init__(self, n_bytes: int) -> None:
         self.seconds, self.bytes = LEAST_S + n_bytes * S_PER_BYTE, most_bytes(n_bytes)
@@ -85,7 +85,7 @@ def _noticed() -> None:
 
 
 def bounded(read_file: Callable[[], T], name: str, n_bytes: int, kind: type[DriveLintError]) -> T:
-    """Return the result of `read_file` for a file of `n_bytes`. Errors: `kind`, about `name`, with the exceeded limit and the module."""
+    """Return the result of `read_file` for a file of `n_bytes`. Errors: `kind`, with `name`, the exceeded limit and the module."""
     watch = _Watch(n_bytes)
     try:
         try:

@@ -41,7 +41,7 @@ class Reader(Protocol):
 
     @property
     def formats(self) -> Mapping[str, tuple[str, str]]:
-        """Return `Recording.format` -> the format's title, and how its ego is known. Empty if the format is the name of a mapping."""
+        """Return `Recording.format` -> the format's title, and how its ego is determined. Empty if the format is a mapping's name."""
         ...
 
     @property

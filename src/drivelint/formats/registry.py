@@ -1,4 +1,4 @@
-"""The readers of trace formats, in the order in which they are tried. Content decides; files of some suffixes need fixed first bytes."""
+"""The readers of trace formats, in the order in which they are tried. A file's content shows its format; some suffixes must match it."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ READERS: Final = (
 )
 """The modules of the readers. The first that accepts a file reads it; the later ones are not imported."""
 FIXED_BEGINNINGS: Final = {".mcap": b"\x89MCAP", ".parquet": b"PAR1", ".pkl": b"\x80"}
-"""Suffix -> the first bytes of each file with it, after any byte order mark. A file without these is refused as damaged."""
+"""Suffix -> the first bytes that a file with this suffix must have, after any byte order mark. Other files are refused as damaged."""
 UNPROTECTED: Final = QualityFinding(
     "unprotected", "info", "not all of the log is covered by checksums: damage inside it may go unseen"
 )
@@ -51,7 +51,7 @@ def readers() -> Iterator[Reader]:
 
 
 def format_words(name: str) -> tuple[str, str] | None:
-    """Return a format's title, and how its ego is known. `name`: its name in `data_log.format`. None for the name of a mapping."""
+    """Return a format's title, and how its ego is determined. `name`: its name in `data_log.format`. None for the name of a mapping."""
     return next((reader.formats[name] for reader in readers() if name in reader.formats), None)
 
 
@@ -99,7 +99,7 @@ def _read(probe: Probe, before: list[tuple[str, int, int]]) -> Trace:
 
 
 def may_be_mapped_table(path: Path, options: IngestOptions) -> bool:
-    """Return whether no reader except that of tables with a mapping accepts a file. False if the file cannot be probed."""
+    """Return whether a file is left to the last reader, that of tables with a mapping. False if the file cannot be probed."""
     try:
         probe = _probe(path, options)
     except TraceError:

@@ -30,7 +30,8 @@ def join_riders(
     """Give riders the box around them and their vehicle, in place. Return which rows another row's box includes, and the riders' tracks.
 
     Arguments, for n boxes: time, track, whether it is a rider or a ridden vehicle, and the columns x_m, y_m, z_m, yaw_rad, length_m,
-    width_m, height_m. A rider must be on the vehicle in most samples that both have. Of several riders on one, the first gets the box.
+    width_m, height_m. A rider must be on the vehicle in most samples that both have. Of several riders on a vehicle, the first track gets
+    the box.
     """
     inside = np.zeros(len(t_ns), np.bool_)
     on, under = _on_and_under(t_ns, actor, rider, ridden, boxes)

@@ -27,7 +27,7 @@ class Tree(NamedTuple):
 
 
 def tree(root: Path, suffixes: Collection[str]) -> Tree:
-    """Return the content of a folder. Missing files are listed only with a suffix of logs (`suffixes`), or without any, as folders have."""
+    """Return the content of a folder. A missing file is listed only if it has a suffix of logs (`suffixes`), or none, like a folder."""
     content = Tree([], [], [], [])
     waiting = [root]
     inside = root.resolve()

@@ -51,7 +51,7 @@ _CLOCK: Final = ("start_timestamp", "end_timestamp", "num_timestamps")
 
 
 def accepts(probe: Probe) -> bool:
-    """Return whether the path is a scenario folder, or a Parquet file with its columns and no mapping is given."""
+    """Return whether the path is a scenario folder or, without a mapping, a Parquet file with the columns of a scenario."""
     if probe.path.is_dir():
         return folder_kind(probe.path) == NAME
     if probe.options.mapping is not None or not probe.head.startswith(b"PAR1"):
@@ -138,7 +138,7 @@ def _times(path: Path, rows: pa.Table, step: Times) -> Times:
 def _place_ego(states: States) -> None:
     """Move the ego from its rear axle to its box centre, and set its class and size, in place.
 
-    The velocity remains that of the axle: along the heading, both points have the same.
+    The velocity remains that of the axle: along the heading, both points have the same velocity.
     """
     ego_rows = states.actor == states.ids.index(EGO_ID) if EGO_ID in states.ids else np.zeros(len(states), np.bool_)
     states.codes["actor_class"][ego_rows] = ACTOR_CLASSES.index("car")

@@ -99,10 +99,10 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
 
 
 def _geo_frame(root: etree._Element, quality: MapQuality) -> GeoFrame | None:
-    """Return the geodetic frame of the coordinates. Added to them, the translation gives coordinates of the reference, as in CommonRoad's
-    own converters.
+    """Return the geodetic frame of the map's coordinates; None if the map states none that can be used.
 
-    `gpsLatitude` and `gpsLongitude` are not used: they are those of the town of `geoNameId`, or 999, not of the point 0,0.
+    The map's coordinates plus the translation are coordinates of the reference, as in CommonRoad's own converters. `gpsLatitude` and
+    `gpsLongitude` are not used: they are those of the town of `geoNameId`, or 999, not of the point 0,0.
     """
     reference = (root.findtext("location/geoTransformation/geoReference") or "").strip()
     more = root.find("location/geoTransformation/additionalTransformation")

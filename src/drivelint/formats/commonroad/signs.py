@@ -63,7 +63,7 @@ class Signs:
     elements: dict[str, list[SignElement]] = field(default_factory=dict)
 
     def speed_limit(self, lanelet: etree._Element) -> tuple[float | None, str]:
-        """Return a lanelet's limit in m/s, and its source, sign or lane: the lowest of its signs' limits and its own (2018b).
+        """Return the lowest limit in m/s of a lanelet's signs and of the lanelet itself (2018b), and its source, sign or lane.
 
         None: the map gives no certain limit. If a lower limit holds only under the condition of a plate, the limit is not certain.
         """
@@ -227,7 +227,7 @@ def stop_line_stations(
 
 
 def points(parent: etree._Element | None) -> Floats:
-    """Return the points (n, 2) below an element. Errors: `ValueError` with the line of a point that is not two possible numbers."""
+    """Return the points (n, 2) below an element. Errors: `ValueError` with the line of a point without possible x and y."""
     found = [] if parent is None else list(parent.iterfind(".//point"))
     both = np.array([[safe_xml.number(p.findtext(axis)) for axis in "xy"] for p in found], np.float64).reshape(-1, 2)
     bad = np.flatnonzero(~(np.abs(both) < FARTHEST_M).all(axis=1))

@@ -28,7 +28,7 @@ _COLUMNS: Final = {
     "velocity_3d": pa.list_(pa.list_(pa.float64(), 3)),
 }
 SAME_MPS: Final = 1e-6
-"""A velocity within this of the difference between the boxes before and after, by time, was computed from them, not measured."""
+"""A velocity this near to the mean velocity between the boxes before and after was computed from these boxes, not measured."""
 _LEAST_COMPARED: Final = 20
 _LEAST_SHARE: Final = 0.99
 
@@ -181,7 +181,7 @@ def _moves(states: States, least_m: float = 0.5) -> bool:
 
 
 def _way_between_boxes(states: States, frame: Indices, has_velocity: Mask) -> bool:
-    """Return whether nearly all velocities are computed from the boxes one frame before and after: their difference by the time."""
+    """Return whether nearly all velocities are the mean velocity from the box one frame before to the box one frame after."""
     order = np.lexsort((frame, states.actor))
     actor, at = states.actor[order], frame[order]
     in_row = (actor[:-2] == actor[2:]) & (at[2:] - at[1:-1] == 1) & (at[1:-1] - at[:-2] == 1)

@@ -32,7 +32,7 @@ class Clock(NamedTuple):
 
     @property
     def notes(self) -> list[str]:
-        """The notes for the user on the start of the times."""
+        """The note for the user that times count from `zero_us`; none if that is 0."""
         if not self.zero_us:
             return []
         return [
@@ -43,7 +43,7 @@ class Clock(NamedTuple):
 def clock(folder: Path, columns: Iterable[pa.Array], *, utc: bool) -> Clock:
     """Return the clock of a log with these columns of times. Errors: `TraceError` for impossible times.
 
-    drivelint takes all times as large as UTC's for UTC. Such times of another clock therefore count from the first time of the log.
+    drivelint treats times as large as those of UTC as UTC. Large times of another clock therefore count from the first time of the log.
     """
     every = np.concatenate([integers(stamps) for stamps in columns])
     low, high = int(every.min()), int(every.max())

@@ -59,7 +59,7 @@ def ego_id(box_ids: Iterable[str]) -> str:
 def ego_box(ego: Modality, about: facts.Dataset, name: str, forward_m: float) -> tuple[EgoBox, list[QualityFinding]]:
     """Return the ego's box, and findings. Errors: `TraceError` for metadata that do not contain the box.
 
-    `forward_m`: how far the box centre is ahead by the user's option, used if the metadata contradict themselves.
+    `forward_m`: the user's option for how far the box centre is ahead, used if the metadata contradict themselves.
     """
     entries = ego.metadata
     centre, axle = (_pose(ego, key) for key in ("center_to_imu_se3", "rear_axle_to_imu_se3"))
@@ -125,7 +125,7 @@ def _centre_velocity(ego: Modality, imu: Poses, motion: Floats, box: EgoBox) -> 
 
 
 def _way_between_poses(ego: Modality, imu: Poses, velocity: Floats, has_velocity: Mask) -> bool:
-    """Return whether nearly all velocities are computed from the positions before and after: their difference by the time."""
+    """Return whether nearly all velocities are the mean velocity from the pose before to the pose after."""
     t_us = ego.columns["timestamp_us"].to_numpy(zero_copy_only=False)
     if len(t_us) - 2 < _LEAST_COMPARED:
         return False

@@ -32,7 +32,7 @@ _FASTEST_MPS: Final = 45.0  # 160 km/h: a higher limit is a mistake, or in anoth
 
 
 def read(source: MapSource, request: MapOptions) -> MapTables:
-    """Return the map's tables. Errors: `MapError` if the file is no map of 123D, of a version that is not read, or has no lane."""
+    """Return the map's tables. Errors: `MapError` for a file that is no map of 123D, a version that is not read, or a map without lanes."""
     layers, quality = Layers.of_source(source), MapQuality()
     about = facts.dataset(layers.info.dataset)
     lanes = _lanes(layers, quality)

@@ -61,7 +61,7 @@ def shared_map(folder: Path, info: LogInfo) -> Path | None:
 
 
 def _signalled_lanes(layers: Layers) -> set[int]:
-    """Return the lanes in intersections that have lights by the map, as `lanes.py` finds them."""
+    """Return the lanes in intersections that the map marks as having lights, as `lanes.py` does."""
     quality = MapQuality()  # not used: the map's reader reports unreadable objects
     intersections = layers.features("INTERSECTION", Intersection, quality)
     signalled = {

@@ -1,8 +1,8 @@
 """Reads a log of 123D, a folder of Arrow files: the ego's states, the boxes of the actors around it, lights, and its map.
 
 A log has a table of frames (`sync.arrow`), which links the rows of each file to the frames. The ego's poses may be far denser than the
-boxes; the ego's steps are the frames that have both, because the actors around it are not known in between. Positions of boxes are their
-centres. The recorded pose of the ego is that of its IMU; the reader moves it to the centre of the ego's box.
+boxes; the ego's steps are the frames that have both, because the actors around it are not known in between. Positions are box centres.
+The recorded pose of the ego is that of its IMU; the reader moves it to the box centre.
 """
 
 from __future__ import annotations

@@ -35,7 +35,7 @@ _TREE: Final[FieldTree] = {
 
 
 class Sightings(NamedTuple):
-    """The numbers of the frames, ascending, and for each actor its distance ahead in each frame; NaN where it was not detected."""
+    """The numbers of the frames, ascending, and each actor's distance ahead in each frame (NaN: not detected, inf: distance unknown)."""
 
     frames: NDArray[np.int64]
     ahead_m: list[Floats]

@@ -54,7 +54,7 @@ class RoadShape(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class EgoCar(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """The vehicle with the camera. The camera is taken as its front end."""
+    """The vehicle with the camera. The camera is assumed to be at the front end."""
 
     speed: Speed
     id: str = "ego"

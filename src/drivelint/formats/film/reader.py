@@ -1,7 +1,7 @@
 """Reads filmed drives: the detections in each frame, placed on the straight road that the mapping assumes.
 
-Distances ahead are from bumper to bumper along the road. Between its first and last detection, an actor is present without a place in a
-frame that does not detect it. Before and after, it is absent: only the range of the detector is known.
+Distances ahead are from bumper to bumper along the road. An actor that is not detected in a frame is present without a place, if it was
+detected before and is detected later. Otherwise it is absent: only the range of the detector is known.
 
 Places are box centres: half a length behind the front bumper.
 """
@@ -32,9 +32,9 @@ if TYPE_CHECKING:
 formats: Final[dict[str, tuple[str, str]]] = {}
 takes_mapping: Final = True
 PULL_OUT_START_OVER_LINE_M: Final = 0.06
-"""How far a corner of the ego is over the centre line in the first frame of pulling out: just above the threshold of 0.05 m."""
+"""How far a corner of the ego is over the centre line in the first frame of pulling out: just over 0.05 m, which counts as over it."""
 PULL_OUT_END_REMAINING_M: Final = 0.11
-"""How far the ego is from its offset of passing in the last frame of pulling out: just above the tolerance of 0.1 m."""
+"""How far the ego is from its offset of passing in the last frame of pulling out: just over 0.1 m, which does not count as settled."""
 MOST_FRAMES: Final = 10_000_000
 """46 hours at 60 frames a second: a larger number is not a frame number."""
 ROAD_EXTENSION_M: Final = 400.0
@@ -180,8 +180,8 @@ def _states(
 def _across(film: VideoMapping, stages: OvertakeStages, frames: NDArray[np.int64]) -> Floats:
     """Return how far beyond the centre line the ego's middle is in each frame, so that the stages begin in the frames of the mapping.
 
-    It changes linearly from touching the line to just before the offset of passing, is constant, and changes linearly from the first frame
-    of the abort to the middle of the lane.
+    The path is linear from touching the line to just before the offset of passing, then constant, then linear from the first frame of the
+    abort to the middle of the lane.
     """
     home = -film.road.lane_width / 2
     touching = PULL_OUT_START_OVER_LINE_M - film.ego.width / 2

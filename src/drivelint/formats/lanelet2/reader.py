@@ -94,7 +94,8 @@ def _lanes(layers: Any, quality: MapQuality) -> Iterable[BoundedLane]:
 def _beside(lanelet: Any, same: Sequence[Any], against: Sequence[Any]) -> tuple[str | None, bool | None]:
     """Return the neighbour across a line, and whether it is driven the other way.
 
-    `same`: the lanes with this line as the bound on their other side; `against`: as the bound on the same side, reversed.
+    `same`: the lanes with this line as the bound of their other side. `against`: the lanes with this line, reversed, as the bound of the
+    same side.
     """
     for lanes, other_way in ((same, False), (against, True)):
         for x in lanes:

@@ -123,7 +123,7 @@ def _divide(s: Floats, parts: Floats) -> Floats:
 
 
 def _deviation(evaluator: Evaluator, s: Floats) -> Floats:
-    """Return into how many parts each interval has to be cut (1: good as it is)."""
+    """Return into how many parts each interval has to be cut (1: it stays whole)."""
     edges = evaluator.edges(_divide(s, np.full(len(s) - 1, 4.0)))
     x, y = edges.x, edges.y
     ax, ay, dx, dy = x[:, :-1:4], y[:, :-1:4], np.diff(x[:, ::4]), np.diff(y[:, ::4])

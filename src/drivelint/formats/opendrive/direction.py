@@ -162,7 +162,7 @@ class DrivingSideStatements:
 def _disagreements(
     statements: Sequence[DrivingSideStatement], quality: MapQuality, wrong: str, advice: str | None = None
 ) -> None:
-    """Report statements that disagree. `wrong`: what is wrong if the first statement is; `advice`: the remedy if --handedness is none."""
+    """Report statements that disagree. `wrong`: what is wrong if the first statement is; `advice`: another remedy than --handedness."""
     if len({w.side for w in statements}) > 1:
         first, second = statements[:2]
         # if the second statement agrees with the option, leaving out the option changes nothing
@@ -180,7 +180,7 @@ def _winner(votes: Counter[str]) -> str | None:
 
 
 def _junction_votes(net: Network) -> Counter[str]:
-    """Count the side that each lane in a junction shows: traffic runs away from the end at which its road is entered."""
+    """Return how many lanes in junctions show lht and rht: traffic runs away from the end at which their road is entered."""
     votes: Counter[str] = Counter()
     for connection in net.connections:
         road = net.roads.get(connection.connecting)

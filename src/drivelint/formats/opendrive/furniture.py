@@ -144,7 +144,10 @@ def _shape(corners: Floats) -> shapely.Geometry:
 
 
 def _lies_across(lane: Lanelet, corners: Floats, points: Floats, middle: float) -> bool:
-    """Return whether a line crosses enough of a lane's width. `points`: the line's points on the lane; `middle`: their mean station (m)."""
+    """Return whether a line crosses enough of a lane's width, at a large enough angle.
+
+    `points`: the line's points on the lane; `middle`: their mean station (m).
+    """
     line = lane.line
     columns = (*line.centre.T, *line.tangent.T, line.half_width)
     x, y, tx, ty, half = (float(np.interp(middle, line.s, column)) for column in columns)

@@ -58,7 +58,7 @@ class Lanelet:
         return float(np.interp(road_s, self.road_s[::step], self.line.s[::step]))
 
     def lateral_range(self, road_s: float) -> tuple[float, float]:
-        """Return the road coordinates t between which the lanelet lies at a road station (m)."""
+        """Return the least and the largest road coordinate t of the lanelet at a road station (m)."""
         s = self.station_at(road_s)
         t, half = (float(np.interp(s, self.line.s, values)) for values in (self.t, self.line.half_width))
         return t - half, t + half

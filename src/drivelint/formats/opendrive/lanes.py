@@ -184,7 +184,7 @@ def _unbuildable(strip: LaneSection) -> dict[int, str]:
 
 
 def _adjoin(a: Lanelet, b: Lanelet) -> None:
-    """Make `b` the neighbour of `a` on the right of the reference line."""
+    """Make `b` the neighbour of `a` on its right, seen along the reference line."""
     setattr(a, "right" if a.along > 0 else "left", b)
     setattr(b, "left" if b.along > 0 else "right", a)
 

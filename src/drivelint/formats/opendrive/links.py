@@ -116,7 +116,7 @@ def _junction_contacts(net: Network, connection: Connection, quality: MapQuality
 
 
 def _end_at_junction(incoming: Road, connecting: Road, connection: Connection) -> str:
-    """Return which end of the incoming road is at the junction: as the road states, else the connecting road, else the nearer end."""
+    """Return which end of the incoming road is at the junction: as this road or the connecting road states, else the nearer end."""
     ends = [e for e, join in incoming.joins.items() if join.is_junction and join.element_id == connection.junction_id]
     if len(ends) == 1:
         return ends[0]
@@ -134,7 +134,7 @@ def _road_end(road: Road, end: str) -> np.ndarray:
 
 
 def _through_short(touching: set[tuple[LaneEnd, LaneEnd]], short: set[LaneKey]) -> set[tuple[LaneEnd, LaneEnd]]:
-    """Return the contacts with each section that was left out as too short replaced by contacts between the lanes at its two ends."""
+    """Return the contacts; where a section was left out as too short, the lanes at its two ends touch each other instead."""
     result = set(touching)
     for key in sorted(short):
         beside: dict[str, set[LaneEnd]] = {START: set(), END: set()}

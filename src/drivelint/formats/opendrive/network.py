@@ -116,7 +116,7 @@ class Road:
         return [(self.road_id, strip.section, lane.number) for strip in self.strips for lane in strip.lanes]
 
     def sections_on_side(self, lane_no: int) -> list[LaneSection]:
-        """Return the lane sections with lanes on that side, in order of station."""
+        """Return the lane sections with lanes on the same side as lane `lane_no`, in order of station."""
         return [s for s in self.strips if any((lane.number > 0) == (lane_no > 0) for lane in s.lanes)]
 
     def place(self, s: Floats, t: Floats, offset: tuple[float, float]) -> tuple[Floats, Floats, Floats]:

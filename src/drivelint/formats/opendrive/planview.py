@@ -149,7 +149,7 @@ class PlanView:
         return float(self.s[-1] + self.length[-1])
 
     def evaluate(self, s: Floats, at: Floats) -> ReferenceLine:
-        """Return the line at stations `s` (n,), ascending, taking the geometries that hold at stations `at` (n,)."""
+        """Return the line at stations `s` (n,), ascending, by the geometries that apply at stations `at` (n,)."""
         k = np.clip(np.searchsorted(self.s, at, side="right") - 1, 0, len(self.s) - 1)
         ds = s - self.s[k]
         inside = np.clip(ds, 0.0, self.length[k])
@@ -224,9 +224,9 @@ class Cubics:
     coef: Floats  # (n, 4)
 
     def evaluate(self, s: Floats, at: Floats) -> tuple[Floats, Floats]:
-        """Return values and first derivatives at stations `s`, taking the records that hold at stations `at`.
+        """Return values and first derivatives at stations `s`, by the records that apply at stations `at`.
 
-        `at` differs from `s` at the ends of a section, where the record on the section's own side is wanted.
+        `at` differs from `s` at the ends of a section, where the record inside the section applies.
         """
         if not len(self.start):
             return np.zeros_like(s), np.zeros_like(s)

@@ -232,7 +232,7 @@ def _of_parallel_lanes(lanes: Sequence[CentreLine], all_lanes: Sequence[CentreLi
 
 
 def fill_unknown_sides(lanes: Mapping[str, CentreLine]) -> dict[str, float]:
-    """Set unknown distances to bounds by the lanes that a lane joins, in place; return lane -> share of its distances set in this way.
+    """Fill in unknown distances to bounds by the lanes that a lane joins, in place; return lane -> share of its distances filled in.
 
     At its ends, a lane is as wide as its predecessors or successors; in between, the width changes linearly. A side that is still unknown
     gets the distance of the other side.

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 _MARKINGS: Final = {
     "BROKEN_SINGLE": "broken", "SOLID_SINGLE": "solid", "SOLID_DOUBLE": "solid_solid", "BROKEN_DOUBLE": "broken_broken",
 }  # fmt: skip
-"""The part of a type between ROAD_LINE_ and the colour -> marking. Lines that may be crossed from one unknown side are missing."""
+"""The part of a type between ROAD_LINE_ and the colour -> marking. Missing: double lines that may be crossed from one side only."""
 _OVERLAP_SHARE: Final = 0.1  # of the smaller lane's area: a smaller overlap is an inaccuracy of bounds
 _CROSSING_RAD: Final = float(np.radians(25.0))  # lanes at a smaller angle split or merge
 _MPH: Final = 0.44704

@@ -87,11 +87,11 @@ _ARRAY: Final = re.compile(
 )  # fmt: skip
 _ARRAY_END: Final = b"\x94t\x94b"  # after the bytes: MEMOIZE, TUPLE, MEMOIZE, BUILD
 _ARRAY_NUMBERS: Final = 6
-"""The parts of an array that get a memo number: the third is the array, the fifth its bytes. The file does not refer to other parts."""
+"""The number of parts of an array with a memo number. The file refers only to the third, the array, and the fifth, its bytes."""
 
 
 def array_at(content: bytes, at: int, memo: dict[int, Any], count: int) -> tuple[np.ndarray[Any, Any], int, int] | None:
-    """Return the array whose function ends at byte `at`, where the array ends, and the next memo number; None if this is not an array.
+    """Return the array whose constructor is read up to byte `at`, where the array ends, and the next memo number; None: no array.
 
     `memo`: memo number -> value; the array and its bytes are added. `count`: the next memo number before the array. Errors: as `array_of`.
     """

@@ -47,11 +47,11 @@ class Dataset(NamedTuple):
     nations: Mapping[str, str] = {}
 
     def nation_of(self, place: str) -> str | None:
-        """Return the country of a place, which the scenario names, as two letters; None: not known."""
+        """Return the country, as two letters, of the place that the scenario names; None: not known."""
         return next((nation for begin, nation in self.nations.items() if place.startswith(begin)), None)
 
     def side_driven_on(self, place: str) -> str | None:
-        """Return lht or rht at a place, which the scenario names; None: not known."""
+        """Return the side that is driven on, lht or rht, at the place that the scenario names; None: not known."""
         nation = self.nation_of(place)
         return None if nation is None else side_of_nation(nation)
 

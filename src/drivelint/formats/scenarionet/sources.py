@@ -24,7 +24,8 @@ _MOVING_MPS: Final = 1.0
 _DISTINCT_MPS: Final = 0.05
 _SAME_MPS: Final = 0.02
 _SAME_SHARE: Final = 0.01
-"""A velocity within `_SAME_MPS` plus this share of a difference of positions is that difference: rounded times change it by under 0.1 %."""
+"""A velocity equals a difference of positions if both differ by less than `_SAME_MPS` plus this share. (Rounded times change it by under
+0.1 %.)"""
 _LEAST_SAME_SHARE: Final = 0.9
 _LEAST_SAMPLES: Final = 10
 _EVEN_M: Final = 1e-4
@@ -148,7 +149,7 @@ def _spread_m(tracks: Tracks) -> Floats:
 
 
 def turn_boxes(tracks: Tracks, dataset: Dataset) -> list[QualityFinding]:
-    """Exchange length and width, in place, of actors of a long kind that move along their short side.
+    """Exchange length and width, in place, of vehicles that move along their short side.
 
     The ego's are also exchanged if the data set is known to exchange them. Without such evidence, length and width become NaN.
     """

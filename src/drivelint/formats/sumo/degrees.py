@@ -80,7 +80,7 @@ def _are_degrees(path: Path, rows: Rows, xy: Floats, actor: NDArray[np.int32], n
         )
     if moves is not None or rows.geo_option is not None:
         return bool(rows.geo_option if moves is None else moves)
-    # no actor moves, and the unit of the numbers is not stated: the net shows it
+    # no actor moves, and the unit of the positions is not stated: the net shows the unit
     location = None if net is None else read_location(net)
     frame = None if location is None else location.frame()
     if location is None or frame is None or location.trouble():

@@ -63,7 +63,7 @@ def is_fcd(path: Path, head: bytes) -> bool:
 
 
 def accepts(probe: Probe) -> bool:
-    """Return whether the file is FCD to be read here: with a mapping for tables, only a table with angles that names its elements."""
+    """Return whether the file is FCD. With a mapping for tables, the columns must also name their elements and include angles."""
     if probe.path.is_dir() or not is_fcd(probe.path, probe.head):
         return False
     if probe.options.mapping is None or probe.options.mapping.lower().endswith(".xml"):
@@ -146,7 +146,7 @@ def _t_ns(rows: Rows) -> Times:
 
 
 def _kinds_by_type(rows: Rows, types: Mapping[str, VehicleType]) -> Codes:
-    """Return the kinds of the rows. In a table, whose column names do not show the kind of a row, the type shows it if it is known."""
+    """Return the kinds of the rows. A table's column names do not show the kind of a row; the row's type does, if it is known."""
     open_ = np.isin(rows.kind, (UNKNOWN, CARRIED))
     if not open_.any():
         return rows.kind

@@ -116,7 +116,7 @@ def _geo_frame(root: etree._Element, quality: MapQuality) -> GeoFrame | None:
 
 
 def _handedness(request: MapOptions, net_side: str | None, quality: MapQuality) -> tuple[str, str]:
-    """Return the side that is driven on, and its source. `net_side`: the side by the net's `lefthand`; None: lost by an import."""
+    """Return the side that is driven on, and its source. `net_side`: the side that the net states; None: its import lost the side."""
     if net_side is not None and request.side not in {None, net_side}:
         message = f"the option --handedness: {request.side}; the net: {net_side}; the option is taken"
         quality.add("handedness_disagrees", "warning", None, message)
