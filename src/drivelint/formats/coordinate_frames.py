@@ -1,7 +1,6 @@
-"""Coordinate frames: poses brought from the frame they are given in to the fixed one, along the chain of transforms.
+"""Transforms poses from the frame in which they are recorded to the fixed frame, along the chain of transforms.
 
-A transform that moves is interpolated between its neighbours in time, never carried on beyond them: a pose that cannot be transformed has
-no place.
+A transform that changes is interpolated between two times, never extrapolated: a pose that cannot be transformed has the place NaN.
 """
 
 from __future__ import annotations
@@ -21,10 +20,9 @@ if TYPE_CHECKING:
     from drivelint.arrays import Times
 
 FIXED_FRAMES: Final = ("map", "world", "odom")
-"""What the frame that everything is brought into may be called, best first (REP 105: of these only `map` and the earth's
-do not drift)."""
+"""The names that the fixed frame may have, best first. By REP 105, `map` does not drift and `odom` does."""
 MAX_HOLE_NS: Final = 500_000_000
-"""Transforms further apart are not joined: in 0.5 s a car at 20 m/s that turns with 0.5 rad/s leaves the chord by 0.3 m."""
+"""Transforms further apart are not interpolated: in 0.5 s, a car at 20 m/s that turns at 0.5 rad/s deviates from the chord by 0.3 m."""
 
 
 class Poses(NamedTuple):
@@ -35,19 +33,19 @@ class Poses(NamedTuple):
 
     @property
     def yaw(self) -> Vectors:
-        """Return the headings."""
+        """Return the headings (n,) in radians."""
         x, y, z, w = self.turn.T
         yaw: Vectors = np.arctan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
         return yaw
 
     def compose(self, inner: Poses) -> Poses:
-        """Return poses that are given relative to these ones in the frame of these ones."""
+        """Return the poses `inner`, given relative to these poses, in the frame in which these poses are given."""
         return Poses(self.place + rotated(self.turn, inner.place), _product(self.turn, inner.turn))
 
 
 @dataclass
 class _Edge:
-    """How a frame lies in its parent: at times in order, or always (`static`)."""
+    """The poses of a frame in its parent frame: at ascending times, or one for all times (`static`)."""
 
     parent: str
     static: bool
@@ -63,7 +61,7 @@ class TransformTree:
     ambiguous: set[str] = field(default_factory=set)
 
     def add(self, child: str, parent: str, t_ns: Times, poses: Poses, *, static: bool) -> None:
-        """Add all transforms of a frame. A second parent makes the frame ambiguous; of static transforms the last holds."""
+        """Add transforms of a frame. A second parent makes the frame ambiguous. Of several static transforms, the last applies."""
         known_edge = self.edges.get(child)
         if known_edge is not None and known_edge.parent != parent:
             self.ambiguous.add(child)
@@ -77,7 +75,7 @@ class TransformTree:
         self.edges[child] = _Edge(parent, static, t_ns, Poses(*(column[last] for column in poses)))
 
     def chain(self, frame: str, fixed: str) -> list[_Edge] | None:
-        """Return the transforms from a frame up to the fixed one; None where there is no way."""
+        """Return the transforms from a frame up to the fixed frame; None if no chain leads there."""
         edges: list[_Edge] = []
         while frame != fixed:
             edge = self.edges.get(frame)
@@ -108,9 +106,9 @@ class TransformTree:
 
 
 def fixed_frame(frames: TransformTree, used: Iterable[str]) -> str:
-    """Return the fixed frame for poses that are given in the frames `used`, named as recorded, the most important first.
+    """Return the fixed frame for poses in the frames `used` (names as recorded, the most important first).
 
-    The best of `FIXED_FRAMES` that any of them leads to, else the one above the first of them.
+    This is the first of `FIXED_FRAMES` to which a chain leads from any of them, else the topmost frame above the first of them.
     """
     names = [clean_frame_name(name) for name in used]
     for candidate in FIXED_FRAMES:
@@ -120,19 +118,19 @@ def fixed_frame(frames: TransformTree, used: Iterable[str]) -> str:
 
 
 def clean_frame_name(name: str) -> str:
-    """Return a frame's name without the slash that old recordings have before it."""
+    """Return a frame's name without the leading slash of old recordings."""
     return name.removeprefix("/")
 
 
 def unit_quaternions(turn: Vectors) -> Vectors:
-    """Return quaternions of length one; NaN for those that say nothing (all zero)."""
+    """Return the quaternions scaled to length one; NaN for quaternions that are all zero."""
     length = np.sqrt(np.einsum("ij,ij->i", turn, turn))
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where((length > 1e-6)[:, None], turn / length[:, None], np.nan)
 
 
 def rotated(turn: Vectors, vectors: Vectors) -> Vectors:
-    """Return vectors turned by quaternions."""
+    """Return vectors rotated by quaternions."""
     axis, w = turn[:, :3], turn[:, 3:]
     twice = 2.0 * _cross(axis, vectors)
     result: Vectors = vectors + w * twice + _cross(axis, twice)
@@ -140,7 +138,7 @@ def rotated(turn: Vectors, vectors: Vectors) -> Vectors:
 
 
 def _cross(a: Vectors, b: Vectors) -> Vectors:
-    """Return the cross product of rows, in a third of the time that numpy's own takes."""
+    """Return the cross products of the rows, in a third of the time of `numpy.cross`."""
     result = np.empty_like(b)
     for k, (i, j) in enumerate(((1, 2), (2, 0), (0, 1))):
         result[:, k] = a[:, i] * b[:, j] - a[:, j] * b[:, i]
@@ -153,7 +151,7 @@ def _product(a: Vectors, b: Vectors) -> Vectors:
 
 
 def _at(edge: _Edge, t_ns: Times) -> Poses:
-    """Interpolate a transform: places linearly, turns along the shorter way; NaN outside its times and in holes."""
+    """Interpolate a transform: places linearly, rotations along the shorter arc. NaN outside its times and in gaps over `MAX_HOLE_NS`."""
     if edge.static:
         return Poses(*(np.repeat(column[-1:], len(t_ns), axis=0) for column in edge.poses))
     after = np.clip(np.searchsorted(edge.t_ns, t_ns), 0, len(edge.t_ns) - 1)

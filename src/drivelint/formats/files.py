@@ -21,29 +21,29 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 TRACE_SUFFIXES = frozenset({".mcap", ".parquet", ".csv", ".osi", ".pkl"})
-"""What a folder of traces is searched for, besides XML that is a log of SUMO or CommonRoad: maps and routes lie there as XML too.
+"""The suffixes of traces for which a folder is searched. XML files are opened instead, because maps and routes are XML, too.
 
-Of pickles, which may hold anything, only those count that are called as ScenarioNet calls its scenarios.
+A pickle can contain anything: it counts only if its name is one that ScenarioNet gives to scenarios.
 """
 MAP_SUFFIXES = frozenset({".xodr", ".osm"})
-"""Endings that maps have, and no format of logs."""
+"""Suffixes of maps that no log format uses."""
 _SEARCHED_SUFFIXES = TRACE_SUFFIXES | {".xml"}
 _HEAD_BYTES = 4096
 SCENARIO_LISTS = frozenset({"dataset_summary.pkl", "dataset_mapping.pkl"})
-"""Files that ScenarioNet writes beside its scenarios, which are no scenarios."""
+"""Index files that ScenarioNet writes beside its scenarios."""
 
 
 def expand_traces(traces: Sequence[str], *, but: Path | None = None) -> list[Path]:
     """Return the traces that files, globs and folders name, sorted, each file once.
 
-    A path that exists is always taken literally, `[`, `*` and `?` in its name included. A folder that is one drive (`folders.KINDS`:
-    canonical tables, rosbag2, Argoverse 2, 123D) is taken as it is; any other is searched, with subfolders, for such folders and MCAP,
-    Parquet, CSV, OSI, ScenarioNet, SUMO's FCD files and scenarios of CommonRoad with obstacles, except for what an earlier check or
-    audit wrote there. Subfolders that cannot be read, links to folders elsewhere and dead links are among what is returned: `read_trace`
-    says why they cannot be judged.
-    `but`: the map, which a glob finds beside the logs: left out if anything else is there, and if its suffix says that it is no log. A
-    scenario of CommonRoad is both, and stays.
-    Errors: `UsageError` for a URI or an empty name, `TraceError` for something that matches nothing.
+    A path that exists is taken literally, even if its name contains `[`, `*` or `?`. A folder that is one drive (`folders.KINDS`: canonical
+    tables, rosbag2, Argoverse 2, 123D) is returned itself. Any other folder is searched, with its subfolders, for drive folders, for files
+    of MCAP, Parquet, CSV, OSI, ScenarioNet and SUMO's FCD, and for CommonRoad scenarios with obstacles. Files that an earlier check or
+    audit wrote there are left out. Unreadable subfolders, links to folders elsewhere and dead links are returned, too: `read_trace` reports
+    why they cannot be judged.
+    `but`: the map, which a glob may find beside the logs. It is left out if its suffix is in `MAP_SUFFIXES` and there are other traces.
+    A CommonRoad scenario is both log and map, and is kept.
+    Errors: `UsageError` for a URI or an empty name, `TraceError` for a name that matches nothing.
     """
     trace_by_key: dict[Path, Path] = {}
     for text in traces:
@@ -74,12 +74,12 @@ def _matches(text: str) -> list[Path]:
 def _exists(path: Path) -> bool:
     try:
         return path.exists()
-    except (OSError, ValueError):  # a pattern can be longer than a file name may be
+    except (OSError, ValueError):  # a pattern may be too long for a file name
         return False
 
 
 def _inside(path: Path) -> list[Path]:
-    """Return the logs of a folder, and the paths that may contain logs but cannot be searched; reading those refuses with the reason."""
+    """Return the logs of a folder, and the paths in it that may contain logs but cannot be searched. Reading such a path reports why."""
     if not path.is_dir() or why_not_here(path) is not None or is_drive_folder(path):
         return [path]
     content = tree(path, _SEARCHED_SUFFIXES)
@@ -102,7 +102,7 @@ def _inside(path: Path) -> list[Path]:
 
 
 def is_log_name(name: str) -> bool:
-    """Whether a file or URL is called as logs are: by its suffix, and a pickle as ScenarioNet calls its scenarios."""
+    """Return whether a file or URL has a suffix of traces; a pickle must have a name that ScenarioNet gives to scenarios."""
     file = PurePath(name)
     if file.suffix.lower() == ".pkl":
         return file.name.startswith("sd_") or file.stem.isdecimal()
@@ -110,7 +110,7 @@ def is_log_name(name: str) -> bool:
 
 
 def _is_xml_log(file: Path) -> bool:
-    """Say whether a file is a log; one that cannot be opened may be, and is refused by its reader."""
+    """Return whether an XML file is a log. A file that cannot be opened counts as a log, so that reading it reports why."""
     from drivelint.formats.commonroad.scenario import has_obstacles
     from drivelint.formats.sumo.fcd import is_fcd
 
@@ -123,7 +123,7 @@ def _is_xml_log(file: Path) -> bool:
 
 
 def is_utf8(path: str) -> bool:
-    """Whether a path can be written as text: the system takes any bytes for a name."""
+    """Return whether a path is valid UTF-8: the operating system allows any bytes in a name."""
     return not re.search("[\ud800-\udfff]", path)
 
 
@@ -141,9 +141,9 @@ def _unreadable(path: Path, error: OSError) -> TraceError:
 
 
 def identify(path: Path) -> Identity:
-    """Hash a trace: a file's bytes, or a folder's tables in name order or parts in order, each with its name.
+    """Return the identity of a trace: the hash of its file, or of the names and hashes of its folder's files in the order of `drive_files`.
 
-    Errors: `TraceError` when it cannot be read.
+    Errors: `TraceError` if it cannot be read.
     """
     if (why := why_not_here(path)) is not None:
         raise TraceError(f"{path}: {why}")

@@ -21,8 +21,8 @@ CANONICAL_FILES = (
 class FolderKind(NamedTuple):
     """A kind of folder that is one drive.
 
-    `marks`: patterns, as of `Path.glob`, each of which a file in such a folder matches. `files`: patterns of the files that are read,
-    in the order in which they are hashed.
+    `marks`: patterns of `Path.glob`; the folder has a file for each pattern. `files`: patterns of the files that are read, in the order in
+    which they are hashed.
     """
 
     name: str
@@ -51,11 +51,11 @@ KINDS: Final = (
         ),
     ),
 )
-"""The first kind whose marks a folder has is its kind."""
+"""The kinds in the order in which they are tried: a folder is of the first kind whose marks it has."""
 
 
 def folder_kind(path: Path) -> str | None:
-    """Return the kind of drive that a folder is; None: it is none."""
+    """Return the kind of a folder that is one drive; None for any other folder."""
     for kind in KINDS:
         if all(_first_file(path, mark) for mark in kind.marks) and (kind.name != "bag" or is_bag(path)):
             return kind.name
@@ -63,22 +63,22 @@ def folder_kind(path: Path) -> str | None:
 
 
 def is_canonical_folder(path: Path) -> bool:
-    """Say whether `path` is a folder that holds one drive as canonical Parquet tables."""
+    """Return whether `path` is a folder with one drive as canonical Parquet tables."""
     return folder_kind(path) == "canonical"
 
 
 def is_drive_folder(path: Path) -> bool:
-    """Say whether `path` is a folder that is one drive."""
+    """Return whether `path` is a folder that is one drive."""
     return folder_kind(path) is not None
 
 
 def drive_folders(folders: Iterable[Path]) -> list[Path]:
-    """Return those of these folders that are one drive each."""
+    """Return the given folders that are one drive each."""
     return [folder for folder in folders if why_not_here(folder) is None and is_drive_folder(folder)]
 
 
 def drive_files(path: Path) -> list[Path]:
-    """Return the files of a trace: itself, or those of its folder. Errors: `TraceError` for a bag that cannot be understood."""
+    """Return the files of a trace: the file itself, or the files of its folder. Errors: `TraceError` for a bag that cannot be read."""
     if not path.is_dir():
         return [path]
     kind = folder_kind(path)
@@ -94,7 +94,7 @@ def drive_files(path: Path) -> list[Path]:
 
 
 def _files(path: Path, pattern: str) -> Iterator[Path]:
-    """Return the files of a pattern; a dead link is one, which fails when it is read."""
+    """Return the files that match a pattern. Dead links are included: reading them fails."""
     files = sorted(path.glob(pattern)) if "*" in pattern else [path / pattern]
     return (file for file in files if file.is_file() or (file.is_symlink() and not file.exists()))
 

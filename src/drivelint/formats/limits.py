@@ -1,7 +1,7 @@
-"""Limits the time and memory of reading a file. A small file can describe a huge drive or map, which would take all time or memory.
+"""Limits the time and memory of reading a file: a small file can describe a huge drive or map.
 
-Computing and growth of memory are limited, by the size of the file. Where reading goes beyond, it is interrupted between two steps of
-Python; a single call into a library continues to its end.
+The limits of processor time and memory growth depend on the size of the file. Reading that exceeds a limit is interrupted between two
+Python instructions; a call into a library continues to its end.
 """
 
 from __future__ import annotations
@@ -24,25 +24,25 @@ T = TypeVar("T")
 
 LEAST_S: Final = 60.0
 S_PER_BYTE: Final = 20e-6
-"""Seconds of computing for any file, and for each byte of it: forty times what the slowest readers take for real logs and maps."""
+"""The limit of processor time is `LEAST_S` plus this per byte of the file: forty times what the slowest readers need for real files."""
 LEAST_BYTES: Final = 2 << 30
 BYTES_PER_BYTE: Final = 64
-"""The memory that may be taken for any file, and for each byte of it."""
+"""The limit of memory is `LEAST_BYTES` plus this per byte of the file."""
 _LOOK_S: Final = 0.1
 _PACKAGE: Final = Path(__file__).parents[1]
 
 
 def most_bytes(n_bytes: int) -> int:
-    """Return the memory that a file of so many bytes may take."""
+    """Return the memory in bytes that reading a file of `n_bytes` may take."""
     return LEAST_BYTES + n_bytes * BYTES_PER_BYTE
 
 
 class _BeyondError(BaseException):
-    """Ends reading; no `Exception`, which readers take for a damaged file."""
+    """Interrupts reading. It is no `Exception`, because readers catch exceptions as signs of a damaged file."""
 
 
 class _Watch:
-    """Watches from a thread of its own the costs of the thread that made it, and interrupts that thread once."""
+    """Measures, in a thread of its own, time and memory of the thread that created it, and interrupts that thread at a limit."""
 
     def __init__(self, n_bytes: int) -> None:
         self.seconds, self.bytes = LEAST_S + n_bytes * S_PER_BYTE, most_bytes(n_bytes)
@@ -52,11 +52,11 @@ class _Watch:
         self._over, self._lock = threading.Event(), threading.Lock()
 
     def begin(self) -> None:
-        """Begin to look."""
+        """Start measuring."""
         threading.Thread(target=self._look, daemon=True, name="limits of reading").start()
 
     def end(self) -> None:
-        """Look no more. An interrupt that is on its way comes before this returns."""
+        """Stop measuring. A pending interrupt is raised before this returns."""
         self._over.set()
         with self._lock:
             pass
@@ -81,11 +81,11 @@ class _Watch:
 
 
 def _noticed() -> None:
-    """Do nothing: Python looks for an interrupt where a function begins."""
+    """Do nothing: Python raises a pending interrupt where a function begins."""
 
 
 def bounded(read_file: Callable[[], T], name: str, n_bytes: int, kind: type[DriveLintError]) -> T:
-    """Return the result of `read_file` for a file of so many bytes. Errors: `kind`, about `name`, with what was too much and where."""
+    """Return the result of `read_file` for a file of `n_bytes`. Errors: `kind`, with `name`, the exceeded limit and the module."""
     watch = _Watch(n_bytes)
     try:
         try:

@@ -21,9 +21,9 @@ from drivelint.road.tree_parts import CrowdedPlaceError
 if TYPE_CHECKING:
     from pathlib import Path
 
-MAX_BYTES = 512 * 2**20  # a city of 2,000 km of lanes is about 200 MB; beyond that the file is a mistake or an attack
+MAX_BYTES = 512 * 2**20  # a city with 2,000 km of lanes takes about 200 MB: a larger file is a mistake or an attack
 
-# what the lanes of an OSI trace begin with: the tags of lane_boundary, lane, reference_line, logical_lane_boundary, logical_lane
+# the first byte of a map from an OSI trace: the tag of lane_boundary, lane, reference_line, logical_lane_boundary or logical_lane
 OSI_TAGS = (b"\x4a", b"\x52", b"\x8a", b"\x92", b"\x9a")
 _SKIP = re.compile(r"\s*(?:<\?.*?\?>|<!--.*?-->|<!DOCTYPE[^\[>]*(?:\[.*?\]\s*)?>)", re.DOTALL | re.IGNORECASE)
 _ROOT = re.compile(r"\s*<(?:[\w.-]+:)?([A-Za-z_][\w.-]*)")
@@ -41,11 +41,11 @@ READERS = {
 }
 """Root element, lower case -> the module that reads such a map: `read(source, options)` returns `MapTables`."""
 READERS_BY_BEGINNING = {b"{": "argoverse2.lanes", b"ARROW1": "d123.lanes", b"\x80": "scenarionet.lanes"}
-"""The first bytes of a map that is no XML -> the module that reads it: JSON, Arrow's file format, a pickle."""
+"""The first bytes of a map that is not XML -> the module that reads it: JSON, Arrow's file format, a pickle."""
 
 
 def read_source(path: Path) -> MapSource:
-    """Return the file's name and bytes; `MapError` when it is missing, unreadable, empty or far too large."""
+    """Return the name and bytes of a map file. Errors: `MapError` if it is missing, unreadable, empty or too large."""
     try:
         size = path.stat().st_size
         if is_pipe_or_device(path):
@@ -82,10 +82,9 @@ def load_map(
 ) -> MapTables:
     """Return the map as the tables of `schemas/map.sql`.
 
-    `offset` (metres) is added to all coordinates; `handedness` is the user's option, `voted_handedness` what the traces voted
-    (used only when neither the option nor the map decides), `origin` the latitude and longitude (degrees) of the log's 0,0.
-    `MapError`: unknown format or unreadable content;
-    `UsageError`: an option that has no meaning.
+    `offset` (metres) is added to all coordinates. `handedness` is the user's option; `voted_handedness`, derived from the traces, is used
+    only if neither the option nor the map states a side. `origin`: latitude and longitude (degrees) of the log's point 0,0.
+    Errors: `MapError` for an unknown format or unreadable content, `UsageError` for an invalid option.
     """
     if handedness not in {"auto", "lht", "rht"}:
         raise UsageError(f"handedness {handedness!r} is not known: use auto, lht or rht")
@@ -111,7 +110,7 @@ def load_map(
 
 
 def _refuse_endless_ground(source: MapSource, tables: MapTables) -> None:
-    """Refuse a map for whose ground the database would take more memory than reading may. Errors: `MapError`."""
+    """Raise `MapError` if the grid squares under the lanes would take more memory in the database than reading the file may take."""
     squares, most = ground_squares(tables.tables["lane_point"]), limits.most_bytes(len(source.content))
     if squares * BYTES_PER_SQUARE > most:
         lanes = tables.tables["lanelet"].num_rows
@@ -141,7 +140,7 @@ def _reader(source: MapSource) -> str:
 
 
 def root_element_name(content: bytes) -> str | None:
-    """Return the local name of the first element, or None if this is not XML."""
+    """Return the root element's name without its namespace, or None if the content is not XML."""
     head = content[:65536]
     encoding = "utf-16" if head[:2] in {b"\xff\xfe", b"\xfe\xff"} else "utf-8"
     text = head.decode(encoding, errors="replace").lstrip("\ufeff")

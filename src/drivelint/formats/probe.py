@@ -1,4 +1,4 @@
-"""This module defines the interface of a trace reader, and the probe by which it recognises a trace."""
+"""This module defines the interface of a trace reader, and the probe by which a reader recognises a trace."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ WRAPPINGS: Final = {
     b"/annex/objects/": "a pointer of git-annex, not the file itself: fetch that with git annex get",
     b"version https://git-lfs": "a pointer of Git LFS, not the file itself: fetch that with git lfs pull",
 }
-"""First bytes of a file that stands for another one -> its kind, and the remedy."""
+"""First bytes of a file that replaces the real file (an archive or a pointer) -> its kind, and the remedy."""
 
 
 def wrapping(head: bytes) -> str | None:
-    """Return the kind and the remedy of a file with these first bytes, if it only stands for the real file."""
+    """Return the kind of a file with these first bytes, and the remedy, if it is an archive or a pointer; else None."""
     return next((told for magic, told in WRAPPINGS.items() if head.startswith(magic)), None)
 
 
@@ -37,22 +37,22 @@ class Probe:
 
 
 class Reader(Protocol):
-    """One trace format: a module with these four names."""
+    """The interface of a trace reader: a module with these four names."""
 
     @property
     def formats(self) -> Mapping[str, tuple[str, str]]:
-        """What `Recording.format` may be -> the format's title, and how its ego is known. Empty: it is the name of a mapping."""
+        """Return `Recording.format` -> the format's title, and how its ego is determined. Empty if the format is a mapping's name."""
         ...
 
     @property
     def takes_mapping(self) -> bool:
-        """Whether `--mapping` is for this reader."""
+        """Return whether this reader uses `--mapping`."""
         ...
 
     def accepts(self, probe: Probe) -> bool:
-        """Say whether this reader is the one for the trace."""
+        """Return whether this reader can read the trace."""
         ...
 
     def read(self, probe: Probe) -> Recording:
-        """Read the trace. Errors: `TraceError` or `UsageError` with one clear line."""
+        """Read the trace. Errors: `TraceError` or `UsageError` with a message of one line."""
         ...

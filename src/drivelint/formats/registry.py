@@ -1,4 +1,4 @@
-"""The trace formats, in the order in which they are tried: by the content of a file; a suffix with a fixed beginning must have it."""
+"""The readers of trace formats, in the order in which they are tried. A file's content shows its format; some suffixes must match it."""
 
 from __future__ import annotations
 
@@ -35,23 +35,23 @@ READERS: Final = (
     "argoverse2.forecasting",
     "tables.mapped_table",  # last: it accepts any text without markup
 )
-"""The modules of the readers. The first that accepts a file reads it; those behind it are not even imported."""
+"""The modules of the readers. The first that accepts a file reads it; the later ones are not imported."""
 FIXED_BEGINNINGS: Final = {".mcap": b"\x89MCAP", ".parquet": b"PAR1", ".pkl": b"\x80"}
-"""Suffix -> how each file with it must begin, behind a byte order mark if there is one: another one is refused as damaged."""
+"""Suffix -> the first bytes that a file with this suffix must have, after any byte order mark. Other files are refused as damaged."""
 UNPROTECTED: Final = QualityFinding(
     "unprotected", "info", "not all of the log is covered by checksums: damage inside it may go unseen"
 )
-"""The finding of every log that is not MCAP. The MCAP reader adds its own, for chunks without a CRC."""
+"""The finding of every log that is not MCAP. The MCAP reader adds its own finding, for chunks without a CRC."""
 
 
 def readers() -> Iterator[Reader]:
-    """Yield the readers in the order in which they are tried, each imported in its turn."""
+    """Yield the readers in the order in which they are tried; each is imported only when it is reached."""
     for name in READERS:
         yield cast("Reader", import_module(f"drivelint.formats.{name}"))
 
 
 def format_words(name: str) -> tuple[str, str] | None:
-    """Return the title of a format, and how its ego is known; None: `name`, as `data_log.format` has it, is that of a mapping."""
+    """Return a format's title, and how its ego is determined. `name`: its name in `data_log.format`. None for the name of a mapping."""
     return next((reader.formats[name] for reader in readers() if name in reader.formats), None)
 
 
@@ -69,12 +69,12 @@ def read_trace(path: Path, options: IngestOptions) -> Trace:
 
 
 def _read(probe: Probe, before: list[tuple[str, int, int]]) -> Trace:
-    """Read a log, if its files are still as they were `before`. Errors: as `read_trace`."""
+    """Read a log. Errors: as `read_trace`, and `ChangedLogError` if the states of its files differ from `before`."""
     path, options = probe.path, probe.options
     identity = identify(path)
     if reader := next((each for each in readers() if each.accepts(probe)), None):
         recording = reader.read(probe)
-        if file_states(path) != before:  # what was read is not what the hash is of
+        if file_states(path) != before:  # the hash may be that of other content
             raise ChangedLogError(f"{path}: the log changed while it was read: check it again when it is complete")
         if "osi-mcap" not in reader.formats and not probe.head.startswith(FIXED_BEGINNINGS[".mcap"]):
             recording.findings.append(UNPROTECTED)
@@ -99,7 +99,7 @@ def _read(probe: Probe, before: list[tuple[str, int, int]]) -> Trace:
 
 
 def may_be_mapped_table(path: Path, options: IngestOptions) -> bool:
-    """Whether no other reader accepts a file than the one for tables with a mapping; false if no reader is asked about it."""
+    """Return whether a file is left to the last reader, that of tables with a mapping. False if the file cannot be probed."""
     try:
         probe = _probe(path, options)
     except TraceError:

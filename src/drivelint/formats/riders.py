@@ -1,7 +1,7 @@
-"""Riders and their vehicles, which a data set may annotate with a box each: together they are one road user.
+"""Joins a rider and the ridden vehicle to one road user, if the data set annotates each with its own box.
 
-Two boxes in one place would be two bodies that touch all the time, and two vehicles to be passed. The rider gets the box around both;
-the ridden vehicle has no state of its own while a rider is on it.
+Two boxes in one place would count as a lasting contact, and as two vehicles being passed. The rider gets the box around both; the ridden
+vehicle has no state of its own while a rider is on it.
 """
 
 from __future__ import annotations
@@ -18,19 +18,20 @@ if TYPE_CHECKING:
     from drivelint.arrays import Floats, Indices, Mask, Times
 
 REACH_M: Final = 0.5
-"""The middle of a rider may be so far outside of the box of what is ridden: annotators draw both by few points of the lidar."""
+"""How far the centre of a rider may lie outside the ridden vehicle's box: annotators draw both boxes from few lidar points."""
 LEVEL_M: Final = 2.0
-"""The two middles are no further apart in height."""
+"""The largest difference in height between the centres of a rider and the ridden vehicle."""
 _SIZES: Final = ("length_m", "width_m", "height_m")
 
 
 def join_riders(
     t_ns: Times, actor: NDArray[np.int32], rider: Mask, ridden: Mask, boxes: dict[str, Floats]
 ) -> tuple[Mask, list[int]]:
-    """Give riders the box around them and their vehicle, in place; return the rows that are in another's box, and the riders.
+    """Give riders the box around them and their vehicle, in place. Return which rows another row's box includes, and the riders' tracks.
 
-    n boxes: time, track, whether it is a rider or a thing that is ridden, and the columns x_m, y_m, z_m, yaw_rad, length_m, width_m,
-    height_m. A rider is on the vehicle in most of the samples that both have; of several on one, the first track gets the box.
+    Arguments, for n boxes: time, track, whether it is a rider or a ridden vehicle, and the columns x_m, y_m, z_m, yaw_rad, length_m,
+    width_m, height_m. A rider must be on the vehicle in most samples that both have. Of several riders on a vehicle, the first track gets
+    the box.
     """
     inside = np.zeros(len(t_ns), np.bool_)
     on, under = _on_and_under(t_ns, actor, rider, ridden, boxes)
@@ -50,7 +51,7 @@ def join_riders(
         boxes[name][keeper] = boxes[name][thing] + values
     riders = np.unique(actor[keeper]).tolist()
     for name, values in zip(_SIZES, high - low, strict=True):
-        for number in riders:  # one size for all of a ride: both boxes tremble against each other
+        for number in riders:  # one size for all times: the two boxes jitter against each other
             own = actor[keeper] == number
             boxes[name][keeper[own]] = np.median(values[own])
     inside[under] = inside[on] = True
@@ -61,7 +62,7 @@ def join_riders(
 def _on_and_under(
     t_ns: Times, actor: NDArray[np.int32], rider: Mask, ridden: Mask, boxes: dict[str, Floats]
 ) -> tuple[Indices, Indices]:
-    """Return the rows of riders on something, and the rows of what they are on, each rider's row once."""
+    """Return the rows of riders who are on a vehicle, each once, and for each the row of that vehicle."""
     on, under = np.flatnonzero(rider), np.flatnonzero(ridden)
     under = under[np.argsort(t_ns[under], kind="stable")]
     begin, end = (np.searchsorted(t_ns[under], t_ns[on], side=side) for side in ("left", "right"))
@@ -80,7 +81,7 @@ def _on_and_under(
 
 
 def _is_over(on: Indices, under: Indices, boxes: dict[str, Floats]) -> Mask:
-    """Say of pairs of rows whether the middle of the one box is over the other box, or beside it within reach."""
+    """Return for pairs of rows whether the centre of the box `on` is over the box `under`, or within `REACH_M` beside it."""
     dx, dy = _relative(on, under, boxes)
     half_length, half_width = (boxes[name][under] / 2 + REACH_M for name in _SIZES[:2])
     level = np.abs(boxes["z_m"][on] - boxes["z_m"][under]) <= LEVEL_M
@@ -93,7 +94,7 @@ def _relative(on: Indices, under: Indices, boxes: dict[str, Floats]) -> tuple[Fl
 
 
 def _extents(on: Indices, under: Indices, boxes: dict[str, Floats]) -> tuple[Floats, Floats]:
-    """Return from where to where (3, n) the one box reaches along the axes of the other, from its middle (m)."""
+    """Return the lower and upper ends (3, n) of the boxes `on` along the axes of the boxes `under`, from the centres of these (m)."""
     angle = boxes["yaw_rad"][on] - boxes["yaw_rad"][under]
     cos, sin = np.abs(np.cos(angle)), np.abs(np.sin(angle))
     length, width, height = (boxes[name][on] for name in _SIZES)

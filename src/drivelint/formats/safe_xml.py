@@ -1,4 +1,4 @@
-"""XML as untrusted input: no entities, no network, no DTD, bounded depth."""
+"""Parses XML as untrusted input: no entities, no network, no DTD, bounded depth."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def parse(content: bytes, name: str, kind: type[DriveLintError]) -> etree._Element:
-    """Return the root element, tags without namespaces. Errors: `kind`, about `name`: not well-formed, or with a DOCTYPE."""
+    """Return the root element; tags have no namespaces. Errors: `kind`, about `name`, if it is not well-formed or has a DOCTYPE."""
     parser = etree.XMLParser(
         resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False, remove_comments=True, remove_pis=True
     )
@@ -29,7 +29,7 @@ def parse(content: bytes, name: str, kind: type[DriveLintError]) -> etree._Eleme
     if root.getroottree().docinfo.internalDTD is not None:
         raise doctype
     if b"xmlns" not in content and content[:2] not in {b"\xff\xfe", b"\xfe\xff"}:
-        return root  # without a declaration nothing has a namespace
+        return root  # no namespace is declared
     for element in root.iter():
         if isinstance(element.tag, str) and element.tag.startswith("{"):
             element.tag = element.tag.partition("}")[2]
@@ -37,12 +37,12 @@ def parse(content: bytes, name: str, kind: type[DriveLintError]) -> etree._Eleme
 
 
 def parse_map(source: MapSource) -> etree._Element:
-    """Return the root element of a map, tags without namespaces. Errors: `MapError`."""
+    """Return the root element of a map; tags have no namespaces. Errors: `MapError`."""
     return parse(source.content, f"map {source.name}", MapError)
 
 
 def number(text: str | None) -> float:
-    """Return a text as a number, NaN where it is none."""
+    """Return a text as a number, NaN if it is not a number."""
     try:
         return float(text or "nan")
     except ValueError:

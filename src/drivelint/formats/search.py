@@ -1,7 +1,7 @@
-"""Searches a folder for logs, and lists the paths that it could not search: there may be logs in them, which are not judged.
+"""Searches a folder for logs, and lists the paths that could not be searched: logs in them are not judged.
 
-A link to a folder is not followed, as it may lead in a circle or anywhere else, unless its target is looked through anyway. A dead link,
-such as git-annex has for a file that is not fetched, and a pointer of DVC without its target, mean a log or a folder that is not here.
+A link to a folder is not followed, as it may form a cycle or leave the folder; it is listed if its target lies outside the folder. A dead
+link (git-annex has one for a file that is not fetched) or a DVC pointer without its target means that a log or a folder is missing.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 _POINTER: Final = ".dvc"
-"""The ending of a small file that DVC keeps in place of a log or a folder, whose name it follows."""
+"""The suffix that DVC appends to the name of a log or a folder, for the small file that it keeps in place of it."""
 
 
 class Tree(NamedTuple):
@@ -27,7 +27,7 @@ class Tree(NamedTuple):
 
 
 def tree(root: Path, suffixes: Collection[str]) -> Tree:
-    """Look through a folder. `suffixes`: those of logs; of what is not here only they count, and names without a suffix, as of folders."""
+    """Return the content of a folder. A missing file is listed only if it has a suffix of logs (`suffixes`), or none, like a folder."""
     content = Tree([], [], [], [])
     waiting = [root]
     inside = root.resolve()
@@ -59,8 +59,8 @@ def tree(root: Path, suffixes: Collection[str]) -> Tree:
 
 
 def why_not_here(path: Path) -> str | None:
-    """Return why there may be a log at a path that cannot be read, and the remedy; None: it can be read, or there is nothing."""
-    if os.path.islink(path) and not path.exists():  # noqa: PTH114 - of a name that no file can have, as a damaged bag gives one
+    """Return why a path that may be a log cannot be read, and the remedy; None if it can be read or does not exist."""
+    if os.path.islink(path) and not path.exists():  # noqa: PTH114 - no error for an invalid name, as in a damaged bag
         return f"a dead link, to {path.readlink()}: its target is not here: fetch or mount it (git annex get, dvc pull)"
     if _is_pointer(path) and path.is_file():
         return "a pointer of DVC, and its file is not here: fetch it with dvc pull"
@@ -76,12 +76,12 @@ def why_not_here(path: Path) -> str | None:
 
 
 def is_pipe_or_device(path: Path | str) -> bool:
-    """Whether there is something at a path that is neither a file nor a folder: it may never end, or never begin."""
-    return os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path)  # noqa: PTH110, PTH112, PTH113 - long names, too
+    """Return whether a path exists but is neither a file nor a folder: reading it may block or never end."""
+    return os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path)  # noqa: PTH110, PTH112, PTH113 - no error for long names
 
 
 def why_not_followed(path: Path) -> str | None:
-    """Return why a folder that is no drive was not searched, and the remedy; None: it is no link."""
+    """Return why a folder that is not a drive was not searched, and the remedy; None if it is not a link."""
     if not path.is_symlink():
         return None
     return f"a link to the folder {path.readlink()}, which a search does not follow: name that folder, too"

@@ -18,36 +18,36 @@ if TYPE_CHECKING:
     from drivelint.arrays import Codes
 
 EGO_CATEGORY: Final = "EGO_VEHICLE"
-"""A category that is not Argoverse's: tools write the recording vehicle itself under it, as a box whose centre is the rear axle."""
+"""Not a category of Argoverse: some tools use it for a box of the recording vehicle itself, centred on the rear axle."""
 SENSOR_CLASSES: Final = {
     "REGULAR_VEHICLE": "car",  # a passenger car, van, pickup or SUV: no rule distinguishes these
-    "LARGE_VEHICLE": "vehicle",  # what has no category of its own: a camper van, a fire engine, ...
+    "LARGE_VEHICLE": "vehicle",  # without a category of its own: a camper van, a fire engine, ...
     "TRUCK": "truck", "BOX_TRUCK": "truck", "TRUCK_CAB": "truck",
     "BUS": "bus", "SCHOOL_BUS": "bus", "ARTICULATED_BUS": "bus",
     "MOTORCYCLE": "motorcycle", "RAILED_VEHICLE": "vehicle",
     "VEHICULAR_TRAILER": "trailer", "MESSAGE_BOARD_TRAILER": "trailer", "TRAFFIC_LIGHT_TRAILER": "trailer",
     "BICYCLIST": "bicycle", "MOTORCYCLIST": "motorcycle",
-    "WHEELED_RIDER": None,  # on a kick scooter, a skateboard, a golf cart, ...: the law has several classes for them
+    "WHEELED_RIDER": None,  # on a kick scooter, a skateboard, a golf cart, ...: several classes in law
     "PEDESTRIAN": "pedestrian", "OFFICIAL_SIGNALER": "pedestrian",
     "DOG": "animal", "ANIMAL": "animal",
-    # things that people ride or push, who have boxes of their own: one that moves may be any road user all the same, see road_user.sql
+    # ridden or pushed things: their users have boxes of their own. One that moves may still be any road user, see road_user.sql
     "BICYCLE": "object", "WHEELED_DEVICE": "object", "WHEELCHAIR": "object", "STROLLER": "object",
     "BOLLARD": "object", "CONSTRUCTION_CONE": "object", "CONSTRUCTION_BARREL": "object", "SIGN": "object", "STOP_SIGN": "object",
     "MOBILE_PEDESTRIAN_CROSSING_SIGN": "object", "MOBILE_PEDESTRIAN_SIGN": "object",
     EGO_CATEGORY: "car",
 }  # fmt: skip
-"""Category of an annotation -> actor class; None: it may be any."""
+"""Category of an annotation -> actor class; None: any class is possible."""
 FORECASTING_CLASSES: Final = {
     "vehicle": "vehicle", "bus": "bus", "motorcyclist": "motorcycle", "cyclist": "bicycle", "pedestrian": "pedestrian",
     "static": "object", "background": "object", "construction": "object", "riderless_bicycle": "object", "unknown": None,
 }  # fmt: skip
-"""`object_type` of a track -> actor class; None: it may be any."""
+"""`object_type` of a track -> actor class; None: any class is possible."""
 RIDERS: Final = ("BICYCLIST", "MOTORCYCLIST", "WHEELED_RIDER")
 RIDDEN: Final = ("BICYCLE", "MOTORCYCLE", "WHEELED_DEVICE", "WHEELCHAIR")
 
 
 def class_codes(words: pa.Array, classes: dict[str, str | None]) -> tuple[Codes, list[str]]:
-    """Return the index into `ACTOR_CLASSES` of each word (-1: not known), and a note on words that are not among `classes`, if any."""
+    """Return the index into `ACTOR_CLASSES` of each word (-1: not known), and a note on words that `classes` does not contain, if any."""
     foreign: list[str] = []
 
     def code_of(word: str) -> int:

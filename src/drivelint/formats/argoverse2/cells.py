@@ -1,4 +1,4 @@
-"""Columns of Argoverse's tables as arrays."""
+"""Converts columns of Argoverse's tables to arrays."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def cast(path: Path, table: pa.Table, name: str, kind: pa.DataType) -> pa.Array:
-    """Return a column as a type. Errors: `TraceError` where a value is none of it."""
+    """Return a column cast to a type. Errors: `TraceError` if a value cannot be cast."""
     values = column(table, name)
     try:
         return values.cast(kind)
@@ -33,7 +33,7 @@ def cast(path: Path, table: pa.Table, name: str, kind: pa.DataType) -> pa.Array:
 
 
 def numbers(path: Path, table: pa.Table, names: Iterable[str]) -> dict[str, Floats]:
-    """Return columns of numbers as the file has them, NaN for NULL. Errors: `TraceError`."""
+    """Return columns of numbers, with NaN for NULL. Errors: `TraceError` if a value is not a number."""
     found = {}
     for name in names:
         values = pc.fill_null(cast(path, table, name, pa.float64()), float("nan"))
@@ -42,7 +42,7 @@ def numbers(path: Path, table: pa.Table, names: Iterable[str]) -> dict[str, Floa
 
 
 def integers(path: Path, table: pa.Table, name: str) -> tuple[Times, Mask]:
-    """Return a column of integers, 0 for NULL, and which of them are known. Errors: `TraceError`."""
+    """Return a column of integers, with 0 for NULL, and which rows are not NULL. Errors: `TraceError` if a value is not an integer."""
     values = cast(path, table, name, pa.int64())
     return pc.fill_null(values, 0).to_numpy(zero_copy_only=False), values.is_valid().to_numpy(zero_copy_only=False)
 
@@ -50,7 +50,7 @@ def integers(path: Path, table: pa.Table, name: str) -> tuple[Times, Mask]:
 def without_nameless(
     path: Path, rows: pa.Table, name: str, t_ns: Times, timed: Mask
 ) -> tuple[Mask, list[QualityFinding], list[LostTime]]:
-    """Say which rows have a track (`name`) and a time (`timed`), and report the others: their kind, and when they were recorded."""
+    """Return which rows have a track (column `name`) and a time (`timed`), a finding on the other rows, and the times of these."""
     ids = cast(path, rows, name, pa.string())
     lost_rows = ~timed | pc.equal(pc.fill_null(ids, ""), "").to_numpy(zero_copy_only=False)
     n = int(lost_rows.sum())

@@ -1,4 +1,4 @@
-"""The places of the six cities of Argoverse 2: their coordinates are UTM's, moved to an origin in each city.
+"""The coordinate frames of the six cities of Argoverse 2: UTM, relative to an origin in each city.
 
 Source: av2-api, `geometry/utm.py`, which gives latitude and longitude of the origins and the zones.
 """
@@ -11,7 +11,7 @@ from typing import Final
 from drivelint.road.geo_reference import GeoFrame
 
 NATION: Final = "us"
-"""The country of all six."""
+"""The country of all six cities."""
 ORIGINS: Final = {
     "ATX": (14, 621150.0275, 3349889.9996),  # Austin: 30.27464237939507, -97.7404457407424
     "DTW": (17, 320669.9346, 4685369.9988),  # Detroit: 42.29993066912924, -83.17555750783717
@@ -20,7 +20,7 @@ ORIGINS: Final = {
     "PIT": (17, 583710.0070, 4477259.9998),  # Pittsburgh: 40.44177902989321, -80.01294377242584
     "WDC": (18, 323459.9997, 4306469.9870),  # Washington: 38.889377, -77.0355047439081
 }
-"""City -> the zone of UTM north, and the easting and northing of its origin in metres (beside it: latitude and longitude as published)."""
+"""City -> the zone of UTM north, and easting and northing of its origin in metres (comments: latitude and longitude as published)."""
 _CODES: Final = {
     "austin": "ATX", "dearborn": "DTW", "detroit": "DTW", "miami": "MIA", "palo-alto": "PAO", "pittsburgh": "PIT",
     "washington-dc": "WDC",
@@ -30,7 +30,7 @@ _IN_FILE_NAME: Final = re.compile(r"____([A-Z]{3})_city_")
 
 
 def frame_of_city(name: str) -> GeoFrame | None:
-    """Return how the coordinates of a city, by its code or name, lie on the earth; None: it is none of Argoverse's."""
+    """Return the coordinate frame of a city, given by its code or name; None if Argoverse does not have the city."""
     word = name.strip()
     origin = ORIGINS.get(_CODES.get(word.lower().replace("_", "-").replace(" ", "-"), word))
     if origin is None:
@@ -40,6 +40,6 @@ def frame_of_city(name: str) -> GeoFrame | None:
 
 
 def frame_by_file_name(name: str) -> GeoFrame | None:
-    """Return the frame of the city that the name of a sensor log's map has; None: it has none."""
+    """Return the coordinate frame of the city in the file name of a sensor log's map; None if the name contains no city."""
     found = _IN_FILE_NAME.search(name)
     return None if found is None else frame_of_city(found[1])

@@ -1,11 +1,12 @@
 """Motion forecasting scenarios of Argoverse 2: one Parquet table of tracks at ten steps a second, and the map beside it.
 
-The track AV is the vehicle that records. The guide states that positions are box centres. Those of AV are not, as measured on a published
-scenario: where it turns, its point moves along its heading, as only the rear axle does (-0.3 m ahead of it, give or take 0.2 m; the
-middle is 1.3 m ahead), and as the egovehicle frame of the sensor logs does. It is moved to the middle of the vehicle.
+The track AV is the recording vehicle. The guide states that positions are box centres, but those of AV are its rear axle. A published
+scenario shows this: in turns, the recorded point moves along the heading, as only the rear axle does. Measured, it lies -0.3 m ahead of
+the axle, give or take 0.2 m; the box centre would be 1.3 m ahead. The egovehicle frame of the sensor logs has the same origin. The reader
+moves AV to its box centre.
 
-The others have no size, so gaps to them are not known. Tracks come from the vehicle's own tracker, in fragments of ten steps and more,
-and no range is documented within which every actor has a track.
+Other tracks have no size, so gaps to them are not known. Tracks come from the vehicle's own tracker, in fragments of ten steps and more.
+No range is documented within which every actor has a track.
 
 Source: Argoverse user guide ("Motion Forecasting Dataset"); av2-api, `data_schema` and `scenario_serialization`.
 """
@@ -38,7 +39,7 @@ formats: Final = {NAME: ("Argoverse 2 motion forecasting scenario", "the track A
 takes_mapping: Final = False
 EGO_ID: Final = "AV"
 SENSOR_RANGE_M: Final = 50.0
-"""None is documented. In published scenarios tracks are as dense up to some 50 m from the vehicle, and fewer beyond."""
+"""Not documented. In published scenarios, the density of tracks is constant up to about 50 m from the vehicle, and lower beyond."""
 STEP_NS: Final = 100_000_000
 _MAP: Final = "log_map_archive_*.json"
 _TIME: Final = "timestep"
@@ -50,7 +51,7 @@ _CLOCK: Final = ("start_timestamp", "end_timestamp", "num_timestamps")
 
 
 def accepts(probe: Probe) -> bool:
-    """Accept a folder of a scenario, or Parquet with its columns unless a mapping was asked for."""
+    """Return whether the path is a scenario folder or, without a mapping, a Parquet file with the columns of a scenario."""
     if probe.path.is_dir():
         return folder_kind(probe.path) == NAME
     if probe.options.mapping is not None or not probe.head.startswith(b"PAR1"):
@@ -59,7 +60,7 @@ def accepts(probe: Probe) -> bool:
 
 
 def read(probe: Probe) -> Recording:
-    """Read a scenario. Errors: `TraceError` for a damaged file, missing columns, several scenarios in one."""
+    """Read a scenario. Errors: `TraceError` for a damaged file, missing columns, or several scenarios in one file or folder."""
     path = _scenario(probe.path)
     rows = _rows(path)
     step, timed = cells.integers(path, rows, _TIME)
@@ -124,7 +125,7 @@ def _distinct(path: Path, rows: pa.Table, name: str) -> list[str | None]:
 
 
 def _times(path: Path, rows: pa.Table, step: Times) -> Times:
-    """Return the time of each row: the steps part the time from the first to the last stamp evenly, without stamps from 0 at 10 Hz."""
+    """Return the time of each row: steps evenly spaced from the first to the last time stamp; without time stamps, at 10 Hz from 0."""
     if not set(_CLOCK) <= set(rows.schema.names) or not len(rows):
         return step * STEP_NS
     start, end, n = (values[0] for values in cells.numbers(path, rows, _CLOCK).values())
@@ -135,9 +136,9 @@ def _times(path: Path, rows: pa.Table, step: Times) -> Times:
 
 
 def _place_ego(states: States) -> None:
-    """Move the ego from its rear axle to its middle, and give it its class and size, in place.
+    """Move the ego from its rear axle to its box centre, and set its class and size, in place.
 
-    Its velocity stays that of the axle: along the heading the two are the same.
+    The velocity remains that of the axle: along the heading, both points have the same velocity.
     """
     ego_rows = states.actor == states.ids.index(EGO_ID) if EGO_ID in states.ids else np.zeros(len(states), np.bool_)
     states.codes["actor_class"][ego_rows] = ACTOR_CLASSES.index("car")

@@ -1,12 +1,12 @@
 """Vector maps of Argoverse 2 (`log_map_archive_*.json`): lane segments by their two bounds, and pedestrian crossings.
 
-A segment's bounds run in the direction of travel and have heights. Neighbours share a bound; which way a neighbour is driven, the file
-does not say: its bounds do. Only the successors link lanes, as some releases leave the predecessors out. The map is cut 100 m from the
-way of the vehicle, across lanes. It has no speed limit, no sign, no traffic light and no stop line. All six cities are in the United
-States.
+A segment's bounds run in the direction of travel and have heights. Neighbours share a bound. The file does not state the direction of a
+neighbour: it follows from the neighbour's bounds. Lanes are linked by their successors only, as some releases leave out the predecessors.
+The map is cut off, across lanes, 100 m from the vehicle's path. It has no speed limits, signs, traffic lights or stop lines. All six
+cities are in the United States.
 
-Source: Argoverse user guide ("HD Maps"); av2-api, `LaneSegment`, `LaneMarkType`, `PedestrianCrossing`, and `rendering/map.py`, which
-shows that of a double line the nearer one is named first.
+Source: Argoverse user guide ("HD Maps"); av2-api, `LaneSegment`, `LaneMarkType`, `PedestrianCrossing`. The name of a double line begins
+with the line nearer to the lane (`rendering/map.py`).
 """
 
 from __future__ import annotations
@@ -47,15 +47,15 @@ _LINES: Final = {
 _COLOURS: Final = {"WHITE": "white", "YELLOW": "yellow", "BLUE": "blue"}
 _SIDES: Final = ("left", "right")
 _UNREADABLE: Final = (KeyError, TypeError, ValueError, AttributeError, OverflowError)
-"""What a part of the file raises that is not as it should be."""
+"""The errors that reading an invalid part of the file raises."""
 _COMMON_GROUND_M2: Final = 1.0
-"""Lanes of which more lies over each other share the ground of a junction."""
+"""Lanes inside intersections that overlap by more than this area are in one junction."""
 _LEVEL_M: Final = 3.0
-"""Lanes that are further apart in height are on two levels."""
+"""Lanes whose heights differ by more are on different levels."""
 
 
 class _Segment(NamedTuple):
-    """A lane segment: its bounds (n, 3) in metres, and the rest as the file says it, other lanes by their ids."""
+    """A lane segment: its bounds (n, 3) in metres, its other values as in the file, and other lanes by their ids."""
 
     left: Floats
     right: Floats
@@ -69,7 +69,7 @@ class _Segment(NamedTuple):
 
 
 def read(source: MapSource, request: MapOptions) -> MapTables:
-    """Return the map's tables; `MapError` where the file is no such map, or no lane of it can be built."""
+    """Return the map's tables. Errors: `MapError` if the file is not a map of Argoverse 2, or no lane can be built."""
     archive = _archive(source)
     quality = MapQuality()
     segments = _segments(archive["lane_segments"], quality)
@@ -110,7 +110,7 @@ def _archive(source: MapSource) -> dict[str, Any]:
 
 
 def _segments(records: Mapping[str, Any], quality: MapQuality) -> dict[str, _Segment]:
-    """Return the lane segments by their ids; those that cannot be understood are reported."""
+    """Return the lane segments by their ids; segments that cannot be read are reported."""
     segments: dict[str, _Segment] = {}
     for key, segment in records.items():
         try:
@@ -171,7 +171,7 @@ def _lane(name: str, segments: Mapping[str, _Segment]) -> BoundedLane:
 
 
 def _is_against(bound: Floats, with_it: Floats, against: Floats) -> bool:
-    """Say whether a bound is rather one of the other lane's that runs against it than the one that runs with it."""
+    """Return whether a neighbour is driven the other way: the bound's ends are nearer to those of `against` than to those of `with_it`."""
     ends = bound[[0, -1], :2]
     to_with, to_against = (
         float(np.hypot(*(ends - line).T).sum()) for line in (with_it[[0, -1], :2], against[[-1, 0], :2])
@@ -185,7 +185,7 @@ def _mark(side: str, word: str) -> Mark:
 
 
 def _report_words(segments: Iterable[_Segment], quality: MapQuality) -> None:
-    """Name the types of lanes and markings that are not read."""
+    """Report the types of lanes and markings that are not read."""
     words = Counter[str]()
     for segment in segments:
         words.update([segment.lane_type] if segment.lane_type not in _KINDS else [])
@@ -198,7 +198,7 @@ def _report_words(segments: Iterable[_Segment], quality: MapQuality) -> None:
 
 
 def _report_cut(segments: Mapping[str, _Segment], quality: MapQuality) -> None:
-    """Say of how many lanes the map does not have what follows or lies beside: it is cut out of a larger one."""
+    """Report how many successors and neighbours of lanes are missing because the map is cut out of a larger one."""
     behind = sum(to not in segments for segment in segments.values() for to in segment.successors)
     beside = sum(
         name is not None and name not in segments
@@ -217,9 +217,9 @@ def _heights(bound: Floats, points: Floats) -> Floats:
 
 
 def _name_junctions(lanes: Sequence[BoundedLane], segments: Mapping[str, _Segment]) -> None:
-    """Give the lanes inside intersections the junction that they are part of.
+    """Set the junction of each lane inside an intersection.
 
-    Those are of one junction that begin or end at the same lane, follow each other, lie side by side, or over the same ground.
+    Lanes are in one junction if they begin or end at the same lane, follow each other, lie side by side, or overlap.
     """
     inside = {lane.lanelet_id: lane for lane in lanes if segments[lane.lanelet_id].is_intersection}
     parent = {name: name for name in inside}
@@ -237,7 +237,7 @@ def _name_junctions(lanes: Sequence[BoundedLane], segments: Mapping[str, _Segmen
 
 
 def _links(lanes: Sequence[BoundedLane], inside: Mapping[str, BoundedLane]) -> list[list[str]]:
-    """Return groups of lanes inside intersections that are linked: by a lane before, by a lane behind, or side by side."""
+    """Return groups of lanes inside intersections that share a predecessor or a successor, follow each other, or lie side by side."""
     groups = [[to for to in (lane.lanelet_id, *lane.successors) if to in inside] for lane in lanes]
     before: dict[str, list[str]] = defaultdict(list)
     for lane in inside.values():
@@ -248,7 +248,7 @@ def _links(lanes: Sequence[BoundedLane], inside: Mapping[str, BoundedLane]) -> l
 
 
 def _overlaps(lanes: Sequence[BoundedLane]) -> list[list[str]]:
-    """Return pairs of lanes that lie over the same ground, on one level."""
+    """Return pairs of lanes that overlap on the same level."""
     if not lanes:
         return []
     areas = [lane.line.polygon for lane in lanes]
@@ -269,7 +269,7 @@ def _have_heights(*lanes: BoundedLane) -> bool:
 
 
 def _walks(records: Mapping[str, Any], quality: MapQuality) -> list[BoundedLane]:
-    """Return the pedestrian crossings, the two edges as the bounds of a lane for people on foot."""
+    """Return the pedestrian crossings as lanes for people on foot, bounded by the two edges."""
     crossings = []
     for key, crossing in records.items():
         try:

@@ -1,12 +1,12 @@
 """Sensor logs of Argoverse 2: a folder with the annotated boxes, the poses of the recording vehicle, and its map.
 
-Boxes are given in the frame of the recording vehicle at exactly their time stamp (quaternion w first, centre of the box); the poses bring
-them into the frame of the city. The steps of the ego are the time stamps of the annotations, ten a second: only then are the actors
-around it known. Its poses are ten times denser, irregular, and in part repeated one nanosecond later, as each sensor's time has one;
-those between the annotations are not read.
+Boxes are given in the frame of the recording vehicle at exactly their time stamp (quaternion w first, centre of the box); the vehicle's
+poses transform them into the frame of the city. The ego's steps are the time stamps of the annotations, ten a second: only then are the
+actors around it known. There is a pose for each sensor's time: ten times as many, at irregular times, some repeated one nanosecond later.
+Poses between the annotations are not read.
 
-Time stamps are nanoseconds on a clock whose zero is not documented: by 1970 these drives of 2020 would be of January 1980. There is no
-date, no velocity, no indicator and no state of a traffic light in a log.
+Time stamps are nanoseconds on a clock whose zero is not documented: counted from 1970, these drives of 2020 would be of January 1980. A
+log has no date, velocity, indicator or state of a traffic light.
 
 Source: Argoverse user guide ("Sensor Dataset"); av2-api, `SensorDataloader` and `Cuboid`.
 """
@@ -43,8 +43,8 @@ takes_mapping: Final = False
 EGO_ID: Final = "ego"
 POSES_FILE: Final = "city_SE3_egovehicle.feather"
 SENSOR_RANGE_M: Final = 150.0
-"""The range up to which the benchmarks of the dataset take the annotations for the whole truth (av2-api, `DetectionCfg.max_range_m`), of
-what is on the drivable area or within 5 m of it. Boxes further away are kept."""
+"""The range up to which the dataset's benchmarks take the annotations as complete, on the drivable area and within 5 m of it (av2-api,
+`DetectionCfg.max_range_m`). Boxes further away are kept."""
 _PLACE: Final = ("tx_m", "ty_m", "tz_m")
 _TURN: Final = ("qx", "qy", "qz", "qw")
 _SIZE: Final = ("length_m", "width_m", "height_m")
@@ -52,7 +52,7 @@ _TIME: Final = "timestamp_ns"
 
 
 def accepts(probe: Probe) -> bool:
-    """Accept a folder with the files of a log."""
+    """Return whether the path is a folder with the files of a sensor log."""
     return folder_kind(probe.path) == NAME
 
 
@@ -83,7 +83,7 @@ def read(probe: Probe) -> Recording:
 
 
 def _annotations(folder: Path) -> tuple[Path, list[str]]:
-    """Return the file of annotations, Argoverse's own if there is one, and a note on the others."""
+    """Return the annotation file to read (`annotations.feather`, else the first by name), and a note on other annotation files."""
     files = sorted(folder.glob("annotations*.feather"))
     first = next((file for file in files if file.name == "annotations.feather"), files[0])
     others = [file.name for file in files if file != first]
@@ -91,7 +91,7 @@ def _annotations(folder: Path) -> tuple[Path, list[str]]:
 
 
 def _poses_at(path: Path, t_ns: Times) -> Poses:
-    """Return the poses at these times (ascending), NaN where none has exactly that time, or two that differ."""
+    """Return the poses at these times (ascending); NaN for a time that no pose has exactly, or that two different poses have."""
     rows = ipc.table(path, (_TIME, *_PLACE, *_TURN))
     stamps, timed = cells.integers(path, rows, _TIME)
     values = np.stack(list(cells.numbers(path, rows, (*_PLACE, *_TURN)).values()), axis=1)[timed]
@@ -120,7 +120,7 @@ def _unplaced(steps: Times, rear_axle: Poses, n_boxes: Indices) -> list[QualityF
 
 
 def _annotated_states(path: Path, rows: pa.Table, t_ns: Times, rear_axle: Poses) -> tuple[States, list[str]]:
-    """Return the annotated boxes as states, `rear_axle`: the pose at each, and notes."""
+    """Return the annotated boxes as states, and notes. `rear_axle`: the recording vehicle's pose for each box."""
     category = cells.cast(path, rows, "category", pa.string())
     classes, notes = class_codes(category, SENSOR_CLASSES)
     is_ego = _is_any(category, [EGO_CATEGORY])

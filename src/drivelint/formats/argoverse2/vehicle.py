@@ -1,8 +1,8 @@
-"""The vehicle that records Argoverse 2, a Ford Fusion Hybrid: no dataset has its box.
+"""The box of the vehicle that records Argoverse 2, a Ford Fusion Hybrid. The datasets do not contain its box.
 
 The poses of a log are those of the `egovehicle` frame: its origin is the centre of the rear axle, x points ahead, z up (Argoverse's
-maintainers in argoverse-api issue 286). Size and place of the box are those that py123d's `av2_ford_fusion_hybrid` documents, by the
-car's data sheet and the lidar's points on it. The same log read through 123D thus has the same ego.
+maintainers in argoverse-api issue 286). Size and place of the box are from py123d's `av2_ford_fusion_hybrid`, which states the car's data
+sheet and lidar points on the car as its sources. The same log read through 123D thus has the same ego.
 The category EGO_VEHICLE of some annotation files is a placeholder of 4.877 x 2.0 x 1.473 m with its centre at the rear axle.
 """
 
@@ -19,24 +19,24 @@ if TYPE_CHECKING:
     from drivelint.arrays import Floats
 
 SIZE_M: Final = (4.869, 1.852 + 0.275, 1.476)
-"""Length, width of the body and of the mirrors, height."""
+"""Length, width (body plus mirrors) and height."""
 CENTRE_M: Final = (1.339, 0.0, 0.438)
 """The centre of the box in the egovehicle frame."""
 
 
 def box_poses(rear_axle: Poses) -> Poses:
-    """Return the poses of the vehicle's box where its egovehicle frame has these poses."""
+    """Return the poses of the vehicle's box for these poses of its egovehicle frame."""
     n = len(rear_axle.place)
     return rear_axle.compose(Poses(np.tile(CENTRE_M, (n, 1)), np.tile([0.0, 0.0, 0.0, 1.0], (n, 1))))
 
 
 def box_places(x_m: Floats, y_m: Floats, yaw_rad: Floats) -> tuple[Floats, Floats]:
-    """Return where the centre of the vehicle's box is where its rear axle is at a place, on level ground."""
+    """Return x and y of the box centre for these places and headings of the rear axle, on level ground."""
     ahead = CENTRE_M[0]
     return x_m + ahead * np.cos(yaw_rad), y_m + ahead * np.sin(yaw_rad)
 
 
 def assumed_size(ego_id: str) -> QualityFinding:
-    """Return the finding that the ego's size is not recorded."""
+    """Return the finding that the ego's size is assumed, not recorded."""
     message = "size as Argoverse's Ford Fusion is documented, not recorded"
     return QualityFinding(ASSUMED_SIZE, "info", message, actor_id=ego_id)

@@ -1,1 +1,1 @@
-"""CommonRoad scenarios: obstacles, lights, and the lanelets under them."""
+"""CommonRoad scenarios: obstacles, lights and lanelets."""

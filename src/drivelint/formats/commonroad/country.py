@@ -1,4 +1,4 @@
-"""The country in the name of a CommonRoad scenario: DEU_Moelln-10_2_T-1 is in Germany, ZAM means that there is no country."""
+"""The country in the name of a CommonRoad scenario: DEU_Moelln-10_2_T-1 is in Germany; ZAM stands for no country."""
 
 from __future__ import annotations
 
@@ -9,5 +9,5 @@ if TYPE_CHECKING:
 
 
 def country_of(root: etree._Element) -> str:
-    """Return the three letters of the country in the scenario's name; ZAM means that there is no country."""
+    """Return the three letters of the country in the scenario's name; ZAM stands for no country."""
     return (root.get("benchmarkID") or "").removeprefix("C-")[:3].upper()

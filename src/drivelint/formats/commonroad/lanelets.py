@@ -1,6 +1,6 @@
-"""CommonRoad scenarios (XML, 2018b and 2020a): their lanelets, signs, lights and stop lines.
+"""The maps in CommonRoad scenarios (XML, 2018b and 2020a): lanelets, signs, lights and stop lines.
 
-Read with lxml: commonroad-io pins a protobuf of 2022, which cannot be installed beside today's.
+They are read with lxml, because commonroad-io pins a protobuf of 2022, which cannot be installed beside a current one.
 """
 
 from __future__ import annotations
@@ -52,11 +52,11 @@ _MARKINGS = {
     "solid": "solid", "broad_solid": "solid", "dashed": "broken", "broad_dashed": "broken", "curb": "curb",
     "lowered_curb": "curb", "solid_solid": "solid_solid", "dashed_dashed": "broken_broken", "no_marking": "none",
 }  # fmt: skip
-"""Our words; of a mixed double line the file does not say which side is nearer: not known."""
+"""`lineMarking` -> marking of `lane_boundary`. Mixed double lines are missing: the file does not state which line is nearer."""
 
 
 def read(source: MapSource, request: MapOptions) -> MapTables:
-    """Return the map's tables; `MapError` where the file is not XML or has no lanelet that can be built."""
+    """Return the map's tables. Errors: `MapError` if the file is not XML, or no lanelet can be built."""
     root = safe_xml.parse_map(source)
     quality = MapQuality()
     signs = read_signs(root, country_of(root), quality)
@@ -99,9 +99,10 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
 
 
 def _geo_frame(root: etree._Element, quality: MapQuality) -> GeoFrame | None:
-    """Return how the coordinates lie on the earth: the translation makes them those of the reference (so CommonRoad's own converters).
+    """Return the geodetic frame of the map's coordinates; None if the map states none that can be used.
 
-    `gpsLatitude` and `gpsLongitude` are those of the town of `geoNameId`, or 999: they do not say where x and y are 0.
+    The map's coordinates plus the translation are coordinates of the reference, as in CommonRoad's own converters. `gpsLatitude` and
+    `gpsLongitude` are not used: they are those of the town of `geoNameId`, or 999, not of the point 0,0.
     """
     reference = (root.findtext("location/geoTransformation/geoReference") or "").strip()
     more = root.find("location/geoTransformation/additionalTransformation")
@@ -143,7 +144,7 @@ def _marking(bound: etree._Element | None) -> str | None:
 
 
 def _without_towns(root: etree._Element, lanes: Sequence[BoundedLane], quality: MapQuality) -> None:
-    """Take away the type `urban` of a scenario that is tagged as one of a highway: converters write it of every lanelet."""
+    """Remove the road type `urban` in a scenario with the tag `highway`: converters write this type for every lanelet."""
     tags = {tag.tag for parent in root.findall("scenarioTags") for tag in parent}
     towns = [lane for lane in lanes if lane.road_type == "town"]
     if towns and tags & {"highway", "interstate"} and "urban" not in tags:
@@ -154,7 +155,7 @@ def _without_towns(root: etree._Element, lanes: Sequence[BoundedLane], quality: 
 
 
 def _report_words(root: etree._Element, quality: MapQuality) -> None:
-    """Name the markings and types of lanelets that are not read."""
+    """Report the markings and lanelet types that are not read."""
     for tag, known, what in (("lineMarking", _MARKINGS, "markings"), ("laneletType", _TYPES, "types of lanelets")):
         said = Counter((e.text or "").strip() for e in root.iterfind(f"lanelet//{tag}"))
         unread = {word: n for word, n in sorted(said.items()) if word not in known and word != "unknown"}
@@ -164,7 +165,7 @@ def _report_words(root: etree._Element, quality: MapQuality) -> None:
 
 
 def _junctions(root: etree._Element, lanes: Sequence[BoundedLane]) -> None:
-    """Mark what lies inside an intersection: the successors that it names, and lanelets of that type between its ways in."""
+    """Set the junction of each lanelet that an intersection names as a successor, if another lanelet leads to it."""
     inside: dict[str, str] = {}
     for crossing in root.findall("intersection"):
         for way in crossing.findall("incoming"):

@@ -16,19 +16,20 @@ if TYPE_CHECKING:
 
     from drivelint.arrays import Floats, Times
 _STATES = {"red": "red", "redYellow": "red_amber", "yellow": "amber", "green": "green", "inactive": "off"}
-_LEAST_STEPS = 0.5  # a phase is a whole number of steps: a shorter one is a mistake
+_LEAST_STEPS = 0.5  # phases are whole numbers of steps: a shorter phase than this is a mistake
 
 
 class _UnreadError(ValueError):
-    """A light without a cycle that can be read; caught where the light is named."""
+    """Raised for a light whose cycle cannot be read; the caller adds the light's id."""
 
 
 def signal_states(
     root: etree._Element, step_s: float, first: float, last: float
 ) -> tuple[pa.Table | None, list[QualityFinding]]:
-    """Return `signal_id`, `t_ns`, `state` of every light, and what could not be read; None: there are no lights.
+    """Return a table of `signal_id`, `t_ns`, `state` (None without lights), and findings on lights that cannot be read.
 
-    `first` and `last` are the log's time steps, of `step_s` seconds each. A row stands at the log's first step and at every change.
+    `first` and `last`: the log's first and last time step, of `step_s` seconds each. Each light has a row at the first step and at every
+    change.
     """
     ids: list[str] = []
     times: list[Times] = []
@@ -57,7 +58,7 @@ def signal_states(
 def _unrolled(light: etree._Element, first: float, last: float) -> tuple[Floats, list[str | None]]:
     """Return the time steps at which a light's state is known or changes, and its states.
 
-    The cycle begins at step `timeOffset` and goes on without end in both directions. A light that is not active is off.
+    The cycle starts at step `timeOffset` and repeats without end, before that step, too. A light that is not active is off.
     """
     if _child_text(light, "active").lower() in {"false", "0"}:
         return np.array([first]), ["off"]
@@ -86,5 +87,5 @@ def _colours(light: etree._Element) -> list[str]:
 
 
 def _child_text(light: etree._Element, name: str) -> str:
-    """Return an element of a light, or of its cycle: writers put it in different places."""
+    """Return the text of a child element of a light or of its cycle: writers differ in where they put it."""
     return (light.findtext(name) or light.findtext(f"cycle/{name}") or "").strip()

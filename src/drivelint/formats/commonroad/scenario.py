@@ -1,7 +1,7 @@
 """CommonRoad scenarios (XML, 2018b and 2020a): their obstacles and lights as a drive, the file itself as its map.
 
-A scenario has no ego but the start of a planning problem: name it with --ego. The place of a state is that of the shape's origin, which
-need not be the centre of the box (see `shapes`). What a state gives as an area or an interval is not known. Environment obstacles
+A scenario has no ego, only the start of a planning problem: the user names an obstacle with --ego. The position of a state is that of the
+shape's origin, which may differ from the box centre (see `shapes`). Values given as areas or intervals are unknown. Environment obstacles
 (buildings, pillars) and phantom obstacles have no states: they are not read.
 """
 
@@ -44,7 +44,7 @@ _FIELDS = {
     "x_m": "position/point/x", "y_m": "position/point/y", "yaw_rad": "orientation/exact", "v": "velocity/exact",
     "a": "acceleration/exact", "slip": "slipAngle/exact", "yaw_rate": "yawRate/exact", "step": "time/exact",
 }  # fmt: skip
-"""What is read of a state."""
+"""Column -> path of its element in a state."""
 _ALL_STATES: Final = "(initialState | trajectory/state)"
 _NOT_EXACT: Final = f"count({_ALL_STATES}//intervalStart | {_ALL_STATES}/position/*[not(self::point)])"
 _ROOT: Final = b"<commonRoad"
@@ -56,17 +56,17 @@ _TRAJECTORY: Final = re.compile(rb"<trajectory>(.*?)</trajectory>", re.DOTALL)
 
 
 def accepts(probe: Probe) -> bool:
-    """Accept by its root element."""
+    """Return whether the file has CommonRoad's root element."""
     return _ROOT in probe.head
 
 
 def has_obstacles(path: Path, head: bytes) -> bool:
-    """Return whether the file is a scenario with actors, not only a map."""
+    """Return whether the file is a scenario with obstacles, not only a map."""
     return _ROOT in head and _OBSTACLE.search(path.read_bytes()) is not None
 
 
 def read(probe: Probe) -> Recording:
-    """Read a scenario. Errors: `TraceError` for malformed XML, no obstacles, or times that cannot be understood."""
+    """Read a scenario. Errors: `TraceError` for malformed XML, missing or repeated obstacles, or invalid times."""
     path = probe.path
     content = path.read_bytes()
     fast = extract_trajectories(content)
@@ -128,7 +128,7 @@ def read(probe: Probe) -> Recording:
 
 
 def _to_box_centres(states: States, recorded_yaw_rate: Floats, offset: Floats, turn: Floats) -> None:
-    """Move the states by the ways from the origins of the shapes to the centres of the boxes (2, n), which are turned by `turn` (n)."""
+    """Move the states, in place, from the shapes' origins to the box centres, by `offset` (2, n), and turn them by `turn` (n,)."""
     log = states.numbers
     log["x_m"], log["y_m"] = states.place + offset
     if np.any(offset != 0.0):
@@ -139,7 +139,7 @@ def _to_box_centres(states: States, recorded_yaw_rate: Floats, offset: Floats, t
 
 
 def _unread(root: etree._Element, obstacles: Sequence[etree._Element]) -> list[QualityFinding]:
-    """Report the parts of obstacles that are not read: areas and intervals, and obstacles that have no states."""
+    """Return findings on values that are not read (areas and intervals), and on obstacles without states."""
     uncertain = sum(int(float(str(o.xpath(_NOT_EXACT)))) for o in obstacles)
     sets = [str(o.get("id")) for o in obstacles if o.find("occupancySet") is not None]
     still = [str(o.get("id")) for kind in ("environmentObstacle", "phantomObstacle") for o in root.findall(kind)]
@@ -181,7 +181,7 @@ def _states(
 
 
 def _standing(obstacle: etree._Element, columns: dict[str, Floats], last: int) -> dict[str, Floats]:
-    """Give an obstacle that stands a state at every step of the scenario."""
+    """Return the columns of an obstacle; a static obstacle gets a state at every step of the scenario."""
     n = len(columns["step"])
     static = obstacle.tag == "staticObstacle" or obstacle.findtext("role") == "static"
     if static and n == 1:
@@ -192,9 +192,9 @@ def _standing(obstacle: etree._Element, columns: dict[str, Floats], last: int) -
 
 
 def extract_trajectories(content: bytes) -> tuple[bytes, list[dict[str, Floats]]] | None:
-    """Take the trajectories out of a file with regular expressions, five times as fast as element by element.
+    """Extract the trajectories of a file with regular expressions, five times as fast as element by element.
 
-    Returns the file without them, and the numbers of each by element path; None where their states differ in form.
+    Returns the file without the trajectories, and the numbers of each trajectory by element path. None if states differ in form.
     """
     first = _STATE.search(content)
     shape = None if first is None else _shape(first[0])
@@ -213,14 +213,14 @@ def extract_trajectories(content: bytes) -> tuple[bytes, list[dict[str, Floats]]
             return None
         columns.append(dict(zip(places, values.T, strict=True)))
     rest = b"<trajectory/>".join(parts[::2])
-    # a trajectory in a comment does not count, and one with attributes or without content was not cut out: the order is then unsure
+    # if a trajectory is in a comment, or was not extracted (with attributes or without content), the order is uncertain
     if b"<trajectory" in b"".join(_COMMENT.findall(rest)) or rest.count(b"<trajectory") != len(columns):
         return None
     return rest, columns
 
 
 def _shape(state: bytes) -> tuple[re.Pattern[bytes], list[str], int] | None:
-    """Return the pattern of a state, the places of the numbers in it, and how many tags it has."""
+    """Return a pattern for states of this form, the element paths of its numbers, and its number of tags; None for an unsuitable form."""
     pattern, at, is_open = b"", 0, False
     places: list[str] = []
     stack: list[str] = []

@@ -1,13 +1,13 @@
-"""The shapes of CommonRoad obstacles: their boxes, and where these lie against the place that a state gives.
+"""The shapes of CommonRoad obstacles: their boxes, and the offsets of the box centres from the recorded positions.
 
-A state gives the place of the shape's origin. The offset of the box centre from it is given in two ways:
+A state records the position of the shape's origin. The offset of the box centre from this origin is given in one of two ways:
 
 * `originXShift` of a rectangle or truck (written by commonroad-io 2026.1): how far the origin lies ahead of the centre, along the obstacle.
-* `center` and `orientation` of a rectangle or circle (2018b, 2020a; read by commonroad-io 2024.3): the centre and the turn of the box in
-  the frame of the shape. The format does not say whether that frame turns with the obstacle; commonroad-io 2024.3 adds the centre to the
-  place as it is. Where the two readings differ, the place is not known.
+* `center` and `orientation` of a rectangle or circle (2018b, 2020a; read by commonroad-io 2024.3): centre and rotation of the box in the
+  frame of the shape. The format does not say whether that frame turns with the obstacle; commonroad-io 2024.3 adds the centre without
+  turning it. Where the two interpretations differ, the place of the box is not known.
 
-A polygon is turned about its centroid by commonroad-io 2024.3 and about its origin by 2026.1: its middle is known where both are the same.
+commonroad-io 2024.3 rotates a polygon about its centroid, 2026.1 about its origin: its centre is known only where both agree.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from drivelint.arrays import Floats
 
 READINGS_AGREE_M: Final = 0.01
-"""Two readings of where a box lies that differ by less are one: positions are known to a centimetre at best."""
+"""Two interpretations of a box's place that differ by less agree: positions are accurate to a centimetre at best."""
 _POLYGON: Final = "a polygon"
 _TRAILER: Final = "a truck with its trailer"
 _SEVERAL: Final = "several shapes"
@@ -41,8 +41,8 @@ _NO_SHAPE: Final = "no shape that is read"
 class ObstacleShape(NamedTuple):
     """The box of an obstacle in metres and radians, NaN where it is not known.
 
-    `ahead_m`: how far its centre lies ahead of the origin, along the obstacle. `centre_m`: where the frame of the shape has the centre, x
-    and y. `turn_rad`: its heading against that of the obstacle. `no_box`: what the shape is instead of a box, '' for a box.
+    `ahead_m`: how far its centre lies ahead of the origin, along the obstacle. `centre_m`: x and y of the centre in the frame of the
+    shape. `turn_rad`: the box's heading minus the obstacle's. `no_box`: what the shape is instead of a box, '' for a box.
     """
 
     length_m: float = math.nan
@@ -54,18 +54,18 @@ class ObstacleShape(NamedTuple):
 
 
 def read_shape(obstacle: etree._Element) -> ObstacleShape:
-    """Return the shape of an obstacle; a number that cannot be read, or an origin outside of its box, is not known."""
+    """Return the shape of an obstacle, with NaN for a number that cannot be read and for an origin outside the box."""
     parts = [part for part in obstacle.iterfind("shape/*") if isinstance(part.tag, str)]
     if len(parts) == 1 and parts[0].tag == "truckShape":
         return _rectangle(parts[0].find("truckDims"), parts[0])
     if len(parts) == 1 and parts[0].tag == "rectangle":
         return _rectangle(parts[0], parts[0])
     if len(parts) == 1 and parts[0].tag == "circle":
-        # the square around it
+        # the box is the square around the circle
         size = 2.0 * safe_xml.number(parts[0].findtext("radius"))
         return ObstacleShape(size, size, centre_m=_centre(parts[0]))
     if len(parts) == 1 and (truck := parts[0].find("truckShape")) is not None:
-        # the state gives the place of the truck; how far the trailer reaches depends on the hitch angle
+        # the recorded position is that of the truck; how far the trailer extends depends on the hitch angle
         ahead = _rectangle(truck.find("truckDims"), truck).ahead_m
         return ObstacleShape(ahead_m=ahead, no_box=_TRAILER)
     if len(parts) == 1 and parts[0].tag == "polygon":
@@ -75,7 +75,7 @@ def read_shape(obstacle: etree._Element) -> ObstacleShape:
 
 
 def _rectangle(size: etree._Element | None, origin: etree._Element) -> ObstacleShape:
-    """Return the box of these sizes; `origin` has the element that says where its origin lies."""
+    """Return a box. `size`: the element with length and width; `origin`: the element that states where the shape's origin lies."""
     if size is None:
         return ObstacleShape(ahead_m=math.nan, no_box=_NO_SHAPE)
     length, width = (safe_xml.number(size.findtext(name)) for name in ("length", "width"))
@@ -91,7 +91,7 @@ def _centre(element: etree._Element) -> tuple[float, float]:
 
 
 def _middle(polygon: etree._Element) -> tuple[float, float]:
-    """Return the middle of the extent of a polygon along the axes of its frame."""
+    """Return the centre of a polygon's bounding rectangle along the axes of its frame."""
     corners = np.array([[_number(p, axis) for axis in "xy"] for p in polygon.iterfind("point")], np.float64).reshape(
         -1, 2
     )
@@ -108,7 +108,7 @@ def _number(parent: etree._Element, name: str) -> float:
 
 
 def box_offsets(shape: ObstacleShape, yaw: Floats) -> Floats:
-    """Return the way from the origin to the box centre (2, n) in metres, for an obstacle with these headings (n); NaN: not known."""
+    """Return the vectors (2, n) from the origin to the box centre in metres, for these headings (n,) of an obstacle; NaN: not known."""
     n = len(yaw)
     offset = lever_to_centre(np.full(n, shape.ahead_m), np.zeros(n), yaw)
     if shape.centre_m == (0.0, 0.0):
@@ -117,14 +117,14 @@ def box_offsets(shape: ObstacleShape, yaw: Floats) -> Floats:
     along_obstacle = np.stack(turned(along_axes[0], along_axes[1], yaw))
     agree = np.hypot(*(along_obstacle - along_axes)) <= READINGS_AGREE_M
     if shape.ahead_m != 0.0:
-        agree[:] = False  # said twice: whether the one includes the other is not known
+        agree[:] = False  # both offsets are given: it is not known whether one includes the other
     return offset + np.where(agree, along_axes, np.nan)
 
 
 def shape_findings(
     ids: Sequence[str], shapes: Sequence[ObstacleShape], unplaced: Sequence[bool]
 ) -> list[QualityFinding]:
-    """Report obstacles of which the box is not known, and those that have states at which it is not known where it lies (`unplaced`)."""
+    """Return findings on obstacles without a known box, and on obstacles with states where the place of the box is unknown (`unplaced`)."""
     findings = []
     for what in sorted({shape.no_box for shape in shapes} - {""}):
         names = [name for name, shape in zip(ids, shapes, strict=True) if shape.no_box == what]

@@ -1,7 +1,7 @@
 """Signs, lights and stop lines of a CommonRoad map: their kinds, the lanelets that refer to them, and their limits.
 
 A sign or light applies to the lanelets that refer to it, on their whole length. Codes of signs depend on the country: commonroad-io lists
-MUTCD codes for the USA, those of its traffic law for Spain, and StVO numbers for Germany and, as a stand-in, for every other country.
+MUTCD codes for the USA, codes of Spanish law for Spain, and StVO numbers for Germany and, as a stand-in, for every other country.
 """
 
 from __future__ import annotations
@@ -34,11 +34,11 @@ if TYPE_CHECKING:
 _LISTS = {"USA": "us", "ESP": "es"}  # codes of other countries: StVO numbers
 _LIGHT = "1000001"
 _LIMITS = frozenset({"speed_limit", "speed_zone"})
-_AT_THE_END = frozenset({"traffic_light", "stop", "give_way"})  # where the lanelet's traffic waits
+_AT_THE_END = frozenset({"traffic_light", "stop", "give_way"})  # these hold where the traffic of a lanelet waits
 _SPEEDS = _LIMITS | {"minimum_speed"}
-_STVO = re.compile(r"1?\d{3}(\.\d)?(-\d+)?")  # of these, the codes that limit the speed are known
+_STVO = re.compile(r"1?\d{3}(\.\d)?(-\d+)?")  # an StVO number: all those that limit the speed are known
 _FASTEST_MPS = 45.0  # 160 km/h: no sign allows more, so a greater number is not in m/s
-# of additional plates, these give a direction or a reason; others restrict the sign above them
+# additional plates that give a direction or a reason; other plates restrict the sign above them
 _PLATES = frozenset({"1000", "1002", "1006", "1007", "1010", "1012"})
 
 
@@ -54,7 +54,7 @@ class SignElement(NamedTuple):
 class Signs:
     """The signs of a map by their id; unreadable parts are rows of `quality`.
 
-    `codes`: the list that their codes are from, as in `traffic_signal`.
+    `codes`: the catalogue of their codes, as in `traffic_signal`.
     """
 
     country: str
@@ -63,9 +63,9 @@ class Signs:
     elements: dict[str, list[SignElement]] = field(default_factory=dict)
 
     def speed_limit(self, lanelet: etree._Element) -> tuple[float | None, str]:
-        """Return the limit of a lanelet in m/s, the least of those on its signs and of its own (2018b), and its source, sign or lane.
+        """Return the lowest limit in m/s of a lanelet's signs and of the lanelet itself (2018b), and its source, sign or lane.
 
-        None: the map gives none that is sure. One that holds only under a condition, by a plate, may be lower: then the limit is not known.
+        None: the map gives no certain limit. If a lower limit holds only under the condition of a plate, the limit is not certain.
         """
         own_limit = _number(lanelet.findtext("speedLimit"))
         if own_limit is not None and (trouble := _implausible(own_limit)):
@@ -86,7 +86,7 @@ class Signs:
         return least, "lane" if least is not None and least == own_limit else "sign"
 
     def report(self, lanelets: Sequence[etree._Element], lights: Iterable[str]) -> None:
-        """Report signs that are not read, and references to signs or lights that the map does not have."""
+        """Report signs that are not read, references to missing signs or lights, and signs or lights without a lanelet."""
         self._report_codes()
         self._report_values()
         known_ids = {*self.elements, *lights}
@@ -130,7 +130,7 @@ class Signs:
 
 
 def read_signs(root: etree._Element, country: str, quality: MapQuality) -> Signs:
-    """Read the signs of a map; `country` is that of its name, by ISO 3166 (three letters)."""
+    """Return the signs of a map. `country`: the country in its name, by ISO 3166 (three letters)."""
     signs = Signs(country or "no country", _LISTS.get(country, "de"), quality)
     for sign in root.findall("trafficSign"):
         on_post = []
@@ -144,12 +144,12 @@ def read_signs(root: etree._Element, country: str, quality: MapQuality) -> Signs
 
 
 def referenced_ids(element: etree._Element, name: str) -> list[str]:
-    """Return what an element's children of this name refer to, in their order."""
+    """Return the ids to which an element's children of this name refer, in their order."""
     return [ref for child in element.findall(name) if (ref := child.get("ref")) is not None]
 
 
 def signal_refs(lanelet: etree._Element) -> list[str]:
-    """Return the signs and lights that hold for a lanelet: its own, and those of its stop line."""
+    """Return the ids of the signs and lights to which a lanelet or its stop line refers."""
     return list(dict.fromkeys(ref for each in (lanelet, *lanelet.findall("stopLine")) for ref in _own_refs(each)))
 
 
@@ -164,10 +164,10 @@ def signal_rows(
     offset: tuple[float, float],
     lines: Mapping[str, float],
 ) -> Rows:
-    """Return rows of `traffic_signal`: one for each sign or light and lanelet that refers to it; `lines`: stations of stop lines.
+    """Return rows of `traffic_signal`: one for each pair of a sign or light and a lanelet that refers to it.
 
-    A light, stop sign or give-way sign stands at the lanelet's stop line if that refers to it, a light always there or, without a line, at
-    the lanelet's end: its own place may be beyond the junction.
+    A stop or give-way sign holds at the lanelet's stop line if the line refers to it. A light always holds at the stop line or, without a
+    line, at the lanelet's end: its own place may be beyond the junction. `lines`: lanelet -> station of its stop line.
     """
     by_id = {lane.lanelet_id: lane for lane in lanes}
     holds: dict[str, list[tuple[BoundedLane, float | None]]] = {}
@@ -200,7 +200,7 @@ def signal_rows(
 
 
 def _station(lane: BoundedLane, kind: str | None, stands: Floats | None, line_s_m: float | None) -> float:
-    """Return where a sign or light holds along a lanelet: at its stop line, where it stands, or without a place at an end."""
+    """Return the station on a lanelet at which a sign or light holds: at the stop line, where it stands, or at an end."""
     if kind in _AT_THE_END and line_s_m is not None:
         return line_s_m
     if kind == "traffic_light":
@@ -213,7 +213,7 @@ def _station(lane: BoundedLane, kind: str | None, stands: Floats | None, line_s_
 def stop_line_stations(
     root: etree._Element, lanes: Sequence[BoundedLane], offset: tuple[float, float]
 ) -> dict[str, float]:
-    """Return the station of each lanelet's stop line: that of its points, else the lanelet's end."""
+    """Return lanelet -> station of its stop line: the mean of the line's points, else the lanelet's end."""
     by_id = {lane.lanelet_id: lane for lane in lanes}
     station_by_lanelet = {}
     for lanelet in root.findall("lanelet"):
@@ -227,7 +227,7 @@ def stop_line_stations(
 
 
 def points(parent: etree._Element | None) -> Floats:
-    """Return the points (n, 2) below an element. Errors: `ValueError` naming the line of one that is not two finite numbers."""
+    """Return the points (n, 2) below an element. Errors: `ValueError` with the line of a point without possible x and y."""
     found = [] if parent is None else list(parent.iterfind(".//point"))
     both = np.array([[safe_xml.number(p.findtext(axis)) for axis in "xy"] for p in found], np.float64).reshape(-1, 2)
     bad = np.flatnonzero(~(np.abs(both) < FARTHEST_M).all(axis=1))
@@ -242,7 +242,7 @@ def _number(text: str | None) -> float | None:
 
 
 def _implausible(limit_mps: float) -> str | None:
-    """Return why a number can be no speed limit in m/s, or None."""
+    """Return why a number cannot be a speed limit in m/s, or None if it can."""
     if limit_mps <= 0:
         return f"{limit_mps:g} m/s is no limit"
     if limit_mps > _FASTEST_MPS:

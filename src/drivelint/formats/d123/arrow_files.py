@@ -25,12 +25,12 @@ SYNC: Final = "sync"
 EGO_STATE: Final = "ego_state_se3"
 BOXES: Final = "box_detections_se3"
 LIGHTS: Final = "traffic_light_detections"
-"""The names of the files, without their ending, and of the columns of the first that point into the others."""
+"""The names of the files, without their suffix. In the first file, columns of these names contain row numbers of the other files."""
 METADATA_KEY: Final = b"metadata"
 
 
 class LogInfo(NamedTuple):
-    """The metadata of a log: data set, place (None: not stated) and version of py123d."""
+    """The metadata of a log: data set, location (None: not stated) and version of py123d."""
 
     dataset: str
     location: str | None
@@ -38,7 +38,7 @@ class LogInfo(NamedTuple):
 
 
 class Modality(NamedTuple):
-    """One of a log's files: its columns by the name behind the dot, and its metadata."""
+    """One file of a log: its columns by the part of their name after the dot, and its metadata."""
 
     path: Path
     columns: dict[str, pa.Array]
@@ -46,19 +46,19 @@ class Modality(NamedTuple):
 
     @property
     def n(self) -> int:
-        """Number of rows."""
+        """The number of rows."""
         return len(self.columns["timestamp_us"])
 
 
 def path_of(folder: Path, name: str) -> Path:
-    """Return the path of one of a log's files."""
+    """Return the path of a file of a log."""
     return folder / f"{name}.arrow"
 
 
 def modality(folder: Path, name: str, types: Mapping[str, pa.DataType]) -> Modality | None:
-    """Read the given columns of a log's file, or None where it has no such file; `timestamp_us` is always read.
+    """Return a file of a log with the given columns and `timestamp_us`; None if the log does not have the file.
 
-    Errors: `TraceError` for a damaged file, and a column that is missing, of another type or, of times, not always given.
+    Errors: `TraceError` for a damaged file, a column that is missing or of another type, and a row without a time.
     """
     path = path_of(folder, name)
     if not path.is_file():
@@ -74,7 +74,7 @@ def modality(folder: Path, name: str, types: Mapping[str, pa.DataType]) -> Modal
 def sync_table(folder: Path) -> tuple[dict[str, pa.Array], LogInfo]:
     """Return the columns of the table of frames, and the metadata of the log.
 
-    The columns are `timestamp_us` and, for each other file that there is, the number of its row, NULL: it has none in that frame.
+    The columns are `timestamp_us` and, for each other file, the number of its row in the frame (NULL: the file has no row for it).
     Errors: as `modality`, and for a version that is not read.
     """
     path = path_of(folder, SYNC)
@@ -85,7 +85,7 @@ def sync_table(folder: Path) -> tuple[dict[str, pa.Array], LogInfo]:
 
 
 def log_info(path: Path | str, entries: Mapping[str, Any]) -> LogInfo:
-    """Return data set, place and version of a log or map. Errors: `TraceError` for a version that is not read."""
+    """Return data set, location and version of a log or map. Errors: `TraceError` for a version that is not read."""
     version, location = str(entries.get("version", "unknown")), entries.get("location")
     if not facts.is_read(version):
         raise TraceError(
@@ -96,7 +96,7 @@ def log_info(path: Path | str, entries: Mapping[str, Any]) -> LogInfo:
 
 
 def metadata(path: Path | str, schema: pa.Schema) -> dict[str, Any]:
-    """Return the metadata of a schema. Errors: `TraceError` where that is missing or not readable."""
+    """Return the metadata of a schema. Errors: `TraceError` if they are missing or not readable."""
     packed = (schema.metadata or {}).get(METADATA_KEY)
     if packed is None:
         raise TraceError(f"{path}: its schema has no {METADATA_KEY.decode()!r}: it was not written by py123d")
@@ -119,7 +119,7 @@ def _cast(path: Path, rows: pa.Table, name: str, kind: pa.DataType) -> pa.Array:
 
 
 def vectors(array: pa.FixedSizeListArray) -> Floats:
-    """Return rows of numbers, (n, k), NaN where the row or one of its numbers is NULL."""
+    """Return lists of k numbers as an array (n, k), with NaN for NULL lists and NULL numbers."""
     width = array.type.list_size
     numbers = array.values.slice(array.offset * width, len(array) * width)
     found = np.asarray(numbers.to_numpy(zero_copy_only=False), np.float64).reshape(-1, width)
@@ -129,13 +129,13 @@ def vectors(array: pa.FixedSizeListArray) -> Floats:
 
 
 def integers(array: pa.Array) -> NDArray[np.int64]:
-    """Return whole numbers, -1 for NULL."""
+    """Return a column as integers, with -1 for NULL."""
     filled = pc.fill_null(array, -1) if array.null_count else array
     return np.asarray(filled.to_numpy(zero_copy_only=False), np.int64)
 
 
 def is_null(array: pa.Array) -> Mask:
-    """Say which values are NULL."""
+    """Return which values are NULL."""
     return np.asarray(pc.is_null(array).to_numpy(zero_copy_only=False), np.bool_)
 
 

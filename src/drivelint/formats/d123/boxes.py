@@ -28,18 +28,18 @@ _COLUMNS: Final = {
     "velocity_3d": pa.list_(pa.list_(pa.float64(), 3)),
 }
 SAME_MPS: Final = 1e-6
-"""A recorded velocity is measured; one that is the way between the boxes before and after to this is not."""
+"""A velocity this near to the mean velocity between the boxes before and after was computed from these boxes, not measured."""
 _LEAST_COMPARED: Final = 20
 _LEAST_SHARE: Final = 0.99
 
 
 def read_boxes(folder: Path) -> Modality | None:
-    """Return the file of boxes, or None where the log has none. Errors: as `modality`."""
+    """Return the file of boxes, or None if the log has none. Errors: as `modality`."""
     return modality(folder, BOXES, _COLUMNS)
 
 
 def malformed_rows(boxes: Modality) -> Mask:
-    """Say of which frames the lists cannot be understood: they differ in length, or a box has no track."""
+    """Return which rows are malformed: their lists differ in length, or a box has no track."""
     counts = [lengths(boxes.columns[name]) for name in _COLUMNS]
     bad = np.any([n != counts[0] for n in counts[1:]], axis=0) | (counts[0] < 0)
     tokens = boxes.columns["track_token"]
@@ -53,7 +53,7 @@ def malformed_rows(boxes: Modality) -> Mask:
 def box_states(
     boxes: Modality, rows: Indices, t_ns: Times, about: facts.Dataset
 ) -> tuple[States, list[QualityFinding], list[str]]:
-    """Return the boxes of these rows, none of them malformed, as states at times `t_ns`, (rows,), with findings and notes."""
+    """Return the boxes of these rows (none malformed) as states, with findings and notes. `t_ns`: the times of the rows (rows,)."""
     columns = {name: _of_rows(boxes.columns[name], rows) for name in _COLUMNS}
     frame = np.repeat(np.arange(len(rows)), lengths(columns["track_token"]))
     flat = {name: lists.flatten() for name, lists in columns.items()}
@@ -100,13 +100,13 @@ def box_states(
 
 
 def _enumeration(boxes: Modality) -> str:
-    """Return the enumeration of the package that the labels are numbers of; '': none that is known."""
+    """Return the enumeration of py123d to which the label numbers belong; '' if it is not known."""
     module, _, name = str(boxes.metadata.get("box_detection_label_class", "")).rpartition(".")
     return name if not module or module.startswith("py123d.") else ""
 
 
 def _of_rows(lists: pa.ListArray, rows: Indices) -> pa.ListArray:
-    """Return the lists of these rows; all of them in their order need no copy."""
+    """Return the lists of these rows, without a copy if these are all rows in order."""
     if len(rows) == len(lists) and np.array_equal(rows, np.arange(len(lists))):
         return lists
     return lists.take(pa.array(rows))
@@ -135,10 +135,10 @@ def _classes(boxes: Modality, numbers: Any) -> tuple[Codes, list[QualityFinding]
 
 
 def _without_untold_velocities(states: States, frame: Indices) -> list[QualityFinding]:
-    """Forget velocities that nobody measured: a zero that means that there is no velocity, and the way from box to box.
+    """Set velocities that were not measured to NaN, in place, and return findings on them.
 
-    Converters write zero for "none", in a whole log or where a box has no neighbour in time, and may fill velocities in from
-    the boxes before and after. States in the order of the frames; changed in place.
+    Converters write zero for "no velocity", in a whole log or for a track with a single box, and may compute velocities from the boxes
+    before and after. The states are in the order of the frames.
     """
     v = states.velocity
     zero = (v == 0.0).all(axis=0)
@@ -169,7 +169,7 @@ def _forget_velocities(states: States, rows: Mask) -> None:
 
 
 def _moves(states: States, least_m: float = 0.5) -> bool:
-    """Say whether any actor's places are further apart than this."""
+    """Return whether any actor moves by more than `least_m` in x or y."""
     n = len(states.ids)
     for values in states.place:
         low, high = np.full(n, np.inf), np.full(n, -np.inf)
@@ -181,7 +181,7 @@ def _moves(states: States, least_m: float = 0.5) -> bool:
 
 
 def _way_between_boxes(states: States, frame: Indices, has_velocity: Mask) -> bool:
-    """Say whether the velocities are those of the way from the box one frame before to the one after, nearly everywhere."""
+    """Return whether nearly all velocities are the mean velocity from the box one frame before to the box one frame after."""
     order = np.lexsort((frame, states.actor))
     actor, at = states.actor[order], frame[order]
     in_row = (actor[:-2] == actor[2:]) & (at[2:] - at[1:-1] == 1) & (at[1:-1] - at[:-2] == 1)

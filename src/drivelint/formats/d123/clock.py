@@ -1,4 +1,4 @@
-"""The clock of a 123D log: microseconds, of UTC only where the data set is documented to count in it."""
+"""The clock of a 123D log: microseconds, which are UTC only if the data set is documented to use UTC."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _LATEST_US: Final = 1 << 52  # the year 2112: a clock beyond it is broken
 
 
 class Clock(NamedTuple):
-    """How a log's microseconds become nanoseconds: they count from `zero_us`."""
+    """Converts a log's microseconds to nanoseconds of the drive, which count from `zero_us`."""
 
     zero_us: int = 0
 
@@ -32,7 +32,7 @@ class Clock(NamedTuple):
 
     @property
     def notes(self) -> list[str]:
-        """Notes for the user."""
+        """The note for the user that times count from `zero_us`; none if that is 0."""
         if not self.zero_us:
             return []
         return [
@@ -41,9 +41,9 @@ class Clock(NamedTuple):
 
 
 def clock(folder: Path, columns: Iterable[pa.Array], *, utc: bool) -> Clock:
-    """Return the clock of a log with these columns of times. Errors: `TraceError` for times that cannot be.
+    """Return the clock of a log with these columns of times. Errors: `TraceError` for impossible times.
 
-    Times as large as those of UTC are taken for UTC everywhere, so that others have to count from the log's first.
+    drivelint treats times as large as those of UTC as UTC. Large times of another clock therefore count from the first time of the log.
     """
     every = np.concatenate([integers(stamps) for stamps in columns])
     low, high = int(every.min()), int(every.max())

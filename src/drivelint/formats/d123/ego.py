@@ -1,4 +1,4 @@
-"""The ego of a 123D log (`ego_state_se3.arrow`): the pose of its IMU, and in the metadata how its box lies around that."""
+"""The ego of a 123D log (`ego_state_se3.arrow`): the poses of its IMU, and in the metadata its box in the frame of the IMU."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _SAME_MPS: Final = 1e-6
 
 
 class EgoBox(NamedTuple):
-    """How the ego's box lies: its centre in the frame of the IMU, place (3,) and quaternion x y z w (4,); its sizes, NaN: not known."""
+    """The ego's box in the frame of the IMU: place (3,) and quaternion x y z w (4,) of its centre, and its sizes (NaN: not known)."""
 
     place: Floats
     turn: Floats
@@ -41,7 +41,7 @@ class EgoBox(NamedTuple):
 
 
 def read_ego(folder: Path) -> Modality:
-    """Return the file of ego states. Errors: as `modality`, and `TraceError` where it has no row."""
+    """Return the file of ego states. Errors: as `modality`, and `TraceError` if it is missing or has no row."""
     found = modality(folder, EGO_STATE, _COLUMNS)
     if found is None or not found.n:
         raise TraceError(f"{folder / EGO_STATE}.arrow: it has no state of the ego: convert the log again")
@@ -57,9 +57,9 @@ def ego_id(box_ids: Iterable[str]) -> str:
 
 
 def ego_box(ego: Modality, about: facts.Dataset, name: str, forward_m: float) -> tuple[EgoBox, list[QualityFinding]]:
-    """Return how the ego's box lies, with findings. Errors: `TraceError` for metadata that do not say it.
+    """Return the ego's box, and findings. Errors: `TraceError` for metadata that do not contain the box.
 
-    `forward_m`: the user's word for how far its centre is ahead, used where the metadata contradict themselves.
+    `forward_m`: the user's option for how far the box centre is ahead, used if the metadata contradict themselves.
     """
     entries = ego.metadata
     centre, axle = (_pose(ego, key) for key in ("center_to_imu_se3", "rear_axle_to_imu_se3"))
@@ -67,7 +67,7 @@ def ego_box(ego: Modality, about: facts.Dataset, name: str, forward_m: float) ->
     findings = []
     wheel_base = _length(entries.get("wheel_base"))
     if not math.isnan(wheel_base) and np.hypot(*(centre[:2] - axle[:2])) < 0.1 * wheel_base:
-        # a box's middle lies between the axles: one of the two is not what it says
+        # the centre of a box lies between the axles: one of the two poses is wrong
         sizes[:] = np.nan
         centre[0] += forward_m
         message = (
@@ -83,7 +83,7 @@ def ego_box(ego: Modality, about: facts.Dataset, name: str, forward_m: float) ->
 
 
 def ego_states(ego: Modality, rows: Indices, t_ns: Times, box: EgoBox, *, about: facts.Dataset, name: str) -> States:
-    """Return the states of the middle of the ego's box at these rows, at times `t_ns`, (rows,)."""
+    """Return the states of the centre of the ego's box at these rows of the file. `t_ns`: their times (rows,)."""
     n = len(rows)
     poses, motion = vectors(ego.columns["imu_se3"]), vectors(ego.columns["dynamic_state_se3"])
     turn = unit_quaternions(poses[:, [4, 5, 6, 3]])
@@ -101,10 +101,10 @@ def ego_states(ego: Modality, rows: Indices, t_ns: Times, box: EgoBox, *, about:
 
 
 def _centre_velocity(ego: Modality, imu: Poses, motion: Floats, box: EgoBox) -> Floats:
-    """Return the velocity of the middle of the box along the map's axes, (n, 3), NaN: not known.
+    """Return the velocity of the centre of the box along the map's axes, (n, 3), NaN: not known.
 
-    That of the IMU is recorded, and how fast the ego turns; where the log turns and says that it does not, nobody knows how fast. A
-    velocity that is the way from pose to pose was filled in by the converter.
+    The file records the velocity of the IMU and the turn rate. The velocity is not known if the converter computed it from the poses, or
+    if the heading changes although all turn rates are 0.
     """
     unknown_velocity = np.full((len(motion), 3), np.nan)
     velocity, turning = motion[:, :3], motion[:, 6:9]
@@ -125,7 +125,7 @@ def _centre_velocity(ego: Modality, imu: Poses, motion: Floats, box: EgoBox) -> 
 
 
 def _way_between_poses(ego: Modality, imu: Poses, velocity: Floats, has_velocity: Mask) -> bool:
-    """Say whether the velocities are those of the way from the pose before to the one after, nearly everywhere."""
+    """Return whether nearly all velocities are the mean velocity from the pose before to the pose after."""
     t_us = ego.columns["timestamp_us"].to_numpy(zero_copy_only=False)
     if len(t_us) - 2 < _LEAST_COMPARED:
         return False
@@ -138,7 +138,7 @@ def _way_between_poses(ego: Modality, imu: Poses, velocity: Floats, has_velocity
 
 
 def _pose(ego: Modality, key: str) -> Floats:
-    """Return a pose of the metadata, (7,). Errors: `TraceError` where it is none."""
+    """Return a pose of the metadata, (7,). Errors: `TraceError` if it is missing or invalid."""
     try:
         pose = np.array(ego.metadata.get(key), np.float64)
     except (TypeError, ValueError):
@@ -152,5 +152,5 @@ def _pose(ego: Modality, key: str) -> Floats:
 
 
 def _length(value: Any) -> float:
-    """Return a length in metres, NaN: it says none."""
+    """Return a length in metres, NaN if the value is not a length."""
     return float(value) if isinstance(value, int | float) and 0.0 < value < math.inf else math.nan

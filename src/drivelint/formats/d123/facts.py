@@ -14,22 +14,22 @@ from drivelint.road.countries import side_of_nation
 
 _FACTS: Final = toml_beside(__file__, "facts.toml")
 EGO_LABEL: Final = "EGO"
-"""The label of the ego's own box among the others."""
+"""The label of the ego's own box."""
 
 
 class Dataset(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What holds for a data set; the defaults hold for one that is not known.
+    """The facts about a data set; the defaults apply to an unknown data set.
 
-    `sensor_range_m`: the range in which it is documented to have every actor.
+    `sensor_range_m`: the range within which every actor is documented to be recorded.
     `utc`: times count from 1970 in UTC.
-    `ego_class`: of the vehicle that recorded.
-    `ego_size_recorded`: its size is that of this vehicle, not of its model.
+    `ego_class`: the class of the recording vehicle.
+    `ego_size_recorded`: the ego's size is that of the recording vehicle, not of its model.
     `box_velocities_global`: velocities of boxes are along the axes of the map.
-    `steady_for_flashing`: a light that flashes is written as one that shows this colour.
-    `lines_of_lanes`: the road lines are the bounds of the lanes, left and right, in the lanes' order, without the unmarked.
+    `steady_for_flashing`: a flashing light is written as a steady light of the same colour.
+    `lines_of_lanes`: the road lines are the marked bounds of the lanes, left before right, in the order of the lanes.
     `estimated_bounds`: bounds of lanes that the converter estimates, "": none.
-    `unsure_lines`: types of road lines that may be others.
-    `nations`: location -> country, as two letters; *: of every location.
+    `unsure_lines`: types of road lines that may stand for another marking.
+    `nations`: location -> country, as two letters; *: every location.
     """
 
     sensor_range_m: float | None = None
@@ -44,11 +44,11 @@ class Dataset(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     nations: dict[str, str] = msgspec.field(default_factory=dict)
 
     def nation_of(self, location: str | None) -> str | None:
-        """Return the country if the location shows it."""
+        """Return the country of a location; None if it is not known."""
         return self.nations.get(location or "", self.nations.get("*"))
 
     def side_driven_on(self, location: str | None) -> str | None:
-        """Return lht or rht if the location shows it."""
+        """Return the side that is driven on, lht or rht, at a location; None if it is not known."""
         nation = self.nation_of(location)
         return None if nation is None else side_of_nation(nation)
 
@@ -61,7 +61,7 @@ LABELS: Final[dict[str, dict[str, tuple[int, str]]]] = {
     name: {label: (number, word) for label, (number, word) in labels.items()}
     for name, labels in _FACTS["labels"].items()
 }
-"""Enumeration -> label -> its number and our class, "": the label may be anything."""
+"""Enumeration -> label -> its number and our class; "": any class is possible."""
 LANE_TYPES: Final[dict[int, tuple[str, str | None]]] = {
     number: (kind, road or None) for number, kind, road in _FACTS["lane_types"].values()
 }
@@ -73,7 +73,7 @@ SIGNALLED: Final[int] = _FACTS["intersection_types"]["TRAFFIC_LIGHT"]
 
 
 def is_read(version: str) -> bool:
-    """Say whether the files of this version of py123d are read: by its first two numbers."""
+    """Return whether files of this version of py123d are read; only its first two numbers count."""
     return ".".join(version.split(".")[:2]) in VERSIONS
 
 
@@ -83,14 +83,14 @@ def dataset(name: str) -> Dataset:
 
 
 def rider_labels(enumeration: str) -> tuple[list[int], list[int]]:
-    """Return the numbers of the labels of riders and of what they ride, where these have boxes of their own."""
+    """Return the label numbers of riders and of ridden vehicles; none if the data set has no separate boxes for them."""
     both = _FACTS["riders"].get(enumeration, {"riders": [], "ridden": []})
     riders, ridden = ([LABELS[enumeration][name][0] for name in both[role]] for role in ("riders", "ridden"))
     return riders, ridden
 
 
 def label_classes(enumeration: str) -> Codes | None:
-    """Return number of the label -> code of `ACTOR_CLASSES`, -1: may be anything, -2: no label; None: no such enumeration."""
+    """Return label number -> index into `ACTOR_CLASSES` (-1: any class, -2: no such label); None for an unknown enumeration."""
     labels = LABELS.get(enumeration)
     if labels is None:
         return None
@@ -101,6 +101,6 @@ def label_classes(enumeration: str) -> Codes | None:
 
 
 def light_codes() -> Codes:
-    """Return number of the state -> code of `SIGNAL_STATES`, -1: unknown."""
+    """Return number of the state -> index into `SIGNAL_STATES`, -1: unknown."""
     words = dict(_FACTS["light_states"].values())
     return np.array([SIGNAL_STATES.index(words[n]) if words[n] else -1 for n in range(len(words))], np.int8)

@@ -27,12 +27,12 @@ if TYPE_CHECKING:
     from drivelint.road.map_reader import MapOptions, MapSource, MapTables
 
 _NOT_DRIVEN: Final = frozenset({"biking"})
-_MOST_POINTS: Final = 200  # of a bound, to see which way a lane runs
-_FASTEST_MPS: Final = 45.0  # 160 km/h: a higher one is none, or in another unit
+_MOST_POINTS: Final = 200  # of a bound, to find the direction of a lane
+_FASTEST_MPS: Final = 45.0  # 160 km/h: a higher limit is a mistake, or in another unit
 
 
 def read(source: MapSource, request: MapOptions) -> MapTables:
-    """Return the map's tables; `MapError` where the file is none of 123D's, of a version that is not read, or has no lane."""
+    """Return the map's tables. Errors: `MapError` for a file that is no map of 123D, a version that is not read, or a map without lanes."""
     layers, quality = Layers.of_source(source), MapQuality()
     about = facts.dataset(layers.info.dataset)
     lanes = _lanes(layers, quality)
@@ -94,7 +94,7 @@ def _lanes(layers: Layers, quality: MapQuality) -> dict[int, Lane]:
 def _junctions(
     lanes: Mapping[int, Lane], groups: Mapping[int, LaneGroup], intersections: Mapping[int, Intersection]
 ) -> dict[int, int]:
-    """Return lane -> the intersection that its group is part of."""
+    """Return lane -> the intersection to which its lane group belongs."""
     of_group: dict[int, int] = {}
     for name, within in groups.items():
         if within.intersection_id is not None and within.intersection_id in intersections:
@@ -111,7 +111,7 @@ def _junctions(
 
 
 def _followers(lanes: Mapping[int, Lane]) -> dict[int, set[str]]:
-    """Return lane -> the lanes that it leads to: those that it names, and those that name it as the one before."""
+    """Return lane -> its successors: the lanes that it names as such, and the lanes that name it as predecessor."""
     found: dict[int, set[str]] = defaultdict(set)
     for name, lane in lanes.items():
         found[name].update(map(str, lane.successor_ids or ()))
@@ -130,7 +130,7 @@ def _bounded(
     junction: int | None,
     quality: MapQuality,
 ) -> BoundedLane:
-    """Return a lane as it is built."""
+    """Return a lane in the form from which `build_lanes` builds it."""
     kind, road_type = facts.LANE_TYPES.get(lane.lane_type, ("driving", None))
     if lane.lane_type not in facts.LANE_TYPES:
         message = f"type {lane.lane_type} of lanelet {name} is not known: it is treated as a lane for vehicles"
@@ -160,7 +160,7 @@ def _limits(name: int, limit_mps: float | None, quality: MapQuality) -> tuple[tu
 
 
 def _runs_against(lane: Lane, neighbour: Lane) -> bool:
-    """Say whether a lane beside another is driven the other way, by their directions where they are nearest to each other."""
+    """Return whether a neighbour is driven the other way, by the directions of both lanes where they are nearest to each other."""
     (own, along), (its, its_along) = _pieces(lane), _pieces(neighbour)
     near = np.hypot(*(own[:, None] - its[None]).transpose(2, 0, 1))
     i, j = np.unravel_index(int(np.argmin(near)), near.shape)
@@ -175,12 +175,12 @@ def _pieces(lane: Lane) -> tuple[Floats, Floats]:
 
 
 def _sample(n: int) -> Indices:
-    """Return the numbers of at most some of n points, the first and the last with them."""
+    """Return the indices of at most `_MOST_POINTS` of n points, evenly spread, including the first and the last."""
     return np.unique(np.linspace(0, n - 1, min(n, _MOST_POINTS)).astype(np.intp))
 
 
 def _set_heights(built: Sequence[BoundedLane], lanes: Mapping[int, Lane], offset: tuple[float, float]) -> None:
-    """Set the heights of the middles of lanes: between those of both bounds beside them."""
+    """Set the heights of the centre lines: the mean of the heights of both bounds."""
     for lane in built:
         source = lanes[int(lane.lanelet_id)]
         pairs = ((source.left_boundary, lane.line.left), (source.right_boundary, lane.line.right))

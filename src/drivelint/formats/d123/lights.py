@@ -1,4 +1,4 @@
-"""The traffic lights of a 123D log (`traffic_light_detections.arrow`): a state for a lane, whose number is the light's id."""
+"""The traffic lights of a 123D log (`traffic_light_detections.arrow`): states of lanes, whose numbers are the ids of the lights."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _COLUMNS: Final = {"lane_id": pa.list_(pa.int64()), "status": pa.list_(pa.int32(
 
 
 class LightStates(NamedTuple):
-    """The rows of `signal_state`, the lanes that they are for, findings, and what could not be read."""
+    """The rows of `signal_state`, the lanes in them, findings, and the times of unreadable rows."""
 
     rows: pa.Table
     lanes: tuple[int, ...]
@@ -34,12 +34,12 @@ class LightStates(NamedTuple):
 
 
 def read_lights(folder: Path) -> Modality | None:
-    """Return the file of lights, or None where the log has none. Errors: as `modality`."""
+    """Return the file of lights, or None if the log has none. Errors: as `modality`."""
     return modality(folder, LIGHTS, _COLUMNS)
 
 
 def light_states(lights: Modality, about: facts.Dataset, t_ns: Times) -> LightStates:
-    """Return the states of the lights, `t_ns`: the times of the rows."""
+    """Return the states of the lights. `t_ns`: the times of the rows of the file."""
     counts = [lengths(lights.columns[name]) for name in _COLUMNS]
     bad = (counts[0] != counts[1]) | (counts[0] < 0)
     findings, lost_times = [], []
@@ -68,7 +68,7 @@ def light_states(lights: Modality, about: facts.Dataset, t_ns: Times) -> LightSt
 
 
 def _codes(status: Indices) -> tuple[Codes, list[QualityFinding]]:
-    """Return codes of `SIGNAL_STATES`, -1: unknown, and a finding on numbers that stand for no state."""
+    """Return indices into `SIGNAL_STATES` (-1: unknown), and a finding on numbers that 123D does not have."""
     codes = facts.light_codes()
     inside = (status >= 0) & (status < len(codes))
     if inside.all():
@@ -81,7 +81,7 @@ def _codes(status: Indices) -> tuple[Codes, list[QualityFinding]]:
 
 
 def _without_doubtful_colours(codes: Codes, light: Indices, n: int) -> tuple[Codes, list[QualityFinding]]:
-    """Forget the colour of lights that never change it: one that flashes is written as one that is on."""
+    """Set the states of lights that are red or amber in the whole log to unknown: a flashing light is written like a steady one."""
     is_lit = codes >= 0
     shown = np.zeros((n, len(SIGNAL_STATES)), np.bool_)
     shown[light[is_lit], codes[is_lit]] = True

@@ -1,4 +1,4 @@
-"""Finds the map of a 123D log: `map.arrow` beside its files, or that of its place, which many logs share."""
+"""Finds the map of a 123D log: `map.arrow` beside its files, or the map of its location, which many logs share."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ OWN_MAP: Final = "map.arrow"
 def find_map(
     folder: Path, info: LogInfo, light_lanes: Sequence[int]
 ) -> tuple[bytes | None, list[QualityFinding], list[str]]:
-    """Return the log's map, its lanes with lights noted in it, with findings and notes; None: there is none that can be used.
+    """Return the log's map with `light_lanes` in its metadata (None: there is no usable map), findings and notes.
 
-    py123d has a data root: `logs/<split>/<log>` and, for places that many logs share, `maps/<data set>/<data set>_<location>.arrow`.
+    py123d has a data root: `logs/<split>/<log>` and, for locations that many logs share, `maps/<data set>/<data set>_<location>.arrow`.
     `light_lanes`: the lanes for which the log has states of lights.
     """
     shared = shared_map(folder, info)
@@ -52,7 +52,7 @@ def find_map(
 
 
 def shared_map(folder: Path, info: LogInfo) -> Path | None:
-    """Return where the map of a log's place would lie, by its data root; None: the log names no place."""
+    """Return the path of the shared map of a log's location, below its data root; None: the log names no location."""
     names = (info.dataset, info.location)
     if any(not name or name in {".", ".."} or "/" in name or "\\" in name or "\0" in name for name in names):
         return None
@@ -61,8 +61,8 @@ def shared_map(folder: Path, info: LogInfo) -> Path | None:
 
 
 def _signalled_lanes(layers: Layers) -> set[int]:
-    """Return the lanes that the map says to have lights: see `lanes.py`."""
-    quality = MapQuality()  # the map's reader reports what cannot be read
+    """Return the lanes in intersections that the map marks as having lights, as `lanes.py` does."""
+    quality = MapQuality()  # not used: the map's reader reports unreadable objects
     intersections = layers.features("INTERSECTION", Intersection, quality)
     signalled = {
         name for name, intersection in intersections.items() if intersection.intersection_type == facts.SIGNALLED
@@ -76,7 +76,7 @@ def _signalled_lanes(layers: Layers) -> set[int]:
 
 
 def _with_light_lanes(layers: Layers, light_lanes: Sequence[int]) -> bytes:
-    """Return the map as a file of its own, which says for which lanes there are lights."""
+    """Return the content of a map file with `light_lanes` in its metadata."""
     header = {METADATA_KEY: layers.packed_header, LIGHT_LANES_KEY: msgspec.msgpack.encode(sorted(light_lanes))}
     rows = layers.rows.replace_schema_metadata(header)
     sink = pa.BufferOutputStream()

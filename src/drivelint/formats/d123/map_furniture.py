@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from drivelint.road.tables import Rows
 
 _READ_LAYERS: Final = frozenset({"LANE", "LANE_GROUP", "INTERSECTION", "CROSSWALK", "ROAD_LINE"})
-_LEVEL_M: Final = 3.0  # what lies so far above or below a lane is not on it
+_LEVEL_M: Final = 3.0  # a crossing so far above or below a lane is not on it
 
 
 def road_lines(layers: Layers, quality: MapQuality) -> list[RoadLine]:
@@ -35,9 +35,9 @@ def road_lines(layers: Layers, quality: MapQuality) -> list[RoadLine]:
 
 
 def light_rows(lanes: Sequence[BoundedLane], light_lanes: set[int]) -> Rows:
-    """Return a row of `traffic_signal` for each lane that has a light of its own: it stands where the lane begins.
+    """Return a row of `traffic_signal` for each lane with a light, which is placed where the lane begins.
 
-    In Waymo's data the stopping points of lights are the first points of their lanes. The light's id is the lane's, as in the log.
+    In Waymo's data, the stopping points of lights are the first points of their lanes. The light's id is the lane's, as in the log.
     """
     rows = [
         signal_row(
@@ -53,7 +53,7 @@ def light_rows(lanes: Sequence[BoundedLane], light_lanes: set[int]) -> Rows:
 def crossing_rows(
     layers: Layers, lanes: Sequence[BoundedLane], offset: tuple[float, float], quality: MapQuality
 ) -> Rows:
-    """Return the rows of `crossing`; a lane on another level is not crossed."""
+    """Return the rows of `crossing`; lanes on another level than the crossing are left out."""
     outlines = layers.outlines("CROSSWALK", quality)
     rows = crossings([_walk(name, ring) for name, ring in outlines.items()], lanes, offset, quality)
     by_id = {lane.lanelet_id: lane for lane in lanes}
@@ -66,7 +66,7 @@ def crossing_rows(
 
 
 def _walk(name: int, ring: Floats) -> BoundedLane:
-    """Return the outline of a crossing as two bounds, one after the other around it."""
+    """Return a crossing as a lane whose bounds are the two halves of the outline."""
     half = (len(ring) + 1) // 2
     return BoundedLane(str(name), ring[half - 1 :, :2][::-1], ring[:half, :2], "crossing")
 
@@ -77,7 +77,7 @@ def _on_level(row: dict[str, Any], lane: BoundedLane, height_m: float) -> bool:
 
 
 def report_unread(layers: Layers, about: facts.Dataset, quality: MapQuality) -> None:
-    """Report the gaps of a map of 123D: missing facts, layers that are not read, and estimated parts of lanes."""
+    """Report the gaps of a map of 123D: missing signs, layers that are not read, and estimated bounds of lanes."""
     message = "a map of 123D has no signs: the right of way at a junction without a light is not known"
     quality.add(SIGNS_UNMAPPED, "info", None, message)
     counts = {name: layers.count(name) for name in facts.LAYERS if name not in _READ_LAYERS}

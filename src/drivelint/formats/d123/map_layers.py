@@ -1,4 +1,4 @@
-"""The objects of a 123D map by their layers: a row has a number, features as MessagePack with arrays in them, and an outline as WKB."""
+"""The objects of a 123D map by their layers. A row has the object's number, its features (MessagePack with arrays) and outline (WKB)."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ if TYPE_CHECKING:
     from drivelint.road.quality import MapQuality
 
 T = TypeVar("T")
-_LONGEST_M: Final = 100_000.0  # longer is a mistake
+_LONGEST_M: Final = 100_000.0  # a longer bound is a mistake
 COLUMNS: Final = {"object_id": pa.int64(), "map_layer": pa.int8(), "features": pa.binary(), "wkb": pa.binary()}
 LIGHT_LANES_KEY: Final = b"drivelint.light_lanes"
-"""Metadata that we add to a log's own map: the lanes for which the log has states of lights."""
+"""Metadata that drivelint adds to the map of a log: the lanes for which the log has states of lights."""
 
 
 class Lane(msgspec.Struct):
-    """Features of a lane; those that are not named here are passed over."""
+    """Features of a lane; other features are ignored."""
 
     left_boundary: Any
     right_boundary: Any
@@ -60,10 +60,10 @@ class Line(msgspec.Struct):
 
 
 class Layers:
-    """The rows and the metadata of a map. `name`: the map's, for errors."""
+    """The rows and the metadata of a map. `name`: the name of the map in errors."""
 
     def __init__(self, name: str, rows: pa.Table) -> None:
-        """Take a table with the columns `COLUMNS`. Errors: `TraceError` where it is none of 123D's, or of a version that is not read."""
+        """Take a table with the columns `COLUMNS`. Errors: `TraceError` if it is not a map of 123D, or of a version that is not read."""
         if missing := [column for column in COLUMNS if column not in rows.schema.names]:
             raise TraceError(f"{name}: no column {', '.join(missing)}: it is no map of 123D")
         self.header = metadata(name, rows.schema)
@@ -98,7 +98,7 @@ class Layers:
 
     @property
     def unknown(self) -> list[int]:
-        """Numbers of layers that are not known."""
+        """The numbers of layers that 123D does not have."""
         return sorted(set(self._layer.tolist()) - set(facts.LAYERS.values()))
 
     def features(self, layer: str, kind: type[T], quality: MapQuality) -> dict[int, T]:
@@ -117,7 +117,7 @@ class Layers:
         return feature_by_id
 
     def outlines(self, layer: str, quality: MapQuality) -> dict[int, Floats]:
-        """Return the points, (n, 2) or (n, 3), of the outline or line of each object of a layer; one without is reported and left out."""
+        """Return the points, (n, 2) or (n, 3), of the outline of each object of a layer; objects without one are reported and left out."""
         some = self._of(layer)
         shapes = shapely.from_wkb(some["wkb"].to_pylist(), on_invalid="ignore")
         outline_by_id = {}
@@ -140,7 +140,7 @@ class Layers:
 
 
 def points_of(value: Any) -> Floats:
-    """Return the points, (n, 2) or (n, 3), of an array that lies in features. Errors: `ValueError` where it is none."""
+    """Return the points, (n, 2) or (n, 3), of an encoded array among features. Errors: `ValueError` if it is not an array of points."""
     try:
         kind = np.dtype(value[b"dtype"])
         if kind.kind not in "fiu":
@@ -157,7 +157,7 @@ def points_of(value: Any) -> Floats:
 
 
 def _light_lanes(name: str, schema: pa.Schema) -> frozenset[int]:
-    """Return the lanes for which the log that has this map has states of lights."""
+    """Return the lanes for which the log of this map has states of lights."""
     packed = schema.metadata.get(LIGHT_LANES_KEY)
     try:
         return frozenset() if packed is None else frozenset(msgspec.msgpack.decode(packed, type=list[int]))

@@ -1,4 +1,4 @@
-"""The markings of the lanes of a 123D map, from its road lines, which belong to no lane."""
+"""Finds the markings of the lanes of a 123D map from its road lines, which the map does not assign to lanes."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 
     from drivelint.arrays import Floats, Indices, Mask
 
-_NEAR_M: Final = 0.1  # a painted line is about as wide
+_NEAR_M: Final = 0.1  # about the width of a painted line
 _PIECE_M: Final = 2.0
 _OF_TWO_SIDES: Final = frozenset({"broken_solid", "solid_broken"})
-"""Markings that differ by the side from which they are seen: known only where it is known whose line it is."""
+"""Markings whose name depends on the side from which they are seen: known only if the lane that owns the line is known."""
 _UNKNOWN: Final = -1
 _WORDS: Final = tuple(sorted({word for word in facts.MARKINGS.values() if word is not None}))
 
@@ -39,14 +39,14 @@ Bounds = tuple["Floats", "Floats"]
 def lane_marks(
     bounds: Mapping[str, Bounds], lines: Sequence[RoadLine], about: facts.Dataset
 ) -> dict[str, tuple[Mark, ...]]:
-    """Return the marks of each lane, by its id; `bounds` in the order of the map."""
+    """Return lane id -> its marks. `bounds`: in the order of the map."""
     if about.lines_of_lanes and (marks := _by_order(bounds, lines)) is not None:
         return marks
     return _by_place(bounds, lines, about)
 
 
 def _by_order(bounds: Mapping[str, Bounds], lines: Sequence[RoadLine]) -> dict[str, tuple[Mark, ...]] | None:
-    """Return the marks where the lines are the lanes' own bounds, one after the other; None: they are not."""
+    """Return the marks if the lines are the lanes' own bounds, in the order of the lanes; None if they are not."""
     marks: dict[str, tuple[Mark, ...]] = {}
     k = 0
     for name, sides in bounds.items():
@@ -56,7 +56,7 @@ def _by_order(bounds: Mapping[str, Bounds], lines: Sequence[RoadLine]) -> dict[s
                 words.append(facts.MARKINGS.get(lines[k].type_number))
                 k += 1
             else:
-                words.append("none")  # lines that are not painted are left out
+                words.append("none")  # the map leaves out bounds without paint
         marks[name] = both_marks(*words)
     return marks if k == len(lines) else None
 
@@ -64,7 +64,7 @@ def _by_order(bounds: Mapping[str, Bounds], lines: Sequence[RoadLine]) -> dict[s
 def _by_place(
     bounds: Mapping[str, Bounds], lines: Sequence[RoadLine], about: facts.Dataset
 ) -> dict[str, tuple[Mark, ...]]:
-    """Return the marks where a line runs along a bound, piece by piece; not known where there is none, or several that differ."""
+    """Return the marks by the lines along each piece of a bound; unknown for a piece without lines, or with lines that differ."""
     if not lines:
         return dict.fromkeys(bounds, both_marks(None, None))
     codes = np.array([_code(line, about) for line in lines], np.int64)
@@ -79,7 +79,7 @@ def _by_place(
 
 
 def _code(line: RoadLine, about: facts.Dataset) -> int:
-    """Return the index of a line's marking in `_WORDS`."""
+    """Return the index of a line's marking in `_WORDS`, `_UNKNOWN` if the marking is not certain."""
     word = facts.MARKINGS.get(line.type_number)
     unsure = {facts.LINE_NUMBERS[name] for name in about.unsure_lines}
     if word is None or word in _OF_TWO_SIDES or line.type_number in unsure:
@@ -95,9 +95,9 @@ def _sampled(bound: Floats) -> Floats:
 
 
 def _piece_codes(points: Floats, starts: Indices, tree: shapely.STRtree, codes: Indices) -> Indices:
-    """Return the code of each piece: that of the lines near both its ends and its middle, if they agree.
+    """Return the code of each piece: that of the lines near its middle and both its ends, if these lines agree.
 
-    `starts`: where the points of each bound begin, and where the last ends.
+    `starts`: the index of the first point of each bound, and the number of all points.
     """
     n = len(codes)
     at, line = all_in_parts(tree, shapely.points(points), "dwithin", _NEAR_M)
@@ -116,13 +116,13 @@ def _piece_codes(points: Floats, starts: Indices, tree: shapely.STRtree, codes: 
 
 
 def _are_among(values: Indices, ordered: Indices) -> Mask:
-    """Say which values are among the others, which are in order."""
+    """Return which values are in `ordered`, an ascending array."""
     at = np.minimum(np.searchsorted(ordered, values), max(len(ordered) - 1, 0))
     return np.asarray(ordered[at] == values, np.bool_) if len(ordered) else np.zeros(len(values), np.bool_)
 
 
 def _runs(side: str, pieces: Indices) -> list[Mark]:
-    """Return the marks of one side: pieces one after the other that are marked alike are one."""
+    """Return the marks of one side; successive pieces with the same marking are one mark."""
     begins = np.flatnonzero(np.r_[True, pieces[1:] != pieces[:-1]])
     ends = np.r_[begins[1:], len(pieces)]
     return [

@@ -1,8 +1,8 @@
 """Reads a log of 123D, a folder of Arrow files: the ego's states, the boxes of the actors around it, lights, and its map.
 
 A log has a table of frames (`sync.arrow`), which links the rows of each file to the frames. The ego's poses may be far denser than the
-boxes; the ego's steps are the frames that have both, because the actors around it are not known in between. Positions are those of the
-box centres; the ego's pose is its IMU's, and is moved to its box centre.
+boxes; the ego's steps are the frames that have both, because the actors around it are not known in between. Positions are box centres.
+The recorded pose of the ego is that of its IMU; the reader moves it to the box centre.
 """
 
 from __future__ import annotations
@@ -42,14 +42,14 @@ _NO_ROAD_USERS: Final = QualityFinding(
     "warning",
     f"the log has no {BOXES}.arrow: the actors around the ego are not recorded: rules about other actors are unknown",
 )
-_ROUNDED_US: Final = 10  # in which no actor moves by a millimetre
+_ROUNDED_US: Final = 10  # a difference in time in which no actor moves by a millimetre
 _MALFORMED: Final = (
     "frames whose lists of boxes differ in length or lack a track, or that point to rows that are not there"
 )
 
 
 def accepts(probe: Probe) -> bool:
-    """Accept a folder with the ego's states and the table of frames."""
+    """Return whether the path is a folder with the ego's states and the table of frames."""
     return probe.path.is_dir() and folder_kind(probe.path) == NAME
 
 
@@ -57,7 +57,7 @@ def read(probe: Probe) -> Recording:
     """Read a log.
 
     Errors: `TraceError` for a damaged file, a column that is missing or of another type, a version that is not read, and a log without
-    a frame that can be used.
+    a usable frame.
     """
     folder = probe.path
     sync, info = sync_table(folder)
@@ -107,9 +107,9 @@ _NO_STATES: Final = States([], np.zeros(0, np.int32), np.zeros(0, np.int64), {},
 
 
 class _Frames(NamedTuple):
-    """The rows of the ego's file and of the boxes' that are one frame each, which frames are left out, and notes.
+    """For each frame that is read, its row in the ego's file and in the file of boxes; which frames are malformed; and notes.
 
-    `ego_us`: the time of each of the ego's rows.
+    `ego_us`: the time of each row in `ego_rows`.
     """
 
     ego_rows: Indices
@@ -120,7 +120,7 @@ class _Frames(NamedTuple):
 
 
 def _frames(folder: Path, sync: Mapping[str, pa.Array], ego: Modality, boxes: Modality | None) -> _Frames:
-    """Return the frames that have the ego and boxes, if the log has boxes at all. Errors: `TraceError` if there is none."""
+    """Return the frames that have the ego and, if the log has boxes, boxes. Errors: `TraceError` if there is no such frame."""
     ego_rows = integers(sync[EGO_STATE])
     box_rows = integers(sync[BOXES]) if boxes is not None and BOXES in sync else np.full(len(ego_rows), -1)
     whole, malformed = ego_rows >= 0, ego_rows >= ego.n
@@ -151,10 +151,10 @@ def _frames(folder: Path, sync: Mapping[str, pa.Array], ego: Modality, boxes: Mo
 
 
 def _ego_at(box_us: Times, moments: Times, frames_own: Indices) -> tuple[Indices, Times]:
-    """Return for boxes of these times the row of the ego nearest in time, and its time. `moments`: the times of all its rows.
+    """Return for each time of boxes the ego's row nearest in time, and its time. `moments`: the times of all rows of the ego.
 
-    The row that a frame names may be a later one: the first after the frame's time. Converters round times, so that the ego's and the
-    boxes' differ by a microsecond where they are one.
+    The row that the frame itself names (`frames_own`) may be a later row: the first after the frame's time. Converters round times: the
+    ego's and the boxes' time may differ by a microsecond although both were recorded at one time.
     """
     if (np.diff(moments) < 0).any():
         return frames_own, moments[frames_own]
@@ -165,7 +165,7 @@ def _ego_at(box_us: Times, moments: Times, frames_own: Indices) -> tuple[Indices
 
 
 def _ego_with_boxes(ego_states: States, box_states: list[States]) -> States:
-    """Return the states of the ego and of the others."""
+    """Return the states of the ego and of the boxes together."""
     if not box_states:
         return ego_states
     ids = [*ego_states.ids, *box_states[0].ids]

@@ -1,6 +1,6 @@
 """This module converts two-dimensional boxes (`vision_msgs/Detection2DArray`) into distances ahead.
 
-A box of w pixels of an actor W metres wide is s = c W / w metres ahead, c being the camera's focal constant in pixels.
+An actor W metres wide with a box of w pixels is s = c W / w metres ahead; c is the camera's focal constant in pixels.
 """
 
 from __future__ import annotations
@@ -35,14 +35,14 @@ _TREE: Final[FieldTree] = {
 
 
 class Sightings(NamedTuple):
-    """Frames that exist (numbers, rising), and per actor its distance ahead in each, NaN where it was not detected."""
+    """The numbers of the frames, ascending, and each actor's distance ahead in each frame (NaN: not detected, inf: distance unknown)."""
 
     frames: NDArray[np.int64]
     ahead_m: list[Floats]
 
 
 def read(path: Path, film: VideoMapping) -> Sightings:
-    """Return the distances ahead in every frame. Errors: `TraceError` without such messages, `UsageError` for the mapping."""
+    """Return the distances ahead in every frame. Errors: `TraceError` without boxes, `UsageError` for a mapping that lacks a value."""
     if film.camera is None:
         raise UsageError(
             "a film's boxes need [camera] focal_px in the mapping: the distance at which 1 m is 1 pixel wide"
@@ -74,7 +74,7 @@ def _kind(channel: Channel, schema: Schema) -> str | None:
 def _sightings(
     path: Path, film: VideoMapping, focal_px: float, t_ns: Times, boxes: list[tuple[Times, list[str], Floats]]
 ) -> Sightings:
-    """Bring times to frame numbers and widths to distances; of several boxes of one actor in a frame the nearest counts."""
+    """Convert times to frame numbers and widths to distances. Of several boxes of one actor in a frame, the nearest counts."""
     start = int(t_ns.min())
     numbers = _frames(t_ns, start, film)
     whole = np.arange(0, int(numbers.max()) + 1)

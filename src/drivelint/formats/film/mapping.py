@@ -1,6 +1,6 @@
-"""Mappings of filmed drives: the numbers of a frame that are distances ahead, and the assumptions about everything else.
+"""Mappings of filmed drives: which values of a frame are distances ahead, and the assumptions about all other values.
 
-A film gives no positions. The drive is laid on a straight road with one lane each way: the ego moves along it at its
+A film contains no positions. The drive is placed on a straight road with one lane each way: the ego moves along it at its
 assumed speed, and a detected actor is placed at its measured distance ahead, in the middle of its lane.
 """
 
@@ -22,7 +22,7 @@ Metres = Annotated[float, msgspec.Meta(gt=0.0, lt=1000.0)]
 
 
 class Speed(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """A speed in any unit that other mappings know."""
+    """A speed, in any unit of the mappings for tables."""
 
     value: Annotated[float, msgspec.Meta(ge=0.0)]
     unit: str = "m/s"
@@ -34,9 +34,9 @@ class Speed(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class FrameTiming(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """How frames are counted: the column with their number (of a table), their rate, and when frame 0 is.
+    """How frames are counted: the column with their number (in a table), their rate, and the time of frame 0.
 
-    `every` n: only frames 0, n, 2n, ... are judged. `not_detected` are words for nothing seen.
+    `every` n: only frames 0, n, 2n, ... are judged. `not_detected`: the words for an actor that is not detected.
     """
 
     rate_hz: Annotated[float, msgspec.Meta(gt=0.0)]
@@ -54,7 +54,7 @@ class RoadShape(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class EgoCar(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """The vehicle with the camera, which is its front."""
+    """The vehicle with the camera. The camera is assumed to be at the front end."""
 
     speed: Speed
     id: str = "ego"
@@ -63,7 +63,7 @@ class EgoCar(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class OvertakeStages(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """First frames of the stages of an overtake that breaks off, and how far over the centre line it gets (its middle, metres)."""
+    """The first frames of the stages of an aborted overtake, and how far beyond the centre line the ego's middle gets (metres)."""
 
     pulling_out: int
     passing: int
@@ -73,7 +73,7 @@ class OvertakeStages(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class DetectedActor(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """A detected actor: the column with its distance ahead (in a table), or the id and width of its box (in an MCAP)."""
+    """A detected actor: the column with its distance ahead (in a table), or the id of its box (in an MCAP); and its assumed size."""
 
     id: str
     lane: Literal["own", "opposing"]
@@ -104,7 +104,7 @@ class VideoMapping(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     sensor_range_m: Metres | None = None
 
 
-# planned at import: logs are read in several threads, see drivelint.formats.tables.mapping
+# made at import, because logs are read in several threads: see drivelint.formats.tables.mapping
 DECODER = msgspec.json.Decoder(VideoMapping)
 
 
@@ -114,10 +114,10 @@ def shipped_mappings() -> list[str]:
 
 
 def is_video_mapping(name: str) -> bool:
-    """Say whether a mapping, given as a file or as a shipped name, is for filmed drives."""
+    """Return whether a mapping, given as a file or as a shipped name, is for filmed drives."""
     if name in shipped_mappings():
         return True
-    if not os.path.isfile(name):  # noqa: PTH113 - also of a name that is too long for a file
+    if not os.path.isfile(name):  # noqa: PTH113 - no error for a name that is too long
         return False
     try:
         raw = parse_toml(Path(name).read_text(encoding="utf-8"))

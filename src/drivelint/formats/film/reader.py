@@ -1,7 +1,7 @@
-"""Filmed drives: the detections in each frame, placed on a straight road as the mapping assumes it.
+"""Reads filmed drives: the detections in each frame, placed on the straight road that the mapping assumes.
 
-Distances ahead are from bumper to bumper along the road. An actor that is not detected in a frame is there without a place; before he is
-first detected and after the last time nothing is claimed but the range of the detector.
+Distances ahead are from bumper to bumper along the road. An actor that is not detected in a frame is present without a place, if it was
+detected before and is detected later. Otherwise it is absent: only the range of the detector is known.
 
 Places are box centres: half a length behind the front bumper.
 """
@@ -32,17 +32,17 @@ if TYPE_CHECKING:
 formats: Final[dict[str, tuple[str, str]]] = {}
 takes_mapping: Final = True
 PULL_OUT_START_OVER_LINE_M: Final = 0.06
-"""How far a corner is over the centre line in the first frame of pulling out: just more than counts as over it (0.05 m)."""
+"""How far a corner of the ego is over the centre line in the first frame of pulling out: just over 0.05 m, which counts as over it."""
 PULL_OUT_END_REMAINING_M: Final = 0.11
-"""How much the last frame of pulling out is short of passing: just more than counts as settled (0.1 m)."""
+"""How far the ego is from its offset of passing in the last frame of pulling out: just over 0.1 m, which does not count as settled."""
 MOST_FRAMES: Final = 10_000_000
-"""46 hours of 60 frames a second: a number beyond it is no frame's."""
+"""46 hours at 60 frames a second: a larger number is not a frame number."""
 ROAD_EXTENSION_M: Final = 400.0
-"""How much longer the road is than the ego's way, at both ends."""
+"""How far the road extends beyond the ego's path, at each end."""
 
 
 def _matching_mapping(path: Path) -> str | None:
-    """Return the shipped mapping that judges every frame and whose columns the table has; None where there is none."""
+    """Return the shipped mapping that judges every frame and whose columns the table has; None if no mapping fits."""
     try:
         names = CsvSheet(path, TextLayout()).names
     except TraceError:
@@ -55,7 +55,7 @@ def _matching_mapping(path: Path) -> str | None:
 
 
 def accepts(probe: Probe) -> bool:
-    """Accept by the mapping; a table without one by the columns of a shipped one."""
+    """Return whether the given mapping is for films or, without a mapping, whether a table has the columns of a shipped one."""
     if probe.path.is_dir():
         return False
     if probe.options.mapping is not None:
@@ -65,7 +65,7 @@ def accepts(probe: Probe) -> bool:
 
 
 def read(probe: Probe) -> Recording:
-    """Read detections, a table or boxes in MCAP, through a mapping. Errors: `TraceError`, `UsageError`."""
+    """Read detections (a table, or boxes in MCAP) through a mapping. Errors: `TraceError`, `UsageError`."""
     path = probe.path
     stem, film = video_mapping.load(probe.options.mapping or _matching_mapping(path) or "")
     findings: list[QualityFinding] = []
@@ -138,7 +138,7 @@ def _states(
     film: VideoMapping, frames: NDArray[np.int64], t_ns: Times, ahead: list[Floats]
 ) -> tuple[States, tuple[float, float]]:
     """Return the states of all actors, and where the ego's path begins and ends along the road (x)."""
-    own = 1.0 if film.road.driven_on == "left" else -1.0  # its lane is to the left of the centre line, or to the right
+    own = 1.0 if film.road.driven_on == "left" else -1.0  # 1: the ego's lane is left of the centre line
     middle = own * film.road.lane_width / 2
     ego_x = film.ego.speed.mps * (t_ns - t_ns[0]) / 1e9
     ego_y = np.full(len(frames), middle)
@@ -178,10 +178,10 @@ def _states(
 
 
 def _across(film: VideoMapping, stages: OvertakeStages, frames: NDArray[np.int64]) -> Floats:
-    """Return how far beyond the centre line the ego's middle is in each frame: such that the stages begin where they are said to.
+    """Return how far beyond the centre line the ego's middle is in each frame, so that the stages begin in the frames of the mapping.
 
-    Straight from touching the line to just short of passing, level, and from the first frame of the abort back to the
-    middle of its lane.
+    The path is linear from touching the line to just before the offset of passing, then constant, then linear from the first frame of the
+    abort to the middle of the lane.
     """
     home = -film.road.lane_width / 2
     touching = PULL_OUT_START_OVER_LINE_M - film.ego.width / 2
@@ -204,7 +204,7 @@ def _across(film: VideoMapping, stages: OvertakeStages, frames: NDArray[np.int64
 
 
 def _road(film: VideoMapping, ego_x: tuple[float, float]) -> bytes:
-    """Return the assumed road as OpenDRIVE: straight, one lane each way, the ego's along it."""
+    """Return the assumed road as OpenDRIVE: straight, with one lane each way; the ego drives along the reference line."""
     start, length = ego_x[0] - ROAD_EXTENSION_M, ego_x[1] - ego_x[0] + 2 * ROAD_EXTENSION_M
     lane = (
         '<lane id="{}" type="driving" level="false"><link/><width sOffset="0" a="{}" b="0" c="0" d="0"/>'

@@ -1,4 +1,4 @@
-"""The file of a Lanelet2 map, read by the library of that name; where it has local coordinates (Autoware), by those."""
+"""Loads the file of a Lanelet2 map with the library lanelet2, by its local coordinates if it has any (Autoware)."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ _EARTH_M = 6_378_137.0
 
 
 def load(source: MapSource, request: MapOptions, quality: MapQuality) -> tuple[Any, bool]:
-    """Return the library's map, read robustly, and whether its coordinates are local; its complaints are in `quality`.
+    """Return the library's map, and whether its coordinates are local; elements that the library cannot read are in `quality`.
 
-    Errors: `MapError` where the library is not installed, the file is none of Lanelet2's, or nothing says where the
-    log's frame lies on the globe.
+    Errors: `MapError` if the library is not installed, the file is not a Lanelet2 map, or latitude and longitude of the log's
+    origin are needed but not given.
     """
     try:
         import lanelet2
@@ -34,7 +34,7 @@ def load(source: MapSource, request: MapOptions, quality: MapQuality) -> tuple[A
         raise MapError(
             f"map {source.name} is a Lanelet2 map, and the package lanelet2 is not installed: pip install 'drivelint[lanelet2]'"
         ) from error
-    root = safe_xml.parse_map(source)  # it is not the library that refuses entities
+    root = safe_xml.parse_map(source)  # unlike the library, this refuses entities
     local = root.find("node/tag[@k='local_x']") is not None
     if local:
         _place_locally(root, quality)
@@ -60,10 +60,10 @@ def load(source: MapSource, request: MapOptions, quality: MapQuality) -> tuple[A
 
 
 def _place_locally(root: etree._Element, quality: MapQuality) -> None:
-    """Give every node a latitude and longitude that say where its local coordinates are.
+    """Set the latitude and longitude of every node from its local coordinates.
 
-    In maps of Autoware these are empty or of another frame, and the library uses them to decide which bound of a lane is the left one and
-    which way it runs. A node without local coordinates has no place.
+    In Autoware's maps, latitude and longitude are empty or of another frame; the library uses them to decide which bound of a lane is the
+    left one and in which direction it runs. A node without local coordinates has no place.
     """
     n_lost = 0
     first: tuple[float, float] | None = None
@@ -86,7 +86,7 @@ def _place_locally(root: etree._Element, quality: MapQuality) -> None:
 
 
 def xy(bound: Any) -> Floats:
-    """Return the points (n, 2) of a line: where nodes say local coordinates (Autoware), those."""
+    """Return the points (n, 2) of a line, in local coordinates where the nodes have them (Autoware)."""
     return np.array(
         [
             (float(p.attributes["local_x"]), float(p.attributes["local_y"]))
@@ -99,5 +99,5 @@ def xy(bound: Any) -> Floats:
 
 
 def attribute(element: Any, name: str) -> str:
-    """Return the text of a tag, empty where the element has none of that name."""
+    """Return the text of a tag; an empty text if the element does not have this tag."""
     return str(element.attributes[name]) if name in element.attributes else ""

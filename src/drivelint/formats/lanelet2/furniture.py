@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from drivelint.road.quality import MapQuality
 
 
-STOP_LINE_GAP_M = 1.0  # a stop line that misses the end of a lane by less is drawn between two lanes
+STOP_LINE_GAP_M = 1.0  # a stop line that misses the end of a lane by less than this lies between two lanes
 _SIGN = re.compile(r"([a-z]{2})(\d.*)")  # a code of a national catalogue, as in de274-60
 
 
@@ -37,9 +37,9 @@ def furniture(
 
 
 def _signals(layers: Any, lanes: Sequence[BoundedLane], offset: tuple[float, float]) -> Rows:
-    """Return a row for each lane and regulatory element that lights, gives way, has priority or is a sign there.
+    """Return a row for each lane and each of its regulatory elements that is a light, a right of way or a sign.
 
-    It holds where its stop line is, else at the end of the lane.
+    The element applies at its stop line, else at the end of the lane.
     """
     by_id = {lane.lanelet_id: lane for lane in lanes}
     rows = []
@@ -61,7 +61,7 @@ def _signals(layers: Any, lanes: Sequence[BoundedLane], offset: tuple[float, flo
 
 
 def _where(element: Any, lane: BoundedLane, offset: tuple[float, float]) -> float:
-    """Return the station on a lane at which a regulatory element holds."""
+    """Return the station on a lane at which a regulatory element applies."""
     for line in sorted((x for x in _parameter(element, "ref_line") if len(x) > 1), key=lambda x: x.id):
         at = _crossed(lane, xy(line) + offset)
         if at is not None:
@@ -70,7 +70,7 @@ def _where(element: Any, lane: BoundedLane, offset: tuple[float, float]) -> floa
 
 
 def _kinds(element: Any, lanelet: Any) -> list[str]:
-    """Return the meaning of a regulatory element for a lanelet, each kind once."""
+    """Return the kinds of signals that a regulatory element is for a lanelet, each once."""
     subtype = attribute(element, "subtype")
     if subtype == "right_of_way":
         yields = {x.id for x in _parameter(element, "yield")}
@@ -92,9 +92,9 @@ def _parameter(element: Any, role: str) -> Any:
 
 
 def _crossed(lane: BoundedLane, line: Floats, near_m: float = STOP_LINE_GAP_M) -> float | None:
-    """Return the station (m) at which a line (n, 2) lies across a lane; None: it does not.
+    """Return the station (m) at which a line (n, 2) crosses a lane's centre line; None if it does not cross it.
 
-    Where it misses the centre line's end by less than `near_m`, it lies across the end.
+    A line that misses an end of the centre line by less than `near_m` crosses it at this end.
     """
     if not np.isfinite(line).all():
         return None
@@ -109,10 +109,10 @@ def _crossed(lane: BoundedLane, line: Floats, near_m: float = STOP_LINE_GAP_M) -
 
 
 def _stop_lines(layers: Any, lanes: Sequence[BoundedLane], offset: tuple[float, float], quality: MapQuality) -> Rows:
-    """Return a row for each drivable lane for which a stop line holds.
+    """Return a row for each stop line and drivable lane to which it applies.
 
-    Those whose regulatory elements refer to it, if it lies across any of them, else all whose centre line it crosses;
-    between two lanes it stands at the end of the first.
+    A line applies to the lanes that it crosses and that refer to it by a regulatory element; without such lanes, to all lanes
+    that it crosses. A line between two lanes is placed at the end of the first.
     """
     drivable_lanes = [lane for lane in lanes if lane.drivable]
     tree = shapely.STRtree([shapely.LineString(lane.line.centre) for lane in drivable_lanes])
@@ -142,7 +142,7 @@ def _stop_lines(layers: Any, lanes: Sequence[BoundedLane], offset: tuple[float, 
 
 
 def _referring(layers: Any) -> dict[int, set[str]]:
-    """Return line -> the lanes of whose regulatory elements it is the stop line."""
+    """Return stop line -> the lanes that refer to it by a regulatory element."""
     found: dict[int, set[str]] = defaultdict(set)
     for x in layers.laneletLayer:
         for element in x.regulatoryElements:
@@ -152,7 +152,7 @@ def _referring(layers: Any) -> dict[int, set[str]]:
 
 
 def _walks(layers: Any, lanes: Sequence[BoundedLane]) -> Iterator[BoundedLane]:
-    """Yield the crosswalks, but for those that are lanes by their tags."""
+    """Yield the crosswalks, except those that their tags make lanes."""
     driven = {lane.lanelet_id for lane in lanes}
     for x in sorted(layers.laneletLayer, key=lambda x: x.id):
         if attribute(x, "subtype") == "crosswalk" and str(x.id) not in driven:

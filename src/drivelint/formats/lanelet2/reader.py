@@ -1,4 +1,4 @@
-"""Lanelet2 maps (`.osm`), through the library of that name: lanes, neighbours, limits, lights, stop lines, crossings."""
+"""Lanelet2 maps (`.osm`), read with the library lanelet2: lanes, neighbours, limits, lights, stop lines, crossings."""
 
 from __future__ import annotations
 
@@ -29,8 +29,7 @@ _LEFT_DRIVEN = frozenset({"gb", "uk", "ie", "au", "nz", "jp", "in", "za", "sg", 
 def read(source: MapSource, request: MapOptions) -> MapTables:
     """Return the map's tables.
 
-    Errors: `MapError` where the library is not installed, the file is none of Lanelet2's, or nothing says where the
-    log's frame lies on the globe.
+    Errors: as `file.load`, and `MapError` if no lanelet can be built.
     """
     quality = MapQuality()
     layers, local = load(source, request, quality)
@@ -48,7 +47,7 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
 
 
 Bound = tuple[int, bool]
-"""A line as it bounds a lane: which, and whether it runs the other way round than it was drawn."""
+"""A bound of a lane: the id of its line, and whether it runs against the direction in which the line was drawn."""
 
 
 def _bound(line: Any, *, turned: bool = False) -> Bound:
@@ -56,7 +55,7 @@ def _bound(line: Any, *, turned: bool = False) -> Bound:
 
 
 def _lanes(layers: Any, quality: MapQuality) -> Iterable[BoundedLane]:
-    """Yield the lanes. Neighbours share a bound, what follows begins at the points where a lane ends."""
+    """Yield the lanes. Neighbours share a bound; a successor begins at the two points where a lane ends."""
     rules = TrafficRules()
     access = {x.id: found for x in layers.laneletLayer if (found := rules.access(x)) is not None}
     lanelets = sorted((x for x in layers.laneletLayer if x.id in access), key=lambda x: x.id)
@@ -93,7 +92,11 @@ def _lanes(layers: Any, quality: MapQuality) -> Iterable[BoundedLane]:
 
 
 def _beside(lanelet: Any, same: Sequence[Any], against: Sequence[Any]) -> tuple[str | None, bool | None]:
-    """Return the neighbour across a bound: `same` have it as their other bound, `against` as the same one, turned round."""
+    """Return the neighbour across a line, and whether it is driven the other way.
+
+    `same`: the lanes with this line as the bound of their other side. `against`: the lanes with this line, reversed, as the bound of the
+    same side.
+    """
     for lanes, other_way in ((same, False), (against, True)):
         for x in lanes:
             if x.id != lanelet.id:
@@ -108,7 +111,7 @@ def _road_type(x: Any) -> str | None:
 
 
 def _marking(bound: Any, *, near_left: bool) -> str | None:
-    """Return the marking of a bound; of a double line, named left first along the bound, the nearer half comes first."""
+    """Return the marking of a bound. Lanelet2 names a double line from left to right; here, the line nearer to the lane comes first."""
     kind, style = attribute(bound, "type"), attribute(bound, "subtype")
     if kind in _EDGES:
         return _EDGES[kind]

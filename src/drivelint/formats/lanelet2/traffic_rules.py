@@ -1,7 +1,7 @@
-"""The participants, directions and speeds that a lanelet allows, by the German rules of the library of Lanelet2, the only ones that it has.
+"""The participants, directions and speeds that a lanelet allows, by the German rules of the library lanelet2, which has no other rules.
 
-By these rules, a tag `participant:*` replaces all participants that the subtype allows. A tag `one_way:*` counts for its kind of road user
-if there is no tag `one_way` for all.
+By these rules, a tag `participant:*` replaces all participants that the subtype allows. A tag `one_way:*` applies to its kind of road user
+if there is no tag `one_way`.
 """
 
 from __future__ import annotations
@@ -20,20 +20,20 @@ _SUBTYPES: Final[Mapping[str, str]] = {
     "emergency_lane": "stop", "bicycle_lane": "biking", "walkway": "sidewalk", "shared_walkway": "sidewalk",
     "stairs": "sidewalk", "pedestrian_lane": "sidewalk", "road_shoulder": "shoulder", "rail": "rail",
 }  # fmt: skip
-"""Subtypes as our lane types, by default."""
+"""Subtype -> lane type, by default."""
 _ROADSIDE: Final = frozenset({"road_shoulder", "pedestrian_lane"})
-"""Autoware's subtypes of lanes to stop on beside the road, which the library does not know: no tag makes them lanes of the road."""
+"""Autoware's subtypes of lanes beside the road, which the library does not know. Whatever their tags, they are not for driving."""
 _DRIVERS: Final = {
     "vehicle:car": "driving", "vehicle:truck": "driving", "vehicle:motorcycle": "driving", "vehicle:bus": "bus",
     "vehicle:taxi": "taxi",
 }  # fmt: skip
-"""Motor vehicles, and the type of a lane that is for none of those before them."""
+"""Motor vehicle -> type of a lane that it may use, but none of the vehicles listed before it."""
 _LANE_TYPE_BY_PARTICIPANT: Final = {"pedestrian": "sidewalk", "bicycle": "biking", "vehicle:emergency": "restricted"}
 _SPEED: Final = re.compile(r"\s*([0-9]+(?:\.[0-9]+)?)\s*([a-z/]*)\s*")
 _UNITS_MPS: Final = {
     "": 1 / 3.6, "km/h": 1 / 3.6, "kmh": 1 / 3.6, "kph": 1 / 3.6, "kmph": 1 / 3.6, "mph": 0.44704, "m/s": 1.0, "mps": 1.0,
 }  # fmt: skip
-"""A bare number is in km/h. The library itself reads `50 kmph` as miles, of `50 mph;30` the beginning, and 0 where it knows no better."""
+"""A number without a unit is in km/h. The library itself reads `50 kmph` as miles, only the start of `50 mph;30`, and other texts as 0."""
 _LIMIT_TAGS: Final = ("speed_limit:vehicle:car", "speed_limit:vehicle", "speed_limit")
 
 
@@ -58,7 +58,7 @@ class TrafficRules:
         }
 
     def access(self, lanelet: Any) -> Access | None:
-        """Return the participants that may use a lanelet; None if it is no lane of a road, such as a crosswalk."""
+        """Return the type of a lanelet and who may drive on it; None if it is not a lane of a road but, for example, a crosswalk."""
         subtype = attribute(lanelet, "subtype")
         of_subtype = _SUBTYPES.get(subtype)
         if subtype in _ROADSIDE:
@@ -78,9 +78,9 @@ class TrafficRules:
         return Access(of_subtype, False, False)
 
     def limit_mps(self, lanelet: Any) -> float | None:
-        """Return the limit by a lanelet's sign, else by its tag, not by a nation's default.
+        """Return the limit (m/s) of a lanelet's sign, else of its tag; a nation's default is not used.
 
-        None: the map does not say one; NaN: what it says cannot be read.
+        None: the map states no limit; NaN: the stated limit cannot be read.
         """
         signed = any(attribute(rule, "subtype") == "speed_limit" for rule in lanelet.regulatoryElements)
         of_sign = self._limit_of_sign(lanelet) if signed else math.nan
@@ -92,7 +92,7 @@ class TrafficRules:
         return speed_mps(text)
 
     def _limit_of_sign(self, lanelet: Any) -> float:
-        """Return the limit (m/s) of a lanelet that has a sign, NaN for one of which the library knows no number."""
+        """Return the limit (m/s) of a lanelet that has a sign; NaN if the library does not know the number on the sign."""
         try:
             limit = float(self._vehicle.speedLimit(lanelet).speedLimit) / 3.6
         except RuntimeError:
@@ -101,12 +101,12 @@ class TrafficRules:
 
 
 def limit_text(lanelet: Any) -> str | None:
-    """Return the tag that limits the speed of vehicles on a lanelet, as it is written; None: there is none."""
+    """Return the text of the tag that limits the speed of vehicles on a lanelet; None without such a tag."""
     return next((attribute(lanelet, name) for name in _LIMIT_TAGS if name in lanelet.attributes), None)
 
 
 def speed_mps(text: str) -> float:
-    """Return a speed in m/s, NaN for a text that is not one positive number with a unit that is known, or none."""
+    """Return a speed in m/s; NaN for a text that is not one positive number, with a known unit or without a unit."""
     found = _SPEED.fullmatch(text.lower())
     speed = float(found[1]) * _UNITS_MPS.get(found[2], math.nan) if found else math.nan
     return speed if speed > 0.0 else math.nan

@@ -14,13 +14,13 @@ if TYPE_CHECKING:
     from drivelint.formats.opendrive.network import Lane, LaneSection, Road
     from drivelint.formats.opendrive.planview import ReferenceLine
 
-CHORD_TOLERANCE_M = 0.01  # furthest that a bound may be from the chord between two of its points
-SPACING_M = 5.0  # furthest that two points may be apart
+CHORD_TOLERANCE_M = 0.01  # the largest distance of a bound from the chord between two of its points
+SPACING_M = 5.0  # the largest distance between two points
 JUMP_M = 0.01  # a larger step in an edge is kept as a step
 MAX_POINTS = 100_000  # per strip: 100 km in steps of a metre
 MAX_REACH_M = 1000.0  # no lane lies further from its reference line
-_SNAP_M = 1e-3  # break points closer than this are one
-_INSIDE_M = 1e-6  # how far inside its section a record must begin to hold there
+_SNAP_M = 1e-3  # break points closer than this count as one
+_INSIDE_M = 1e-6  # a record applies to a section if it begins no further inside than this
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +46,7 @@ class Evaluator:
         self.negative_m: dict[int, float] = {}
 
     def edges(self, s: Floats, at: Floats | None = None) -> Edges:
-        """Return the edges at stations `s` (n,), ascending; `at`: where records and geometries are looked up."""
+        """Return the edges at stations `s` (n,), ascending. `at`: the stations at which records and geometries are looked up."""
         if at is None:
             at = np.clip(s + _INSIDE_M, self.strip.start_m + _INSIDE_M, self.strip.end_m - _INSIDE_M)
         line = self.road.plan.evaluate(s, at)
@@ -67,9 +67,9 @@ class Evaluator:
             if lane.widths is not None:
                 width, slope = lane.widths.evaluate(s, at)
             else:
-                assert lane.borders is not None  # noqa: S101 - network.py sees to it
+                assert lane.borders is not None  # noqa: S101 - network.py makes sure
                 border, slope = lane.borders.evaluate(s, at)
-                # the standard counts borders from the reference line with the sign of t; some writers give the distance
+                # in the standard, borders have the sign of t; some writers write the distance without a sign
                 sign = side if border.sum() * side < 0.0 else 1.0
                 width, slope = side * (sign * border - t), side * (sign * slope - dt)
             low = float(width.min(initial=0.0))
@@ -81,7 +81,7 @@ class Evaluator:
         return edges
 
     def break_stations(self) -> Floats:
-        """Return the strip's ends and every station between where a geometry, an offset or a width begins."""
+        """Return the strip's two ends, and every station between them at which a geometry, an offset or a width begins."""
         start, end = self.strip.start_m, self.strip.end_m
         profiles = [lane.widths or lane.borders for lane in (*self.left, *self.right)]
         stations = np.concatenate(
@@ -123,7 +123,7 @@ def _divide(s: Floats, parts: Floats) -> Floats:
 
 
 def _deviation(evaluator: Evaluator, s: Floats) -> Floats:
-    """Return into how many parts each interval has to be cut (1: good as it is)."""
+    """Return into how many parts each interval has to be cut (1: it stays whole)."""
     edges = evaluator.edges(_divide(s, np.full(len(s) - 1, 4.0)))
     x, y = edges.x, edges.y
     ax, ay, dx, dy = x[:, :-1:4], y[:, :-1:4], np.diff(x[:, ::4]), np.diff(y[:, ::4])
@@ -135,5 +135,5 @@ def _deviation(evaluator: Evaluator, s: Floats) -> Floats:
         off = np.maximum(off, np.hypot(px - along * dx, py - along * dy).max(axis=0))
     by_chord = np.where(off > CHORD_TOLERANCE_M, np.ceil(np.sqrt(off / CHORD_TOLERANCE_M)), 1.0)
     by_length = np.ceil(np.sqrt(square.max(axis=0)) / SPACING_M - 1e-3)
-    # a step that chords cannot follow would be cut for ever
+    # a step in an edge, which no chord follows, would be cut without end
     return np.where(np.diff(s) > 2 * _SNAP_M, np.clip(np.maximum(by_chord, by_length), 1.0, 16.0), 1.0)

@@ -17,15 +17,15 @@ if TYPE_CHECKING:
     from drivelint.road.map_reader import MapOptions
     from drivelint.road.quality import MapQuality
 
-_DECISIVE = 2 / 3  # some maps list both ends of every connecting lane: half the votes each way say nothing
+_DECISIVE = 2 / 3  # some maps list both ends of every connecting lane, with half of the votes for each side
 
 
 @dataclass(frozen=True)
 class Direction:
-    """The side that is driven on, which way the lanes run, and how both were found.
+    """The side that is driven on, the direction of the lanes, and the sources of both.
 
-    `forward`: lanes with negative numbers run along the reference line, as the standard has it for right-hand traffic; `travel`: the
-    lanes' own travel directions mostly agree with that.
+    `forward`: lanes with negative numbers run along the reference line, the standard's rule for right-hand traffic. `travel`: the travel
+    directions that lanes state (userData) mostly agree with `forward`.
     """
 
     handedness: str
@@ -89,9 +89,9 @@ class DrivingSideStatements:
     def final_direction(self, side_by_lanes: str | None, quality: MapQuality) -> Direction:
         """Return the direction by the most trusted statement, and report the statements that disagree.
 
-        `side_by_lanes`: the side that is driven on by the lanes beside each other, if the lanes with negative numbers run along the
-        reference line. lht: each direction is a road of its own, and they lie the other way round than on one road, as SUMO writes its
-        left-hand nets; None: no lane has an opposing one beside it, so the lanes' direction does not show the side that is driven on.
+        `side_by_lanes`: the side that is driven on according to opposing lanes beside each other, if lanes with negative numbers run along
+        the reference line. lht: each direction is a separate road, and the two lie in the other order than on one road, as in SUMO's
+        left-hand nets. None: no lane has an opposing lane beside it, so the lanes' direction does not show the side.
         """
         if len(self.rules) > 1:
             counts = ", ".join(f"{side} {n}" for side, n in sorted(self.rules.items()))
@@ -117,7 +117,7 @@ class DrivingSideStatements:
         if side_by_lanes == "lht" and (
             rule := next((w for w in statements if w.source == "attribute" and not w.of_lanes), None)
         ):
-            statements.remove(rule)  # by it, the lanes run so that the other side is driven on
+            statements.remove(rule)  # by this rule, the lanes run so that the other side is driven on
             message = (
                 f"{rule.text} {rule.side}, but by its rule the lanes run so that the oncoming ones lie on the other side: it is "
                 "not counted; give --handedness if the side is wrong"
@@ -138,7 +138,7 @@ class DrivingSideStatements:
         ways = [w for w in (rule,) if w and (option is None or option.side == w.side)]
         ways += [w for w in self.statements if w.of_lanes]
         way = ways[0] if ways else side
-        if side is None:  # then no option says anything of the lanes' direction
+        if side is None:  # then no option could correct the lanes' direction
             _disagreements(self.statements, quality, "every direction", "use a map whose roads have the rule attribute")
         else:
             _disagreements(
@@ -162,7 +162,7 @@ class DrivingSideStatements:
 def _disagreements(
     statements: Sequence[DrivingSideStatement], quality: MapQuality, wrong: str, advice: str | None = None
 ) -> None:
-    """Report statements that disagree. `wrong`: the effect if the first one is wrong; `advice`: the remedy if no given side helps."""
+    """Report statements that disagree. `wrong`: what is wrong if the first statement is; `advice`: another remedy than --handedness."""
     if len({w.side for w in statements}) > 1:
         first, second = statements[:2]
         # if the second statement agrees with the option, leaving out the option changes nothing
@@ -180,7 +180,7 @@ def _winner(votes: Counter[str]) -> str | None:
 
 
 def _junction_votes(net: Network) -> Counter[str]:
-    """Return the votes of the lanes by which junctions are entered: traffic runs away from the end that is entered."""
+    """Return how many lanes in junctions show lht and rht: traffic runs away from the end at which their road is entered."""
     votes: Counter[str] = Counter()
     for connection in net.connections:
         road = net.roads.get(connection.connecting)
@@ -203,7 +203,7 @@ def _travel_votes(net: Network) -> Counter[str]:
 
 
 def report_lanes_against_side(net: Network, direction: Direction, quality: MapQuality) -> None:
-    """Name the lanes whose own direction is not that of their side."""
+    """Report the lanes whose stated direction is not that of their side of the road."""
     plain = replace(direction, travel=False)
     for road in net.roads.values():
         for strip in road.strips:

@@ -1,4 +1,4 @@
-"""The furniture of a map: signals, stop lines, objects and crossings, laid over the lanelets."""
+"""The furniture of a map: signals, stop lines, objects and crossings, assigned to the lanelets."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from drivelint.formats.opendrive.network import Network, Road
     from drivelint.road.quality import MapQuality
 
-MIN_STOP_LINE_SHARE = 0.5  # a stop line that covers less of a lane's width is another lane's
-MIN_STOP_LINE_ANGLE_RAD = 0.87  # 50 degrees: a line more along the lane than this is not one to stop at
+MIN_STOP_LINE_SHARE = 0.5  # a stop line that covers less of a lane's width belongs to another lane
+MIN_STOP_LINE_ANGLE_RAD = 0.87  # 50 degrees: a line at a smaller angle to the lane is no stop line
 MIN_CROSSING_AREA_M2 = 0.5  # a crossing that only touches a lane does not lie across it
 MAX_REPEATS = 10_000  # of one object
 _BAND_STEP_M = 5.0
@@ -60,7 +60,7 @@ class PlacedObject:
 
     @cached_property
     def kind(self) -> str:
-        """What it is, by its type, else by its name."""
+        """The kind of the object, by its type, else by its name."""
         name = (self.element.get("name") or "").lower()
         by_name = next((kind for part, kind in _BY_NAME if part in name), "other")
         return _BY_TYPE.get(self.element.get("type", ""), by_name)
@@ -133,7 +133,7 @@ def _valid(corners: Floats) -> shapely.Geometry:
 
 
 def _shape(corners: Floats) -> shapely.Geometry:
-    """Return the area of an outline; a line that was drawn without a width stays a line."""
+    """Return the polygon of an outline; a line if the outline has almost no width."""
     if len(corners) > 2:
         polygon = shapely.Polygon(corners)
         if polygon.area > 0.005 * polygon.length**2:  # a square has 0.0625; 0.2 m by 3.5 m has 0.013
@@ -144,7 +144,10 @@ def _shape(corners: Floats) -> shapely.Geometry:
 
 
 def _lies_across(lane: Lanelet, corners: Floats, points: Floats, middle: float) -> bool:
-    """Say whether a line is across a lane, far enough; `points`: what of it is on the lane, `middle`: the mean station of them (m)."""
+    """Return whether a line crosses enough of a lane's width, at a large enough angle.
+
+    `points`: the line's points on the lane; `middle`: their mean station (m).
+    """
     line = lane.line
     columns = (*line.centre.T, *line.tangent.T, line.half_width)
     x, y, tx, ty, half = (float(np.interp(middle, line.s, column)) for column in columns)
@@ -161,7 +164,7 @@ def _crossing_kind(crossing: PlacedObject) -> str | None:
 
 
 def _placed_objects(net: Network, offset: tuple[float, float], quality: MapQuality) -> list[PlacedObject]:
-    """Return every object, repetitions one by one; one that cannot be placed is a row of `quality`."""
+    """Return every object, and each repetition of it; objects that cannot be placed are reported in `quality`."""
     objects: list[PlacedObject] = []
     for road in net.roads.values():
         for element in road.element.iterfind("objects/object"):

@@ -1,4 +1,4 @@
-"""One lane of one lane section, evaluated, with the facts along it: road type, speed limits, road marks."""
+"""One lane of one lane section as points, and the road type, speed limits and road marks along it."""
 
 from __future__ import annotations
 
@@ -49,22 +49,22 @@ class Lanelet:
 
     @property
     def drivable(self) -> bool:
-        """Motor vehicles may drive here."""
+        """Whether motor vehicles may drive on the lanelet."""
         return self.lane.kind in DRIVABLE
 
     def station_at(self, road_s: float) -> float:
-        """Return the lanelet station (m) of a road station (m), held within the lanelet."""
+        """Return the lanelet station (m) of a road station (m), limited to the lanelet."""
         step = self.along
         return float(np.interp(road_s, self.road_s[::step], self.line.s[::step]))
 
     def lateral_range(self, road_s: float) -> tuple[float, float]:
-        """Return the road coordinates t between which the lanelet lies at a road station (m)."""
+        """Return the least and the largest road coordinate t of the lanelet at a road station (m)."""
         s = self.station_at(road_s)
         t, half = (float(np.interp(s, self.line.s, values)) for values in (self.t, self.line.half_width))
         return t - half, t + half
 
     def lanelet_spans(self, spans: Iterable[tuple[int, float, float]]) -> list[tuple[int, float, float]]:
-        """Return (index, from, to) spans of road stations as spans of the lanelet, in the direction of travel."""
+        """Return spans (index, from, to) of road stations as spans of lanelet stations, in the direction of travel."""
         found = [(i, self.station_at(a), self.station_at(b)) for i, a, b in spans]
         ordered = [(i, min(a, b), max(a, b)) for i, a, b in found if abs(b - a) > 1e-6]
         return sorted(ordered, key=lambda r: r[1])
@@ -76,7 +76,7 @@ class Lanelet:
 
 
 def road_type(lanelet: Lanelet) -> str | None:
-    """Return the road type that holds over most of the lanelet; None: the map does not say."""
+    """Return the road type of most of the lanelet's length; None if the map does not state it."""
     road = lanelet.road
     held: dict[str | None, float] = {}
     for i, a, b in record_spans((s for s, _ in road.types), lanelet.strip.start_m, lanelet.strip.end_m):
@@ -87,7 +87,7 @@ def road_type(lanelet: Lanelet) -> str | None:
 
 
 def speed_rows(lanelet: Lanelet) -> Rows:
-    """Return rows of `speed_limit`: the lane's own records, else the road type's; none where neither says."""
+    """Return rows of `speed_limit`: the lane's own records, else those of the road type; no row where neither states a limit."""
     rows: Rows = []
     start, end = lanelet.strip.start_m, lanelet.strip.end_m
     for i, a, b in record_spans((s.start_m for s in lanelet.lane.speeds), start, end):
@@ -109,15 +109,15 @@ def _speed_row(lanelet: Lanelet, start: float, end: float, speed: SpeedLimit, so
 
 
 def boundary_rows(lanelet: Lanelet) -> Rows:
-    """Return rows of `lane_boundary`: both sides, all along; the marking is NULL where the map does not say.
+    """Return rows of `lane_boundary` for the whole length of both sides; the marking is NULL where the map states none.
 
-    A lane's mark lies on its outer edge, lane 0's on the centre line; double lines are named with the line nearer to
-    this lanelet first (OpenDRIVE names the inner one first, on the centre line the left one).
+    A lane's marks are on its outer edge, those of lane 0 on the centre line. The name of a double line begins with the line
+    nearer to this lanelet. (In OpenDRIVE, it begins with the inner line, and on the centre line with the left line.)
     """
     lane_no, along = lanelet.lane.number, lanelet.along
     inside = [lane for lane in lanelet.strip.lanes if lane.number * lane_no > 0 and abs(lane.number) < abs(lane_no)]
     inner = max(inside, key=lambda lane: abs(lane.number)).marks if inside else lanelet.strip.centre_marks
-    # the centre line's marks are named left to right; for lanes left of the road that is the order seen from the lane
+    # double lines on the centre line are named left to right: for lanes left of it, the nearer line comes first
     swap_inner = bool(inside) or lane_no < 0
     outer_side, inner_side = ("left", "right") if (lane_no > 0) == (along > 0) else ("right", "left")
     rows = _mark_rows(lanelet, outer_side, lanelet.lane.marks, swap=False)

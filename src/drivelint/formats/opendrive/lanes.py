@@ -1,4 +1,4 @@
-"""Lanelets: one per road, section and lane, its points in the direction of travel."""
+"""Builds the lanelets: one per road, section and lane, with points in the direction of travel."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from drivelint.road.quality import MapQuality
 
 NARROW_M = 0.05  # a lane that is nowhere wider is a line, not a lane
-SHORT_M = 1e-3  # a shorter section is a rounding error: links go through it
+SHORT_M = 1e-3  # a shorter section is a rounding error: links pass through it
 
 
 @dataclass(eq=False)
@@ -35,7 +35,7 @@ class BuiltLanes:
 
 
 def build(net: Network, direction: Direction, offset: tuple[float, float], quality: MapQuality) -> BuiltLanes:
-    """Build every lane of the network; whatever is left out is a row of `quality`."""
+    """Build every lane of the network; lanes that are left out are reported in `quality`."""
     lanes = BuiltLanes()
     for road in net.roads.values():
         _check_plan(road, quality)
@@ -100,7 +100,7 @@ class _StripBuilder:
                 self.quality.add("negative_width", "warning", lane_id, message)
 
     def _cut(self, evaluator: Evaluator, edges: Edges, s: Floats) -> None:
-        """Make a lanelet between each lane's edges, from left to right, and adjoin each to the next."""
+        """Create a lanelet between the edges of each lane, from left to right, and make lanelets beside each other neighbours."""
         row = {number: i for i, number in enumerate(evaluator.numbers)}
         lanelets: list[Lanelet] = []
         for lane in self.strip.lanes[::-1]:
@@ -119,7 +119,7 @@ class _StripBuilder:
         self.lanes.built.update((lanelet.key, lanelet) for lanelet in lanelets)
 
     def _lanelet(self, lane: Lane, edges: Edges, s: Floats, rows: tuple[int, int]) -> Lanelet:
-        """Return one lane as arrays; `rows` are those of its left and right edge, seen along the reference line."""
+        """Return the lanelet of a lane. `rows`: the rows of its left and right edge in `edges`, seen along the reference line."""
         i, j = rows
         along, bidirectional = self.direction.lane_direction(lane)
         line = edges.line
@@ -129,7 +129,7 @@ class _StripBuilder:
         tx, ty = forward * line.cos - dt * line.sin, forward * line.sin + dt * line.cos
         norm = np.hypot(tx, ty)
         still = norm < 1e-6
-        if still.any():  # the centre line turns on the spot: its chords have a direction all the same
+        if still.any():  # the centre line has no direction here, but its chords have one
             tx, ty = np.where(still, np.gradient(x), tx), np.where(still, np.gradient(y), ty)
             norm = np.maximum(np.hypot(tx, ty), 1e-12)
         folded = np.any(line.curvature * edges.t[[i, j]] > 1.0, axis=0)
@@ -170,7 +170,7 @@ class _StripBuilder:
 
 
 def _unbuildable(strip: LaneSection) -> dict[int, str]:
-    """Return lane number -> reason; a lane that lies outside an invalid one has no place either."""
+    """Return lane number -> why the lane cannot be built. A lane outside an invalid lane has no place either."""
     reasons: dict[int, str] = {}
     for side in (1, -1):
         broken: Lane | None = None
@@ -184,13 +184,13 @@ def _unbuildable(strip: LaneSection) -> dict[int, str]:
 
 
 def _adjoin(a: Lanelet, b: Lanelet) -> None:
-    """Make `b` the neighbour of `a` on the right of the reference line."""
+    """Make `b` the neighbour of `a` on its right, seen along the reference line."""
     setattr(a, "right" if a.along > 0 else "left", b)
     setattr(b, "left" if b.along > 0 else "right", a)
 
 
 def _join_sides(road: Road, lanes: BuiltLanes) -> None:
-    """Make neighbours of the innermost lanes of one-sided lane sections: each with the lane across the centre that it adjoins longest."""
+    """Give each innermost lane of a one-sided lane section a neighbour: the lane across the centre line that it adjoins longest."""
     built = [lanes.built[key] for key in road.lane_keys if key in lanes.built]
     for a in built:
         inward = "right" if (a.lane.number > 0) == (a.along > 0) else "left"

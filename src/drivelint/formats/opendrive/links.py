@@ -1,7 +1,7 @@
 """Links between lanelets, in the direction of travel.
 
-Every link that the file declares, from either lane, a road's end or a junction, is the same thing: two lane ends that
-touch. Directions are applied once, to the touching ends; so it does not matter which side declared a link, or if both.
+Every link that the file declares, at a lane, a road's end or a junction, means that two lane ends touch. Directions are
+applied once, to the touching ends; so it does not matter which side declares a link, or whether both sides do.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _OPPOSITE_END = {START: END, END: START}
 
 
 def links(net: Network, lanes: BuiltLanes, quality: MapQuality) -> list[Link]:
-    """Return the links, each once, ordered by ids; links to nowhere and over gaps are rows of `quality`."""
+    """Return the links, each once, ordered by ids; links to missing lanes and over gaps are reported in `quality`."""
     declared = {key for road in net.roads.values() for key in road.lane_keys}
     touching: set[tuple[LaneEnd, LaneEnd]] = set()
     for a, b in _declared_contacts(net, quality):
@@ -72,7 +72,7 @@ def _declared_contacts(net: Network, quality: MapQuality) -> Iterator[tuple[Lane
 def _contacts_at(
     net: Network, road: Road, at: LaneEnd, targets: tuple[int, ...], beside: LaneSection | None, *, quality: MapQuality
 ) -> Iterator[tuple[LaneEnd, LaneEnd]]:
-    """Yield the lanes that a lane's end touches: in the next section of its road, or in the next road."""
+    """Yield the contacts of a lane's end with lane ends in the next section of its road, or in the next road."""
     key, end = at
     if beside is not None:
         for target in targets:
@@ -116,7 +116,7 @@ def _junction_contacts(net: Network, connection: Connection, quality: MapQuality
 
 
 def _end_at_junction(incoming: Road, connecting: Road, connection: Connection) -> str:
-    """Return the end of the incoming road at the junction: as it says, as the connecting road says, or the nearer."""
+    """Return which end of the incoming road is at the junction: as this road or the connecting road states, else the nearer end."""
     ends = [e for e, join in incoming.joins.items() if join.is_junction and join.element_id == connection.junction_id]
     if len(ends) == 1:
         return ends[0]
@@ -134,7 +134,7 @@ def _road_end(road: Road, end: str) -> np.ndarray:
 
 
 def _through_short(touching: set[tuple[LaneEnd, LaneEnd]], short: set[LaneKey]) -> set[tuple[LaneEnd, LaneEnd]]:
-    """Join the lanes that touch the two ends of a section that was left out as too short."""
+    """Return the contacts; where a section was left out as too short, the lanes at its two ends touch each other instead."""
     result = set(touching)
     for key in sorted(short):
         beside: dict[str, set[LaneEnd]] = {START: set(), END: set()}
@@ -148,7 +148,7 @@ def _through_short(touching: set[tuple[LaneEnd, LaneEnd]], short: set[LaneKey]) 
 
 
 def _directed(a: LaneEnd, b: LaneEnd, lanes: BuiltLanes, quality: MapQuality) -> Link | None:
-    """Return the link in the direction of travel; None where a lane was left out or the directions clash (reported)."""
+    """Return the link in the direction of travel; None if a lane was left out or the directions contradict each other (reported)."""
     first, second = lanes.built.get(a[0]), lanes.built.get(b[0])
     if first is None or second is None:
         for end, other in ((a, b), (b, a)):
@@ -182,7 +182,7 @@ def _report_missing_link(lanes: BuiltLanes, end: LaneEnd, target: str, quality: 
 
 
 def _check_unlinked(lanes: list[Lanelet], links: dict[tuple[str, str], Link], quality: MapQuality) -> None:
-    """Report drivable lanes that plainly go on in another one without a link: chains would end there."""
+    """Report drivable lanes that another lane continues without a link: chains of lanes would end there."""
     lanes = [lane for lane in lanes if lane.drivable]
     if not lanes:
         return

@@ -1,4 +1,4 @@
-"""The road network as the file has it: roads, lane sections, lanes, junctions. No geometry is evaluated here."""
+"""The road network as the file records it: roads, lane sections, lanes, junctions. No geometry is evaluated here."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 MAX_ROAD_M = 1e6  # a longer road is a unit mistake, and would be millions of points
 START, END = "start", "end"
 
-# Where motor vehicles may drive (ASAM OpenDRIVE e_laneType, with the names of older versions). The hard shoulder
-# ("stop"), parking, biking, tram and everything beside the carriageway are not.
+# Types of lanes on which motor vehicles may drive (ASAM OpenDRIVE e_laneType, with the names of older versions). Not
+# among them: the hard shoulder ("stop"), parking, biking, tram and everything beside the carriageway.
 DRIVABLE = frozenset({
     "driving", "entry", "exit", "onRamp", "offRamp", "connectingRamp", "slipLane", "bidirectional",
     "bus", "taxi", "HOV", "carpool", "shared", "mwyEntry", "mwyExit",
@@ -34,7 +34,7 @@ DRIVABLE = frozenset({
 
 @dataclass(frozen=True)
 class RoadMark:
-    """A road mark from `start_m` (road station) to the next one's."""
+    """A road mark from `start_m` (road station) to the start of the next mark."""
 
     start_m: float
     marking: str | None
@@ -44,9 +44,9 @@ class RoadMark:
 
 @dataclass(frozen=True)
 class SpeedLimit:
-    """A limit from `start_m` (road station) to the next one's; `limit_mps` None: no limit.
+    """A limit from `start_m` (road station) to the start of the next limit; `limit_mps` None: no limit.
 
-    `is_stated` False: not said; `readable` False: said, but not in a way that can be read.
+    `is_stated` False: the file states no limit; `readable` False: the file states a limit that cannot be read.
     """
 
     start_m: float
@@ -74,7 +74,7 @@ class Lane:
 
 @dataclass(frozen=True, eq=False)
 class LaneSection:
-    """Lanes that begin and end together: a lane section, or one side of it where the sides are cut differently."""
+    """Lanes that begin and end together: a lane section, or one side of it if the two sides are divided differently."""
 
     section: int
     start_m: float
@@ -89,7 +89,7 @@ class RoadLink:
 
     is_junction: bool
     element_id: str
-    contact: str | None  # start or end of the other road; None: the file does not say
+    contact: str | None  # start or end of the other road; None: not stated
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,11 +97,11 @@ class Road:
     """One road and everything that is needed to build its lanes."""
 
     road_id: str
-    length_m: float  # what its geometries cover of the length it says
+    length_m: float  # the part of the stated length that its geometries cover
     said_length_m: float
     junction_id: str | None
     rule: str | None  # lht, rht
-    joins: dict[str, RoadLink]  # by own end
+    joins: dict[str, RoadLink]  # start or end of this road -> link
     types: tuple[tuple[float, str], ...]  # (from station, type)
     speeds: tuple[SpeedLimit, ...]
     plan: PlanView
@@ -116,11 +116,11 @@ class Road:
         return [(self.road_id, strip.section, lane.number) for strip in self.strips for lane in strip.lanes]
 
     def sections_on_side(self, lane_no: int) -> list[LaneSection]:
-        """Return the lane sections with lanes on that side, in order of station."""
+        """Return the lane sections with lanes on the same side as lane `lane_no`, in order of station."""
         return [s for s in self.strips if any((lane.number > 0) == (lane_no > 0) for lane in s.lanes)]
 
     def place(self, s: Floats, t: Floats, offset: tuple[float, float]) -> tuple[Floats, Floats, Floats]:
-        """Return x, y (m) and the road's heading (rad) at road coordinates, each (n,); `s` is held within the road."""
+        """Return x, y (m) and the road's heading (rad) at road coordinates, each (n,); `s` is limited to the road."""
         inside = np.clip(s, 0.0, self.length_m)
         order = np.argsort(inside, kind="stable")
         at = np.clip(inside[order], 0.0, max(self.length_m - 1e-6, 0.0))
@@ -132,7 +132,7 @@ class Road:
 
 @dataclass(frozen=True)
 class Connection:
-    """A way into a junction: from lanes of one road to lanes of another."""
+    """A connection in a junction: from lanes of the incoming road to lanes of the connecting road."""
 
     junction_id: str
     incoming: str
@@ -148,11 +148,11 @@ class Network:
     roads: dict[str, Road]
     connections: tuple[Connection, ...]
     geo: GeoFrame | None
-    nation: str | None  # of all its roads and signals, as two letters; None: the file does not say it
+    nation: str | None  # the only country of its roads and signals, as two letters; None: not known
 
 
 def network(root: etree._Element, quality: MapQuality) -> Network:
-    """Read the file; a road that cannot be understood is named in `quality` and left out, never silently."""
+    """Return the road network of a file; roads that cannot be read are left out and reported in `quality`."""
     roads: dict[str, Road] = {}
     for element in root.findall("road"):
         name = element.get("id") or f"in line {element.sourceline}"
@@ -170,7 +170,7 @@ def network(root: etree._Element, quality: MapQuality) -> Network:
 
 
 def _geo_frame(root: etree._Element, quality: MapQuality) -> GeoFrame | None:
-    """Return how the file's coordinates lie on the earth; None: it does not say, or not in a way that can be read."""
+    """Return the geodetic frame of the file's coordinates; None if it is not stated or cannot be read."""
     reference = (root.findtext("header/geoReference") or "").strip()
     offset = root.find("header/offset")
     if not reference:
@@ -246,7 +246,7 @@ def _strips(element: etree._Element, length: float, quality: MapQuality) -> tupl
 
 
 def _section_ends(sections: list[etree._Element], side: str, length: float) -> dict[etree._Element, float]:
-    """Return where each section ends that says something about this side of the road (`singleSide` ones may not)."""
+    """Return the end of each section that describes this side of the road; a `singleSide` section may describe only the other side."""
     other = "left" if side == "right" else "right"
     mine = [s for s in sections if s.get("singleSide") != "true" or s.find(side) is not None or s.find(other) is None]
     ends = [min(number(s, "s"), length) for s in mine[1:]] + [length]
@@ -263,9 +263,9 @@ def _lane(element: etree._Element, section_start: float, quality: MapQuality) ->
 
 
 def _has_numbers_of_other_side(section: etree._Element) -> bool:
-    """Say whether all lanes of a section stand under one side and have numbers of the other.
+    """Return whether all lanes of a section are listed under one side and have numbers of the other side.
 
-    netconvert 1.28.0 writes so the roads in junctions of its left-hand nets, and their lanes lie where the numbers say.
+    netconvert 1.28.0 does this for the roads in junctions of its left-hand nets; their lanes lie on the side of their numbers.
     """
     left, right = ([integer(lane, "id") for lane in section.findall(f"{side}/lane")] for side in ("left", "right"))
     return bool(left) != bool(right) and all(no < 0 for no in left) and all(no > 0 for no in right)
@@ -324,7 +324,7 @@ SPEED_UNITS_MPS = {"m/s": 1.0, "km/h": 1.0 / 3.6, "mph": 0.44704}
 def _speeds(
     elements: Iterable[etree._Element], station: str, origin: float, quality: MapQuality, child: str | None = None
 ) -> tuple[SpeedLimit, ...]:
-    """Read speed limits; with `child` the limit is in a child element, and an element without one is a record too."""
+    """Read speed limits. With `child`, the limit is in a child element; an element without it is a record that states no limit."""
     speeds = []
     for element in elements:
         start = origin + number(element, station, 0.0)
@@ -382,7 +382,7 @@ def _connection(junction_id: str, element: etree._Element) -> Connection:
 
 
 def record_spans(starts: Iterable[float], start: float, end: float) -> list[tuple[int, float, float]]:
-    """Return (record index, from, to) of the records that hold between two stations; index -1: before the first."""
+    """Return (record index, from, to) of the records that apply between two stations; index -1: before the first record."""
     edges = [float("-inf"), *starts, float("inf")]
     cut = [(i - 1, max(a, start), min(b, end)) for i, (a, b) in enumerate(pairwise(edges))]
     return [(i, a, b) for i, a, b in cut if b - a > 1e-6]

@@ -1,8 +1,8 @@
-"""The reference line: line, arc, spiral, poly3 and paramPoly3, and cubic profiles along it, evaluated at many stations at once.
+"""Evaluates the reference line (line, arc, spiral, poly3 and paramPoly3) and cubic profiles along it, at many stations at once.
 
-Lines, arcs and spirals are one kind: a curvature that is linear in s. Its position is the integral of (cos, sin) of a
-quadratic heading, taken by Gauss-Legendre quadrature over panels of at most half a radian (error below 1e-12 of the
-length); constant curvature has the closed form. Polynomials are a curve c(p) with its own parameter.
+Lines, arcs and spirals are treated alike: their curvature is linear in s. Their position is the integral of (cos, sin) of
+a quadratic heading. For constant curvature it has a closed form; else Gauss-Legendre quadrature is used, over panels of at
+most half a radian (error below 1e-12 of the length). A polynomial is a curve c(p) with a parameter p of its own.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ class Clothoid:
 
 @dataclass(frozen=True, eq=False)
 class Polynomial:
-    """A planar cubic (u(p), v(p)); `table` maps arc length to p where p is not the arc length itself."""
+    """A planar cubic (u(p), v(p)). `table` maps arc length to p; None if p is the arc length itself."""
 
     u: Floats  # (4,) ascending powers
     v: Floats
@@ -120,7 +120,7 @@ def _arc(u: Floats, v: Floats, p0: Floats, p1: Floats) -> Floats:
 
 
 def arc_length_polynomial(u: Floats, v: Floats, p_max: float, length: float | None = None) -> Polynomial:
-    """Return the curve by arc length; with `length`, p_max is reached there even if the curve is not as long."""
+    """Return the curve as a function of arc length, up to p_max; with `length`, it is stretched so that p_max is reached there."""
     p_at = np.linspace(0.0, p_max, 257)
     along = np.concatenate([[0.0], np.cumsum(_arc(u, v, p_at[:-1], p_at[1:]))])
     if not along[-1] > 1e-6:
@@ -149,7 +149,7 @@ class PlanView:
         return float(self.s[-1] + self.length[-1])
 
     def evaluate(self, s: Floats, at: Floats) -> ReferenceLine:
-        """Return the line at stations `s` (n,), ascending, taking the geometries that hold at stations `at` (n,)."""
+        """Return the line at stations `s` (n,), ascending, by the geometries that apply at stations `at` (n,)."""
         k = np.clip(np.searchsorted(self.s, at, side="right") - 1, 0, len(self.s) - 1)
         ds = s - self.s[k]
         inside = np.clip(ds, 0.0, self.length[k])
@@ -158,7 +158,7 @@ class PlanView:
             mine = k == i
             local[:, mine] = self.shapes[i].evaluate(inside[mine])
         u, v, cos, sin, curvature, speed = local
-        beyond = ds - inside  # a hole in the stations is bridged straight on; its far end is reported as a gap
+        beyond = ds - inside  # a gap in the stations is bridged by a straight line; an offset at its end is reported
         u, v, curvature = u + beyond * cos, v + beyond * sin, np.where(np.abs(beyond) > 1e-3, 0.0, curvature)
         c, n = np.cos(self.heading)[k], np.sin(self.heading)[k]
         return ReferenceLine(
@@ -224,9 +224,9 @@ class Cubics:
     coef: Floats  # (n, 4)
 
     def evaluate(self, s: Floats, at: Floats) -> tuple[Floats, Floats]:
-        """Return values and first derivatives at stations `s`, taking the records that hold at stations `at`.
+        """Return values and first derivatives at stations `s`, by the records that apply at stations `at`.
 
-        `at` differs from `s` at the ends of a section, where the record on the section's own side is wanted.
+        `at` differs from `s` at the ends of a section, where the record inside the section applies.
         """
         if not len(self.start):
             return np.zeros_like(s), np.zeros_like(s)
@@ -243,9 +243,9 @@ class Cubics:
 
 
 def cubics(elements: Iterable[etree._Element], station: str, origin: float = 0.0) -> Cubics:
-    """Read polynomial records; `station` is the attribute with their start, `origin` what it counts from.
+    """Read polynomial records. `station`: the attribute with their start, which counts from `origin`.
 
-    Of records with the same start the last one holds.
+    Of records with the same start, the last one applies.
     """
     rows = [(origin + number(e, station, 0.0), *(number(e, c, 0.0) for c in "abcd")) for e in elements]
     rows.sort(key=lambda row: row[0])

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 def read(source: MapSource, request: MapOptions) -> MapTables:
-    """Return the map's tables; `MapError` where the file is not XML or nothing in it can be built."""
+    """Return the map's tables. Errors: `MapError` if the file is not XML, or no lane can be built."""
     quality = MapQuality()
     net = network(safe_xml.parse_map(source), quality)
     direction, lanes = _built(net, request, quality)
@@ -106,5 +106,5 @@ def _lanelet_row(lane: Lanelet) -> dict[str, Any]:
 
 
 def _against(lane: Lanelet, beside: Lanelet | None) -> bool | None:
-    """Return whether the lane beside is driven the other way, as a lane that is driven both ways is."""
+    """Return whether the lane beside is driven the other way; a lane that is driven both ways counts as such."""
     return None if beside is None else beside.along != lane.along or beside.bidirectional

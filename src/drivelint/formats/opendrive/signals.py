@@ -1,4 +1,4 @@
-"""Signs, lights and painted signals: one row for every lanelet that each applies to."""
+"""Signs, lights and painted signals: one row for each signal and each lanelet to which it applies."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ if TYPE_CHECKING:
     from drivelint.formats.opendrive.network import Network, Road
     from drivelint.road.quality import MapQuality
 
-MIN_LINE_M = 1.0  # a stop line said to be narrower than this does not say how far it goes across
-MIN_SAME_DIRECTION_SHARE = 0.25  # of a stop line's width, on lanes of its orientation: less is on the others' lanes
+MIN_LINE_M = 1.0  # the stated width of a stop line shorter than this does not show which lanes it crosses
+MIN_SAME_DIRECTION_SHARE = 0.25  # of a stop line's width on lanes of its orientation: less is on opposite lanes
 OFF_ROAD_M = 1.0  # a signal further beyond its road's end than this is a mistake worth a warning
 
 
 def signal_rows(
     net: Network, lanes: list[Lanelet], offset: tuple[float, float], quality: MapQuality
 ) -> tuple[Rows, Rows]:
-    """Return rows of `traffic_signal`, and those of `stop_line` that signals paint on the road (StVO 294)."""
+    """Return rows of `traffic_signal`, and rows of `stop_line` for signals that are painted stop lines (StVO 294)."""
     reader = _Reader(net, offset, quality)
     for lane in lanes:
         if lane.drivable:
@@ -46,11 +46,11 @@ def _unique(rows: Rows, key: tuple[str, ...]) -> Rows:
 
 
 class _Reader:
-    """Collects signals; a signal that cannot be placed is a row of `quality`."""
+    """Collects signals; a signal that cannot be placed is reported in `quality`."""
 
     def __init__(self, net: Network, offset: tuple[float, float], quality: MapQuality) -> None:
         self.offset, self.quality = offset, quality
-        self.lanes: dict[str, list[Lanelet]] = {}  # drivable ones by road
+        self.lanes: dict[str, list[Lanelet]] = {}  # drivable lanelets by road
         self.defined = {
             signal.get("id", ""): (road, signal)
             for road in net.roads.values()
@@ -61,7 +61,7 @@ class _Reader:
         self.contradictions: list[str] = []
 
     def read(self, road: Road, listing: etree._Element) -> None:
-        """Read a `<signal>`, or a `<signalReference>` to one that stands elsewhere."""
+        """Read a `<signal>`, or a `<signalReference>` to a signal that is defined elsewhere."""
         name = listing.get("id", "")
         home, signal = (road, listing) if listing.tag == "signal" else self.defined.get(name, (road, None))
         try:
@@ -86,7 +86,7 @@ class _Reader:
         signal_columns = {
             "signal_id": listing.get("id", ""), "kind": kind, "country": (signal.get("country") or "").lower() or None,
             "type": signal.get("type"), "subtype": signal.get("subtype"),
-            "value": value if value > 0.0 else None,  # writers say -1 or 0 where there is nothing to say
+            "value": value if value > 0.0 else None,  # writers use -1 or 0 for no value
             "unit": signal.get("unit"), "dynamic": signal.get("dynamic") == "yes", "turns": turns,
             "road_id": road.road_id, "road_s_m": s, "x_m": x, "y_m": y,
         }  # fmt: skip
@@ -101,11 +101,11 @@ class _Reader:
             ]
 
     def _lanelets_of_signal(self, listing: etree._Element, lanes: list[Lanelet]) -> list[Lanelet]:
-        """Return the lanelets that a signal holds for.
+        """Return the lanelets to which a signal applies.
 
-        By direction (orientation + or -: traffic along or against the reference line) among the lanes of its validity,
-        if it has any. Where the two contradict each other (RoadRunner's always do: its orientation is the way that the
-        sign faces) the validity is taken, since it names the lanes.
+        These are the lanes of its validity, if it has any, whose direction is its orientation (+ along, - against the
+        reference line). If validity and orientation contradict each other, the validity decides, since it names the lanes.
+        In RoadRunner's files they always do: the orientation is the direction in which the sign faces.
         """
         valid = [sorted((integer(v, "fromLane"), integer(v, "toLane"))) for v in listing.findall("validity")]
         if valid:
@@ -120,12 +120,12 @@ class _Reader:
     def _stopped(
         self, listing: etree._Element, signal: etree._Element, s: float, lanes: list[Lanelet]
     ) -> list[Lanelet]:
-        """Return the lanelets that a painted stop line holds for.
+        """Return the lanelets to which a painted stop line applies.
 
-        Those of its validity, if it has any; else those of its orientation's direction that it lies across by its place
-        and width; where it lies across none of them, all of that direction: many a line is placed on the reference line
-        and drawn beside it. A line that lies across lanes of the other direction only holds for those: its orientation
-        is then the way that it faces.
+        These are the lanes of its validity, if it has any; else the lanes in the direction of its orientation that it
+        crosses, by its place and width. If it crosses none of these, it applies to all lanes of that direction: many lines
+        are placed on the reference line and drawn beside it. A line that crosses only lanes of the other direction applies
+        to those: its orientation is then the direction in which it faces.
         """
         lanelets = self._lanelets_of_signal(listing, lanes)
         width = number(signal, "width", 0.0)
@@ -145,7 +145,7 @@ class _Reader:
         return across
 
     def report(self) -> None:
-        """Report contradictions, and signals that neither hold for a lane themselves nor by a reference."""
+        """Report contradictions, and signals that apply to no lane, neither directly nor by a reference."""
         if self.contradictions:
             message = (
                 f"the orientation of signals contradicts their lanes (the first: {self.contradictions[0]}): lanes taken"
@@ -168,6 +168,6 @@ def _position(road: Road, signal: etree._Element, offset: tuple[float, float]) -
 
 
 def _at(lane: Lanelet, s: float) -> bool:
-    """Return whether the lanelet contains a road station; of two that meet there the later one does."""
+    """Return whether the lanelet contains a road station; where two lanelets meet, only the later one does."""
     end = lane.strip.end_m
     return lane.strip.start_m <= s < end or (s >= end >= lane.road.length_m - 1e-3)

@@ -1,12 +1,12 @@
-"""Speed limits of lanelets: those of signs before those that the lane or the road records.
+"""Speed limits of lanelets: the limits of signs take precedence over the limits that lanes and roads record.
 
 In OpenDRIVE, the speed of a road type is the default, that of a lane takes precedence over it, and limits from signals take precedence
-over both. A sign applies from its position, along its lane, to the next sign or junction. On roads that follow, it holds while they
-record nothing, or what the road of the sign records: another record is a new default. Beyond a junction nothing is known: nations differ
-in whether the limit continues there.
+over both. A sign applies from its position, along its lane, to the next sign or junction. It also applies on the following roads that
+record no limit, or the same limit as the road of the sign; a different record is a new default. Beyond a junction, the sign's limit is not
+used: nations differ in whether it continues there.
 
-A sign that cannot be read (no number or unit, or one that changes) makes the default of the road type unknown. What the lane itself
-records is then the limit: it has the limit that the sign may have.
+A sign that cannot be read (without number or unit, or with a changing number) makes the default of the road type unknown. A limit that
+the lane itself records still applies: it may be that of the sign.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _SHORT_M = 1e-6
 
 
 class _Stretch(NamedTuple):
-    """What is left to go along: from where on a lanelet, under which limit (m/s; None: it cannot be read)."""
+    """A stretch of road still to be processed: its start on a lanelet, and the sign's limit (m/s; None: it cannot be read)."""
 
     lanelet_id: str
     start_m: float
@@ -42,7 +42,7 @@ class _Stretch(NamedTuple):
 def speed_limits(
     lanes: Sequence[Lanelet], links: Sequence[Link], signals: Rows, recorded: Rows, quality: MapQuality
 ) -> Rows:
-    """Return the rows of `speed_limit`; `recorded`: those of the records of lanes and roads, `signals`: rows of `traffic_signal`."""
+    """Return the rows of `speed_limit`. `recorded`: the rows that lanes and roads record; `signals`: rows of `traffic_signal`."""
     records: dict[str, Rows] = {lane.lanelet_id: [] for lane in lanes}
     for row in recorded:
         records[row["lanelet_id"]].append(row)
@@ -74,7 +74,7 @@ def speed_limits(
 def _sign_rows(
     lanes: Sequence[Lanelet], links: Sequence[Link], signals: Rows, records: Mapping[str, Rows]
 ) -> Iterable[dict[str, Any]]:
-    """Return a row for each stretch of a lanelet over which a sign holds."""
+    """Yield a row for each stretch of a lanelet to which a sign applies."""
     by_id = {lane.lanelet_id: lane for lane in lanes}
     after: dict[str, list[str]] = {}
     for a, b in links:
@@ -110,7 +110,7 @@ def _sign_rows(
 
 
 def _same_record(before: Rows, behind: Rows) -> bool:
-    """Return whether a lanelet records no limit at its start, or the one that the lanelet before it records at its end."""
+    """Return whether a lanelet records no limit, or at its start the limit that the lanelet before it records at its end."""
     last, first = (
         (row["limit_mps"], row["source"]) if row is not None else None
         for row in (
@@ -122,7 +122,7 @@ def _same_record(before: Rows, behind: Rows) -> bool:
 
 
 def _outside(row: Mapping[str, Any], covering_rows: Rows) -> Rows:
-    """Return the parts of a row's span over which none of the others holds."""
+    """Return the parts of a row that the spans of `covering_rows` do not cover."""
     parts, at = [], float(row["s_start_m"])
     for start, end in sorted((float(other["s_start_m"]), float(other["s_end_m"])) for other in covering_rows):
         if end <= at:

@@ -1,4 +1,4 @@
-"""Attributes of XML elements: numbers are finite or refused."""
+"""Reads attributes of XML elements, and refuses numbers that are not finite."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 class MalformedError(ValueError):
-    """An element that cannot be understood; caught where the road or lane concerned is named."""
+    """Raised for an invalid element; the caller adds the id of the road or lane."""
 
 
 MAX_NUMBER = 1e9  # no length, coordinate or coefficient of a road is larger; beyond it arithmetic loses the millimetres
@@ -41,7 +41,7 @@ def integer(element: etree._Element, name: str) -> int:
 
 
 def required_attribute(element: etree._Element, name: str) -> str:
-    """Return an attribute that has to be there."""
+    """Return an attribute. Errors: `MalformedError` if it is missing."""
     value = element.get(name)
     if value is None:
         raise MalformedError(f"<{element.tag}> in line {element.sourceline} has no attribute {name}")

@@ -1,7 +1,7 @@
-"""The lanes of a scenario as centre lines with their sides: the distance to either side, if the scenario states it.
+"""The lanes of a scenario as centre lines, and the distances to their left and right bounds.
 
-A lane's outline shows both sides; where no lane has one, the lines and edges that the lane refers to do, or where no lane refers to any,
-those that lie beside it; else the middle between two lanes that run beside each other.
+The bounds are those of the lane's outline. If no lane has an outline, they are the lines and edges to which the lane refers; if no lane
+refers to any, the lines and edges beside it. A bound that is still unknown is the middle between two parallel lanes.
 """
 
 from __future__ import annotations
@@ -27,16 +27,16 @@ KINDS: Final = {
     "LANE_SURFACE_STREET": "driving", "LANE_SURFACE_UNSTRUCTURE": "driving", "LANE_FREEWAY": "driving", "LANE_UNKNOWN": "driving",
     "LANE_BIKE_LANE": "biking",
 }  # fmt: skip
-"""Type of a feature -> lane type. The purpose of an unknown lane is not known: it counts as a lane for driving."""
+"""Type of a feature -> lane type. LANE_UNKNOWN counts as a lane for driving."""
 _SPACING_M: Final = 4.0
 _LONGEST_M: Final = 10_000.0
-_SHAPE_M: Final = 0.02  # a centre line keeps the points without which it would be off by more
-_INSET_M: Final = 2.0  # an outline's ends may be cut aslant: beside a lane's ends one looks this far inside
-_OUTLINE_M: Final = 10.0  # so far to the side a lane's polygon is looked for
-_REACH_M: Final = 3.75  # and a line or edge, which farther from the middle is another's bound
-_LEAST_M: Final = 0.8  # a line to which no lane refers and that is nearer to the middle bounds another lane
-_ASIDE_M: Final = 0.6  # a lane's middle line is nearly in its middle: a bound farther than the other by more lies beyond another strip
-_LANES_APART_M: Final = (2.2, 6.0)  # the middles of two lanes that run beside each other
+_SHAPE_M: Final = 0.02  # the tolerance with which a centre line is simplified
+_INSET_M: Final = 2.0  # an outline's ends may be oblique: at a lane's ends, the width is measured this far inside
+_OUTLINE_M: Final = 10.0  # how far to the side a lane's polygon is looked for
+_REACH_M: Final = 3.75  # a line or edge farther from the centre line bounds another lane
+_LEAST_M: Final = 0.8  # a line to which no lane refers, nearer to the centre line than this, bounds another lane
+_ASIDE_M: Final = 0.6  # a bound farther away than the other bound by more than this lies beyond another strip
+_LANES_APART_M: Final = (2.2, 6.0)  # least and largest distance between the centre lines of parallel lanes
 _PARALLEL: Final = float(np.cos(np.radians(10.0)))
 
 
@@ -44,7 +44,7 @@ _PARALLEL: Final = float(np.cos(np.radians(10.0)))
 class CentreLine:
     """A lane: `line` (n, 2) in the direction of travel, its stations `s` (n,) and unit normals to the left, heights `z` (n,).
 
-    `half` (n, 2): from the middle to the left and to the right bound; NaN: not known.
+    `half` (n, 2): the distances from the centre line to the left and to the right bound; NaN: not known.
     """
 
     lane_id: str
@@ -60,17 +60,17 @@ class CentreLine:
 
     @property
     def tangent(self) -> Floats:
-        """Direction of travel (n, 2)."""
+        """The direction of travel, unit vectors (n, 2)."""
         return np.column_stack([self.normal[:, 1], -self.normal[:, 0]])
 
     @property
     def bounds(self) -> tuple[Floats, Floats]:
-        """Left and right bound (n, 2)."""
+        """The left and the right bound, each (n, 2)."""
         return self.line + self.normal * self.half[:, :1], self.line - self.normal * self.half[:, 1:]
 
 
 def read_centre_lines(scenario: Scenario, quality: MapQuality) -> dict[str, CentreLine]:
-    """Return the lanes that have a centre line, without widths; report in `quality` those that have none."""
+    """Return the lanes with their centre lines, still without widths; report lanes without a usable centre line in `quality`."""
     centre_lines = {}
     for name, feature in scenario.features.items():
         kind = KINDS.get(str(feature.get("type")))
@@ -121,9 +121,9 @@ def _centre_line(name: str, feature: Mapping[str, Any], kind: str, line: Floats,
 
 
 def measure_sides(lanes: Mapping[str, CentreLine], scenario: Scenario) -> None:
-    """Find how far it is from each lane's middle to its sides, in place.
+    """Measure the distances from each centre line to its two bounds, in place.
 
-    Where lanes have outlines, those without (which connect others) have no lines of their own either.
+    If some lanes have outlines, the lanes without outline (which connect others) have no lines either, and stay unknown.
     """
     if any("polygon" in lane.feature for lane in lanes.values()):
         for name, lane in lanes.items():
@@ -159,7 +159,7 @@ def _rays(lane: CentreLine, side: int, reach_m: float, place: Floats) -> Any:
 
 
 def _of_polygon(lane: CentreLine, area: shapely.Polygon) -> None:
-    """Measure from the middle to where a polygon ends, beside the ends of the lane from a little inside."""
+    """Measure from the centre line to the edge of a polygon; at the ends of the lane, a little inside."""
     inset = min(_INSET_M, lane.s[-1] / 4)
     s = np.clip(lane.s, inset, lane.s[-1] - inset)
     place = np.column_stack([np.interp(s, lane.s, column) for column in lane.line.T])
@@ -193,7 +193,7 @@ def boundary_spans(lane: CentreLine) -> Iterable[tuple[int, Mask, str]]:
 
 
 def _of_lines(lane: CentreLine, tree: shapely.STRtree) -> None:
-    """Measure to the nearest line or edge beside each point, whatever lane it belongs to."""
+    """Measure to the nearest line or edge beside each point, whichever lane it belongs to."""
     for side in (0, 1):
         rays = _rays(lane, side, _REACH_M, lane.line)
         for i in np.unique(tree.query(rays, predicate="intersects")[1]):
@@ -201,16 +201,16 @@ def _of_lines(lane: CentreLine, tree: shapely.STRtree) -> None:
 
 
 def _nearer(lane: CentreLine, side: int, at: Mask, line: Any, *, least_m: float) -> None:
-    """Take the distance to a line where it is the nearest so far, for the points `at` which it may lie."""
+    """Set the distance to a line, at the points `at`, where it is over `least_m` and the smallest so far."""
     crossed = shapely.intersection(_rays(lane, side, _REACH_M, lane.line), line)
     far = np.asarray(shapely.distance(shapely.points(lane.line), crossed), np.float64)
     lane.half[:, side] = np.where(at & (far > least_m), np.fmin(lane.half[:, side], far), lane.half[:, side])
 
 
 def _of_parallel_lanes(lanes: Sequence[CentreLine], all_lanes: Sequence[CentreLine]) -> None:
-    """Take the middle between two lanes that run beside each other, in any direction, as their unknown bound.
+    """Set unknown bounds to the middle between two parallel lanes, of the same or of opposite direction.
 
-    Lanes that fork or join run beside each other, too, but share ground.
+    Lanes that split or merge are left out: they are parallel, too, but overlap.
     """
     tree = shapely.STRtree([shapely.LineString(lane.line) for lane in all_lanes])
     least, farthest = _LANES_APART_M
@@ -232,13 +232,13 @@ def _of_parallel_lanes(lanes: Sequence[CentreLine], all_lanes: Sequence[CentreLi
 
 
 def fill_unknown_sides(lanes: Mapping[str, CentreLine]) -> dict[str, float]:
-    """Give unknown sides the width of the lanes that the lane joins, in place; return lane -> share of its sides found in this way.
+    """Fill in unknown distances to bounds by the lanes that a lane joins, in place; return lane -> share of its distances filled in.
 
-    At its ends a lane is as wide as those that it continues or leads to, and between it widens evenly. One side of which nothing is known
-    is as far from the middle as the other.
+    At its ends, a lane is as wide as its predecessors or successors; in between, the width changes linearly. A side that is still unknown
+    gets the distance of the other side.
     """
     unknown = {name: float(np.isnan(lane.half).mean()) for name, lane in lanes.items()}
-    for _ in range(2):  # a lane between two that have no widths either
+    for _ in range(2):  # twice: the joined lane may itself get its width only in the first pass
         for lane in lanes.values():
             for end, joined, theirs in ((0, lane.before, -1), (-1, lane.after, 0)):
                 known = [lanes[name].half[theirs] for name in joined if name in lanes]
@@ -253,6 +253,6 @@ def fill_unknown_sides(lanes: Mapping[str, CentreLine]) -> dict[str, float]:
         lane.half = np.where(np.isnan(lane.half), lane.half[:, ::-1], lane.half)
         if (
             "polygon" not in lane.feature
-        ):  # whatever lies between a lane and a far edge, such as parked cars, is no part of it
+        ):  # a strip between a lane and a far edge, as for parked cars, is not part of the lane
             lane.half = np.minimum(lane.half, lane.half[:, ::-1] + _ASIDE_M)
     return {name: share for name, share in unknown.items() if share > 0.0}

@@ -1,9 +1,9 @@
-"""The times of the ego's positions, in a data set that counts the messages of a stream instead of timing them.
+"""Corrects the times of the ego's positions, in a data set that counts the messages of a stream instead of timing them.
 
-The messages come with one period, and every few of them is a step. If some were lost, a step takes longer than stated, and the ego seems
-to leap: with every fifth message of 50 Hz, a lost one makes a step of 0.1 s one of 0.12 s and the speed over it a fifth too high. The
-steps over lost messages get their time back. At the end of the drive, where messages run short, the ego's last places are those of the
-annotated frames, like those of all others: they show how the stream's clock differs from that of the frames.
+The messages have a fixed period, and every n-th message is a step. If a message was lost, its step takes longer than stated, and the ego
+seems to jump: if every fifth message of 50 Hz is a step, a lost message makes the step 0.12 s long instead of 0.1 s, and the speed over it
+seems a fifth too high. Such steps get their true duration. At the end of the drive, where messages run short, the ego's last places are
+those of the annotated frames, as for all other actors: they show the difference between the clocks of the stream and of the frames.
 """
 
 from __future__ import annotations
@@ -16,23 +16,23 @@ if TYPE_CHECKING:
     from drivelint.arrays import Floats, Mask
 
 _LEAST_MPS: Final = 2.0
-"""Below it, a lost message moves the ego by less than 4 cm, and noise of 2 cm hides it."""
+"""Below this speed, the ego moves by less than 4 cm per message, so that noise of 2 cm hides a lost message."""
 _BESIDE: Final = 4
-"""A step is compared with so many on each side."""
+"""A step is compared with this number of steps on each side."""
 _TOLERANCE: Final = 0.4
-"""A step is longer by a whole number of messages, give or take this share of one."""
+"""A step over lost messages is longer by a whole number of messages, give or take this share of a message."""
 _MOST_LOST: Final = 10
 _SHORT_SHARE: Final = 0.8
-"""A step that leads less far than this share of the usual one, between two that do, is the seam between two sources."""
+"""A step that advances by less than this share of the usual step is the seam between the stream and the frames."""
 _LAST_STEPS: Final = 20
-"""The seam lies so near to the end: the stream lacks as many steps as messages were lost in it, and no more."""
+"""The seam lies within this number of steps from the end: the stream lacks no more steps than messages were lost."""
 _MOST_SHIFT_S: Final = 0.5
 
 
 class EgoTrack(NamedTuple):
     """The ego's places (T, 2) and headings (T,) at the steps, NaN where the stream has none.
 
-    `lost`: messages that are missing. `shift_s`: so much after the frames the stream begins; NaN: not known.
+    `lost_messages`: the number of missing messages. `shift_s`: how long after the frames the stream begins; NaN: not known.
     """
 
     place: Floats
@@ -42,9 +42,9 @@ class EgoTrack(NamedTuple):
 
 
 def timed_track(place: Floats, heading: Floats, t_s: Floats, message_s: float) -> EgoTrack:
-    """Return where the ego was at the steps (T,), of places (T, 2) and headings (T,) that are counted messages.
+    """Return the ego's track at the steps `t_s` (T,), from places (T, 2) and headings (T,) that are counted messages.
 
-    Between two messages, 0.1 s apart, it goes straight on: at 5 m/s2 that is 6 mm off.
+    Between two messages, 0.1 s apart, the track is interpolated linearly: at 5 m/s2, the error is 6 mm.
     """
     n, period = len(t_s), np.diff(t_s)
     way = np.hypot(*np.diff(place, axis=0).T)
@@ -72,13 +72,13 @@ def timed_track(place: Floats, heading: Floats, t_s: Floats, message_s: float) -
 
 
 def _usual(speed: Floats) -> Floats:
-    """Return the median of each speed's neighbours, with itself."""
+    """Return for each speed the median of this speed and its neighbours."""
     padded = np.pad(speed, _BESIDE, mode="reflect")
     return np.asarray(np.median(np.lib.stride_tricks.sliding_window_view(padded, 2 * _BESIDE + 1), axis=1), np.float64)
 
 
 def _seam(place: Floats, usual_m: Floats, moving: Mask) -> int:
-    """Return the first step (1 ... T - 1) that is not of the stream; T: all are."""
+    """Return the first step (1 ... T - 1) that is not from the stream; T if all are from it."""
     n = len(place)
     step = np.diff(place, axis=0)
     ahead = step[:-1] / np.maximum(np.hypot(*step[:-1].T), 1e-9)[:, None]
@@ -89,7 +89,7 @@ def _seam(place: Floats, usual_m: Floats, moving: Mask) -> int:
 
 
 def _time_at(point: Floats, place: Floats, t_s: Floats) -> float:
-    """Return when a track passes a point, at its last steps, by the nearest place on it; a straight line goes on beyond its end."""
+    """Return when a track, in its last steps, is nearest to a point; beyond its end, the track is extended by a straight line."""
     first = max(0, len(place) - _LAST_STEPS)
     a, b = place[first:-1], place[first + 1 :]
     way = b - a

@@ -22,13 +22,13 @@ if TYPE_CHECKING:
     from drivelint.road.quality import MapQuality
     from drivelint.road.tables import Rows
 
-_STANDS_FAR_M: Final = 30.0  # a stop sign farther from its lane's middle is another's
+_STANDS_FAR_M: Final = 30.0  # a stop sign farther from its lane's centre line belongs to another lane
 
 
 def furniture(
     scenario: Scenario, lanes: Sequence[BoundedLane], offset: tuple[float, float], quality: MapQuality
 ) -> dict[str, Rows]:
-    """Return rows of `traffic_signal`, `stop_line` and `crossing`; report in `quality` those that apply to no lane."""
+    """Return rows of `traffic_signal`, `stop_line` and `crossing`; report signals and crossings without a lane in `quality`."""
     by_id = {lane.lanelet_id: lane for lane in lanes}
     signals = [*_lights(scenario, by_id, offset, quality), *_stop_signs(scenario, by_id, offset, quality)]
     return {
@@ -41,7 +41,7 @@ def furniture(
 def _lights(
     scenario: Scenario, lanes: Mapping[str, BoundedLane], offset: tuple[float, float], quality: MapQuality
 ) -> Rows:
-    """Return a row for each light: it has the id of its states, and applies from its stop point, or else from the begin of the lane."""
+    """Return a row for each light. Its id is that of its states; it applies at its stop point, else at the start of the lane."""
     rows, lost_names = [], []
     for name, light in scenario.lights.items():
         lane = lanes.get(str(light.get("lane", name)))
@@ -97,7 +97,7 @@ def _report_lost(names: list[str], kind: str, quality: MapQuality) -> None:
 def _crossings(
     scenario: Scenario, lanes: Sequence[BoundedLane], offset: tuple[float, float], quality: MapQuality
 ) -> Rows:
-    """Return a row for each crossing and lane for driving that it lies across."""
+    """Return a row for each crossing and each drivable lane that it crosses."""
     drivable_lanes = [lane for lane in lanes if lane.drivable]
     lines = [shapely.LineString(lane.line.centre) for lane in drivable_lanes]
     tree = shapely.STRtree(lines)

@@ -1,4 +1,4 @@
-"""How the lanes of a scenario follow one another and lie side by side, as it states or as their shapes show."""
+"""Finds the successors and neighbours of the lanes of a scenario, as it states them or as their shapes show them."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ if TYPE_CHECKING:
 
     from drivelint.formats.scenarionet.centre_lines import CentreLine
 
-_JOINED_M: Final = 0.3  # the end of a lane and the begin of the next are one point
+_JOINED_M: Final = 0.3  # the largest gap between the end of a lane and the start of the next
 _ONWARDS: Final = float(np.cos(np.radians(45.0)))
-_OUTSIDE_M: Final = 0.4  # so far beyond a bound one looks for the lane beside
+_OUTSIDE_M: Final = 0.4  # how far beyond a bound the lane beside is looked for
 _SHARES: Final = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
-_LEAST_PLACES: Final = 3  # of these places, where the same lane lies beside
+_LEAST_PLACES: Final = 3  # the least number of these places with the same lane beside
 _ALONG: Final = float(np.cos(np.radians(25.0)))
 _LEVEL_M: Final = 3.0
 
 
 def link(lanes: Mapping[str, CentreLine]) -> None:
-    """Give each lane its predecessors and successors, in place: those of the scenario, else the lanes whose ends meet its own."""
+    """Set the predecessors and successors of each lane, in place: as the scenario states them, else by lane ends that meet."""
     after: dict[str, dict[str, None]] = defaultdict(dict)
     said = any(lane.feature.get("exit_lanes") or lane.feature.get("entry_lanes") for lane in lanes.values())
     if said:
@@ -45,7 +45,7 @@ def link(lanes: Mapping[str, CentreLine]) -> None:
 
 
 def _ids(value: Any) -> Iterable[str]:
-    """Return the ids that a list holds, as texts."""
+    """Return the ids in a list, as texts; none if the value is not a list."""
     value = value.tolist() if isinstance(value, np.ndarray) else value
     return [str(each) for each in value if isinstance(each, (int, str))] if isinstance(value, (list, tuple)) else []
 
@@ -72,9 +72,9 @@ class Neighbours(NamedTuple):
 
 
 def find_neighbours(lanes: Mapping[str, CentreLine]) -> dict[str, Neighbours]:
-    """Return the neighbours of each lane with known bounds: they have ground just beyond most of a bound, and run along it.
+    """Return the neighbours of each lane with known bounds: lanes just beyond most of a bound that run along it.
 
-    Lanes that fork or join share ground, and are none.
+    Lanes that split or merge overlap, and are not neighbours.
     """
     ordered = [lane for lane in lanes.values() if np.isfinite(lane.half).all()]
     tree = shapely.STRtree(
@@ -90,7 +90,7 @@ def find_neighbours(lanes: Mapping[str, CentreLine]) -> dict[str, Neighbours]:
 def _beside(
     lane: CentreLine, lanes: Sequence[CentreLine], tree: shapely.STRtree, side: str
 ) -> tuple[str | None, bool | None]:
-    """Return the lane on most of the places just beyond a bound, and whether it runs the other way."""
+    """Return the lane that contains most of the places just beyond a bound, and whether it runs the other way."""
     sign, bound = (1.0, lane.bounds[0]) if side == "left" else (-1.0, lane.bounds[1])
     at = _SHARES * lane.s[-1]
     x, y, nx, ny, z = (np.interp(at, lane.s, values) for values in (*bound.T, *lane.normal.T, lane.z))
@@ -111,7 +111,7 @@ def _beside(
 
 
 def _mutual(name: str, neighbours: Mapping[str, Neighbours]) -> Neighbours:
-    """Return the neighbours of a lane that have it or no lane on that side: a short lane is beside a long one, but not its neighbour."""
+    """Return the neighbours of a lane, except those that have another neighbour on the shared side, as a long lane beside a short one."""
     mutual_neighbours = neighbours[name]
     for side, opposite in (("left", "right"), ("right", "left")):
         other = neighbours.get(getattr(mutual_neighbours, f"{side}_id") or "")

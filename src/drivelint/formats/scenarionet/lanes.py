@@ -34,8 +34,8 @@ if TYPE_CHECKING:
 _MARKINGS: Final = {
     "BROKEN_SINGLE": "broken", "SOLID_SINGLE": "solid", "SOLID_DOUBLE": "solid_solid", "BROKEN_DOUBLE": "broken_broken",
 }  # fmt: skip
-"""What stands between ROAD_LINE_ and the colour -> marking; for a double line that may be crossed from one side, the side is not known."""
-_OVERLAP_SHARE: Final = 0.1  # of the smaller lane's ground: less is the inaccuracy of bounds
+"""The part of a type between ROAD_LINE_ and the colour -> marking. Missing: double lines that may be crossed from one side only."""
+_OVERLAP_SHARE: Final = 0.1  # of the smaller lane's area: a smaller overlap is an inaccuracy of bounds
 _CROSSING_RAD: Final = float(np.radians(25.0))  # lanes at a smaller angle split or merge
 _MPH: Final = 0.44704
 _KMH: Final = 1.0 / 3.6
@@ -43,7 +43,7 @@ _FASTEST_MPS: Final = 60.0
 
 
 def read(source: MapSource, request: MapOptions) -> MapTables:
-    """Return the map's tables; `MapError` where the pickle is damaged, holds no scenario, or no lane of it can be built."""
+    """Return the map's tables. Errors: `MapError` if the pickle is damaged or not a scenario, or no lane for driving can be built."""
     quality = MapQuality()
     try:
         scenario = read_scenario(source.content)
@@ -75,7 +75,7 @@ def _stations_on(centre: CentreLine, places: Floats) -> Floats:
 
 
 def _bounded(centres: Mapping[str, CentreLine], scenario: Scenario, quality: MapQuality) -> list[BoundedLane]:
-    """Return the lanes with their bounds; report in `quality` those without a known width."""
+    """Return the lanes with their bounds; report lanes without a known width in `quality`."""
     bounded_lanes, beside = [], find_neighbours(centres)
     for name, lane in centres.items():
         if np.isnan(lane.half).any():
@@ -100,7 +100,7 @@ def _bounded(centres: Mapping[str, CentreLine], scenario: Scenario, quality: Map
 
 
 def _marks(lane: CentreLine, scenario: Scenario) -> tuple[Mark, ...]:
-    """Return the markings of the lines that a lane names, along the parts that they lie beside; none: it names none."""
+    """Return the marks of the lines that a lane names, each on its part of the lane; the marking of a side without lines is unknown."""
     marks = []
     for side, at, name in boundary_spans(lane):
         if not at.any():
@@ -134,7 +134,7 @@ def _number(value: Any) -> float:
 
 
 def _report_guessed(centres: Mapping[str, CentreLine], guessed: Mapping[str, float], quality: MapQuality) -> None:
-    """Say of how many lanes, and along how much of them, the width is that of the lanes that they join, or of one side alone."""
+    """Report how many lanes have an assumed width, and on which share of their sides."""
     of = {name: share for name, share in guessed.items() if np.isfinite(centres[name].half).all()}
     if of:
         whole = sum(float(lane.s[-1]) for lane in centres.values())

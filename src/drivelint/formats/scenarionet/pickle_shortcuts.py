@@ -1,7 +1,7 @@
-"""Parts of a pickle that are read at once, for speed: arrays, and lists of points. Most of a scenario is such.
+"""Reads arrays and lists of points of a pickle in one step, for speed: they are most of a scenario.
 
-Each pattern is the operations that CPython's and numpy's picklers write for one value, named as `pickletools` names them. What differs
-is read operation by operation.
+Each pattern matches the operations that CPython's and numpy's picklers write for one value. Comments use the names of `pickletools`.
+Values that match no pattern are read operation by operation.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Points:
-    """A list of `n` points in the file, of two or three numbers each, which is decoded when it is asked for.
+    """A list of `n` points in the file, of two or three numbers each, which is decoded on access.
 
-    `at`: where the first begins; `point`: how its numbers stand in it. `first`: the number under which the file may refer to it.
+    `at`: the byte at which the first point begins; `point`: the layout of a point; `first`: the memo number of the first point.
     """
 
     content: bytes
@@ -39,11 +39,11 @@ class Points:
         return np.column_stack([rows[name] for name in self.point.names or ()])
 
     def as_list(self) -> list[Any]:
-        """Return the points as they stand in the file."""
+        """Return the points as lists or tuples, as in the file."""
         return [tuple(row) if self.are_tuples else row for row in self.array.tolist()]
 
     def row(self, number: int) -> Any:
-        """Return the point to which the file refers by this number."""
+        """Return the point with this memo number."""
         row = np.frombuffer(self.content, self.point, 1, self.at + (number - self.first) * self.point.itemsize)[
             0
         ].tolist()
@@ -51,7 +51,7 @@ class Points:
 
 
 def _point(first: int, size: int, k: int) -> np.dtype[Any]:
-    """Return the type of a point of k numbers, of which the first stands `first` bytes after its begin."""
+    """Return the layout of a point of `size` bytes with k numbers; `first`: the offset of the first number in bytes."""
     places = [first + 9 * i for i in range(k)]
     return np.dtype({"names": list("xyz"[:k]), "formats": [">f8"] * k, "offsets": places, "itemsize": size})
 
@@ -62,13 +62,13 @@ _LISTS: Final = (
     # MEMOIZE, MARK, then EMPTY_LIST, MEMOIZE, MARK, BINFLOAT twice and APPENDS for each point, APPENDS
     (re.compile(rb"\x94\((?:\]\x94\(G.{8}G.{8}e)+e", re.DOTALL), _point(4, 22, 2), False),
 )
-_BEGIN: Final = 2  # bytes of a list before its first point; one is behind its last
+_BEGIN: Final = 2  # bytes of a list before its first point; one byte follows the last point
 
 
 def points_at(content: bytes, at: int, count: int) -> tuple[Points, int] | None:
-    """Return the points of a list of which the file has at this place all but EMPTY_LIST, and where it ends; None: it is none.
+    """Return the list of points whose EMPTY_LIST ends at byte `at`, and where the list ends; None if this is not a list of points.
 
-    `count`: the number that the file will give the list.
+    `count`: the memo number of the list.
     """
     for pattern, point, are_tuples in _LISTS:
         if match := pattern.match(content, at):
@@ -85,16 +85,15 @@ _ARRAY: Final = re.compile(
     rb"\(K\x01((?:K.|M.{2}|J.{4}){1,3})[\x85\x86\x87]\x94(" + _REFERENCE + rb")([\x88\x89])(C.|B.{4})",
     re.DOTALL,
 )  # fmt: skip
-_ARRAY_END: Final = b"\x94t\x94b"  # behind the bytes: MEMOIZE, TUPLE, MEMOIZE, BUILD
+_ARRAY_END: Final = b"\x94t\x94b"  # after the bytes: MEMOIZE, TUPLE, MEMOIZE, BUILD
 _ARRAY_NUMBERS: Final = 6
-"""So many of its parts the file gives a number: the third is the array, the fifth its bytes. It does not refer to the others."""
+"""The number of parts of an array with a memo number. The file refers only to the third, the array, and the fifth, its bytes."""
 
 
 def array_at(content: bytes, at: int, memo: dict[int, Any], count: int) -> tuple[np.ndarray[Any, Any], int, int] | None:
-    """Return the array of which the file has at this place all but the function that makes it; None: it is none.
+    """Return the array whose constructor is read up to byte `at`, where the array ends, and the next memo number; None: no array.
 
-    Also returned: where it ends, and the number that the file will give next. `memo`: what the file refers to by number, to which the
-    array is added; `count`: the number that it would give now. Errors: as `array_of`.
+    `memo`: memo number -> value; the array and its bytes are added. `count`: the next memo number before the array. Errors: as `array_of`.
     """
     match = _ARRAY.match(content, at)
     if match is None:
@@ -112,7 +111,7 @@ def array_at(content: bytes, at: int, memo: dict[int, Any], count: int) -> tuple
 
 
 def _integers(code: bytes) -> tuple[int, ...]:
-    """Return the integers of BININT1, BININT2 and BININT one after another."""
+    """Return the integers of successive operations BININT1, BININT2 and BININT."""
     found, at = [], 0
     while at < len(code):
         width = {0x4B: 1, 0x4D: 2, 0x4A: 4}[code[at]]

@@ -1,4 +1,4 @@
-"""The names that a pickle may call for, and the numpy arrays, numbers and containers that are made by them."""
+"""The names that a pickle may use, and the numpy arrays, numbers and containers that are created for them."""
 
 from __future__ import annotations
 
@@ -26,25 +26,25 @@ _NAMES: Final = {
     **{(module, name): "type" for module in _BUILTINS for name in ("int", "long", "float", "bool", "str", "unicode")},
     **{(module, "dict"): "dict" for module in _BUILTINS},
 }
-"""(module, name) in a file -> its meaning here; a set is a list of its members, in the order of the file."""
+"""(module, name) in a file -> its meaning here. A set becomes a list of its members, in the order of the file."""
 _KINDS: Final = "biufUS"
-"""Kinds of numpy types that are read: numbers and texts."""
+"""The kinds of numpy types that are read: numbers and texts."""
 _EMPTY: Final[dict[str, Callable[[], Any]]] = {"dict": dict, "list": list, "bytes": bytes}
 _OBJECTS: Final = "it has an array of Python objects, which is refused: write numbers"
 
 
 class PickleError(ValueError):
-    """A pickle that is damaged, cut off, or holds something else than plain values; caught where the file is named."""
+    """Raised for a pickle that is damaged, cut off, or contains more than plain values; the caller adds the name of the file."""
 
 
 class Name(NamedTuple):
-    """A name that the file gives, as it stands for something here."""
+    """A name in the file, represented by its meaning in `_NAMES`."""
 
     meaning: str
 
 
 def name_of(module: Any, name: Any) -> Name:
-    """Return the meaning of a name in the file. Errors: `PickleError` for one that is refused."""
+    """Return the meaning of a name in the file. Errors: `PickleError` for a name that is refused."""
     meaning = _NAMES.get((module, name)) if isinstance(module, str) and isinstance(name, str) else None
     if meaning is None:
         what = f"{str(module)[:100]}.{str(name)[:100]}"
@@ -53,7 +53,7 @@ def name_of(module: Any, name: Any) -> Name:
 
 
 class NumberType:
-    """A numpy type: its code, such as f8, and its byte order, which the file gives later."""
+    """A numpy type: its code, such as f8, and its byte order, which follows later in the file."""
 
     def __init__(self, code: Any) -> None:
         if not (isinstance(code, str) and code[:1] in _KINDS and code[1:].isdecimal()):
@@ -62,7 +62,7 @@ class NumberType:
         self.numpy = np.dtype(code)
 
     def set_state(self, state: Any) -> None:
-        """Give the type its byte order. Errors: `PickleError` for a type with fields."""
+        """Set the byte order. Errors: `PickleError` for a type with fields."""
         _, order, *structure = state
         if order not in {"<", ">", "|", "="} or any(part is not None for part in structure[:3]):
             raise PickleError(_OBJECTS)
@@ -70,20 +70,20 @@ class NumberType:
 
 
 class Array:
-    """An array of which the content follows; `memo`: the number under which the file will refer to it."""
+    """An array whose content follows in the file. `memo`: the number by which the file refers to the array."""
 
     def __init__(self, memo: int | None) -> None:
         self.memo = memo
 
 
 def array_of(state: Any) -> np.ndarray[Any, Any]:
-    """Return the array that a state (version, shape, type, is Fortran's, bytes) gives. Errors: `PickleError`."""
+    """Return the array of a state (version, shape, type, whether in Fortran's order, bytes). Errors: `PickleError`."""
     _, shape, kind, is_fortran, raw = state
     return _view(raw, kind, shape, "F" if is_fortran else "C")
 
 
 def build_value(meaning: str, arguments: tuple[Any, ...]) -> Any:
-    """Return the value of a name with these arguments, except arrays without content and bytes from texts."""
+    """Return the value that a name creates from these arguments; not for arrays without content and bytes from texts."""
     if meaning == "number type":
         return NumberType(arguments[0])
     if meaning == "scalar":
@@ -92,7 +92,7 @@ def build_value(meaning: str, arguments: tuple[Any, ...]) -> Any:
     if meaning == "view":
         raw, kind, shape, order = arguments
         return _view(raw, kind, shape, order)
-    # an empty container, or the one that the file gives as its content; the default of a dict is not kept
+    # the container among the arguments, else an empty one; the default value of a defaultdict is not kept
     given = next((value for value in arguments if not isinstance(value, (Name, str))), None)
     if given is not None and type(given).__name__ != meaning:
         raise TypeError(f"a {meaning} made of something else")

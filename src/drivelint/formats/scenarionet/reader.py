@@ -1,6 +1,6 @@
-"""Scenarios of ScenarioNet: one drive per pickle, of its tracks, the states of its lights and the ego that it names.
+"""Reads scenarios of ScenarioNet: one drive per pickle, from its tracks, the states of its lights and the ego that it names.
 
-Positions are box centres, but for the ego of nuScenes, which is at its rear axle and is moved to its box centre.
+Positions are box centres, except those of nuScenes' ego: they are its rear axle, and are moved to its box centre.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _LIGHT_CODES: Final = {word: SIGNAL_STATES.index(state) for word, state in LIGHT
 
 
 def accepts(probe: Probe) -> bool:
-    """Accept a pickle by its first byte and its protocol, and if it is not called one, by the dict that it begins with."""
+    """Return whether the file begins as a pickle of a known protocol, and has the suffix .pkl or begins with a dict."""
     head = probe.head
     if len(head) < 3 or head[0] != 0x80 or head[1] not in _PROTOCOLS:
         return False
@@ -41,7 +41,7 @@ def accepts(probe: Probe) -> bool:
 
 
 def read(probe: Probe) -> Recording:
-    """Read a scenario. Errors: `TraceError` for a pickle that is damaged, holds something else, or more than numbers and texts."""
+    """Read a scenario. Errors: `TraceError` for a pickle that is damaged, is not a scenario, or contains more than numbers and texts."""
     content = probe.path.read_bytes()
     try:
         return _recording(read_scenario(content), content)
@@ -77,7 +77,7 @@ def _recording(scenario: Scenario, content: bytes) -> Recording:
 
 
 def _place_ego(tracks: Tracks, scenario: Scenario, even: Mask) -> tuple[list[QualityFinding], list[str]]:
-    """Bring the ego's box to where it is and when, in place; return findings and notes. `even`: whose positions are interpolated."""
+    """Correct the times and places of the ego's box, in place; return findings and notes. `even`: which actors are interpolated."""
     dataset, ego = scenario.dataset, tracks.ego
     if ego is None:
         named = scenario.metadata.get("sdc_id")
@@ -143,7 +143,7 @@ def _nanoseconds(t_s: Floats) -> Times:
 
 
 def _signals(scenario: Scenario, t_s: Floats) -> tuple[pa.Table | None, list[QualityFinding]]:
-    """Return the states of all lights, one row per step; a light is called as the lane that it holds for."""
+    """Return the states of all lights, one row per light and step, and findings. A light has the id of its lane."""
     scenario.refuse_more(len(scenario.lights) * len(t_s), "states of lights")
     ids, codes = [], []
     known_words: set[Any] = set()

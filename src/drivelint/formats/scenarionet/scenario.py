@@ -27,11 +27,11 @@ _LONGEST_S: Final = 1e9
 class Dataset(NamedTuple):
     """The facts about a data set; the defaults are for an unknown one. See datasets.toml.
 
-    `sensor_range_m`: the range in which the recorder sees every actor. `steps_per_keyframe`: boxes are interpolated between keyframes
-    this many steps apart (0: they are not). `ego_message_s`: the ego's positions are every few messages of a stream with this period,
+    `sensor_range_m`: the range within which every actor is recorded. `steps_per_keyframe`: boxes are interpolated between keyframes
+    this many steps apart (0: they are not). `ego_message_s`: the ego's positions are every n-th message of a stream with this period,
     counted and not timed.
-    `ego_ahead_m`: the middle of the ego's box ahead of its position. `ego_box_m`: the ego's length and width. The others: whether what
-    the scenarios have of it was in the data set, and is no constant of the converter.
+    `ego_ahead_m`: how far the middle of the ego's box is ahead of its position. `ego_box_m`: the ego's length and width. `nations`: start
+    of a place's name -> country. The other fields: whether the values are from the data set, or are constants of the converter.
     """
 
     sensor_range_m: float = 50.0
@@ -47,17 +47,17 @@ class Dataset(NamedTuple):
     nations: Mapping[str, str] = {}
 
     def nation_of(self, place: str) -> str | None:
-        """Return the country of a place, which the scenario names, as two letters; None: not known."""
+        """Return the country, as two letters, of the place that the scenario names; None: not known."""
         return next((nation for begin, nation in self.nations.items() if place.startswith(begin)), None)
 
     def side_driven_on(self, place: str) -> str | None:
-        """Return lht or rht at a place, which the scenario names; None: not known."""
+        """Return the side that is driven on, lht or rht, at the place that the scenario names; None: not known."""
         nation = self.nation_of(place)
         return None if nation is None else side_of_nation(nation)
 
 
 class Scenario(NamedTuple):
-    """The parts of a scenario, and the bytes of its file; each track, light and feature is a dict."""
+    """The parts of a scenario, and the size of its file in bytes; each track, light and feature is a dict."""
 
     size: int
     dataset: Dataset
@@ -72,13 +72,13 @@ class Scenario(NamedTuple):
         return str(self.metadata.get("map", ""))
 
     def refuse_more(self, n: int, kind: str) -> None:
-        """Refuse so many values: a file that names one of them again and again would grow beyond any bound. Errors: `PickleError`."""
+        """Raise `PickleError` if there are more than `size` values: many references to one value could exceed any limit of memory."""
         if n > self.size:
             raise PickleError(f"its {n} {kind} are more than the file can hold: write the scenario again")
 
 
 def read_scenario(content: bytes) -> Scenario:
-    """Return the scenario that a pickle holds. Errors: `PickleError` where it is damaged, or holds something else."""
+    """Return the scenario in a pickle. Errors: `PickleError` if the pickle is damaged, or is not a scenario."""
     found = load(content)
     parts = {name: _part(found, name) for name in ("metadata", "tracks", "dynamic_map_states", "map_features")}
     facts = _FACTS["dataset"].get(str(parts["metadata"].get("dataset", "")).lower(), {})
@@ -121,7 +121,7 @@ def times_s(metadata: Mapping[str, Any]) -> Floats:
 
 
 def numbers(value: Any, where: str) -> Floats:
-    """Return numbers, one or an array of them, as an array. Errors: `PickleError` naming `where` they stand."""
+    """Return a number, or several numbers, as an array. Errors: `PickleError` that names their place in the file, `where`."""
     try:
         if isinstance(value, (int, float)):
             return np.array(value, np.float64)
@@ -138,7 +138,7 @@ def numbers(value: Any, where: str) -> Floats:
 
 
 def points(value: Any, where: str) -> Floats:
-    """Return points (n, k), given as an array or as a list of them. Errors: `PickleError` naming `where` they stand."""
+    """Return points (n, k), given as an array or a list. Errors: `PickleError` that names their place in the file, `where`."""
     if isinstance(value, Points):
         return value.array
     if isinstance(value, np.ndarray) and value.dtype.kind in "biuf" and value.ndim == 2:

@@ -1,8 +1,8 @@
-"""Values of motion in data sets that are no measurements, recognised by the numbers themselves wherever possible.
+"""Finds values of motion that are not measured, by the numbers themselves wherever possible, and corrects or drops them.
 
-Velocities that are differences of the positions, one step apart, are those of half a step before or after, and one of them is 0 at an end
-of the track. Boxes that were annotated now and then and interpolated have no acceleration. A box whose length and width are exchanged
-moves along its short side.
+Velocities that are differences of successive positions are half a step too early or too late, and one of them is 0 at an end of the track.
+Boxes that were annotated only at keyframes and interpolated between have no acceleration. A box whose length and width are exchanged moves
+along its short side.
 """
 
 from __future__ import annotations
@@ -24,20 +24,21 @@ _MOVING_MPS: Final = 1.0
 _DISTINCT_MPS: Final = 0.05
 _SAME_MPS: Final = 0.02
 _SAME_SHARE: Final = 0.01
-"""A velocity is a difference of the positions if it is this near to it: clocks that were rounded to a step change it by less than 0.1 %."""
+"""A velocity equals a difference of positions if both differ by less than `_SAME_MPS` plus this share. (Rounded times change it by under
+0.1 %.)"""
 _LEAST_SAME_SHARE: Final = 0.9
 _LEAST_SAMPLES: Final = 10
 _EVEN_M: Final = 1e-4
 _WIDER: Final = 1.2
-"""A box that is this much wider than long is no estimate of a square one."""
+"""A box that is wider than long by this factor is not an inaccurate estimate of a square box."""
 _MOVED_M: Final = 2.0
 _ALONG: Final = np.cos(np.radians(30.0))
 
 
 def drop_differences(tracks: Tracks) -> list[QualityFinding]:
-    """Make velocities unknown that are differences of the positions, in place: those of the ego, and those of all others.
+    """Set velocities that are differences of the positions to NaN, in place: those of the ego, and those of all other actors.
 
-    `finish_trace` derives better ones, which are those of the step itself.
+    `finish_trace` derives better velocities, which are those at the step itself.
     """
     is_ego = np.arange(len(tracks.ids)) == tracks.ego
     findings = []
@@ -55,9 +56,9 @@ def drop_differences(tracks: Tracks) -> list[QualityFinding]:
 
 
 def _difference(tracks: Tracks, group: Mask) -> str | None:
-    """Return early or late where the velocities of these actors are differences of the positions; None: they are not.
+    """Return early or late if the velocities of these actors are differences of the positions; None if they are not.
 
-    Only when an actor speeds up, brakes or turns do the steps before and after differ from each other and from the velocity between.
+    This shows only where an actor accelerates, brakes or turns, so that the displacements before and after differ.
     """
     steps = tracks.steps_m[group] / np.diff(tracks.t_s)[:, None]
     before, after, velocity = steps[:, :-1], steps[:, 1:], tracks.velocity[group][:, 1:-1]
@@ -73,7 +74,7 @@ def _difference(tracks: Tracks, group: Mask) -> str | None:
 
 
 def drop_false_stops(tracks: Tracks) -> list[QualityFinding]:
-    """Make the last velocity of a track unknown, in place, where it is 0 though the actor moves."""
+    """Set the last velocity of a track to NaN, in place, if it is 0 although the actor moves."""
     ends = tracks.present.copy()
     ends[:, :-1] &= ~tracks.present[:, 1:]
     speed = np.zeros(ends.shape)
@@ -88,7 +89,7 @@ def drop_false_stops(tracks: Tracks) -> list[QualityFinding]:
 
 
 def interpolated(tracks: Tracks, dataset: Dataset) -> Mask:
-    """Say of each actor (n,) whether its positions are interpolated between keyframes: they lie evenly on straight lines."""
+    """Return for each actor (n,) whether its positions are interpolated between keyframes, that is, lie evenly on straight lines."""
     every = dataset.steps_per_keyframe
     if not every or len(tracks.t_s) < every + 1:
         return np.zeros(len(tracks.ids), np.bool_)
@@ -101,8 +102,8 @@ def interpolated(tracks: Tracks, dataset: Dataset) -> Mask:
 def give_keyframe_velocities(tracks: Tracks, rows: Mask, every: int) -> list[QualityFinding]:
     """Give these actors the velocities of their keyframes, in place, and report that their accelerations are not known.
 
-    At a keyframe it is the mean from the keyframe before to the one after, as nuScenes' own `box_velocity` has it, and between two it
-    changes evenly.
+    The velocity at a keyframe is the mean from the keyframe before to the keyframe after, as in nuScenes' own `box_velocity`. Between two
+    keyframes, it changes linearly.
     """
     key = np.arange(0, len(tracks.t_s), every)
     place, t_s = tracks.place[rows][:, key, :2], tracks.t_s[key]
@@ -132,7 +133,7 @@ def give_keyframe_velocities(tracks: Tracks, rows: Mask, every: int) -> list[Qua
         f"the positions of {{}} are known every {period_s:g} s and interpolated between: velocities are means over {2 * period_s:g} s, "
         "accelerations are not known"
     )
-    # the check velocity_filtered, one for each actor, shows that an acceleration is not known
+    # the finding velocity_filtered of an actor states that its acceleration is not known
     return [
         QualityFinding.of_actors("interpolated", "warning", text.format(listed(moving_ids)), moving_ids),
         *(QualityFinding("velocity_filtered", "info", text.format(name), actor_id=name) for name in moving_ids),
@@ -140,7 +141,7 @@ def give_keyframe_velocities(tracks: Tracks, rows: Mask, every: int) -> list[Qua
 
 
 def _spread_m(tracks: Tracks) -> Floats:
-    """Return how far apart the places of each actor (n,) are at most, along an axis."""
+    """Return the extent in metres of each actor's places (n,), along x or y, whichever is larger."""
     seen = np.where(tracks.present[..., None], tracks.place[..., :2], np.nan)
     with np.errstate(invalid="ignore"):
         spread = np.fmax.reduce(seen, axis=1) - np.fmin.reduce(seen, axis=1)
@@ -148,9 +149,9 @@ def _spread_m(tracks: Tracks) -> Floats:
 
 
 def turn_boxes(tracks: Tracks, dataset: Dataset) -> list[QualityFinding]:
-    """Exchange length and width, in place, of long kinds of actors that move along their short side.
+    """Exchange length and width, in place, of vehicles that move along their short side.
 
-    So are the ego's, if they are those that the data set is known to exchange. If nothing shows it, they are unknown.
+    The ego's are also exchanged if the data set is known to exchange them. Without such evidence, length and width become NaN.
     """
     long_kind = np.isin(tracks.kinds, list(_LONG_KINDS))
     n = np.maximum(tracks.present.sum(axis=1), 1)
@@ -172,7 +173,7 @@ def turn_boxes(tracks: Tracks, dataset: Dataset) -> list[QualityFinding]:
 
 
 def _moves_ahead(tracks: Tracks, i: int) -> bool:
-    """Say whether an actor moves along its heading, forwards or backwards."""
+    """Return whether an actor moves along its heading, forwards or backwards."""
     steps = tracks.steps_m[i]
     heading = tracks.heading[i, :-1]
     way = np.hypot(*steps.T)

@@ -21,7 +21,7 @@ _SIZES: Final = ("length", "width", "height")
 
 @dataclass
 class Tracks:
-    """n actors over T steps. `ego`: which one is the ego; None: no track is.
+    """The tracks of n actors over T steps. `ego`: the index of the ego; None: no track is the ego.
 
     `t_s` (T,), `present` (n, T), `place` (n, T, 3), `heading` (n, T), `velocity` (n, T, 2), `size` (n, T, 3): length, width, height;
     NaN where not known. `kinds` (n,): indices of ACTOR_CLASSES, -1: not known.
@@ -39,7 +39,7 @@ class Tracks:
 
     @cached_property
     def steps_m(self) -> Floats:
-        """How far each actor goes (n, T - 1, 2) from step to step, as it was read; NaN where it is not there at both."""
+        """The displacement of each actor (n, T - 1, 2) from step to step, as read; NaN unless it is present at both steps."""
         steps: Floats = np.diff(self.place[..., :2], axis=1)
         return steps
 
@@ -85,7 +85,7 @@ def _fill(tracks: Tracks, i: int, state: dict[str, Any], where: str) -> None:
 
 
 def _column(state: dict[str, Any], name: str, steps: int, where: str) -> Floats:
-    """Return an array of a state as (steps, k): one number of it stands for every step. Errors: `PickleError`."""
+    """Return an array of a state as (steps, k); a single number is repeated for every step. Errors: `PickleError`."""
     values = numbers(state.get(name), f"{where}[{name!r}]")
     least = {"position": 2, "velocity": 2}.get(name, 1)
     if least == 1 and values.size == 1:
@@ -97,7 +97,7 @@ def _column(state: dict[str, Any], name: str, steps: int, where: str) -> Floats:
 
 
 def _kind(track: dict[str, Any]) -> int:
-    """Return the class of a track, by the word of its data set if that is known, else by ScenarioNet's."""
+    """Return the class of a track, by the data set's own type if `CLASSES` has it, else by ScenarioNet's type; -1: not known."""
     own = track.get("metadata")
     words = (own.get("type") if isinstance(own, dict) else None, track.get("type"))
     found = next((CLASSES[word] for word in words if isinstance(word, str) and word in CLASSES), None)

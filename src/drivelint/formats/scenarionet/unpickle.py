@@ -1,8 +1,8 @@
 """Decodes pickles of plain values and numpy arrays. Nothing of a file is imported, called or run.
 
-The machine below knows the operations of protocols 2 to 5 that such values need, and refuses every other, as it refuses names (see
-`pickled_numpy`). A key is a text or a number, so that nothing has to be hashed that holds other values. What a file makes is no larger
-than the file: an array is a view of its bytes.
+`_Machine` knows the operations of protocols 2 to 5 that such values need. It refuses all other operations, and all names except those in
+`pickled_numpy`. A key of a dict must be a text or a number, so that no container is hashed. The decoded values are no larger than the
+file: an array is a view of its bytes.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ _FLOAT: Final = struct.Struct(">d").unpack_from
 
 
 class _EndError(Exception):
-    """The operation that ends a pickle."""
+    """Raised by the operation that ends a pickle."""
 
 
 def load(content: bytes) -> Any:
@@ -55,9 +55,9 @@ def load(content: bytes) -> Any:
 
 
 class _Machine:
-    """A pickle that is decoded: its bytes, the stack with its marks, and the objects that the file refers to by number.
+    """Decodes a pickle: its bytes, the stack with its marks, and the memo, the objects to which the file refers by number.
 
-    Each operation is a method that takes the place behind its code and returns the place behind its argument.
+    Each operation is a method that takes the position after its code and returns the position after its argument.
     """
 
     def __init__(self, content: bytes) -> None:
@@ -66,12 +66,12 @@ class _Machine:
         self.stack: list[Any] = []
         self.marks: list[int] = []
         self.memo: dict[int, Any] = {}
-        self.count = 0  # of all that has a number, points of `points` included
+        self.count = 0  # of objects with a memo number, including the points in `points`
         self.points: list[Points] = []
         self.to_copy = len(content)
 
     def run(self) -> Any:
-        """Return the value that the pickle ends with."""
+        """Return the value of the pickle."""
         content, memo, stack, number = self.content, self.memo, self.stack, _UINT
         push, actions = stack.append, [self._action(code) for code in range(256)]
         at = 0
@@ -79,7 +79,7 @@ class _Machine:
             while True:
                 code = content[at]
                 at += 1
-                # the operations that most of a scenario is made of stand here, for speed, and the one that follows most values
+                # for speed, the most frequent operations are inline, and MEMOIZE, which follows most values
                 if code == 0x68 and (value := memo.get(content[at])) is not None:  # BINGET
                     at += 1
                     if type(value) is Name and value == _ARRAY and (found := array_at(content, at, memo, self.count)):
@@ -197,7 +197,7 @@ class _Machine:
         return at + width
 
     def _point_of(self, number: int) -> Any:
-        """Return a point of a list that was read at once."""
+        """Return the point with this memo number, of a list in `points`."""
         k = bisect_right(self.points, number, key=lambda each: each.first) - 1
         if k < 0 or number >= self.points[k].first + self.points[k].n:
             raise IndexError
@@ -216,14 +216,14 @@ class _Machine:
         return at
 
     def _since_mark(self) -> list[Any]:
-        """Take from the stack all that stands above its last mark."""
+        """Remove the values above the last mark from the stack, and return them."""
         mark = self.marks.pop()
         found = self.stack[mark:]
         del self.stack[mark:]
         return found
 
     def _take(self, n: int) -> tuple[Any, ...]:
-        """Take the last n values from the stack, but none from below its last mark."""
+        """Remove the last n values from the stack, and return them. Errors: `IndexError` if one is below the last mark."""
         first = len(self.stack) - n
         if first < (self.marks[-1] if self.marks else 0):
             raise IndexError
@@ -264,7 +264,7 @@ class _Machine:
 
     def _extend(self, values: Any) -> None:
         target: Any = self.stack[-1]
-        if type(target) is Points:  # a list of more points than a pickle writes at once
+        if type(target) is Points:  # a pickle writes a long list in several parts
             rows = target.as_list()
             self.memo[target.first - 1] = self.stack[-1] = target = rows
         if type(target) is not list:
@@ -343,7 +343,7 @@ class _Machine:
         return at
 
     def _memo_at(self, at: int) -> int | None:
-        """Return the number under which the file will refer to the value that is made before this place; None: it will not."""
+        """Return the memo number that the operation at this position gives to the new value; None: it gives no number."""
         following = self.content[at : at + 5]
         if following[:1] == b"\x94":
             return self.count
@@ -384,4 +384,4 @@ _OPERATIONS: Final = {
     0x8F: "new_set", 0x90: "appends", 0x91: "list_of",
     0x63: "name_in_lines", 0x93: "name_on_stack", 0x52: "reduce", 0x62: "build",
 }  # fmt: skip
-"""Code of an operation (as `pickletools` lists them) -> the method that does it, and the width of its argument or of that's length."""
+"""Code of an operation (see `pickletools`) -> its method, and the width in bytes of its argument or of the argument's length."""

@@ -1,7 +1,7 @@
 """Classes, sizes and box centres of SUMO's road users: a position is the middle of the front bumper, the centre half a length behind it.
 
-One track has one reference point. Without a length the centre is not known: an actor without a length in the whole log stays at its
-bumper, and a finding reports it; an actor without a length in a part of it, or with another length, has no place there.
+A track has only one reference point. Without a length, the box centre is not known. An actor without a length in the whole log is placed
+at its bumper, and a finding reports it. An actor whose length is missing or different in a part of the log has no place there.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ class Tracks(NamedTuple):
 
 
 class Boxes(NamedTuple):
-    """Of each row (n): class (index of `ACTOR_CLASSES`, -1: not known), size in metres (NaN: not known), and the way from the box centre
-    to the recorded point in metres, NaN where that is not known."""
+    """For each row (n): class (index of `ACTOR_CLASSES`, -1: not known), size in metres (NaN: not known), and how far ahead of the box
+    centre the recorded point is, in metres (NaN: not known)."""
 
     actor_class: Codes
     length_m: Floats
@@ -77,7 +77,7 @@ def boxes_of(tracks: Tracks, types: Mapping[str, VehicleType], options: IngestOp
 
 
 def _changing(tracks: Tracks, length: Floats) -> Mask:
-    """Say which rows have another length than most rows of the same track that have one, or none where others have one."""
+    """Return which rows have no length, or another length than most rows of their track, if any row of the track has a length."""
     some = np.zeros(len(tracks.ids), tracks.type_code.dtype)
     some[tracks.actor] = tracks.type_code
     if (some[tracks.actor] == tracks.type_code).all():

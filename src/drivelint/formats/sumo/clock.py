@@ -1,4 +1,4 @@
-"""Times of SUMO's outputs: seconds, or clocks as `--human-readable-time` writes them: H:M:S, from one day on D:H:M:S."""
+"""Times in SUMO's outputs: seconds or, with `--human-readable-time`, H:M:S, and from one day on D:H:M:S."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _CLOCK: Final = re.compile(r"(?:(\d+):)?(\d+):([0-5]?\d):([0-5]?\d(?:\.\d+)?)")
 
 
 def seconds(text: str | None) -> float:
-    """Return a time in seconds, NaN where it is none."""
+    """Return a time in seconds, NaN if the text is not a time."""
     parts = _CLOCK.fullmatch(text or "")
     if parts is None:
         return safe_xml.number(text)
@@ -24,12 +24,12 @@ def seconds(text: str | None) -> float:
 
 
 def as_seconds(texts: pa.Array | pa.ChunkedArray) -> pa.Array:
-    """Return a column of times as seconds, NULL where there is none. Errors: `pa.ArrowInvalid` for a text that is no time."""
+    """Return a column of times in seconds; NULL stays NULL. Errors: `pa.ArrowInvalid` for a text that is not a time."""
     try:
         return texts.cast(pa.float64())
     except pa.ArrowInvalid:
         pass
-    # a step has one time, and all its rows have it
+    # all rows of a step have the same time: each distinct time is converted once
     times = pc.dictionary_encode(texts.combine_chunks() if isinstance(texts, pa.ChunkedArray) else texts)
     is_clock = pc.match_substring(times.dictionary, ":")
     clocks = pa.array(map(_clock, times.dictionary.filter(is_clock).to_pylist()), pa.float64())

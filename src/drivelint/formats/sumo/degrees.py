@@ -1,9 +1,9 @@
-"""Positions in longitude and latitude (`--fcd-output.geo`), brought back into the metres of the simulated net.
+"""Converts positions in longitude and latitude (`--fcd-output.geo`) back to the metres of the simulated net.
 
-SUMO transforms the positions and leaves the angles as they are: those of the net's grid, not of the true north. So the net is needed for
-both. Only XML states how the data are written, and not in every file. The motion of any actor takes precedence: as metres, degrees are a
-drive in which all move by less than 2 mm/s, at a hundred-thousandth of the speeds that are recorded. Source: SUMO's documentation of
-"Simulation/Output/FCDOutput" and "Geo-Coordinates".
+SUMO transforms the positions, but not the angles: they stay relative to the net's grid, not to true north. So the net is needed for both.
+Only some XML files state the unit of the positions. The motion of any actor takes precedence over this statement: degrees read as metres
+are speeds below 2 mm/s, a hundred-thousandth of the recorded speeds. Source: SUMO's documentation of "Simulation/Output/FCDOutput" and
+"Geo-Coordinates".
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ if TYPE_CHECKING:
 
 _FARTHEST: Final = np.array([180.0, 90.0])
 _LEAST_MOTION: Final = 1e-7
-"""Less is no motion: a centimetre in degrees, a rounding error in metres."""
+"""A smaller displacement is no motion: as degrees it is a centimetre, as metres a rounding error."""
 _SLOW_PER_S: Final = 0.01
 """No vehicle drives 0.01 degrees in a second; an actor that moves by less than 0.01 metres in a second stands."""
 _RATIO: Final = 1000.0
-"""A speed in m/s is 38,000 (at 70 degrees of latitude) to 111,000 times the one in degrees, and 1 time the one in metres."""
+"""A speed in m/s is 38,000 (at 70 degrees of latitude) to 111,000 times the same speed in degrees per second."""
 _DEGREE_M: Final = 111_195.0
 _LEAST_ERROR_M: Final = 0.005
 _DECIMALS: Final = range(1, 9)
@@ -44,9 +44,9 @@ _REMEDY: Final = (
 def net_positions(
     path: Path, rows: Rows, actor: NDArray[np.int32], net: Path | None
 ) -> tuple[Floats, list[QualityFinding]]:
-    """Return the positions (n, 2) in metres of the net, and what the writer's rounding means for them.
+    """Return the positions (n, 2) in metres of the net, and a finding on rounded positions.
 
-    `actor` (n): which one each row is of; `net`: the map that the user gives. Errors: `TraceError` where degrees cannot be brought back.
+    `actor` (n,): the actor of each row; `net`: the map that the user gives. Errors: `TraceError` for degrees that cannot be converted.
     """
     xy = np.stack([rows.numbers("x"), rows.numbers("y")], axis=1)
     if not _are_degrees(path, rows, xy, actor, net):
@@ -80,7 +80,7 @@ def _are_degrees(path: Path, rows: Rows, xy: Floats, actor: NDArray[np.int32], n
         )
     if moves is not None or rows.geo_option is not None:
         return bool(rows.geo_option if moves is None else moves)
-    # no actor moves, and the unit of the numbers is not stated: the net shows it
+    # no actor moves, and the unit of the positions is not stated: the net shows the unit
     location = None if net is None else read_location(net)
     frame = None if location is None else location.frame()
     if location is None or frame is None or location.trouble():
@@ -106,7 +106,7 @@ def _moves_in_degrees(rows: Rows, xy: Floats, actor: NDArray[np.int32]) -> bool 
 
 
 def _rounding(degrees: Floats, net: Path) -> list[QualityFinding]:
-    """Say how exact positions are that were written with few decimals."""
+    """Return a finding on the error of positions that were written with few decimals."""
     digits = next((n for n in _DECIMALS if np.abs(degrees * 10.0**n - np.round(degrees * 10.0**n)).max() < 1e-3), None)
     along = float(np.cos(np.radians(degrees[:, 1].mean())))  # a degree of longitude, as a share of one of latitude
     error_m = 0.0 if digits is None else _DEGREE_M * 0.5 * 10.0**-digits * float(np.hypot(1.0, along))

@@ -1,4 +1,4 @@
-"""Files of SUMO's that lack the end tag of their root: their writer was killed between two steps."""
+"""Completes files of SUMO that lack the end tag of their root element, because SUMO was killed between two steps."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _TAIL_BYTES: Final = 4096
 def with_end_tag(content: bytes, root: str, last: str) -> tuple[bytes, bool]:
     """Return a file with the end tag of its root element, and whether it was missing.
 
-    `last`: a pattern of what whole steps end with. A file that ends within a step is returned as it is: it is not well-formed.
+    `last`: a pattern for the end of a complete step. A file that ends within a step is returned unchanged: it is not well-formed.
     """
     if re.search(rf"(?:{last})\s*\Z".encode(), content[-_TAIL_BYTES:]) is None:
         return content, False

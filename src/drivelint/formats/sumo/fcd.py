@@ -1,8 +1,8 @@
 """SUMO's floating car data (`--fcd-output`, XML, CSV or Parquet), with the vehicle types of its route files.
 
-A position is the middle of the front bumper, an angle runs clockwise from north. FCD has no sizes: they stand in the
-`vType` elements of a route or additional file, given with --mapping or lying beside the log; states of lights see `lights`.
-Persons and containers are road users of their own where they do not ride in a vehicle.
+A position is the middle of the front bumper, an angle runs clockwise from north. FCD has no sizes: they are in the `vType`
+elements of a route or additional file, given with --mapping or found beside the log. For states of lights, see `lights`.
+Persons and containers are road users of their own unless they ride in a vehicle.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ _KIND_OF_CLASS: Final = {None: UNKNOWN, "pedestrian": PERSON, "object": CONTAINE
 
 
 def is_fcd(path: Path, head: bytes) -> bool:
-    """Say whether a file is FCD: an <fcd-export> element, or a table with its columns."""
+    """Return whether a file is FCD: it has an <fcd-export> element, or is a table with the columns of FCD."""
     if head.startswith(b"PAR1") or _is_csv(head):
         return bool(_groups(path, head))
     if b"<fcd-export" in head:
@@ -63,7 +63,7 @@ def is_fcd(path: Path, head: bytes) -> bool:
 
 
 def accepts(probe: Probe) -> bool:
-    """Accept by its element or its columns; a table that has no angles or names no element may have a mapping of its own."""
+    """Return whether the file is FCD. With a mapping for tables, the columns must also name their elements and include angles."""
     if probe.path.is_dir() or not is_fcd(probe.path, probe.head):
         return False
     if probe.options.mapping is None or probe.options.mapping.lower().endswith(".xml"):
@@ -73,9 +73,9 @@ def accepts(probe: Probe) -> bool:
 
 
 def read(probe: Probe) -> Recording:
-    """Read a log; its mapping is the file with its vTypes, None: those beside it.
+    """Read a log. The option `mapping` is the file with its vTypes; without it, the files beside the log are used.
 
-    Errors: `TraceError` for a file that cannot be understood, `UsageError` for a types file that has no vType.
+    Errors: `TraceError` for a file that cannot be read, `UsageError` for a types file without a vType.
     """
     path = probe.path
     rows = _rows(path)
@@ -130,7 +130,7 @@ def _rows(path: Path) -> Rows:
 
 
 def _is_csv(head: bytes) -> bool:
-    """Say whether a file begins with SUMO's first column; other programs that wrote it anew may quote it."""
+    """Return whether a file begins with the name of SUMO's first column, which other programs may have put in quotes."""
     return head.lstrip(b'\xef\xbb\xbf"').startswith(b"time")
 
 
@@ -146,7 +146,7 @@ def _t_ns(rows: Rows) -> Times:
 
 
 def _kinds_by_type(rows: Rows, types: Mapping[str, VehicleType]) -> Codes:
-    """Return the kinds, of a table's rows as far as their type shows them: its columns are named after what it has first."""
+    """Return the kinds of the rows. A table's column names do not show the kind of a row; the row's type does, if it is known."""
     open_ = np.isin(rows.kind, (UNKNOWN, CARRIED))
     if not open_.any():
         return rows.kind
@@ -162,9 +162,9 @@ def _kinds_by_type(rows: Rows, types: Mapping[str, VehicleType]) -> Codes:
 
 
 def _actors(rows: Rows) -> tuple[list[str], NDArray[np.int32], list[str]]:
-    """Return the ids of all actors, of each row its index among them, and notes.
+    """Return the ids of all actors, the index of each row's actor, and notes.
 
-    SUMO's vehicles, persons and containers may have the same id: then those that are no vehicle have their kind before it.
+    SUMO's vehicles, persons and containers may have the same id: then the id of a person or container begins with its kind.
     """
     encoded = pc.dictionary_encode(rows.table["id"]).combine_chunks()
     ids, actor = [str(each) for each in encoded.dictionary.to_pylist()], encoded.indices.to_numpy().astype(np.int32)
@@ -197,7 +197,7 @@ def _recording(path: Path, rows: Rows, types: Mapping[str, VehicleType], options
     cos, sin = np.cos(yaw), np.sin(yaw)
     is_vehicle = np.isin(rows.kind, (VEHICLE, UNKNOWN))
     speed = rows.numbers("speed")
-    # a person's row of a table may have something else in these columns
+    # in a table, these columns of a person may contain other values
     accel, signals = (np.where(is_vehicle, rows.numbers(name), np.nan) for name in ("acceleration", "signals"))
     numbers = {
         "x_m": xy[:, 0] - boxes.ahead_m * cos, "y_m": xy[:, 1] - boxes.ahead_m * sin, "yaw_rad": yaw,

@@ -1,8 +1,8 @@
-"""Reads SUMO's floating car data in CSV and Parquet, as SUMO writes them or its tools make them of XML.
+"""Reads SUMO's floating car data in CSV and Parquet, as SUMO writes them or its tools convert them from XML.
 
-SUMO names all columns after the element that it wrote first, whatever a row is of. Up to the slope, all elements have the same
-attributes in the same order. Behind it the values of another element stand in columns that are not theirs, as far as there are any.
-The tool xml2csv gives each kind of element columns of its own.
+SUMO names all columns after the element that it wrote first, whatever element a row is. Up to `slope`, all elements have the same
+attributes in the same order. After `slope`, the values of another element are in columns with wrong names, or missing.
+The tool xml2csv writes separate columns for each kind of element.
 Source: SUMO's documentation of "Tabular Outputs" and "Simulation/Output/FCDOutput", and files of SUMO 1.28.
 """
 
@@ -29,19 +29,19 @@ if TYPE_CHECKING:
 
 _TIME: Final = "timestep_time"
 _PLAIN: Final = frozenset({"time", "id", "x", "y", "angle", "pos", "lane", "edge", "slope"})
-"""Columns without the name of an element (`--output.column-header plain`) are SUMO's where all of these are there."""
+"""Columns without the name of an element (`--output.column-header plain`) are SUMO's if all of these are present."""
 _INFERRED: Final = frozenset({"time", "x", "y", "angle", "speed"})
-"""Read as numbers at once; what another element has in columns behind the slope may be a text."""
+"""Columns that are read as numbers directly. Columns after `slope` may contain texts of another element."""
 _READ_COLUMNS: Final = (*ATTRIBUTES, "lane", "edge")
 _NUMBER: Final = r"^-?[0-9.]+(e-?[0-9]+)?$"
 _LIGHTS_AND_MORE: Final = ("signals", "acceleration")
-"""What vehicles alone have."""
+"""Attributes that only vehicles have."""
 
 
 def column_groups(names: Sequence[str]) -> dict[str, Columns]:
-    """Return for each element that has columns of its own its attribute -> the column; `time` is among them. Empty: it is no FCD.
+    """Return element -> attribute -> column, for each element with columns of its own, `time` included. Empty: the table is not FCD.
 
-    The element is "" where columns are named after none.
+    The element is "" if the columns are not named after an element.
     """
     there = set(names)
     if there >= _PLAIN:
@@ -60,7 +60,7 @@ def read_parquet(path: Path) -> Rows:
     groups = column_groups(parquet.schema(path).names)
     table = parquet.table(path, _columns(groups))
     try:
-        table.validate(full=True)  # texts that are none
+        table.validate(full=True)  # finds invalid texts
     except pa.ArrowInvalid as error:
         raise TraceError(f"{path}: not readable as Parquet: {' '.join(str(error).split())}: copy it again") from error
     return _rows(path, table, groups)
@@ -115,7 +115,7 @@ def _rows(path: Path, table: pa.Table, groups: Mapping[str, Columns]) -> Rows:
 def _of_one_group(
     columns: dict[str, pa.ChunkedArray | pa.Array],
 ) -> tuple[Codes, dict[str, pa.ChunkedArray | pa.Array]]:
-    """Return the kinds of the rows, and the columns without what belongs to another kind's attributes."""
+    """Return the kinds of the rows, and the columns without the values of other kinds' attributes."""
     n = len(columns["time"])
     kind = _kinds_by_lane(n, columns)
     null_text = pa.scalar(None, pa.string())
@@ -131,9 +131,9 @@ def _of_one_group(
 
 
 def _kinds_by_lane(n: int, columns: Mapping[str, pa.ChunkedArray | pa.Array]) -> Codes:
-    """Return the kinds as far as the place in the net shows them: a vehicle is on a lane, a person or container on an edge.
+    """Return the kinds of the rows by their place in the net: a vehicle is on a lane, a person or container on an edge.
 
-    In a mesoscopic simulation no actor is on a lane, which shows nothing.
+    In a mesoscopic simulation, no actor is on a lane: the kinds are unknown.
     """
     lane, edge = (_filled(columns[name]) if name in columns else np.zeros(n, np.bool_) for name in ("lane", "edge"))
     carried = edge & ~lane & lane.any()

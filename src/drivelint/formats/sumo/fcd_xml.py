@@ -27,7 +27,7 @@ _TRUE: Final = frozenset({b"1", b"yes", b"true", b"on", b"x", b"t"})
 
 
 def read_xml(path: Path) -> Rows:
-    """Read a log. Errors: `TraceError` where it is not well-formed, or a cell is no number."""
+    """Read a log. Errors: `TraceError` if it is not well-formed, or a value is not a number."""
     content, lacks_end = with_end_tag(path.read_bytes(), ROOT, _WHOLE_STEP)
     columns = lines(content)
     if columns is None:
@@ -40,7 +40,7 @@ def read_xml(path: Path) -> Rows:
 
 
 def _geo_option(head: bytes) -> bool | None:
-    """Return an option of the configuration that SUMO writes as a comment before the data; those that were not given are left out."""
+    """Return whether SUMO's configuration, a comment before the data, asks for longitude and latitude; None without a configuration."""
     options = dict(_OPTION.findall(head))
     return options.get(b"fcd-output.geo", b"").lower() in _TRUE if options else None
 
@@ -66,7 +66,7 @@ def lines(content: bytes) -> dict[str, pa.ChunkedArray | pa.Array] | None:
     try:
         table = pa_csv.read_csv(
             pa.BufferReader(memoryview(content)[begin:]),
-            # one thread: the numbers of lines are only known then
+            # one thread, because only then line numbers are known
             pa_csv.ReadOptions(column_names=columns, use_threads=False, block_size=1 << 24),
             pa_csv.ParseOptions(
                 delimiter='"', quote_char=False, ignore_empty_lines=False, invalid_row_handler=keep_other_line
@@ -81,11 +81,11 @@ def lines(content: bytes) -> dict[str, pa.ChunkedArray | pa.Array] | None:
     except pa.ArrowInvalid:
         return None
     alike = (pc.equal(table.column(column), part) for column, part in zip(columns[::2], parts[::2], strict=True))
-    more = content.count(b"<", begin) > len(table) + len(other_lines)  # elements than lines
+    more = content.count(b"<", begin) > len(table) + len(other_lines)  # there are more elements than lines
     if times is None or more or not all(pc.all(column).as_py() for column in alike):
         return None
     values = {name: table.column(f"{2 * i + 1}") for i, name in enumerate(names) if name in ATTRIBUTES}
-    # the parser makes blanks of tabs, and refuses other control characters
+    # an XML parser turns tabs into blanks, and refuses other control characters
     texts = [values[name] for name in ("id", "type", "vehicle") if name in values]
     if any(pc.any(pc.match_substring_regex(column, "[[:cntrl:]]")).as_py() for column in texts):
         return None
@@ -93,7 +93,7 @@ def lines(content: bytes) -> dict[str, pa.ChunkedArray | pa.Array] | None:
 
 
 def _is_plain(head: bytes) -> bool:
-    """Say whether what stands before the first step, the tag of its element included, changes nothing in the lines that follow."""
+    """Return whether the text up to the root element's tag is valid, and its encoding does not change how lines are read."""
     try:
         root = safe_xml.parse(head + b"</fcd-export>", "", TraceError)
     except TraceError:
@@ -102,9 +102,9 @@ def _is_plain(head: bytes) -> bool:
 
 
 def _times(other_lines: list[tuple[int, str]], n: int) -> pa.Array | None:
-    """Return the times of `n` vehicles, that of the step around each; None where the other lines are not those of steps alone.
+    """Return the times of `n` vehicles, each the time of its step; None if the other lines are not only tags of steps.
 
-    `other_lines`: number and text of each line that is no vehicle's. Errors: `pa.ArrowInvalid` for a time that is none.
+    `other_lines`: number and text of each line without a vehicle. Errors: `pa.ArrowInvalid` for an invalid time.
     """
     stamps, counts = [""], [0]
     order, above = "", 0
@@ -124,7 +124,7 @@ def _times(other_lines: list[tuple[int, str]], n: int) -> pa.Array | None:
 
 
 def parsed(path: Path, content: bytes) -> tuple[dict[str, pa.ChunkedArray | pa.Array], np.ndarray]:
-    """Return the columns, and of each row the index of its element in `KINDS`."""
+    """Return the columns, and for each row the index of its element in `KINDS`."""
     root = safe_xml.parse(content, str(path), TraceError)
     columns: dict[str, list[Any]] = {"time": [], **{name: [] for name in ATTRIBUTES}}
     kind = []

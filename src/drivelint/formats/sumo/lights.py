@@ -1,7 +1,7 @@
 """SUMO's light states (`SaveTLSStates` and `SaveTLSSwitchStates`, XML) that lie beside its floating car data.
 
-A state has a letter for each connection that the light controls; that of connection 3 of light `c` is the signal `c_3`, as in SUMO's
-nets and in the OpenDRIVE that it writes.
+A state has a letter for each connection that the light controls. The letter of connection 3 of light `c` is for the signal `c_3`, as in
+SUMO's nets and in the OpenDRIVE that SUMO writes.
 Source: SUMO's documentation of "Simulation/Output/Traffic Lights" and "Simulation/Traffic Lights".
 """
 
@@ -36,14 +36,14 @@ _LONGEST_S: Final = 1e9
 _LETTERS: Final = {
     "r": "red", "u": "red_amber", "y": "amber", "Y": "amber", "g": "green", "G": "green", "o": "flashing", "O": "off",
 }  # fmt: skip
-"""s, green for those who turn right after a stop, is none of our words: not known."""
+"""The letter s (green for turning right after a stop) has no word here: the state is unknown."""
 
 
 def add_light_states(recording: Recording, log: Path, is_log: Callable[[Path], bool]) -> None:
-    """Add the states that belong to a log.
+    """Add the light states that belong to a log.
 
-    They are in a file named as the log is up to the first dot, or in the only one in a folder with this log alone; `is_log` says
-    whether a file is one. Of others there is a note.
+    They are in the file with the log's name up to the first dot, or in the only file of light states in a folder with no other log.
+    `is_log` returns whether a file is a log. A note reports files that are not read.
     """
     files = [file for file in sorted(log.parent.glob(_BESIDE)) if file != log and _has_states(file)]
     log_files = [file for file in files if _first_part(file) == _first_part(log)]
@@ -92,7 +92,7 @@ def _read(file: Path, recording: Recording) -> None:
 
 
 def _rows(states: Iterable[etree._Element]) -> tuple[pa.Table | None, Floats, Mask]:
-    """Return the rows of all connections, and of each state its time in seconds and whether it cannot be understood."""
+    """Return the rows of all connections, and for each state its time in seconds and whether it cannot be read."""
     states_by_light: dict[tuple[str, int], tuple[list[float], list[str]]] = {}
     every: list[float] = []
     dropped: list[bool] = []

@@ -1,4 +1,4 @@
-"""The place of a SUMO net on the earth: its `location` element."""
+"""The geodetic frame of a SUMO net: its `location` element."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 
 NO_PROJECTION: Final = "!"
 _BEYOND_M: Final = 100.0
-"""So far a vehicle may be outside a net's boundary: that is of its nodes and middle lines, not of the places to park."""
+"""How far outside a net's boundary a vehicle may be: the boundary includes nodes and centre lines, but not parking areas."""
 
 
 class Location(NamedTuple):
-    """A net's projection, the offset (x, y in metres) that was added to its coordinates (None: it cannot be read), its boundary."""
+    """A net's projection, the offset (x, y in metres) that was added to its coordinates, and its boundary; None: cannot be read."""
 
     reference: str
     offset: tuple[float, float] | None
@@ -28,13 +28,13 @@ class Location(NamedTuple):
     boundary: tuple[float, ...] | None
 
     def frame(self) -> GeoFrame | None:
-        """Return how the net's coordinates become those of its projection; None: it has none, or its offset cannot be read."""
+        """Return the geodetic frame of the net's coordinates; None: it has no projection, or its offset cannot be read."""
         if self.reference == NO_PROJECTION or self.offset is None:
             return None
         return GeoFrame(self.reference, -self.offset[0], -self.offset[1])
 
     def trouble(self) -> str | None:
-        """Return why the net gives no places on the earth; None: it gives them."""
+        """Return why the net's coordinates cannot be converted to longitude and latitude; None if they can."""
         if self.reference == NO_PROJECTION:
             return "it has no projection"
         frame = self.frame()
@@ -45,7 +45,7 @@ class Location(NamedTuple):
         return found and f"of its projection {self.reference!r}: {found}"
 
     def surrounds(self, xy: Floats) -> Mask:
-        """Return for places (n, 2) in the net's coordinates whether they lie in the net; none does if its boundary is not known."""
+        """Return for places (n, 2) in the net's coordinates whether they lie in the net; False if its boundary is not known."""
         if self.boundary is None:
             return np.zeros(len(xy), np.bool_)
         low, high = np.array(self.boundary).reshape(2, 2)
@@ -54,7 +54,7 @@ class Location(NamedTuple):
 
 
 def location_of(element: etree._Element | None) -> Location:
-    """Return the content of a `location` element; without one a net has no projection."""
+    """Return the content of a `location` element; without this element, a net has no projection."""
     if element is None:
         return Location(NO_PROJECTION, None, None, None)
     offset, boundary = (_numbers(element.get(name)) for name in ("netOffset", "convBoundary"))
@@ -67,7 +67,7 @@ def location_of(element: etree._Element | None) -> Location:
 
 
 def read_location(net: Path) -> Location | None:
-    """Read no more of a file than a net's `location`; None: it cannot be read, or is no net."""
+    """Return the `location` of a net without reading the whole file; None if the file cannot be read, or is not a net."""
     try:
         root = None
         for _, element in etree.iterparse(
@@ -79,7 +79,7 @@ def read_location(net: Path) -> Location | None:
                 return None
             if tag == "location":
                 return location_of(element)
-            if tag == "junction":  # all that comes before edges is over
+            if tag == "junction":  # there is no `location` after the first junction
                 break
     except (etree.XMLSyntaxError, OSError):
         return None

@@ -1,8 +1,8 @@
-"""SUMO networks (`.net.xml`): the lanes, ways through junctions, limits, lights and priorities that SUMO itself drives by.
+"""SUMO networks (`.net.xml`): the lanes, connections through junctions, limits, lights and priorities that SUMO simulates.
 
-Edges have lanes with a middle line and a width; index 0 is the one next to the edge of the road. Edges whose id begins with a colon lie
-inside a junction. What a net has no word for, markings, kerbs and crossings' kinds, is not known. Source: SUMO's documentation of
-"SUMO Road Networks", "VClasses" and "Plain XML".
+Edges have lanes with a centre line and a width; the lane with index 0 is next to the edge of the road. Edges whose id begins with a colon
+lie inside a junction. A net contains no markings, kerbs or kinds of crossings: they are not known. Source: SUMO's documentation of "SUMO
+Road Networks", "VClasses" and "Plain XML".
 """
 
 from __future__ import annotations
@@ -42,12 +42,12 @@ if TYPE_CHECKING:
     from drivelint.road.map_reader import MapOptions, MapSource, MapTables
 
 
-DEFAULT_LANE_WIDTH_M: Final = 3.2  # SUMO's, where a lane says none
+DEFAULT_LANE_WIDTH_M: Final = 3.2  # SUMO's default, for a lane without a width
 _LONGEST_MITRE: Final = 3.0
 _BEGUN_M: Final = 0.5
 _LEAST_COS: Final = 0.85
 _KINDS: Final = (
-    # the first of these that may drive on a lane says what it is
+    # the type of a lane is the first of these with a class that may drive on it
     ("driving", {"passenger", "private", "truck", "delivery", "motorcycle", "evehicle", "trailer"}),
     ("bus", {"bus", "coach"}),
     ("taxi", {"taxi"}),
@@ -71,7 +71,7 @@ _ROADS: Final = {
 
 @dataclass
 class _Net:
-    """The file's lanes by id, and the edges that they belong to, in order of index."""
+    """The lanes of a file by id, and the ids of each edge's lanes in order of index."""
 
     lanes: dict[str, BoundedLane] = field(default_factory=dict)
     edges: dict[str, list[str]] = field(default_factory=dict)
@@ -80,7 +80,7 @@ class _Net:
 
 
 def read(source: MapSource, request: MapOptions) -> MapTables:
-    """Return the map's tables; `MapError` where the file is not XML or nothing in it can be built."""
+    """Return the map's tables. Errors: `MapError` if the file is not XML, or no lane can be built."""
     root = safe_xml.parse_map(source)
     quality = MapQuality()
     left = root.get("lefthand") in {"true", "1"}
@@ -100,14 +100,14 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     }
     geo = _geo_frame(root, quality)
     tables = map_from_bounds(source, request, lanes, furniture, quality, kind="sumo", side=side, geo=geo)
-    # the lanes have their directions, whichever side is driven on: traffic against them is noticed
+    # the net states the direction of its lanes, whichever side is driven on: traffic against them is detected
     return replace(tables, lanes_source="attribute") if imported else tables
 
 
 def _geo_frame(root: etree._Element, quality: MapQuality) -> GeoFrame | None:
-    """Return how the net's coordinates lie on the earth: those of a projection, to which `netOffset` was added.
+    """Return the geodetic frame of the net's coordinates, which are those of a projection plus `netOffset`.
 
-    None: the net has none (`!`), or its offset cannot be read.
+    None: the net has no projection (`!`), or its offset cannot be read.
     """
     location = location_of(root.find("location"))
     if location.reference != NO_PROJECTION and location.offset is None:
@@ -116,7 +116,7 @@ def _geo_frame(root: etree._Element, quality: MapQuality) -> GeoFrame | None:
 
 
 def _handedness(request: MapOptions, net_side: str | None, quality: MapQuality) -> tuple[str, str]:
-    """Return the side that is driven on: a net says so where it is the left, and nothing where it is the right. `net_side` None: lost."""
+    """Return the side that is driven on, and its source. `net_side`: the side that the net states; None: its import lost the side."""
     if net_side is not None and request.side not in {None, net_side}:
         message = f"the option --handedness: {request.side}; the net: {net_side}; the option is taken"
         quality.add("handedness_disagrees", "warning", None, message)
@@ -157,7 +157,7 @@ def _read(root: etree._Element, imported: OpenDriveImport | None, *, left: bool,
 
 
 def _adjoin(lane: BoundedLane, beside: str, *, inward: bool, left: bool, against: bool) -> None:
-    """Name the lane beside another, towards the middle of the road or away from it."""
+    """Set the neighbour of a lane, towards the middle of the road (`inward`) or away from it."""
     if inward != left:
         lane.left_id, lane.left_against = beside, against
     else:
@@ -167,7 +167,7 @@ def _adjoin(lane: BoundedLane, beside: str, *, inward: bool, left: bool, against
 def _lane(
     edge: etree._Element, element: etree._Element, imported: OpenDriveImport | None, quality: MapQuality
 ) -> BoundedLane:
-    """Return a lane. Errors: `KeyError`, `ValueError` where it cannot be understood."""
+    """Return a lane. Errors: `KeyError` or `ValueError` if it is invalid."""
     middle = _points(str(element.attrib["shape"]))
     half = float(element.get("width") or DEFAULT_LANE_WIDTH_M) / 2
     limit = float(element.attrib["speed"])
@@ -195,7 +195,7 @@ def _kind(allow: str | None, disallow: str | None) -> str:
 
 
 def _points(shape: str) -> Floats:
-    """Return the points (n, 2) of a shape, heights left out, each once. Errors: `ValueError`."""
+    """Return the points (n, 2) of a shape, without heights and repeated points. Errors: `ValueError` for an invalid shape."""
     points = np.array([[float(v) for v in point.split(",")[:2]] for point in shape.split()], np.float64)
     if points.shape[1:] != (2,) or not (np.abs(points) < FARTHEST_M).all():
         raise ValueError("its shape is no line of points x,y")
@@ -206,7 +206,7 @@ def _points(shape: str) -> Floats:
 
 
 def _beside(line: Floats, off: float) -> Floats:
-    """Return a line at a distance from another, positive on the left, with as many points."""
+    """Return the line beside another at the distance `off` (positive: left), with the same number of points."""
     step = np.diff(line, axis=0)
     unit = step / np.hypot(*step.T)[:, None]
     normal = np.column_stack([-unit[:, 1], unit[:, 0]])
@@ -219,7 +219,7 @@ def _beside(line: Floats, off: float) -> Floats:
 
 
 def _connect(root: etree._Element, net: _Net) -> None:
-    """Give the lanes their successors, and those inside junctions the limit of the lane that they continue."""
+    """Set the successors of the lanes, and the limits of lanes inside junctions to those of the lanes that they continue."""
     follows: dict[str, list[str]] = defaultdict(list)
     for link in root.iterfind("connection"):
         source = _at(net, link.get("from", ""), link.get("fromLane", ""))
@@ -235,9 +235,9 @@ def _connect(root: etree._Element, net: _Net) -> None:
 
 
 def _bend(net: _Net) -> None:
-    """Let the ways through junctions begin and end in the direction of the lanes that they join.
+    """Make lanes inside junctions begin and end in the direction of the lanes that they join.
 
-    Their shapes are chords of a bend: between two that meet at an angle a wedge would be on neither.
+    Their shapes are chords of a bend: without this, two lanes that meet at an angle leave a wedge that belongs to neither.
     """
     inside = {lane for edge in net.internal for lane in net.edges[edge]}
     before: dict[str, list[str]] = defaultdict(list)

@@ -1,7 +1,7 @@
-"""Nets that netconvert made of OpenDRIVE files, and the facts that are lost in the conversion.
+"""Nets that netconvert made from OpenDRIVE files, and the facts that are lost in the conversion.
 
-Seen with netconvert 1.28.0: of roads with `rule="LHT"` it makes a net without `lefthand`, whose lanes run for right-hand traffic, and it
-does not read the limit of a road's type. A lane without a limit of its own has the default speed of its `type`.
+Observed with netconvert 1.28.0: roads with `rule="LHT"` become a net without `lefthand`, whose lanes run for right-hand traffic. The limit
+of a road's type is not read: a lane without a limit of its own gets the default speed of its `type`.
 """
 
 from __future__ import annotations
@@ -23,18 +23,18 @@ _SOURCE: Final = re.compile(rb'<opendrive(?:-files)? value="([^"]*)"')
 
 
 class OpenDriveImport(NamedTuple):
-    """The OpenDRIVE file of which a net was made, and the default speed (m/s) of each type of lanes."""
+    """The OpenDRIVE file from which a net was made, and the default speed (m/s) of each type of lanes."""
 
     file: str
     default_mps: Mapping[str, float]
 
     def is_default(self, lane: etree._Element, edge: etree._Element, limit_mps: float) -> bool:
-        """Say whether a lane's limit may be no more than the default of its type."""
+        """Return whether a lane's limit equals the default of its type, and so may not be the road's limit."""
         return limit_mps == self.default_mps.get(lane.get("type") or edge.get("type") or "")
 
 
 def opendrive_import(content: bytes, root: etree._Element, quality: MapQuality) -> OpenDriveImport | None:
-    """Return the source of the net, from the configuration in its first comment, with a warning; None: not OpenDRIVE."""
+    """Return the OpenDRIVE source of a net, from the configuration in its first comment, and warn in `quality`; None without one."""
     found = _SOURCE.search(content[:_HEAD_BYTES].partition(b"-->")[0])
     if found is None:
         return None

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 def riding(rows: Rows) -> Mask:
     """Return for each row (n) whether its person or container rides in a vehicle.
 
-    Of several in one place whose kind is not known, all but the first ride: SUMO writes a vehicle before its passengers.
+    Of several rows of unknown kind in one place, all but the first ride: SUMO writes a vehicle before its passengers.
     """
     said = rows.table["vehicle"]
     is_rider: Mask = pc.fill_null(pc.not_equal(said, ""), fill_value=False).to_numpy()
@@ -39,7 +39,7 @@ def riding(rows: Rows) -> Mask:
         _first_row_by_place(place, kind == VEHICLE),
         _first_row_by_place(place, kind == UNKNOWN),
     )
-    # a vehicle stands before its passengers, and what is not known may be a vehicle
+    # a vehicle is written before its passengers, and a row of unknown kind may be a vehicle
     beside = (first_vehicle[place] < len(near)) | (first_unknown[place] < np.arange(len(near)))
     riders = is_rider.copy()
     riders[near] |= may_ride[near] & beside
@@ -47,7 +47,7 @@ def riding(rows: Rows) -> Mask:
 
 
 def _first_row_by_place(place: np.ndarray, candidates: Mask) -> np.ndarray:
-    """Return for each place the first of the candidate rows that is there, the number of rows where none is."""
+    """Return for each place its first candidate row; the number of rows if it has none."""
     first_rows = np.full(int(place.max(initial=-1)) + 1, len(place))
     rows = np.flatnonzero(candidates)[::-1]
     first_rows[place[rows]] = rows

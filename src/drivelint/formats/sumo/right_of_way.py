@@ -1,7 +1,7 @@
 """This module reads the right of way in a SUMO network: lights by connection, signs by junction.
 
-A connection's `state` states the right of way: M (major) or m (minor), also of those who turn across oncoming traffic on a major road.
-Only an edge none of whose ways on is major is a lesser road, with signs. Source: SUMO's documentation of "SUMO Road Networks".
+A connection's `state` is its right of way: M (major) or m (minor). A turn across oncoming traffic from a major road is minor, too: an edge
+is a minor road, with signs, only if none of its connections is major. Source: SUMO's documentation of "SUMO Road Networks".
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ _TURNS: Final = {
     "s": ("straight",), "l": ("left",), "r": ("right",), "t": ("u_turn",), "L": ("left", "straight"), "R": ("right", "straight"),
 }  # fmt: skip
 _SIGNED: Final = frozenset({"priority", "priority_stop", "allway_stop"})
-"""Types of junctions with signs on the lesser roads; at others right goes before left, or lights decide, or it is not known."""
+"""Types of junctions with signs on the minor roads. At other types, right goes before left, lights decide, or the rule is not known."""
 _SIGNS: Final = {"s": "stop", "w": "stop", "m": "give_way"}
 _TURNED_ROUND: Final = "t"
 
 
 def control_rows(root: etree._Element, lanes: Mapping[str, BoundedLane]) -> tuple[Rows, Rows]:
-    """Return rows of `traffic_signal` and of `stop_line`: a line is where a lane with a light or a stop sign ends."""
+    """Return rows of `traffic_signal` and of `stop_line`: a stop line is at the end of each lane with a light or a stop sign."""
     links = [link for link in root.iterfind("connection") if not link.get("from", "").startswith(":")]
     signals, lines = _lights(links, lanes)
     signed, stops = _signs(root, links, lanes)
@@ -39,7 +39,7 @@ def control_rows(root: etree._Element, lanes: Mapping[str, BoundedLane]) -> tupl
 
 
 def _lights(links: list[etree._Element], lanes: Mapping[str, BoundedLane]) -> tuple[Rows, set[str]]:
-    """Return the heads, each on the lanelets through the junction that it holds for, and the lanes that end at one.
+    """Return a row for each signal head and lanelet in the junction to which it applies, and the lanes that end at a head.
 
     A head's id is `<light>_<link index>`, as SUMO writes it into OpenDRIVE.
     """

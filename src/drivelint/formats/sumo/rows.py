@@ -20,7 +20,7 @@ KINDS: Final = ("vehicle", "person", "container")
 """The elements of a step."""
 VEHICLE, PERSON, CONTAINER = range(3)
 CARRIED: Final = 3
-"""A person or a container."""
+"""The kind of a row that is a person or a container; which of them is not known."""
 UNKNOWN: Final = -1
 NUMBERS: Final = ("x", "y", "angle", "speed", "signals", "acceleration")
 ATTRIBUTES: Final = ("id", "type", "vehicle", *NUMBERS)
@@ -29,10 +29,11 @@ TEXTS: Final = frozenset({"id", "type", "vehicle"})
 
 
 class Rows(NamedTuple):
-    """A log's rows: `table` has `time` and `ATTRIBUTES`, texts and numbers, "" and NaN where one is not there.
+    """The rows of a log: `table` has `time` and `ATTRIBUTES`; a missing text is "", a missing number NaN.
 
-    `table["vehicle"]`: whose passenger the row is, "" of nobody, NULL: not said. `kind` (n): index of `KINDS`, `CARRIED` or `UNKNOWN`.
-    `geo_option`: whether SUMO's options, which it may write before the data, ask for longitude and latitude; None: they are not there.
+    `table["vehicle"]`: the vehicle in which a passenger rides, "": it is no passenger, NULL: not stated. `kind` (n,): index of `KINDS`,
+    `CARRIED` or `UNKNOWN`. `geo_option`: whether SUMO's options, which may precede the data, ask for longitude and latitude; None: there
+    are no options. `lacks_end`: the end tag of the file was missing.
     """
 
     table: pa.Table
@@ -41,7 +42,7 @@ class Rows(NamedTuple):
     lacks_end: bool = False
 
     def numbers(self, name: str) -> Floats:
-        """Return a column of numbers, NaN where it is infinite."""
+        """Return a column of numbers, with NaN for infinite numbers."""
         values = np.asarray(self.table[name].to_numpy(), np.float64)
         return np.where(np.isinf(values), np.nan, values)
 
@@ -53,7 +54,7 @@ class Rows(NamedTuple):
 
 
 def typed_rows(path: Path, columns: dict[str, pa.ChunkedArray | pa.Array], kind: Codes) -> Rows:
-    """Return columns, `time` and some of `ATTRIBUTES`, as rows. Errors: `TraceError` for a cell that is no number or time."""
+    """Return columns, `time` and some of `ATTRIBUTES`, as rows. Errors: `TraceError` for a cell that is not a number or time."""
     n = len(kind)
     arrays = {}
     for name in ("time", *ATTRIBUTES):

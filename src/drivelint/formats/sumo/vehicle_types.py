@@ -18,7 +18,7 @@ _OF_ONE_VEHICLE: Final = "@"
 
 
 class VehicleType(NamedTuple):
-    """What a vType says: our class, length and width in metres; NaN: not known."""
+    """The facts about a vType: actor class, length and width in metres; None or NaN: not known."""
 
     actor_class: str | None = None
     length_m: float = math.nan
@@ -35,7 +35,7 @@ _OF_CLASS: Final = {
     "scooter": VehicleType("bicycle", 1.2, 0.5), "pedestrian": VehicleType("pedestrian", 0.215, 0.478),
     "wheelchair": VehicleType("pedestrian", 1.2, 0.72), "container": VehicleType("object", 6.096, 2.438),
 }  # fmt: skip
-"""SUMO's own sizes by vClass, where a vType says none, as SUMO 1.28 gives them. Those of trains are left out: they bend."""
+"""The default sizes of SUMO 1.28 by vClass, for a vType without sizes. Trains are left out, because they bend."""
 _DEFAULTS: Final = {
     "DEFAULT_VEHTYPE": _OF_CLASS["passenger"], "DEFAULT_PEDTYPE": _OF_CLASS["pedestrian"],
     "DEFAULT_BIKETYPE": _OF_CLASS["bicycle"], "DEFAULT_TAXITYPE": _OF_CLASS["taxi"],
@@ -47,8 +47,8 @@ UNKNOWN_TYPE: Final = VehicleType()
 def type_of(name: str, types: Mapping[str, VehicleType], ids: Collection[str]) -> tuple[VehicleType, str | None]:
     """Return the facts about a type, and the type of which it is assumed to be a copy.
 
-    Where a parameter of a single vehicle is changed while SUMO runs, its type is from then on a copy that is called BASE@ID, with
-    the `ids` of the log for ID. No route file has it. Source: SUMO's documentation of "TraCI/Change Vehicle State".
+    If a parameter of a single vehicle is changed while SUMO runs, its type becomes a copy with the name BASE@ID, where ID is one
+    of the log's `ids`. No route file contains this type. Source: SUMO's documentation of "TraCI/Change Vehicle State".
     """
     known_type = types.get(name) or _DEFAULTS.get(name)
     if known_type is not None:
