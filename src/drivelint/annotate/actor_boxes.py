@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from drivelint.arrays import Floats, Times
 
 MAX_BOXES: Final = 1_000_000
-"""A drive with more states shows only every second, third ... step: about 30 MB of boxes are enough for any viewer."""
+"""If a drive has more states, only every second, third ... step is drawn: about 30 MB of boxes are enough for any viewer."""
 CHUNK_BYTES: Final = 2 << 20
 EGO_FRAME: Final = "base_link"
 """The frame that viewers follow by default."""
@@ -35,7 +35,7 @@ RecordChunk = tuple[bytes, "NDArray[np.uint64]"]
 
 
 def select_boxes(tracks: Tracks) -> tuple[NDArray[np.intp], int]:
-    """Return the rows with a place and a heading, by time and actor, and n: if they are more than MAX_BOXES, only every n-th step."""
+    """Return the rows with a position and a heading, by time and actor, and n: above `MAX_BOXES`, only every n-th step is included."""
     placed = np.flatnonzero(np.isfinite(tracks.x) & np.isfinite(tracks.y) & np.isfinite(tracks.yaw))
     every = max(1, -(-len(placed) // MAX_BOXES))
     if every > 1:
@@ -46,7 +46,7 @@ def select_boxes(tracks: Tracks) -> tuple[NDArray[np.intp], int]:
 
 
 def messages(tracks: Tracks, rows: NDArray[np.intp], clock: LogClock, channel: int) -> Iterator[RecordChunk]:
-    """Yield chunks of `foxglove.SceneUpdate` message records, one per step, each with its index (log time, offset)."""
+    """Yield chunks of message records, each with its index (log time, offset): a `foxglove.SceneUpdate` per step."""
     if not len(rows):
         return
     t_ns = tracks.t_ns[rows]
@@ -70,7 +70,7 @@ def messages(tracks: Tracks, rows: NDArray[np.intp], clock: LogClock, channel: i
 
 
 def ego_transforms(tracks: Tracks, rows: NDArray[np.intp], clock: LogClock, channel: int) -> Iterator[RecordChunk]:
-    """Yield chunks of `foxglove.FrameTransform` records: where the first ego is, so that a viewer can follow it."""
+    """Yield chunks of `foxglove.FrameTransform` records with the pose of the first ego, so that a viewer can follow it."""
     if not tracks.egos:
         return
     rows = rows[tracks.actor[rows] == tracks.names.index(tracks.egos[0])]
@@ -109,7 +109,7 @@ def _behind(
 ) -> tuple[bytes, NDArray[np.int64]]:
     """Append `count` encoded boxes after each encoded message start; return the bytes and the offset of each message.
 
-    Of each box: `heads[actor]`, which is the same for that actor at every step, and a row of `tails`, which changes.
+    A box consists of `heads[actor]`, which is the same at every step, and a row of `tails`, which changes.
     """
     head_width = np.array([len(head) for head in heads])[actor]
     is_start = np.zeros(len(actor) + len(count), np.bool_)

@@ -148,7 +148,7 @@ class LiveServer:
         self._server.publish(channel, msgspec.json.encode(known), self._times(t_ns).at(t_ns))
 
     def _times(self, t_ns: int) -> LogClock:
-        """Return the clock of the log times: one for the whole watch, which no time before 0 can have begun."""
+        """Return the clock of the log times. It is kept for the whole watch, unless a time would be negative with it."""
         if self._clock is None or t_ns + self._clock.shift_ns < 0:
             self._clock = of_trace(t_ns)
         return self._clock
