@@ -62,7 +62,7 @@ def nearest_frame(log: CameraLog, topic: str, clock: DriveClock, t_ns: int) -> t
         return abs(times_by_index[i] - t_ns)
 
     best = min(range(len(places)), key=lambda i: abs(places[i].log_ns - wanted_ns))
-    # messages are logged in the order in which frames are taken: from the frame with the nearest log time, search in both directions
+    # messages are logged in the order in which frames are taken: only one direction leads to nearer frames
     for way in (-1, 1):
         while 0 <= best + way < len(places) and off_ns(best + way) < off_ns(best):
             best += way
