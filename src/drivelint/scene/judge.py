@@ -125,7 +125,7 @@ def judge_scenes(
 
 
 def differences(scene: Scene, verdicts: Verdicts, gating: Container[str]) -> Iterator[str]:
-    """Yield the differences of the verdicts from the scene's expectations. `gating`: rules whose critical and major fails must be expected."""
+    """Yield each difference between verdicts and expectations. `gating`: rules whose critical and major fails must be expected."""
     expectations = {rule: expectation(text) for rule, text in scene.text.expect.items()}
     for rule, expected_verdict in expectations.items():
         key = scene.name, rule
