@@ -37,7 +37,7 @@ CLIP: Final = "clip"
 _MARK: Final = "drivelint.converted"
 """Key in the metadata of every Parquet file that is written."""
 _HEAD_BYTES: Final = 64
-"""Bytes that contain the magic bytes and header of an MCAP file; the header names the program that wrote the file."""
+"""How many bytes of an MCAP file contain its magic bytes and its header, which names the program that wrote the file."""
 
 
 class Clip(NamedTuple):
@@ -50,7 +50,7 @@ class Clip(NamedTuple):
 
 @dataclass(frozen=True)
 class ConvertRequest(DriveInput):
-    """A request to `convert`; the names are those of its options."""
+    """A request for `convert`; each field is named like its option."""
 
     trace: str
     to: Literal["mcap", "parquet"]
@@ -158,7 +158,7 @@ def _is_our_mcap(path: Path) -> bool:
 
 
 def _of_a_check(request: ConvertRequest) -> list[str]:
-    """Return a note for each given option that a converted log cannot hold."""
+    """Return a note for each given option that a converted log cannot contain."""
     given = {name: getattr(request, name) for name in ("map_origin", "handedness", "visibility", "env")}
     unset = {field.name: field.default for field in fields(DriveInput)}
     names = ["--" + name.replace("_", "-") for name, value in given.items() if value != unset[name]]

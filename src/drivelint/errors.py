@@ -78,7 +78,7 @@ class MapError(DriveLintError):
 
 
 class MemoryShortError(DriveLintError):
-    """There is too little memory to judge even one ego of a drive. If the user has set a memory limit, the run ends (75)."""
+    """There is too little memory to judge even one ego of a drive. If the user has set a memory limit, the run ends (exit code 75)."""
 
     exit_code = ExitCode.NOT_JUDGED
 

@@ -1,7 +1,7 @@
-"""A cache, in the user's cache folder, for facts that depend on a content alone and take long to compute.
+"""A cache, in the user's cache folder, for facts that depend on a text alone and take long to compute.
 
 A stored fact is valid for the code, the versions and the declarations with which it was computed; any other version computes it again.
-So does a process without a writable cache folder. `DRIVELINT_CACHE_DIR` names another folder; if it is empty, nothing is stored.
+Without a writable cache folder, facts are always computed. `DRIVELINT_CACHE_DIR` names another folder; if it is empty, nothing is stored.
 """
 
 from __future__ import annotations
@@ -70,12 +70,12 @@ class Memo(Generic[T]):
         self._has_new = False
 
     def of(self, content: str, find: Callable[[], T]) -> T:
-        """Return the fact about a content; if it is not stored, compute it by `find`. Errors of `find` are not stored."""
+        """Return the fact about a text; if it is not stored, compute it by `find`. Errors of `find` are not stored."""
         known = self.get(content)
         return self.put(content, find()) if known is None else known
 
     def get(self, content: str) -> T | None:
-        """Return the fact about a content; None: it is not stored."""
+        """Return the fact about a text; None: it is not stored."""
         return self._read().get(self._key(content))
 
     def put(self, content: str, fact: T) -> T:

@@ -90,7 +90,7 @@ def _numbers(text: str) -> tuple[float, ...]:
 
 
 def parse_offset(text: str | None) -> tuple[float, float] | None:
-    """Read DX,DY. Errors: `UsageError`."""
+    """Read DX,DY in metres. Errors: `UsageError`."""
     if text is None:
         return None
     match _numbers(text):
@@ -100,7 +100,7 @@ def parse_offset(text: str | None) -> tuple[float, float] | None:
 
 
 def parse_ego_size(text: str | None) -> EgoSize | None:
-    """Read L,W[,AHEAD]. Errors: `UsageError`."""
+    """Read L,W[,AHEAD] in metres. Errors: `UsageError`."""
     if text is None:
         return None
     from drivelint.drive.trace import EgoSize
@@ -112,7 +112,7 @@ def parse_ego_size(text: str | None) -> EgoSize | None:
 
 
 def parse_origin(text: str | None) -> tuple[float, float] | None:
-    """Read LAT,LON. Errors: `UsageError`."""
+    """Read LAT,LON in degrees. Errors: `UsageError`."""
     if text is None:
         return None
     match _numbers(text):

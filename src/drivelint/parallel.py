@@ -177,7 +177,7 @@ def _without_copies(parts: Sequence[JudgedLogs]) -> list[JudgedLogs]:
 
 
 def _without(part: JudgedLogs, drives: Sequence[str]) -> JudgedLogs:
-    """Return a part without these drives, each of which gets the note that its log is a duplicate, and no other note."""
+    """Return a part without these drives; the only note on each of their logs is that it is a duplicate."""
     result, paths = part.result, {} if part.result.run_options is None else part.result.run_options.traces
     tables = {name: getattr(result, name) for name in (*TABLE_OF_FILE, *PICTURES)}
     others = {

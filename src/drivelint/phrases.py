@@ -27,7 +27,7 @@ def escape_invisible(text: str) -> str:
 
 
 def inert(text: str) -> str:
-    """Return a text, which may come from a log, safe for a terminal: control characters as codes, and no build-server commands."""
+    """Return a text, which may come from a log, made safe for a terminal: control characters as codes, no build-server commands."""
     return _COMMAND.sub(lambda found: f"{found[0]}\\", escape_invisible(text))
 
 
@@ -37,12 +37,12 @@ def one_line(text: str) -> str:
 
 
 def inert_line(text: str) -> str:
-    """Return a text as one line that is safe for a terminal, as by `inert`."""
+    """Return a text as one line that is safe for a terminal (see `inert`)."""
     return inert(one_line(text))
 
 
 def inert_json(text: str) -> str:
-    """Return JSON with the same meaning that is safe for a terminal, as by `inert`."""
+    """Return JSON with the same meaning that is safe for a terminal (see `inert`)."""
     return _IN_JSON.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
 
 

@@ -62,7 +62,7 @@ class CheckOptions(JudgingOptions):
     named_rules: tuple[str, ...] | None = None
     """Ids of the rules that the user named; None: those whose ids are among the selectors."""
     manifest_options: Mapping[Path, DriveInput] = field(default_factory=dict, hash=False)
-    """Log -> the options that a manifest gives for the log and its map; they replace the options above."""
+    """Log -> the options that a manifest gives for the log and its map; they replace the general options."""
     min_judged: float | None = None
     """The least share of rules that must be decided, see `result.model.decided_share`."""
     pictures: bool = True
@@ -306,7 +306,7 @@ def _read(paths: Sequence[Path], settings: CheckOptions, library: MapLibrary | N
 
 
 def _announced(drives: Iterable[Drive | RefusedLog], n: int, progress: Progress) -> Iterator[Drive | RefusedLog]:
-    """Yield the logs, and show before each which log is read, since a batch is read before it is judged."""
+    """Yield the logs, and show which log is read next: a batch is read before it is judged."""
     progress.doing(f"reading 1/{n}")
     for done, item in enumerate(drives, 1):
         yield item

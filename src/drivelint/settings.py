@@ -97,7 +97,7 @@ def read_settings(
 
 
 def _from(folder: Path, value: Any, *, is_path: bool) -> Any:
-    """Return the value with its relative paths below a folder; without `is_path`, it is a path only if such a file is there."""
+    """Return a path, or each path of a list, relative to `folder`; without `is_path`, only if such a file is there."""
     if isinstance(value, list):
         return [_from(folder, each, is_path=is_path) for each in value]
     if folder == Path() or not isinstance(value, str) or not (is_path or (folder / value).is_file()):

@@ -35,7 +35,7 @@ RecordChunk = tuple[bytes, "NDArray[np.uint64]"]
 
 
 def select_boxes(tracks: Tracks) -> tuple[NDArray[np.intp], int]:
-    """Return the rows with a position and a heading, by time and actor, and n: above `MAX_BOXES`, only every n-th step is included."""
+    """Return the rows with a position and a heading, by time and actor, and n. Above `MAX_BOXES` rows, only every n-th step is included."""
     placed = np.flatnonzero(np.isfinite(tracks.x) & np.isfinite(tracks.y) & np.isfinite(tracks.yaw))
     every = max(1, -(-len(placed) // MAX_BOXES))
     if every > 1:
@@ -156,7 +156,7 @@ def _heads(tracks: Tracks, lifetime_ns: int) -> list[bytes]:
 
 
 def _tails(tracks: Tracks, rows: NDArray[np.intp], log_time: NDArray[np.uint64]) -> wire.Bytes:
-    """Return the parts that change per row: the cube's pose (its last field), the entity's time."""
+    """Return the parts that change per row: the cube's pose (its last field), and the entity's time."""
     half = tracks.yaw[rows] / 2
     z = tracks.z[rows]
     height = np.nan_to_num(tracks.sizes[tracks.actor[rows], 2], nan=_HEIGHT)

@@ -66,7 +66,7 @@ class MarkerFrame(NamedTuple):
 
 
 def markers(verdicts: pa.Table, findings: pa.Table, sense_by_rule: Mapping[str, str]) -> list[Marker]:
-    """Return the markers of findings, during their failing steps and by severity, then of near misses, around the worst step."""
+    """Return markers: first of findings by severity, during their failing steps; then of near misses, around their worst step."""
     drawn = [
         (row, FAIL_COLOUR, row["t_start_ns"], max(row["t_end_ns"], row["t_start_ns"] + DRAW_AFTER_NS))
         for row in sorted(findings.to_pylist(), key=lambda row: SEVERITIES.index(row["severity"]))

@@ -21,7 +21,7 @@ _SAME_CLOCK_NS: Final = 1_000_000_000
 
 
 class DriveClock:
-    """Converts times of a drive to log times. `times`: those of the drive's frames on both clocks; None: both clocks are the same."""
+    """Converts times of a drive to log times. `times`: the times of the drive's frames on both clocks; None: the clocks are the same."""
 
     def __init__(self, times: FrameTimes | None) -> None:
         self._t_ns, ahead = np.zeros(1, np.int64), np.zeros(1, np.int64)
@@ -39,7 +39,7 @@ class DriveClock:
 
     @property
     def is_of_log(self) -> bool:
-        """Whether the times of the drive are those at which the log was written."""
+        """Whether the times of the drive are log times."""
         return not self._ahead_ns.any()
 
 

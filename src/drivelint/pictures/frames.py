@@ -77,7 +77,7 @@ def is_camera(channel: Channel, schema: Schema) -> bool:
 
 
 def has_pictures(topic: str, schema: str, encoding: str) -> bool:
-    """Return whether the messages of a topic are frames of a camera. `schema`: the schema's name; `encoding`: of the messages."""
+    """Return whether the messages of a topic are frames of a camera. `schema`: name of their schema; `encoding`: their encoding."""
     is_known = (encoding, short_type_name(schema)) in _KINDS
     return is_known and not any(word in topic.lower() for word in _NO_PICTURES)
 

@@ -67,7 +67,7 @@ class Camerawork:
         return {drive_id: each.topics for drive_id, each in self._drives.items()}
 
     def take(self, result: Result) -> tuple[pa.Table, list[Trouble]]:
-        """Return the table `picture` of a result, sorted, and why pictures are missing, each reason of a camera once."""
+        """Return the table `picture` of a result, sorted, and why pictures are missing, each reason once per camera."""
         rows: list[dict[str, Any]] = []
         troubles: dict[Trouble, None] = {}
         of_drives = group_rows(planned_shots(result, self.topics), lambda shot: shot.drive_id)

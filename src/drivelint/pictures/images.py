@@ -89,7 +89,7 @@ def _open_image(image: EncodedImage) -> Image.Image:
 
 
 def _of_pixels(image: RawImage) -> Image.Image:
-    """Return a raw image in Pillow's form; an image with a colour filter gets half its size."""
+    """Return a raw image in Pillow's form; an image with a Bayer filter is returned at half its size."""
     mode, raw_mode, size = _PLAIN.get(image.encoding, ("", "", 2 if image.encoding in _LUMA else 1))
     if not mode and image.encoding not in _LUMA and image.encoding not in _COLOUR_FILTERS:
         raise FrameError(f"an image in {image.encoding!r}, which is not read")

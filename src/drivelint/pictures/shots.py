@@ -35,8 +35,8 @@ class Shot(NamedTuple):
 def planned_shots(result: Result, cameras: Mapping[str, Sequence[str]]) -> list[Shot]:
     """Return the pictures to take for a result, the most important first. `cameras`: drive_id -> topics of its cameras.
 
-    The first camera shows every moment, then the other cameras show the worst moments. So a picture that is left out when only a part of
-    the drives is considered is also left out when all drives are.
+    The first camera shows every moment, then the other cameras show the worst moments. So a picture that is not planned for a part of
+    the drives is not planned for all drives either.
     """
     return shots_of_moments(_moments(result, cameras), cameras)
 

@@ -111,7 +111,7 @@ class Layout(_Part, frozen=True):
     crossing: Crossing | None = None
     roundabout: Roundabout | None = None
     turns: Literal["all"] | list[str] = []
-    """Pairs of lanes that a junction connects, such as `west -1 > north 1`; all: every arriving lane with all lanes that leave."""
+    """Pairs of lanes that a junction connects, such as `west -1 > north 1`; all: each arriving lane with the leaving lanes of other roads."""
 
 
 class Step(_Part, frozen=True):
@@ -143,7 +143,7 @@ class Faults(_Part, frozen=True):
     turned: Spans = []
     """When the heading is turned by 180 degrees."""
     frozen: Spans = []
-    """When the position stays the same, but not the speed."""
+    """When the recorded position stays the same, although the recorded speed continues."""
     swapped: bool = False
     """Length and width are exchanged."""
     shift: list[Numbers] = []
@@ -217,7 +217,7 @@ class SceneFile(_Part, frozen=True):
     roads_from: list[str] = []
     """Files in the same folder whose roads can be used, too."""
     all_fails: bool = False
-    """All critical and major fails of stable rules are expected ones; any other such fail is an error."""
+    """Whether a critical or major fail of a stable rule is an error if it is not expected."""
     roads: dict[str, Layout] = {}
     scenes: list[SceneText] = []
 

@@ -29,7 +29,7 @@ class _Writer:
     def __init__(self, roads: Mapping[str, Road], *, left: bool) -> None:
         self.roads = roads
         self.hand = -1 if left else 1
-        """The sign, in the map, of a number that is positive to the left in the drawing."""
+        """The factor of lateral values: -1 mirrors the drawing for left-hand traffic."""
         self.numbers = {name: n for n, name in enumerate(roads, 1)}
         self.after = {road.after: road.name for road in roads.values() if road.after}
         self.things = 0

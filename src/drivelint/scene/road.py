@@ -91,7 +91,7 @@ class Road:
         return [0.0, *sorted(ends)]
 
     def aside(self, lane: Lane, s: float) -> float:
-        """Return the offset of a lane's middle from the line, left positive; at stations without the lane, that at its nearer end."""
+        """Return the offset of a lane's middle from the line, left positive; where the lane is absent, the offset at its nearer end."""
         s = min(max(s, lane.start), lane.end - 1e-6)
         sign = int(math.copysign(1, lane.number))
         inner = sum(

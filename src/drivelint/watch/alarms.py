@@ -139,7 +139,7 @@ class AlarmLog:
         return Change(new, over, withdrawn)
 
     def _withdrawn(self, window: JudgedWindow, shown_numbers: Collection[int], known_from_ns: int) -> list[Alarm]:
-        """Return the alarms whose time a window covers without showing the finding. An unknown verdict or an error withdraws none."""
+        """Return the alarms whose finding is missing in a window that covers its time. An unknown verdict or an error withdraws none."""
         silent = {
             (row["rule_id"], row["ego_id"], row["profile"])
             for row in window.verdicts.select(["rule_id", "ego_id", "profile", "verdict"]).to_pylist()

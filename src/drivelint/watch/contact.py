@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 OVERLAP: Final = "ukhc.no-collision"
 JOLT: Final = "ukhc.contact-signature"
 RULES: Final = (OVERLAP, JOLT)
-"""The rules whose alarms come early."""
+"""The rules on contacts, whose alarms can come before a window is judged."""
 LOOK_NS: Final = 1_000_000_000
 """The least length of log that is examined: readers derive values from earlier steps, and boxes must be seen apart before a contact."""
 NEAR_M: Final = 50.0
@@ -56,7 +56,7 @@ class ContactLook:
         self._apart: set[tuple[str, str, str]] = set()
 
     def look(self, trace: Trace, since_ns: int | None) -> list[Row]:
-        """Return the breaches at the steps after `since_ns` (None: at all steps), each as a row of `finding` that lasts one step.
+        """Return the contacts at the steps after `since_ns` (None: at all steps), each as a row of `finding` that lasts one step.
 
         `trace`: the newest steps and about `LOOK_NS` before them.
         """

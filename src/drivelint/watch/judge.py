@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from drivelint.watch.options import WatchOptions
 
 PASSES_PER_RELEASE = 64
-"""The number of passes after which the database releases unused memory."""
+"""The number of calls of `judge` after which the database releases unused memory."""
 _LASTING_TABLES = frozenset({"profile", "environment", "map_quality"})
 
 
@@ -111,7 +111,7 @@ class WindowJudge:
         self._n_passes = 0
 
     def contact_look(self) -> ContactLook | None:
-        """Return a search for contacts in frames that are not judged yet; None: no rule on contacts is selected."""
+        """Return an object that finds contacts in frames that are not judged yet; None: no rule on contacts is selected."""
         asked = tuple(rule_id for rule_id in contact.RULES if rule_id in self.rules)
         if not asked:
             return None
@@ -119,7 +119,7 @@ class WindowJudge:
         return ContactLook(self._stack.enter_context(self._con.cursor()), self._known, asked, self._params)
 
     def judge(self, traces: Sequence[Trace], start_ns: int | None = None) -> list[JudgedWindow | DriveLintError]:
-        """Judge windows together; return the result of each, or the error that prevents it. Errors: those of the whole run.
+        """Judge windows together; return the result of each, or the error that prevents it. Raise only errors of the whole run.
 
         `start_ns`: the log's first step, from which seconds in reasons count; None: each window's first step.
         """

@@ -1,4 +1,4 @@
-"""The loop of a watch: frames in, the window judged, messages out."""
+"""The loop of a watch: reads frames, judges windows, and emits messages."""
 
 from __future__ import annotations
 
@@ -48,8 +48,8 @@ FIRST_NS: Final = S
 LOOK_PAUSE_S: Final = 0.05
 """The pause after each search for contacts: without it, the searches would take as much time as the windows."""
 GIVES_WAY: Final = 3
-"""The nice value of the thread that judges windows: half the processor share of the search for contacts, and not so low that other
-programs stop it."""
+"""The nice value of the thread that judges windows. It gets half as much processor time as the search for contacts; a greater value
+would let other programs stop it."""
 AFTER_CHILD_S: Final = 1.0
 """After the program that writes the log has ended, the source is read until no frames have come for this long."""
 
@@ -98,7 +98,7 @@ def egos_of(trace: Trace) -> set[str]:
 class Watch:
     """Watches one source. `emit` is called with each message; `server` shows the watch to viewers.
 
-    `judge`: was created before the source was opened; None: create one. The watch closes it at its end.
+    `judge`: a judge that was created before the source was opened; None: create one. The watch closes the judge at its end.
     """
 
     def __init__(
@@ -199,7 +199,7 @@ class Watch:
         """Judge the windows that are due, one after another; in the background, unless the source is in step or has ended."""
         in_step, every_ns = self._source.in_step, round(self._options.every_s * S)
         due_ns = every_ns if self._has_begun else min(every_ns, FIRST_NS)
-        # all frames that came while a window was judged are judged in one window, but no step without its past
+        # frames that came while a window was judged are judged in one pass, but each step with `WARM_UP_NS` of its past
         most_ns = every_ns if in_step else self._window_ns - WARM_UP_NS
         while not self._is_stopped:
             if self._running is not None:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from drivelint.watch.judge import JudgedWindow
 
 SETTLE_NS: Final = 15 * S
-"""The time from the end of the judged episode to its report: the end of an overtake, which takes seconds, is judged, too."""
+"""The delay from the end of an episode to the report of its verdict: the end of an overtake, which takes seconds, is judged, too."""
 KEY: Final = ("rule_id", "ego_id", "profile", "object_id", "t_ref_ns", "t_start_ns")
 """The columns that identify a verdict. Numbers of occurrences and reference points do not: they depend on where the window starts."""
 VALUE_COLUMNS: Final = (

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 LIBRARY: Final = "drivelint watch"
 MOST_PENDING_BYTES: Final = 512 << 20
-"""The most bytes of messages that are kept after the start of the last window. No window is as large."""
+"""The most bytes of pending messages, those later than the start of the last window. No window is as large."""
 MOST_AT_ONCE: Final = 32 << 20
 """About the most bytes of messages that `read` returns, if the file is long when the watch begins."""
 
@@ -111,7 +111,7 @@ class McapFile(WrittenWindows):
         with path.open("wb") as file:
             writer = _WindowWriter(Sink(file))
             writer.begin(self._stream)
-            # scenes of the last window's start contain entities that were replaced since then
+            # the memory of a scene may contain entities that were replaced since the start of the last window
             kept = [each for each in self._memories.values() if not (latest and isinstance(each, SceneMemory))]
             held = [each for memory in kept for each in memory.current_messages()]
             for numbered in sorted(held, key=lambda each: each.number):

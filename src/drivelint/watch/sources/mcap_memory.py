@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from drivelint.watch.sources.mcap_stream import Numbered
 
 RECENT_NS: Final = 2_000_000_000
-"""The age after which messages are not valid: a report of lights is for one second, and transforms are joined up to half a second."""
+"""Older messages are not valid: a report of lights is valid for one second, and transforms are joined over at most half a second."""
 MOST_FIRST: Final = 200
 MOST_EVENTS: Final = 20_000
 """How many first messages of a channel are kept: `MOST_EVENTS` of events and parameters, which may be valid to the end, else

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 GONE_KEPT_NS: Final = 120_000_000_000
 """How long an ended entity is kept: if an entity with its id returns, the old place shows whether it has moved."""
 MOST_DOUBTFUL: Final = 1000
-"""How many deletions are kept that delete nothing by the entities' own times: a reader that uses log times may apply them."""
+"""How many deletions are kept that have no effect by the entities' own times: a reader that uses log times may apply them."""
 _DELETIONS, _ENTITIES = 1, 2
 _TIMESTAMP, _ID, _LIFETIME = 1, 3, 4
 _DELETE_ALL: Final = 1

@@ -1,8 +1,8 @@
-"""Joins the datagrams of esmini, which sends each OSI message over UDP in several datagrams, to messages.
+"""Joins datagrams to OSI messages: esmini sends each message over UDP in one or more datagrams.
 
 A datagram is a header of a signed and an unsigned 32-bit integer, counter and size, and `size` bytes of the message, at most 8192.
-The datagrams of a message count 1, 2, 3, ...; the counter of the last one is negative: a message of three has 1, 2, -3, a message of
-one -1. The header does not name the message: only the order shows to which message a datagram belongs. Source:
+The datagrams of a message count 1, 2, 3, ...; the last counter is negative: three datagrams have 1, 2, -3, a single datagram has -1.
+The header does not name the message: only the order shows to which message a datagram belongs. Source:
 `OSIReporter::UpdateOSIGroundTruth` and `osi_udp_buf` in esmini's EnvironmentSimulator/Modules/ScenarioEngine/SourceFiles/OSIReporter.cpp,
 received by `OSIReceiver` in its scripts/udp_driver/udp_osi_common.py (https://github.com/esmini/esmini). Older versions count from 0 and
 end each message with -1, so that a lost datagram cannot be detected: such a stream is refused.
@@ -75,11 +75,11 @@ class Losses:
 class Assembler:
     """Returns messages of which every datagram came in order; all other messages are left out and counted in `losses`.
 
-    The next messages after a lost one are left out, too: they may contain late datagrams of it. The hole must also be so long that the
+    The next messages after a lost one are left out, too: they may contain its late datagrams. The resulting hole is so long that the
     checker judges nothing across it; a single missing step would look like a slow recorder. Only the first message's sender is accepted.
 
-    Three losses cannot be detected. All datagrams of a message from another machine are lost. A datagram comes two messages late, in place
-    of a lost one. Messages follow each other within `MOST_PAUSE_NS`, and the remaining datagrams of two of them are numbered 1, 2, 3, ...
+    Three losses cannot be detected: (1) all datagrams of a message from another machine are lost; (2) a datagram that comes two messages
+    late replaces a lost one; (3) the remaining datagrams of two messages within `MOST_PAUSE_NS` have consecutive counters.
     """
 
     def __init__(self, where: str) -> None:
@@ -87,7 +87,7 @@ class Assembler:
         self._where = where
         self._parts: list[bytes] = []
         self._previous: Datagram | None = None
-        self._is_lost = False  # the message whose datagrams arrive at present
+        self._is_lost = False  # whether the message that arrives at present is lost
         self._in_doubt = False
         self._left_out = 0  # messages since the last one that was returned
         self._sender: object = None
@@ -179,7 +179,7 @@ class Assembler:
         return message
 
     def _is_in_hole(self, t_ns: int) -> bool:
-        """Return whether the message after one at `t_ns` would still be too close to the last returned one to leave a hole."""
+        """Return whether the hole is still too short if the message at `t_ns` is the last one that is left out."""
         if self._last_ns is None:
             return False
         if not self._steps_ns:

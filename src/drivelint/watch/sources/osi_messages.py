@@ -16,7 +16,7 @@ _TIMESTAMP, _TRUTH, _MOVING_OBJECT, _BASE, _POSITION = 2, 7, 5, 2, 2
 class MessageCutter:
     """Splits bytes that arrive piece by piece into messages, and finds the same damage as `formats.osi.trace_file`.
 
-    `trouble`: the damage after which nothing is split; None: there is none.
+    `trouble`: the damage at which it stopped; None: there is no damage.
     """
 
     def __init__(self) -> None:

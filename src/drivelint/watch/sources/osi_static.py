@@ -81,7 +81,7 @@ def _copy(source: Any, target: Any, field: str) -> None:
 
 
 def _complete(bulb: Any, first: Any) -> None:
-    """Add the place and lanes of the first message to a bulb that has only a state."""
+    """Add the place and lanes from the first message to a traffic-light bulb that has only a state."""
     shown = type(bulb).FromString(bulb.SerializeToString())
     bulb.CopyFrom(first)
     for field in _LIGHT_STATE_FIELDS:

@@ -27,7 +27,7 @@ class Replay:
     """Provides the steps of a log at a given speed, or as fast as they are read.
 
     `speed`: seconds of log time per second; 0: `every_ns` of log time per `read`. Values that the log's reader derives from the whole log,
-    such as velocities, are known from the beginning; all other data after the window are not.
+    such as velocities, are known from the beginning; the steps after the window are not.
     """
 
     def __init__(self, path: Path, options: IngestOptions, *, speed: float, every_ns: int) -> None:

@@ -71,7 +71,7 @@ def from_descriptor(number: int, idle_s: float | None) -> Generator[bytes, None,
 
 
 def from_socket(connection: socket.socket, idle_s: float | None, notes: list[str]) -> Generator[bytes, None, None]:
-    """Yield the bytes of a TCP connection until the writer closes it, or the connection fails, which is added to `notes`."""
+    """Yield the bytes of a TCP connection until the writer closes it or the connection fails; a failure is added to `notes`."""
     patience = Patience(idle_s)
     with connection:
         connection.settimeout(TICK_S)
