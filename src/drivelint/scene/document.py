@@ -111,7 +111,7 @@ class Layout(_Part, frozen=True):
     crossing: Crossing | None = None
     roundabout: Roundabout | None = None
     turns: Literal["all"] | list[str] = []
-    """Pairs of lanes that a junction connects, such as `west -1 > north 1`; all: each arriving lane with the leaving lanes of other roads."""
+    """Pairs of lanes that a junction connects, as `west -1 > north 1`; all: each arriving lane with the leaving lanes of other roads."""
 
 
 class Step(_Part, frozen=True):
