@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 MANIFEST: Final = "files.json"
 """The list of the files that drivelint wrote into a folder and below it."""
 MANIFEST_KEY: Final = "written_by_drivelint"
-"""The field of this list that contains the file names."""
+"""The field of `MANIFEST` that contains the file names."""
 RESULT_LOGS: Final = (
     *(
         f"{name}.parquet"

@@ -107,7 +107,7 @@ def message_headers(channel: int, log_time: NDArray[np.uint64], size: NDArray[np
 def _behind(
     starts: wire.Bytes, count: NDArray[np.int64], heads: list[bytes], actor: NDArray[np.int32], tails: wire.Bytes
 ) -> tuple[bytes, NDArray[np.int64]]:
-    """Append `count` encoded boxes after each encoded message start; return the bytes and the offset of each message.
+    """Join each encoded message header of `starts` with its `count` boxes; return the bytes and the offset of each message.
 
     A box consists of `heads[actor]`, which is the same at every step, and a row of `tails`, which changes.
     """
@@ -134,7 +134,7 @@ def _lifetime(t_ns: Times) -> int:
 
 
 def _heads(tracks: Tracks, lifetime_ns: int) -> list[bytes]:
-    """Return the constant parts of each actor: the entity's name, its class, the box's size and colour."""
+    """Return the encoded part of each actor's box that is the same at every step: name, class, size and colour."""
     heads = []
     for name, kind, size, is_ego in zip(tracks.names, tracks.classes, tracks.sizes, tracks.is_ego, strict=True):
         length, width, height = (
@@ -156,7 +156,7 @@ def _heads(tracks: Tracks, lifetime_ns: int) -> list[bytes]:
 
 
 def _tails(tracks: Tracks, rows: NDArray[np.intp], log_time: NDArray[np.uint64]) -> wire.Bytes:
-    """Return the parts that change per row: the cube's pose (its last field), and the entity's time."""
+    """Return the encoded part of a box that changes, per row: the cube's pose (its last field), and the entity's time."""
     half = tracks.yaw[rows] / 2
     z = tracks.z[rows]
     height = np.nan_to_num(tracks.sizes[tracks.actor[rows], 2], nan=_HEIGHT)

@@ -24,14 +24,14 @@ class LogClock:
     shift_ns: int = 0
 
     def log_time(self, t_ns: NDArray[np.int64]) -> NDArray[np.uint64]:
-        """Return the log times of times of the trace."""
+        """Convert times of the trace to log times."""
         if not len(self.t_ns):
             return (t_ns + self.shift_ns).astype(np.uint64)
         frame = np.clip(np.searchsorted(self.t_ns, t_ns, side="right") - 1, 0, None)
         return self.log_ns[frame]
 
     def at(self, t_ns: int) -> int:
-        """Return the log time of one time of the trace."""
+        """Convert one time of the trace to a log time."""
         return int(self.log_time(np.array([t_ns], np.int64))[0])
 
 

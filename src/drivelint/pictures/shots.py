@@ -55,7 +55,7 @@ def shots_of_moments(moments: Sequence[tuple[str, int]], cameras: Mapping[str, S
 
 
 def chosen_rows(pictures: pa.Table, planned: Sequence[Shot]) -> pa.Table:
-    """Return the rows of the table `picture` that are planned."""
+    """Return the rows of the table `picture` whose shots are planned."""
     wanted = set(planned)
     keys = zip(*(pictures[name].to_pylist() for name in Shot._fields), strict=True)
     return pictures.filter(pa.array([Shot(*key) in wanted for key in keys], pa.bool_()))

@@ -69,7 +69,7 @@ class Verdicts(NamedTuple):
         return next((verdict for verdict in _WORST if verdict in found), NOT_JUDGED)
 
     def codes(self, key: Key) -> set[str]:
-        """Return the reason codes of the rows with this worst verdict."""
+        """Return the reason codes of the rows with the worst verdict."""
         worst = self.verdict(key)
         return {code for row in self.rows.get(key, ()) if row["verdict"] == worst for code in reason_codes(row)}
 

@@ -103,7 +103,7 @@ class _Writer:
         return text
 
     def mirrored(self, mark: str) -> str:
-        """Return the mark of the middle in the map: the lines of a double mark are listed from left to right, so mirroring swaps them."""
+        """Return the mark of the road's middle; the parts of a double mark are listed from left to right, so mirroring swaps them."""
         return mark if self.hand > 0 else " ".join(reversed(mark.split()))
 
     def lane(self, lane: Lane, lane_id: int, link: str, span: tuple[float, float]) -> str:
@@ -122,7 +122,7 @@ class _Writer:
         )
 
     def over_the_end(self, road: Road, end: str) -> dict[int, int]:
-        """Return lane of a road -> number of the lane that continues it beyond an end, as counted there."""
+        """Return lane number -> number, in the neighbouring road, of the lane that continues it beyond `end`."""
         if road.turn:
             turn = road.turn
             return {1: turn.from_lane if end == "predecessor" else turn.to_lane}
@@ -231,7 +231,7 @@ def _driven_width(road: Road) -> float:
 
 
 def _numbered(lanes: Sequence[Lane]) -> dict[int, int]:
-    """Return number of a lane -> its place among the given lanes, counted from the middle, with the same sign."""
+    """Return lane number -> number without gaps among the given lanes: 1, 2, ... or -1, -2, ... from the middle outwards."""
     found: dict[int, int] = {}
     for side in (1, -1):
         numbers = sorted((lane.number for lane in lanes if lane.number * side > 0), key=abs)

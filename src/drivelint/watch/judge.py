@@ -119,7 +119,7 @@ class WindowJudge:
         return ContactLook(self._stack.enter_context(self._con.cursor()), self._known, asked, self._params)
 
     def judge(self, traces: Sequence[Trace], start_ns: int | None = None) -> list[JudgedWindow | DriveLintError]:
-        """Judge windows together; return the result of each, or the error that prevents it. Raise only errors of the whole run.
+        """Judge windows together; return the result of each, or the error that prevents it. Raise only errors that concern all windows.
 
         `start_ns`: the log's first step, from which seconds in reasons count; None: each window's first step.
         """

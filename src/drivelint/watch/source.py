@@ -65,7 +65,7 @@ class Source(Protocol):
         ...
 
     def latest(self, frames: Sequence[Frame], folder: Path, options: IngestOptions) -> Trace:
-        """Return a log of the newest frames alone, read as the recording is read; valid data of earlier frames may be missing.
+        """Return a log of the newest frames alone, read as the recording is read. Data that only earlier frames contain may be missing.
 
         Errors: as `window`.
         """
@@ -91,7 +91,7 @@ class WrittenWindows(ABC):
     def write_window(self, frames: Sequence[Frame], path: Path, *, latest: bool = False) -> None:
         """Write a log of these frames alone, which `read_trace` reads like the recording.
 
-        `latest`: valid data of earlier frames may be left out.
+        `latest`: data that only earlier frames contain may be left out.
         """
 
     def window(self, frames: Sequence[Frame], folder: Path, options: IngestOptions) -> Callable[[], Trace]:

@@ -26,7 +26,7 @@ LIBRARY: Final = "drivelint watch"
 MOST_PENDING_BYTES: Final = 512 << 20
 """The most bytes of pending messages, those later than the start of the last window. No window is as large."""
 MOST_AT_ONCE: Final = 32 << 20
-"""About the most bytes of messages that `read` returns, if the file is long when the watch begins."""
+"""About how many bytes of messages one `read` returns at most, if the file is long when the watch begins."""
 
 
 class McapFile(WrittenWindows):
