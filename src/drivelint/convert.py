@@ -78,8 +78,8 @@ def convert(request: ConvertRequest) -> ConvertedTrace:
     """Read a trace and write it into the folder `out`, as Parquet tables or as `<stem>.mcap`.
 
     The log's own map is copied unchanged; a note reports a map that cannot be copied or used.
-    Errors: `TraceError` if the trace cannot be read, `UsageError` if another file would be overwritten or the format cannot
-    store the given map, `MapError` if the given map cannot be read, `OutputError` if the folder cannot be written.
+    Errors: `TraceError` if the trace cannot be read; `UsageError` if another file would be overwritten or the format cannot
+    store the given map; `MapError` if the given map cannot be read; `OutputError` if the folder cannot be written.
     """
     paths = expand_traces([request.trace])
     if len(paths) != 1:
@@ -93,7 +93,7 @@ def convert(request: ConvertRequest) -> ConvertedTrace:
     _refuse_to_overwrite(path, request.out, target)
     # conditions that the user states and assumptions about unrecorded actors belong to a check, not to the log
     options = replace(request.ingest_options(need_ego=False), in_sight=False, conditions=())
-    # a clip has too few states to derive values anew: it stores those with which the whole log was judged
+    # a clip has too few states to derive values anew: it stores the values with which the whole log was judged
     options = replace(options, as_recorded=request.clip is None)
     trace = read_trace(path, options)
     if request.clip is not None:

@@ -60,7 +60,7 @@ class CheckOptions(JudgingOptions):
     margins: bool = False
     keep_db: bool = False
     named_rules: tuple[str, ...] | None = None
-    """Ids of the rules that the user named; None: those whose ids are among the selectors."""
+    """Ids of the rules that the user named; None: all ids of rules among the selectors."""
     manifest_options: Mapping[Path, DriveInput] = field(default_factory=dict, hash=False)
     """Log -> the options that a manifest gives for the log and its map; they replace the general options."""
     min_judged: float | None = None
@@ -158,7 +158,7 @@ def judge_logs(
     deaf_rules: DeafRules | None = None,
     library: MapLibrary | None = None,
 ) -> JudgedLogs:
-    """Judge logs in one database, in their order; add those that could not be judged to `refused_logs`.
+    """Judge logs in one database, in their order; add logs that could not be judged to `refused_logs`.
 
     `library`: the maps of these options, some of which may be read already.
     """

@@ -99,7 +99,7 @@ def expectation(text: str) -> Expectation:
 def judge_scenes(
     scenes: Sequence[Scene], rules: Sequence[str], folder: Path, rules_dirs: Sequence[Path] = ()
 ) -> Verdicts:
-    """Write the scenes into an empty folder and judge them as drives of one run. Errors: those of `check`."""
+    """Write the scenes into an empty folder and judge them as drives of one run. Errors: as `check`."""
     for scene in scenes:
         at = folder / scene.name
         at.mkdir(parents=True)

@@ -1,8 +1,8 @@
 """Finds contacts in the newest frames, so that a contact is an alarm long before its window is judged.
 
 The frames are read like a window, and the macro of the rules gives the distance of the boxes. A contact is only reported if the actor was
-seen apart from the ego before: otherwise it may be the ego's trailer, or the ego under a second id, which only the window can decide. The
-window with the step of the contact confirms the alarm or withdraws it.
+seen apart from the ego before. Another actor may be the ego's trailer, or the ego under a second id: only the window can decide this.
+The window with the step of the contact confirms the alarm or withdraws it.
 """
 
 from __future__ import annotations

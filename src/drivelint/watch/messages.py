@@ -44,7 +44,7 @@ def alarm(alarm: Alarm, rule: Rule, start_ns: int) -> Message:
 
 
 def over(alarm: Alarm, start_ns: int) -> Message:
-    """Return the message of an alarm whose rule is kept again, or is not judged any more."""
+    """Return the message of an alarm whose rule is kept again, or has stopped being judged."""
     return {
         "type": "over",
         "alarm": alarm.number,

@@ -16,7 +16,7 @@ _TIMESTAMP, _TRUTH, _MOVING_OBJECT, _BASE, _POSITION = 2, 7, 5, 2, 2
 class MessageCutter:
     """Splits bytes that arrive piece by piece into messages, and finds the same damage as `formats.osi.trace_file`.
 
-    `trouble`: the damage at which it stopped; None: there is no damage.
+    `trouble`: the damage at which the splitting stopped; None: no damage was found.
     """
 
     def __init__(self) -> None:
@@ -61,7 +61,7 @@ def _begins(buffer: bytearray, at: int) -> bool:
 
 
 def message_kind(data: bytes) -> str | None:
-    """Return the type of a message, ground truth or sensor view, by where its objects are; None: it has no objects."""
+    """Return the type of a message, ground truth or sensor view, by the place of its objects; None: it has no objects."""
     try:
         if _places_objects(data, 0, len(data)):
             return GROUND_TRUTH

@@ -77,7 +77,7 @@ def program() -> tuple[str, str | None]:
 
 
 class SumoProcess:
-    """A simulation that waits between its steps, which are `step_s` apart. It ends at `until_s` of its clock, or where SUMO ends.
+    """A simulation that waits between its steps, which are `step_s` apart. It ends at `until_s` of its clock, or when SUMO would end.
 
     Errors: `UsageError` without SUMO or traci, `TraceError` with SUMO's own message if it cannot continue.
     """
