@@ -168,7 +168,7 @@ class ActorText(_Part, frozen=True):
     place: Numbers | None = None
     """x, y and heading in degrees of a standing actor."""
     from_: float = 0.0
-    """Metres along its path at which the middle of its box is at second 0."""
+    """Position of the middle of its box at second 0, in metres along its path."""
     speed: Knots = 0.0
     """m/s; linear between knots."""
     offset: Knots = 0.0

@@ -103,7 +103,7 @@ class OsiSource(WrittenWindows):
 
 
 def with_length(data: bytes) -> bytes:
-    """Return a message after its length, as in a trace file."""
+    """Return a message preceded by its length, as in a trace file."""
     return len(data).to_bytes(LENGTH, "little") + data
 
 

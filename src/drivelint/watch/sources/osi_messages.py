@@ -1,4 +1,4 @@
-"""Splits a stream into OSI messages, each after its length, and reads their times without decoding them."""
+"""Splits a stream into OSI messages, each preceded by its length, and reads their times without decoding them."""
 
 from __future__ import annotations
 
