@@ -1,4 +1,4 @@
-"""Names the types of numpy arrays, and turns codes into texts and back."""
+"""Type names for numpy arrays, and conversions of arrays, such as codes to texts and back."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 Floats = NDArray[np.float64]
-Times = NDArray[np.int64]  # nanoseconds, mostly
+Times = NDArray[np.int64]  # usually nanoseconds
 Mask = NDArray[np.bool_]
 Indices = NDArray[np.intp]
 Codes = NDArray[np.int8]  # indices into a tuple of words, -1: unknown
@@ -33,18 +33,18 @@ def floats(column: pa.Array | pa.ChunkedArray) -> Floats:
 
 
 def turned(x: Floats, y: Floats, angle: Floats) -> tuple[Floats, Floats]:
-    """Return vectors turned to the left by an angle (rad)."""
+    """Return vectors rotated counterclockwise by an angle (rad)."""
     cos, sin = np.cos(angle), np.sin(angle)
     return x * cos - y * sin, x * sin + y * cos
 
 
 def wrapped(angle: Floats) -> Floats:
-    """Return angles in radians brought into [-pi, pi], those already there unchanged to the bit."""
+    """Return angles (rad) wrapped into [-pi, pi]; an angle in this range keeps all its bits."""
     return angle - 2.0 * np.pi * np.round(angle / (2.0 * np.pi))
 
 
 def with_columns(table: pa.Table, columns: Mapping[str, Any]) -> pa.Table:
-    """Return a table with other values in some of its columns, of the types that these have; NaN as NULL."""
+    """Return a table with new values in the given columns, whose types stay the same; NaN becomes NULL."""
     import pyarrow as pa
 
     for name, values in columns.items():
@@ -55,7 +55,7 @@ def with_columns(table: pa.Table, columns: Mapping[str, Any]) -> pa.Table:
 
 
 def coded(texts: pa.Array, code_of: Callable[[str], int]) -> Codes:
-    """Return the code of each text, every distinct one asked for once; -1 for NULL."""
+    """Return the code of each text, -1 for NULL; `code_of` is called once per distinct text."""
     import pyarrow.compute as pc
 
     encoded = pc.dictionary_encode(texts)

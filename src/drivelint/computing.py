@@ -1,4 +1,4 @@
-"""The costs of work: seconds of the processor, which do not depend on other programs of the machine, and memory."""
+"""Measures the cost of work: processor seconds, which do not depend on other programs of the machine, and memory."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from time import process_time
 
 
 class Work:
-    """Counts the seconds that this process computes, but for its other Python threads, such as those that read logs meanwhile.
+    """Counts the processor seconds of this process without its other Python threads, such as threads that read logs.
 
-    `thread`: the system's number of the thread whose work it is; the database's own threads work for it, too.
+    `thread`: the system's number of the thread whose work is counted. The threads of the database work for it and are counted, too.
     """
 
     def __init__(self, thread: int) -> None:
@@ -20,7 +20,7 @@ class Work:
         self._process_s, self._others_s = process_time(), self._cpu_s_of_other_threads()
 
     def seconds(self) -> float:
-        """Return the seconds of work until now."""
+        """Return the processor seconds counted so far."""
         process_s, others_s = process_time(), self._cpu_s_of_other_threads()
         by_others = sum(now - self._others_s.get(thread, 0.0) for thread, now in others_s.items())
         self._seconds += max(0.0, process_s - self._process_s - by_others)
@@ -28,7 +28,7 @@ class Work:
         return self._seconds
 
     def _cpu_s_of_other_threads(self) -> dict[int, float]:
-        """Return how long each other Python thread has computed; nothing if the system does not report it."""
+        """Return thread number -> processor seconds of each other Python thread; empty if the system does not report them."""
         found: dict[int, float] = {}
         for thread in threading.enumerate():
             if (number := thread.native_id) is not None and number != self._thread:
@@ -38,15 +38,15 @@ class Work:
 
 
 def resident_bytes(process: int | None = None) -> int:
-    """Return the memory that a process (None: this one) has at present; 0 if the system does not report it."""
+    """Return the resident memory of a process (None: this process); 0 if the system does not report it."""
     try:
         return int(_content(f"/proc/{process or 'self'}/statm").split()[1]) * os.sysconf("SC_PAGE_SIZE")
-    except (OSError, ValueError, IndexError):  # a process that ends meanwhile may leave the file empty
+    except (OSError, ValueError, IndexError):  # the file may be empty if the process ends during the read
         return 0
 
 
 def _content(path: str) -> bytes:
-    """Return the content of a system file; many times a second, a path object costs more than the file."""
+    """Return the content of a system file, without a `Path` object: creating it would take longer than reading the file."""
     file = os.open(path, os.O_RDONLY)
     try:
         return os.read(file, 1024)

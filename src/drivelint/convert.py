@@ -33,15 +33,15 @@ if TYPE_CHECKING:
 TABLES: Final = ("actor", "actor_state", "data_log", "declared_event", "quality", "signal_state")
 MAP_FILE: Final = "map.xodr"
 CLIP: Final = "clip"
-"""Check of the data quality, information only, with the log that a clip was cut from."""
+"""The data-quality check, information only, that names the log from which a clip was cut."""
 _MARK: Final = "drivelint.converted"
 """Key in the metadata of every Parquet file that is written."""
 _HEAD_BYTES: Final = 64
-"""Enough of an MCAP file for its magic bytes and header, in which its writer names itself."""
+"""How many bytes of an MCAP file contain its magic bytes and its header, which names the program that wrote the file."""
 
 
 class Clip(NamedTuple):
-    """A part of a log, by the log's own clock, and its name."""
+    """A named time range of a log, on the log's own clock."""
 
     name: str
     from_ns: int
@@ -50,13 +50,13 @@ class Clip(NamedTuple):
 
 @dataclass(frozen=True)
 class ConvertRequest(DriveInput):
-    """A request to `convert`; the names are those of its options."""
+    """A request for `convert`; each field is named like its option."""
 
     trace: str
     to: Literal["mcap", "parquet"]
     out: Path
     clip: Clip | None = None
-    """Convert this part only; None: all of it."""
+    """The part to convert; None: the whole log."""
 
 
 @dataclass(frozen=True)
@@ -71,15 +71,15 @@ class ConvertedTrace:
     has_ego: bool
     notes: tuple[str, ...]
     check_options: tuple[str, ...] = ()
-    """Options of a check that judges it as the log was judged; none: the defaults."""
+    """Options with which `check` judges the converted trace as the log was judged; empty: the defaults."""
 
 
 def convert(request: ConvertRequest) -> ConvertedTrace:
-    """Read a trace and write it anew: the folder `out` itself holds the tables, or `<stem>.mcap`.
+    """Read a trace and write it into the folder `out`, as Parquet tables or as `<stem>.mcap`.
 
-    The log's own map goes along as it is; where it cannot, or cannot be used, a note says so.
-    Errors: `TraceError` where the trace cannot be read, `UsageError` where something else would be overwritten or the given
-    map cannot go along, `MapError` for a given map that cannot be read, `OutputError` where the folder cannot be written.
+    The log's own map is copied unchanged; a note reports a map that cannot be copied or used.
+    Errors: `TraceError` if the trace cannot be read; `UsageError` if another file would be overwritten or the format cannot
+    store the given map; `MapError` if the given map cannot be read; `OutputError` if the folder cannot be written.
     """
     paths = expand_traces([request.trace])
     if len(paths) != 1:
@@ -93,7 +93,7 @@ def convert(request: ConvertRequest) -> ConvertedTrace:
     _refuse_to_overwrite(path, request.out, target)
     # conditions that the user states and assumptions about unrecorded actors belong to a check, not to the log
     options = replace(request.ingest_options(need_ego=False), in_sight=False, conditions=())
-    # a clip has less to go by, and must judge what the whole log was judged by
+    # a clip has too few states to derive values anew: it stores the values with which the whole log was judged
     options = replace(options, as_recorded=request.clip is None)
     trace = read_trace(path, options)
     if request.clip is not None:
@@ -135,7 +135,7 @@ def _cut_from(trace: Trace, clip: Clip) -> str:
 
 
 def _refuse_to_overwrite(source: Path, out: Path, target: Path) -> None:
-    """Check that nothing foreign would be overwritten. Errors: `UsageError` that names the file in the way."""
+    """Raise `UsageError`, which names the file, if a file that `convert` did not write would be overwritten."""
     if not out.exists():
         return
     if not out.is_dir():
@@ -158,7 +158,7 @@ def _is_our_mcap(path: Path) -> bool:
 
 
 def _of_a_check(request: ConvertRequest) -> list[str]:
-    """Return a note for each given option that a converted log cannot hold."""
+    """Return a note for each given option that a converted log cannot contain."""
     given = {name: getattr(request, name) for name in ("map_origin", "handedness", "visibility", "env")}
     unset = {field.name: field.default for field in fields(DriveInput)}
     names = ["--" + name.replace("_", "-") for name, value in given.items() if value != unset[name]]
@@ -174,7 +174,7 @@ def _with_log(trace: Trace, **values: str | float) -> Trace:
 
 
 def _road(request: ConvertRequest, trace: Trace) -> tuple[MapSource | None, Trace, list[str]]:
-    """Return the map that goes along, the user's, else the log's own, the trace in its frame, and a note. Errors: as `convert`."""
+    """Return the map to write (the user's, else the log's own), the trace in the map's frame, and notes. Errors: as `convert`."""
     library, own = MapLibrary(request), trace.embedded_map
     if library.uses_embedded(trace) or (road := library.find_source(trace)) is None:
         if own is None:
@@ -187,7 +187,10 @@ def _road(request: ConvertRequest, trace: Trace) -> tuple[MapSource | None, Trac
 
 
 def _own_road(request: ConvertRequest, trace: Trace, road: MapSource) -> tuple[MapSource | None, Trace, list[str]]:
-    """Return the log's own map as it is, whether it can be used or not: converting loses nothing."""
+    """Return the log's own map unchanged, the trace in the map's frame, and notes.
+
+    A map that cannot be used is kept, too, since converting loses nothing. None as map: MCAP cannot store it.
+    """
     notes = []
     library = MapLibrary(DriveInput())
     try:
@@ -201,7 +204,7 @@ def _own_road(request: ConvertRequest, trace: Trace, road: MapSource) -> tuple[M
 
 
 def _unfit_for_mcap(road: MapSource) -> str | None:
-    """Return why a map cannot go along in MCAP; None: it can."""
+    """Return why a map cannot be stored in MCAP; None if it can."""
     if (root_element_name(road.content) or "").lower() != "opendrive":
         return "only an OpenDRIVE map can go along in MCAP (OSI has no message for another): use --to parquet"
     try:
@@ -243,7 +246,7 @@ def _parquet(target: Path, trace: Trace, road: MapSource | None, *, as_recorded:
 
 
 def summary_text(trace: ConvertedTrace) -> str:
-    """Return the written files, and the command that checks them."""
+    """Return a text of two lines: the written files, and the command that checks them."""
     size = sum(trace.files.values())
     amount = f"{size / 1e6:.1f} MB" if size >= 1e6 else f"{max(size / 1e3, 0.1):.1f} kB"
     files = f"{len(trace.files)} files, " if len(trace.files) > 1 else ""

@@ -1,6 +1,6 @@
-"""The files of `drivelint demo`: the paper's overtakes and their road, and the command that checks them.
+"""Writes the files of `drivelint demo`: overtakes as in the paper of Harper et al., their road, and the command that checks them.
 
-The files are those of `fixtures/scenes`, made by the scenes of `tests/demo`.
+They are copies of files in `fixtures/scenes`, which `tests/demo` generates.
 """
 
 from __future__ import annotations
@@ -22,19 +22,19 @@ _SOURCES: Final = {ROAD_FILE: "overtake-road.xodr"} | {
     name: name for scene in ("safe", "near-miss", "collision") for name in (f"{scene}.mcap", f"{scene}-25mph.mcap")
 }
 _GENERATOR = b"drivelint demo"
-_HEAD_BYTES = 1024  # the generator's name stands in the header of either format
+_HEAD_BYTES = 1024  # the header contains the generator's name, in MCAP and in OpenDRIVE
 
 
 def contents() -> dict[str, bytes]:
-    """Return every file, name -> bytes."""
+    """Return file name -> content of all files."""
     scenes = folder("fixtures") / "scenes"
     return {name: (scenes / source).read_bytes() for name, source in _SOURCES.items()}
 
 
 def write(out: Path) -> list[Path]:
-    """Write the files into the folder `out`, over those of an earlier demo if there are any.
+    """Write the files into the folder `out`, and replace the files of an earlier demo.
 
-    Errors: `UsageError` when a file of such a name is not from a demo (nothing is written then); `OutputError` when the
+    Errors: `UsageError` if a file of the same name is not from a demo (nothing is written then); `OutputError` if the
     folder cannot be written.
     """
     files = contents()
@@ -57,7 +57,7 @@ def _is_ours(path: Path) -> None:
 
 
 def check_command(out: Path, executable: str = "drivelint") -> str:
-    """Return the command that checks what was written, to be copied into a shell; `executable` is how drivelint was started."""
+    """Return the shell command that checks the written files. `executable`: the path with which drivelint was started."""
     there = shlex.quote(str(out))
     program = (
         shlex.quote(executable) if PurePath(executable).name == "drivelint" and not which("drivelint") else "drivelint"

@@ -21,39 +21,39 @@ class ExitCode(IntEnum):
 
 
 LEAST_BYTES: Final = 2_000_000_000
-"""With fewer addresses (`ulimit -v`) libraries end the process while they are loaded, in words and with exit codes of their own."""
+"""The least address space (`ulimit -v`). With less, libraries end the process at import, with their own messages and exit codes."""
 _LIMITED: Final = "the limit of memory (ulimit -v) is too low: raise it, and run the same command again"
 LONGEST_LINE: Final = 2000
-"""Characters of an error that are shown: a damaged file may hold a name of a megabyte."""
+"""The most characters of an error that are shown: a damaged file may contain a name of a megabyte."""
 
 
 class DriveLintError(Exception):
-    """A mistake or a fault that has one clear line for the user; never shown with a traceback."""
+    """An error that is shown to the user as one clear line, without a traceback."""
 
     exit_code: ExitCode = ExitCode.USAGE
     _is_told = False
 
     def __reduce__(self) -> tuple[object, ...]:
-        """Return how another process makes the error again, whose line is there already."""
+        """Return how pickle restores the error in another process: with its finished message, without `__init__`."""
         return _made_again, (type(self), self.args)
 
     def __str__(self) -> str:
-        """Return the line; where a damaged file put a long text into it, without its middle."""
+        """Return the message; the middle of a very long message is left out."""
         text = super().__str__()
         return text if len(text) <= LONGEST_LINE else f"{text[: LONGEST_LINE // 2]} ... {text[-LONGEST_LINE // 2 :]}"
 
     def _render_traceback_(self) -> list[str]:
-        """Return what IPython shows of the error: its line, and when it is asked again (`%tb`), the traceback."""
+        """Return what IPython shows: on the first call the message alone, on later calls (`%tb`) the traceback."""
         if self._is_told:
             return traceback.format_exception(self)
         self._is_told = True
-        # a word of a log may hold characters that steer a terminal
+        # a text from a log may contain control characters of a terminal
         line = "".join(each if each.isprintable() or each == "\n" else ascii(each)[1:-1] for each in str(self))
         return [f"{type(self).__name__}: {line} (%tb shows the traceback)"]
 
     @property
     def is_of_the_run(self) -> bool:
-        """Whether the fault is no drive's: every other drive of the run would meet it, too."""
+        """Whether the error concerns the whole run: every other drive would fail in the same way."""
         return self.exit_code == ExitCode.TEMPFAIL
 
 
@@ -68,7 +68,7 @@ class UsageError(DriveLintError):
 
 
 class RuleError(DriveLintError):
-    """A rule file is wrong: header, sections, parameters or SQL."""
+    """A rule file has an error in its header, sections, parameters or SQL."""
 
 
 class MapError(DriveLintError):
@@ -78,7 +78,7 @@ class MapError(DriveLintError):
 
 
 class MemoryShortError(DriveLintError):
-    """The machine has too little memory to judge even one ego of a drive; or its user has set a limit, and then the run ends (75)."""
+    """There is too little memory to judge even one ego of a drive. If the user has set a memory limit, the run ends (exit code 75)."""
 
     exit_code = ExitCode.NOT_JUDGED
 
@@ -91,17 +91,17 @@ class MemoryShortError(DriveLintError):
 
 
 class TraceError(DriveLintError):
-    """A log is missing, unreadable, or holds nothing that can be judged."""
+    """A log is missing, unreadable, or contains nothing that can be judged."""
 
     exit_code = ExitCode.NOT_JUDGED
 
 
 class ChangedLogError(TraceError):
-    """A log that changed while it was judged: no verdict is about its present content."""
+    """A log changed while it was judged, so its verdicts do not describe its present content."""
 
 
 class InternalError(DriveLintError):
-    """A fault of drivelint itself on one drive: the drive is not judged, the others are."""
+    """A bug of drivelint prevents the judging of one drive; the other drives are judged."""
 
     exit_code = ExitCode.NOT_JUDGED
 
@@ -116,9 +116,9 @@ _NO_MEMORY: Final = (
 
 
 def of_the_machine(error: Exception) -> tuple[str, ExitCode] | None:
-    """Return the message and the exit code for an error that is no fault of the program; None: it is a fault.
+    """Return the message and the exit code of an error that the machine causes; None: the cause is a bug.
 
-    A limit of memory strikes anywhere, also where a library is loaded or a thread begins, and each library says it in its own words.
+    A memory limit can have an effect anywhere, even at an import or the start of a thread, and each library words the error differently.
     """
     if isinstance(error, MemoryError) or any(words in str(error).casefold() for words in _NO_MEMORY):
         limited = least_limit_bytes() is not None
@@ -129,7 +129,7 @@ def of_the_machine(error: Exception) -> tuple[str, ExitCode] | None:
 
 
 def least_limit_bytes() -> int | None:
-    """Return the least limit of this process's memory that its user has set; None: there is none, or the system does not report it."""
+    """Return the least memory limit that is set for this process; None: no limit is set, or the system does not report limits."""
     try:
         import resource
     except ImportError:  # Windows

@@ -1,4 +1,4 @@
-"""Reads the files of facts, TOML beside the modules that use them; their content is kept, because Python reads TOML slowly."""
+"""Reads files of facts: TOML files beside the modules that use them. The content is cached, because Python parses TOML slowly."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ _TOML: Final = Memo[dict[str, Any]]("toml", dict[str, Any])
 
 @cache
 def toml_beside(module_file: str, name: str) -> dict[str, Any]:
-    """Return the content of the TOML file `name` beside a module or file (its `__file__`)."""
+    """Return the content of the TOML file `name` in the folder of `module_file`."""
     return toml_facts(Path(module_file).parent / name)
 
 
 def toml_facts(file: Path) -> dict[str, Any]:
-    """Return the content of a TOML file of ours."""
+    """Return the content of a TOML file that is part of drivelint."""
 
     def read() -> dict[str, Any]:
         import tomllib

@@ -1,7 +1,7 @@
-"""Facts that follow from content alone, and take long to find, kept in the user's cache folder.
+"""A cache, in the user's cache folder, for facts that depend on a text alone and take long to compute.
 
-A fact is kept for the code, the versions and the declarations that it was found with: any other version computes it again. The same
-happens without a writable cache folder. `DRIVELINT_CACHE_DIR` names another folder; empty, nothing is kept.
+A stored fact is valid for the code, the versions and the declarations with which it was computed; any other version computes it again.
+Without a writable cache folder, facts are always computed. `DRIVELINT_CACHE_DIR` names another folder; if it is empty, nothing is stored.
 """
 
 from __future__ import annotations
@@ -28,27 +28,27 @@ T = TypeVar("T")
 SQL_CODE: Final = ("*.py", "sql/*.py", "catalogue/*", "drive/conditions.*", "drive/declared_events.*", "reasons/*")
 """The files of the package that read SQL and rules."""
 MOST_FACTS: Final = 4096
-"""With more, only those that were asked for are kept."""
+"""If there are more facts, only those that this process has used are stored."""
 MOST_VERSIONS: Final = 5
-"""Files of other versions that are kept: several environments may take turns."""
+"""How many files of other versions are kept, since several environments may use the cache in turn."""
 
 
 @cache
 def cache_folder() -> Path | None:
-    """Return the cache folder; None: nothing is kept."""
+    """Return the cache folder; None: nothing is cached."""
     from platformdirs import user_cache_path
 
     given = os.environ.get("DRIVELINT_CACHE_DIR")
     if given is not None:
         return Path(given) if given else None
-    with suppress(OSError, RuntimeError):  # a user without a home
+    with suppress(OSError, RuntimeError):  # the user has no home folder
         return user_cache_path("drivelint")
     return None
 
 
 @cache
 def foundation(code: tuple[str, ...]) -> str:
-    """Return the hash of the inputs of facts: versions, these files of the package, declarations and macros."""
+    """Return the hash of what all facts depend on: versions, the files in `code`, declarations and macros."""
     versions = [version(name) for name in ("duckdb", "jinja2", "msgspec")]
     said = sha256(" ".join([sys.version, *versions]).encode())
     package = Path(__file__).parent
@@ -61,7 +61,7 @@ def foundation(code: tuple[str, ...]) -> str:
 
 
 class Memo(Generic[T]):
-    """Keeps facts of one kind, in one file. `kind`: their type, which msgspec can write; `code`: the files that find them."""
+    """Stores facts of one kind in one file. `kind`: their type, which msgspec must support; `code`: the files that compute them."""
 
     def __init__(self, name: str, kind: Any, code: tuple[str, ...] = SQL_CODE) -> None:
         self._name, self._kind, self._code = name, kind, code
@@ -70,16 +70,16 @@ class Memo(Generic[T]):
         self._has_new = False
 
     def of(self, content: str, find: Callable[[], T]) -> T:
-        """Return the fact about a content, which `find` finds where it is not kept. Its errors are not kept."""
+        """Return the fact about a text; if it is not stored, compute it by `find`. Errors of `find` are not stored."""
         known = self.get(content)
         return self.put(content, find()) if known is None else known
 
     def get(self, content: str) -> T | None:
-        """Return the fact about a content; None: it is not kept."""
+        """Return the fact about a text; None: it is not stored."""
         return self._read().get(self._key(content))
 
     def put(self, content: str, fact: T) -> T:
-        """Keep a fact, and return it."""
+        """Store a fact, and return it."""
         self._read()[self._key(content)] = fact
         if not self._has_new:
             self._has_new = True
@@ -87,7 +87,7 @@ class Memo(Generic[T]):
         return fact
 
     def save(self) -> None:
-        """Write the facts, at once or not at all."""
+        """Write the facts to the file, completely or not at all."""
         file, facts = self._file, self._facts
         if file is None or not facts or not self._has_new:
             return
@@ -117,10 +117,10 @@ class Memo(Generic[T]):
         if self._facts is None:
             self._facts = {}
             if self._file is not None:
-                with suppress(OSError, msgspec.MsgspecError):  # a damaged file is none
+                with suppress(OSError, msgspec.MsgspecError):  # a damaged file counts as missing
                     self._facts = msgspec.msgpack.decode(
                         self._file.read_bytes(),
                         type=dict[str, self._kind],  # type: ignore[name-defined]
-                        dec_hook=lambda kind, text: kind(text),  # a path, the one type that it does not know
+                        dec_hook=lambda kind, text: kind(text),  # a path: the only type here that msgspec does not know
                     )
         return self._facts

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def parse_today(text: str | None) -> date:
-    """Read the date that decides whether a waiver has expired; by default the system's. Errors: `UsageError`."""
+    """Read the date that decides whether a waiver has expired; without a text, the system's date. Errors: `UsageError`."""
     if text is None:
         return datetime.now().astimezone().date()
     try:
@@ -26,7 +26,7 @@ def parse_today(text: str | None) -> date:
 
 
 def parse_memory(text: str | None) -> int | None:
-    """Read how many bytes the database keeps to, None for `none`; the default if nothing is given. Errors: `UsageError`."""
+    """Read the database's memory limit in bytes, None for `none`; without a text, the default. Errors: `UsageError`."""
     from drivelint.engine.memory import DEFAULT_MEMORY, LEAST_MEMORY
 
     if text is None:
@@ -44,16 +44,16 @@ def parse_memory(text: str | None) -> int | None:
 
 
 def one_folder(argument: Path | None, option: Path | None, default: Path) -> Path:
-    """Return the folder that an argument or `--out` names. Errors: `UsageError` where they name two."""
+    """Return the folder that an argument or `--out` names. Errors: `UsageError` if they name different folders."""
     if argument is not None and option not in {None, argument}:
         raise UsageError(f"{argument} and --out {option}: name one folder")
     return argument or option or default
 
 
 def robustness_for(confidence: float | None, robustness: bool | None) -> bool | None:
-    """Return which copies are judged: a confidence needs those of all findings.
+    """Return the option `robustness`; True if a confidence is given, which needs the copies of all findings.
 
-    Errors: `UsageError` for a confidence that is no share, or without copies.
+    Errors: `UsageError` for a confidence that is not from 0 to 1, or that is combined with no copies.
     """
     if confidence is not None and robustness is False:
         raise UsageError("--confidence needs the copies that --no-robustness leaves out: use one of them")
@@ -63,7 +63,7 @@ def robustness_for(confidence: float | None, robustness: bool | None) -> bool | 
 
 
 def parse_number_or_all(option: str, text: str) -> int | None:
-    """Read how many, None for `all`. Errors: `UsageError`."""
+    """Read a count, None for `all`. Errors: `UsageError`."""
     if text.strip().lower() == "all":
         return None
     if not re.fullmatch(r"\s*\d{1,9}\s*", text, re.ASCII):
@@ -90,7 +90,7 @@ def _numbers(text: str) -> tuple[float, ...]:
 
 
 def parse_offset(text: str | None) -> tuple[float, float] | None:
-    """Read DX,DY. Errors: `UsageError`."""
+    """Read DX,DY in metres. Errors: `UsageError`."""
     if text is None:
         return None
     match _numbers(text):
@@ -100,7 +100,7 @@ def parse_offset(text: str | None) -> tuple[float, float] | None:
 
 
 def parse_ego_size(text: str | None) -> EgoSize | None:
-    """Read L,W[,AHEAD]. Errors: `UsageError`."""
+    """Read L,W[,AHEAD] in metres. Errors: `UsageError`."""
     if text is None:
         return None
     from drivelint.drive.trace import EgoSize
@@ -112,7 +112,7 @@ def parse_ego_size(text: str | None) -> EgoSize | None:
 
 
 def parse_origin(text: str | None) -> tuple[float, float] | None:
-    """Read LAT,LON. Errors: `UsageError`."""
+    """Read LAT,LON in degrees. Errors: `UsageError`."""
     if text is None:
         return None
     match _numbers(text):
@@ -124,9 +124,9 @@ def parse_origin(text: str | None) -> tuple[float, float] | None:
 def asked_pack(
     evidence: Path | None, sign: Path | None, result: str | Path | None, *, whole: bool = True, overwrite: bool = False
 ) -> PackRequest | None:
-    """Return the pack that is asked for of a result that `check` or `audit` is going to write; None: none is.
+    """Return the request for an evidence pack of the result that `check` or `audit` will write; None: no pack is requested.
 
-    `whole`: the command judges all drives and packs their results. Errors: `UsageError` for what is known before anything is judged.
+    `whole`: the command judges all drives and packs their results. Errors: `UsageError` for mistakes that can be found before judging.
     """
     if evidence is None:
         if sign is not None:
@@ -146,7 +146,7 @@ def asked_pack(
 
 
 def parse_pack_date(day: str | None) -> str | None:
-    """Return the day of the pack: given, or that of SOURCE_DATE_EPOCH; None: neither says one. Errors: `UsageError`."""
+    """Return the date of the pack: the given day, else that of SOURCE_DATE_EPOCH; None: both are missing. Errors: `UsageError`."""
     if day is not None:
         return parse_day("--date", day)
     epoch = os.environ.get("SOURCE_DATE_EPOCH")
@@ -157,7 +157,7 @@ def parse_pack_date(day: str | None) -> str | None:
 
 
 def parse_day(option: str, day: str) -> str:
-    """Return a day as an option names it. Errors: `UsageError`."""
+    """Return the day, in ISO format, that an option gives. Errors: `UsageError`."""
     try:
         return datetime.strptime(day, "%Y-%m-%d").replace(tzinfo=UTC).date().isoformat()
     except ValueError as error:

@@ -1,4 +1,4 @@
-"""Files that drivelint wrote itself, in a folder that is searched for logs: results of a check or of an audit are no logs."""
+"""Recognises files that drivelint wrote itself, such as the results of a check or an audit: a search for logs leaves them out."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 MANIFEST: Final = "files.json"
 """The list of the files that drivelint wrote into a folder and below it."""
 MANIFEST_KEY: Final = "written_by_drivelint"
-"""The field of that list which has their names."""
+"""The field of `MANIFEST` that contains the file names."""
 RESULT_LOGS: Final = (
     *(
         f"{name}.parquet"
@@ -23,19 +23,20 @@ RESULT_LOGS: Final = (
     ),
     "annotated/*.mcap",
 )  # fmt: skip
-"""Globs of the files of `check --out` that have a log's suffix. They hold where the list is missing, as in a copy of some files."""
+"""Globs of the files of `check --out` that have a log's suffix. They apply even if the list is missing, as in a copy of some files."""
 
 
 class OwnFiles:
-    """Tells what drivelint wrote in a folder and its subfolders, by the lists there."""
+    """The files that drivelint wrote into a folder and its subfolders, according to the lists there."""
 
     def __init__(self, searched: Path) -> None:
         self._searched = searched
         self._written: dict[Path, tuple[frozenset[str], tuple[str, ...]]] = {}
 
     def __contains__(self, file: Path) -> bool:
-        """Whether drivelint wrote a file below the searched folder. What lies above that folder does not count: who names the folder of
-        annotated logs itself, means them.
+        """Return whether drivelint wrote a file below the searched folder.
+
+        Lists above this folder are ignored: a user who names the folder of annotated logs wants to read these logs.
         """
         for folder in file.parents:
             names, globs = self._of(folder)
@@ -47,18 +48,18 @@ class OwnFiles:
         return False
 
     def _of(self, folder: Path) -> tuple[frozenset[str], tuple[str, ...]]:
-        """Return the names of the files that drivelint wrote into a folder, and globs of others."""
+        """Return the names of the files that drivelint wrote into a folder, and globs for further files."""
         if folder not in self._written:
             self._written[folder] = frozenset(written_files(folder)), RESULT_LOGS if _is_result(folder) else ()
         return self._written[folder]
 
 
 def written_files(folder: Path) -> set[str]:
-    """Return the names of the files that drivelint wrote into a folder, without their list; none where nothing says so."""
+    """Return the names of the files that drivelint wrote into a folder, except the list itself; empty without a valid list."""
     try:
         return set(map(str, json.loads((folder / MANIFEST).read_text(encoding="utf-8"))[MANIFEST_KEY]))
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
-        return set()  # whatever it is, it is not known to be drivelint's
+        return set()  # there is no list, or another program wrote it
 
 
 def _matches(name: str, glob: str) -> bool:

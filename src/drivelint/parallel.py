@@ -1,6 +1,6 @@
-"""Checks logs by several processes, each of which judges a part of them as a run of its own.
+"""Checks logs in several processes, each of which judges a part of the logs like a separate run.
 
-The parts are cut from the logs in their order, and have about as many bytes each. Where they are cut does not show in the result.
+The parts follow the order of the logs and have about the same number of bytes. The result does not depend on where they are cut.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 
 _LOOK_S: Final = 0.2
 _PATIENCE_S: Final = 5.0
-"""The time that a process has to end by itself."""
+"""How long a process may take to end by itself before it is killed."""
 
 
 class WorkerLostError(DriveLintError):
@@ -54,9 +54,10 @@ class WorkerLostError(DriveLintError):
 
 
 class _Part(NamedTuple):
-    """The logs that one process judges. `n_logs`: of the whole run; `is_output`: for the record of its inputs; None: none is kept.
+    """The logs that one process judges. `n_logs`: the number of logs of the whole run.
 
-    `deaf_excesses`: task -> rule -> limit, of rules that did not end in an earlier process.
+    `is_output`: needed to record the inputs; None: they are not recorded. `deaf_excesses`: task -> rule -> exceeded limit, for rules that
+    could not be interrupted in an earlier process.
     """
 
     settings: CheckOptions
@@ -74,7 +75,7 @@ class _Ended(NamedTuple):
 
 
 class _DeafRule(NamedTuple):
-    """A rule that does not end."""
+    """A rule that continues although it was interrupted."""
 
     task: str
     rule_id: str
@@ -82,7 +83,7 @@ class _DeafRule(NamedTuple):
 
 
 class _ProgressCall(NamedTuple):
-    """A call of a method of `Progress` in a process, and its arguments."""
+    """A call of a `Progress` method in a worker, with its arguments."""
 
     method: str
     arguments: tuple[Any, ...]
@@ -97,13 +98,13 @@ def check(
     deaf_rules: DeafRules | None = None,
     keep: Callable[[Result], object] | None = None,
 ) -> Result:
-    """Judge every drive as `run.check` does, by at most `jobs` processes at a time; one writes margins, or keeps a database.
+    """Judge every drive as `run.check` does, in at most `jobs` processes; in one if margins are written or a database is kept.
 
-    Errors: as those of `run.check`; `WorkerLostError`.
+    Errors: as `run.check`; `WorkerLostError`.
     """
     if jobs > 1 and not settings.margins and not settings.keep_db:
         settings = with_chosen_rules(settings)
-        run.RunRules.of(settings)  # what cannot be judged by is refused once, here
+        run.RunRules.of(settings)  # wrong rules or parameters are refused here, once
         paths, _ = run.named_logs(settings)
         if len(parts := _cut(paths, jobs)) > 1:
             joined = _judged_by_workers(settings, paths, parts, progress, interruption or Interruption())
@@ -118,7 +119,7 @@ def _judged_by_workers(
     progress: Progress,
     interruption: Interruption,
 ) -> list[JudgedLogs]:
-    """Judge each part by a process of its own."""
+    """Judge each part in a process of its own."""
     memory = None if settings.memory is None else max(LEAST_MEMORY, settings.memory // len(parts))
     own = replace(settings, memory=memory, threads=max(1, cores() // len(parts)))
     recording = recorder.active()
@@ -146,7 +147,7 @@ def _judged_by_workers(
 
 
 def _cut(paths: Sequence[Path], max_parts: int) -> list[list[Path]]:
-    """Cut logs into at most so many parts of about as many bytes; a log that cannot be looked at counts as an empty one."""
+    """Return the logs in at most `max_parts` parts of about the same size; a log whose size cannot be read counts as empty."""
     sizes = []
     for path in paths:
         with suppress(DriveLintError):
@@ -163,7 +164,7 @@ def _cut(paths: Sequence[Path], max_parts: int) -> list[list[Path]]:
 
 
 def _without_copies(parts: Sequence[JudgedLogs]) -> list[JudgedLogs]:
-    """Return the parts without drives that an earlier one has judged: logs with the same name and content, which are judged once."""
+    """Return the parts without drives that an earlier part has judged: logs with the same name and content count once."""
     judged: set[str] = set()
     found: list[JudgedLogs] = []
     for part in parts:
@@ -176,7 +177,7 @@ def _without_copies(parts: Sequence[JudgedLogs]) -> list[JudgedLogs]:
 
 
 def _without(part: JudgedLogs, drives: Sequence[str]) -> JudgedLogs:
-    """Return a part without these drives, with a note on each instead of those that it has."""
+    """Return a part without these drives; the only note on each of their logs is that it is a duplicate."""
     result, paths = part.result, {} if part.result.run_options is None else part.result.run_options.traces
     tables = {name: getattr(result, name) for name in (*TABLE_OF_FILE, *PICTURES)}
     others = {
@@ -197,7 +198,7 @@ class _Listener:
         self._notes = LogNotes(progress, n_logs)
 
     def hear(self, call: _ProgressCall) -> None:
-        """Show one call of a worker."""
+        """Forward one call of a worker to the progress display."""
         if call.method == "add":
             self._notes.add(*call.arguments)
         else:
@@ -205,7 +206,10 @@ class _Listener:
 
 
 class _Worker:
-    """A process that judges a part, and is started again where a rule of it does not end. `ended`: what came of it; None: nothing yet."""
+    """A process that judges a part; if a rule cannot be interrupted, it is started again without this rule.
+
+    `ended`: the outcome of the part; None: the process still runs.
+    """
 
     def __init__(self, part: _Part, listener: _Listener) -> None:
         self.ended: _Ended | None = None
@@ -228,7 +232,7 @@ class _Worker:
             self.pipe.send(None)
 
     def hear(self) -> None:
-        """Take one message. Errors: the one that ended the part; `WorkerLostError`."""
+        """Receive one message. Errors: the error that ended the part; `WorkerLostError`."""
         try:
             message = self.pipe.recv()
         except (EOFError, OSError):
@@ -248,7 +252,7 @@ class _Worker:
             self._listener.hear(message)
 
     def _begin_again(self, endless_rule: _DeafRule) -> None:
-        """Start the process again without a rule that does not end."""
+        """Start the process again without a rule that cannot be interrupted."""
         self.stop()
         self._listener.progress.note(
             f"rule {endless_rule.rule_id} cannot be stopped: {plural(len(self._part.paths), 'log')} judged again without it"
@@ -264,7 +268,7 @@ class _Worker:
         self.start()
 
     def stop(self) -> None:
-        """End the process, which removes its temporary files where it can."""
+        """End the process: wait until it has removed its temporary files, but not longer than `_PATIENCE_S`, then kill it."""
         self.pipe.close()
         self._process.join(_PATIENCE_S)
         self._process.kill()
@@ -272,7 +276,7 @@ class _Worker:
 
 
 class _Teller(Progress):
-    """Sends the listener, in a worker, the messages to show. Progress of its stages other than the first is not the run's."""
+    """Sends progress messages from a worker to the parent. `advance` counts only in the stage `run.CHECKING`."""
 
     def __init__(self, pipe: Connection) -> None:
         self._pipe = pipe
@@ -280,11 +284,11 @@ class _Teller(Progress):
         self._counts = True
 
     def send(self, message: object) -> None:
-        """Send a message to the process that listens."""
+        """Send a message to the parent process."""
         with self._lock:
             self._pipe.send(message)
 
-    def stage(self, name: str, total: int | None = None) -> None:  # noqa: ARG002 - the run has its own
+    def stage(self, name: str, total: int | None = None) -> None:  # noqa: ARG002 - the parent knows the total
         """See `Progress`."""
         self._counts = name == run.CHECKING
         self.doing(name)
@@ -294,7 +298,7 @@ class _Teller(Progress):
         if self._counts:
             self.send(_ProgressCall("advance", (n,)))
 
-    def doing(self, activity: str, part: float = 0.0) -> None:  # noqa: ARG002 - those of several workers are not one
+    def doing(self, activity: str, part: float = 0.0) -> None:  # noqa: ARG002 - parts of several workers cannot be combined
         """See `Progress`."""
         self.send(_ProgressCall("doing", (activity,)))
 
@@ -304,7 +308,7 @@ class _Teller(Progress):
 
 
 class _SentNotes(LogNotes):
-    """Sends the notes on logs, which are shown once for all workers."""
+    """Sends notes on logs to the parent, which shows each text once for all workers."""
 
     def __init__(self, teller: _Teller, n_logs: int) -> None:
         super().__init__(Progress(), n_logs)
@@ -317,7 +321,7 @@ class _SentNotes(LogNotes):
 
 
 class _DeafInWorker:
-    """Ends a worker because of a rule that does not end, and says so: see `DeafRules`."""
+    """The `DeafRules` of a worker: reports a rule that cannot be interrupted to the parent, and ends the worker."""
 
     def __init__(self, deaf_excesses: Mapping[str, Mapping[str, Excess]], teller: _Teller) -> None:
         self._deaf_excesses = deaf_excesses
@@ -335,16 +339,16 @@ class _DeafInWorker:
 
 
 def _work(part: _Part, pipe: Connection, parent: int) -> None:
-    """Judge a part in this process."""
+    """Judge a part in this process, and send the outcome to the parent."""
     begin_worker(parent)
-    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # the listener ends this process when its parent is gone
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # the listener ends this process when its parent has ended
     interruption, teller = Interruption(), _Teller(pipe)
     Thread(target=_listen, args=(pipe, interruption), daemon=True, name="listener").start()
     try:
         teller.send(_judge_part(part, teller, interruption))
     except DriveLintError as error:
         teller.send(error)
-    except Exception as error:  # noqa: BLE001 - whatever it is, the run ends with it
+    except Exception as error:  # noqa: BLE001 - every error ends the run
         teller.send(InternalError(f"internal error in a worker: {type(error).__name__}: {error}: please report it"))
 
 
@@ -366,7 +370,7 @@ def _judge_part(part: _Part, teller: _Teller, interruption: Interruption) -> _En
 
 
 def _listen(pipe: Connection, interruption: Interruption) -> None:
-    """Interrupt the part on request, and end the process if the parent is gone."""
+    """Interrupt the judging on request, and end the process when the parent has ended."""
     while True:
         try:
             pipe.recv()

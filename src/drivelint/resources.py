@@ -10,7 +10,7 @@ from drivelint.errors import DriveLintError
 
 @cache
 def folder(name: str) -> Path:
-    """Return the folder `schemas`, `queries` or `fixtures` (installed: what `drivelint demo` writes of it)."""
+    """Return the folder `schemas`, `queries` or `fixtures`; an installed `fixtures` has only the files of `drivelint demo`."""
     package = Path(__file__).parent
     for root in (package / "_data", package.parent.parent):
         if (root / name).is_dir():

@@ -1,4 +1,4 @@
-"""Runs a check: reads traces and a map, judges by the rules, returns a result. Stages meet only in tables."""
+"""Runs a check: reads traces and a map, judges them by the rules, and returns a result. The stages exchange only tables."""
 
 from __future__ import annotations
 
@@ -47,34 +47,34 @@ if TYPE_CHECKING:
     from drivelint.report.progress import Progress
 
 CHECKING: Final = "checking"
-"""The stage in which drives are judged; that of their copies comes later."""
+"""The stage in which drives are judged; their copies are judged in a later stage."""
 _MISSED: Final = "the run was interrupted before this drive was judged"
 
 
 @dataclass(frozen=True)
 class CheckOptions(JudgingOptions):
-    """The options of `check`, under the names that they have there."""
+    """The options of the command `check`; each field is named like its option."""
 
     traces: tuple[str, ...]
     out: Path | None = None
     margins: bool = False
     keep_db: bool = False
     named_rules: tuple[str, ...] | None = None
-    """Ids of the rules that the user named; None: those whose ids are among the selectors."""
+    """Ids of the rules that the user named; None: all ids of rules among the selectors."""
     manifest_options: Mapping[Path, DriveInput] = field(default_factory=dict, hash=False)
-    """Log -> the options from a manifest for it and its map, instead of these."""
+    """Log -> the options that a manifest gives for the log and its map; they replace the general options."""
     min_judged: float | None = None
     """The least share of rules that must be decided, see `result.model.decided_share`."""
     pictures: bool = True
-    """Show frames of the cameras that logs have, where evidence is gathered."""
+    """Take pictures from the cameras in the logs, if evidence is gathered."""
     evidence: bool = False
-    """Gather what reports show without `out`, too."""
+    """Gather the evidence for reports even without `out`."""
     threads: int | None = None
-    """Cores that a statement may take; None: all."""
+    """How many cores a statement may use; None: all."""
 
     @classmethod
     def judging(cls, traces: tuple[str, ...], options: JudgingOptions, out: Path | None = None) -> CheckOptions:
-        """Return the options of a check of these logs that judges as `options` say, whatever else they have."""
+        """Return the options of a check of these logs, with the judging options of `options` and without its other fields."""
         return cls(traces, out, **{each.name: getattr(options, each.name) for each in fields(JudgingOptions)})
 
 
@@ -101,13 +101,13 @@ class RunRules(NamedTuple):
 
 @dataclass(frozen=True)
 class JudgedLogs:
-    """The outcome of some logs of a run, in their order: a result with their notes."""
+    """The outcome of some logs of a run: a result, and the notes on the logs."""
 
     result: Result
     notes: tuple[LogNote, ...]
     refused_logs: tuple[RefusedLog, ...]
     cameras: Mapping[str, tuple[str, ...]]
-    """drive_id -> topics of the cameras, of the drives with cameras."""
+    """drive_id -> topics of its cameras; only drives with cameras."""
 
 
 def check(
@@ -119,13 +119,13 @@ def check(
 ) -> Result:
     """Judge every drive by every selected rule.
 
-    `deaf_rules`: what is known, and what is to be done, about rules that do not end when they are interrupted. `keep`: takes the result
-    if no drive at all could be judged, before the error is raised: an earlier result in its place would look like that of this run.
+    `deaf_rules`: which rules are known to continue after an interrupt, and what to do about another such rule. `keep`: called with the
+    result if no drive could be judged, before the error is raised; an earlier result left in `out` would look like that of this run.
 
-    After an interruption the result has the drives that were judged until then, and the others as not judged; `NothingJudgedError`, a
-    `KeyboardInterrupt`, if none was.
-    Errors: `UsageError`, `RuleError` for what was asked; `MapError`, `TraceError` if no drive at all could be judged. A drive that
-    cannot be judged beside others that can is a row of the table `drive`.
+    After an interruption, the result contains the remaining drives as not judged. If no drive was judged before it, the error is
+    `NothingJudgedError`, a `KeyboardInterrupt`.
+    Errors: `UsageError`, `RuleError` for wrong options or rules; `MapError`, `TraceError` if no drive could be judged. If only some drives
+    cannot be judged, they are rows of the table `drive`, and no error is raised.
     """
     library = MapLibrary(settings)
     settings = with_chosen_rules(settings, library)
@@ -158,9 +158,9 @@ def judge_logs(
     deaf_rules: DeafRules | None = None,
     library: MapLibrary | None = None,
 ) -> JudgedLogs:
-    """Judge logs in one database, in their order; add those that could not be judged to `refused_logs`.
+    """Judge logs in one database, in their order; add logs that could not be judged to `refused_logs`.
 
-    `library`: the maps of these options, as far as they are read already.
+    `library`: the maps of these options, some of which may be read already.
     """
     interruption = interruption or Interruption()
     rules, required, params, profiles = judged_by
@@ -176,7 +176,7 @@ def judge_logs(
         if cameras is not None:
             observers.append(cameras)
         if settings.out and settings.annotate:
-            from drivelint.annotate import Annotator  # what it writes with takes a tenth of a second to import
+            from drivelint.annotate import Annotator  # its libraries take a tenth of a second to import
 
             annotated = settings.out / "annotated"
             observers.append(
@@ -217,7 +217,7 @@ def judge_logs(
             _judge_copies(session, progress, memory)
         finally:
             session.close()
-        # of two logs of one content the first gives its path and its options
+        # of two logs with the same content, the first determines the path and the options
         judged = [(name, path) for path, name in reversed(ids.items()) if name in session.judged_drive_ids]
         done = {path for _, path in judged} | {log.path for log in refused_logs}
         missed = sorted(set(paths) - done) if interruption.requested else []
@@ -254,9 +254,9 @@ def judge_logs(
 def conclude(
     paths: Sequence[Path], parts: Sequence[JudgedLogs], keep: Callable[[Result], object] | None = None
 ) -> Result:
-    """Return the result of a run whose logs, in this order, were judged in these parts, which have no drive in common.
+    """Return the result of a run, joined from its parts, which have no drive in common.
 
-    Notes are in the order of the logs. Errors: as `check`, if no drive could be judged.
+    The notes are in the order of the logs, `paths`. Errors: as `check`, if no drive could be judged.
     """
     result = parts[0].result
     if len(parts) > 1:
@@ -280,7 +280,10 @@ def conclude(
 
 
 def named_logs(settings: CheckOptions) -> tuple[list[Path], list[RefusedLog]]:
-    """Return the logs that are named; none, and the refusal of that name, if one names nothing and the result is kept in a folder."""
+    """Return the logs that the options name, and no refusals; if a name matches no log and `out` is given, only its refusal.
+
+    Errors: `TraceError` for such a name without `out`; `UsageError` for a name in a manifest that is not one log.
+    """
     try:
         paths = sorted_logs(expand_traces(settings.traces, but=settings.map))
     except TraceError:
@@ -296,14 +299,14 @@ def named_logs(settings: CheckOptions) -> tuple[list[Path], list[RefusedLog]]:
 
 
 def _read(paths: Sequence[Path], settings: CheckOptions, library: MapLibrary | None) -> Iterator[Drive | RefusedLog]:
-    """Yield every log, read as the options say that hold for it; those with the same options together."""
+    """Yield every log, read with the options that apply to it; logs with the same options are read together."""
     for options, mine in group_rows(paths, lambda path: settings.manifest_options.get(path, settings)).items():
         maps = library if library is not None and options is settings else MapLibrary(options)
         yield from read_drives(mine, options.ingest_options(), maps)
 
 
 def _announced(drives: Iterable[Drive | RefusedLog], n: int, progress: Progress) -> Iterator[Drive | RefusedLog]:
-    """Yield the logs that are read, with a note before each: a batch is read before it is judged."""
+    """Yield the logs, and show which log is read next: a batch is read before it is judged."""
     progress.doing(f"reading 1/{n}")
     for done, item in enumerate(drives, 1):
         yield item
@@ -311,17 +314,17 @@ def _announced(drives: Iterable[Drive | RefusedLog], n: int, progress: Progress)
 
 
 def _without_map(drive: Drive) -> list[str]:
-    """Return that no map of the folder of maps is of the drive's place, if it is so."""
+    """Return the message that the folder of maps has no map of the drive's place; empty if it has one."""
     quality = drive.trace.tables["quality"]
     texts: list[str] = quality.filter(pc.equal(quality["check_id"], NOT_IN_FOLDER))["message"].to_pylist()
     return texts
 
 
 def _judge_copies(session: JudgingSession, progress: Progress, memory: Memory) -> None:
-    """Judge the copies that wait; of an interrupted run too."""
+    """Judge the copies that are not judged yet, even after an interruption."""
     if session.n_waiting:
         findings = one_per_event(memory.run_job(collect.findings).to_pylist())
-        # the first answer is on the screen before the copies begin
+        # the number of findings is shown before the copies are judged
         word = "finding" if len(findings) == 1 else "findings"
         progress.stage(f"{by_severity(findings)} {word}; judging copies", session.n_to_copy())
         session.judge_copies(progress.advance)
@@ -336,7 +339,7 @@ def _judge(
     notes: LogNotes,
     limits: ToldLimits,
 ) -> None:
-    """Judge a batch; if it errs, drive by drive, so that a bad drive harms no other. Add those not judged to `refused_logs`."""
+    """Judge a batch; if this fails, drive by drive, so that a bad drive affects no other. Add refused drives to `refused_logs`."""
     n_before = len(refused_logs)
     drives: list[Drive] = []
     for item in batch:

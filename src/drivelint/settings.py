@@ -1,4 +1,4 @@
-"""Reads `drivelint.toml`, which has options of `check`.
+"""Reads `drivelint.toml`, which contains options of `check`.
 
     map = "road.xodr"
     profile = ["nominal", "aggressive"]
@@ -8,10 +8,10 @@
     nation = "gb"
     weather = "dry"
 
-Waivers may stand there as well, as tables [[waiver]]: see `drivelint.gate.waivers`.
+It may also contain waivers, as tables [[waiver]]: see `drivelint.gate.waivers`.
 
-A key is an option's name without its dashes; the command line overrides it. `pyproject.toml` may hold the same as a table
-[tool.drivelint]. The nearest of these files counts, looked for from the current folder upwards. Relative paths in it start in its folder.
+A key is an option's name without its dashes; the command line overrides it. `pyproject.toml` may have the same in a table
+[tool.drivelint]. The nearest of these files is used, searched from the current folder upwards. Its relative paths start in its folder.
 """
 
 from __future__ import annotations
@@ -32,12 +32,12 @@ _TOOL: Final = "drivelint"
 
 
 def find_settings() -> Path | None:
-    """Return the settings file that counts in the current folder; None: there is none. Errors: `UsageError` for bad TOML."""
+    """Return the settings file for the current folder; None: there is none. Errors: `UsageError` for bad TOML."""
     here = Path.cwd()
     for folder in (here, *here.parents):
         place = Path() if folder == here else folder
         for file in (place / SETTINGS_FILE, place / PROJECT_FILE):
-            # the project's other tools may be configured there alone
+            # pyproject.toml may have settings of other tools only
             if file.is_file() and (file.name == SETTINGS_FILE or (_mentions_us(file) and settings_table(file))):
                 return file
     return None
@@ -51,7 +51,7 @@ def _mentions_us(file: Path) -> bool:
 
 
 def settings_table(file: Path) -> dict[str, Any]:
-    """Return the content of a settings file, for `pyproject.toml` the table [tool.drivelint]; nothing if there is none.
+    """Return the content of a settings file, for `pyproject.toml` the table [tool.drivelint]; empty if the file or table is missing.
 
     Errors: `UsageError` for bad TOML.
     """
@@ -74,16 +74,16 @@ def settings_table(file: Path) -> dict[str, Any]:
 def read_settings(
     options: Mapping[str, tuple[str, bool]], file: Path = Path(SETTINGS_FILE), paths: Collection[str] = ()
 ) -> dict[str, Any]:
-    """Return parameter name -> value from the settings file; nothing if there is none.
+    """Return parameter name -> value from the settings file; empty if there is no file.
 
     `options`: option name without dashes -> (parameter name, whether it may be given more than once). `paths`: options whose values are
-    paths, or may be such as `mapping`: relative ones start in the folder of the file.
-    Errors: `UsageError` with the file for bad TOML, an unknown key (with the nearest), or a value that no option takes.
+    paths; a value of `mapping` is a path only if this file exists. Relative paths start in the folder of the settings file.
+    Errors: `UsageError`, which names the file, for bad TOML, an unknown key (with the most similar one), or a value of a wrong type.
     """
     values: dict[str, Any] = {}
     for key, said in settings_table(file).items():
         if key == "waiver":
-            continue  # read where the gate is
+            continue  # read by `drivelint.gate.waivers`
         if key not in options:
             raise UsageError(f"{file}: unknown setting {key!r}; {hint(key, sorted(options))}")
         name, repeatable = options[key]
@@ -97,7 +97,7 @@ def read_settings(
 
 
 def _from(folder: Path, value: Any, *, is_path: bool) -> Any:
-    """Return paths relative to a folder; a value that may be something else (not `is_path`) only if it is a file there."""
+    """Return a path, or each path of a list, relative to `folder`; without `is_path`, only if such a file is there."""
     if isinstance(value, list):
         return [_from(folder, each, is_path=is_path) for each in value]
     if folder == Path() or not isinstance(value, str) or not (is_path or (folder / value).is_file()):
@@ -106,7 +106,7 @@ def _from(folder: Path, value: Any, *, is_path: bool) -> Any:
 
 
 def _assignments(table: Mapping[str, Any], file: Path) -> list[str]:
-    """Return the table [env] as `KEY=VALUE`, as the command line takes them."""
+    """Return the table [env] as texts `KEY=VALUE`, as on the command line."""
     words = {True: "yes", False: "no"}
     for key, value in table.items():
         if not isinstance(value, str | bool):

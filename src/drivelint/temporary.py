@@ -1,6 +1,6 @@
-"""Temporary folders that go with this process, however it ends.
+"""Temporary folders that are removed when this process ends.
 
-A process that is left while a thread of it computes closes nothing: code that ends it in this way, or replaces it, calls `remove_all`.
+A process that is ended while one of its threads computes runs no clean-up: code that ends or replaces it in this way calls `remove_all`.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 PREFIX: Final = "drivelint-"
 _open: Final[set[Path]] = set()
 _TRIES: Final = 3
-"""A thread that still runs may write into a folder while it is removed."""
+"""How often a removal is repeated: a running thread may write into the folder meanwhile."""
 
 
 @contextmanager
 def temporary_folder() -> Iterator[Path]:
-    """Make an empty folder, which is removed afterwards unless it is kept."""
+    """Create an empty folder, which is removed after the block unless `keep` was called."""
     folder = Path(mkdtemp(prefix=PREFIX))
     _open.add(folder)
     try:
@@ -34,12 +34,12 @@ def temporary_folder() -> Iterator[Path]:
 
 
 def keep(folder: Path) -> None:
-    """Leave a folder where it is: its content belongs to the user."""
+    """Exclude a folder from the removal: its content belongs to the user."""
     _open.discard(folder)
 
 
 def remove_all() -> None:
-    """Remove the folders of this process that are still open."""
+    """Remove the temporary folders of this process that still exist."""
     for folder in list(_open):
         for _ in range(_TRIES):
             shutil.rmtree(folder, ignore_errors=True)

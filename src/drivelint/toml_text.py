@@ -7,7 +7,7 @@ import tomllib
 from typing import Any, Final
 
 MOST_PARTS: Final = 64
-"""Parts of a dotted key. tomllib takes memory with the square of their number: 30 kB of `a.a.a` take a GiB."""
+"""The most parts of a dotted key. The memory of tomllib grows with the square of their number: 30 kB of `a.a.a` take a GiB."""
 _PART: Final = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')"""
 _LONG_KEY: Final = re.compile(rf"(?<![\w.-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{MOST_PARTS}}}")
 

@@ -1,7 +1,7 @@
-"""Keeps pandas out of processes that are drivelint's own.
+"""Prevents the import of pandas in drivelint's own processes.
 
-DuckDB and pyarrow import it wherever it is installed, to look whether a value is one of its own: half a second, and no value ever is. If
-it is not installed, DuckDB searches for it again for each bound value.
+DuckDB and pyarrow import pandas, if it is installed, to check whether a value is a pandas object. That takes half a second, and no value
+ever is one. If pandas is not installed, DuckDB searches for it again for each bound value.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ class _NoPandas(MetaPathFinder):
     def find_spec(
         self,
         fullname: str,
-        path: Sequence[str] | None,  # noqa: ARG002 - the shape of what it overrides
+        path: Sequence[str] | None,  # noqa: ARG002 - the signature of the base class
         target: ModuleType | None = None,  # noqa: ARG002
     ) -> ModuleSpec | None:
-        """Refuse pandas, and leave all else to the finders behind."""
+        """Raise an error for pandas; return None for all other modules, which the next finders look for."""
         if fullname == "pandas":
             raise ModuleNotFoundError("no command of drivelint uses pandas", name=fullname)
         return None
 
 
 def leave_out_pandas() -> None:
-    """Let no library import pandas in this process from now on; for programs and workers, never for the library."""
+    """Prevent every later import of pandas in this process; for commands and workers, not for `import drivelint`."""
     sys.meta_path.insert(0, _NoPandas())

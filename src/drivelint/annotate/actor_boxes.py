@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from drivelint.arrays import Floats, Times
 
 MAX_BOXES: Final = 1_000_000
-"""A drive with more states shows only every second, third ... step: about 30 MB of boxes are enough for any viewer."""
+"""If a drive has more states, only every second, third ... step is drawn: about 30 MB of boxes are enough for any viewer."""
 CHUNK_BYTES: Final = 2 << 20
 EGO_FRAME: Final = "base_link"
 """The frame that viewers follow by default."""
@@ -35,7 +35,7 @@ RecordChunk = tuple[bytes, "NDArray[np.uint64]"]
 
 
 def select_boxes(tracks: Tracks) -> tuple[NDArray[np.intp], int]:
-    """Return the rows with a place and a heading, by time and actor, and n: if they are more than MAX_BOXES, only every n-th step."""
+    """Return the rows with a position and a heading, by time and actor, and n. Above `MAX_BOXES` rows, only every n-th step is included."""
     placed = np.flatnonzero(np.isfinite(tracks.x) & np.isfinite(tracks.y) & np.isfinite(tracks.yaw))
     every = max(1, -(-len(placed) // MAX_BOXES))
     if every > 1:
@@ -46,7 +46,7 @@ def select_boxes(tracks: Tracks) -> tuple[NDArray[np.intp], int]:
 
 
 def messages(tracks: Tracks, rows: NDArray[np.intp], clock: LogClock, channel: int) -> Iterator[RecordChunk]:
-    """Yield chunks of `foxglove.SceneUpdate` message records, one per step, each with its index (log time, offset)."""
+    """Yield chunks of message records, each with its index (log time, offset): a `foxglove.SceneUpdate` per step."""
     if not len(rows):
         return
     t_ns = tracks.t_ns[rows]
@@ -70,7 +70,7 @@ def messages(tracks: Tracks, rows: NDArray[np.intp], clock: LogClock, channel: i
 
 
 def ego_transforms(tracks: Tracks, rows: NDArray[np.intp], clock: LogClock, channel: int) -> Iterator[RecordChunk]:
-    """Yield chunks of `foxglove.FrameTransform` records: where the first ego is, so that a viewer can follow it."""
+    """Yield chunks of `foxglove.FrameTransform` records with the pose of the first ego, so that a viewer can follow it."""
     if not tracks.egos:
         return
     rows = rows[tracks.actor[rows] == tracks.names.index(tracks.egos[0])]
@@ -107,9 +107,9 @@ def message_headers(channel: int, log_time: NDArray[np.uint64], size: NDArray[np
 def _behind(
     starts: wire.Bytes, count: NDArray[np.int64], heads: list[bytes], actor: NDArray[np.int32], tails: wire.Bytes
 ) -> tuple[bytes, NDArray[np.int64]]:
-    """Append `count` encoded boxes after each encoded message start; return the bytes and the offset of each message.
+    """Join each encoded message header of `starts` with its `count` boxes; return the bytes and the offset of each message.
 
-    Of each box: `heads[actor]`, which is the same for that actor at every step, and a row of `tails`, which changes.
+    A box consists of `heads[actor]`, which is the same at every step, and a row of `tails`, which changes.
     """
     head_width = np.array([len(head) for head in heads])[actor]
     is_start = np.zeros(len(actor) + len(count), np.bool_)
@@ -134,7 +134,7 @@ def _lifetime(t_ns: Times) -> int:
 
 
 def _heads(tracks: Tracks, lifetime_ns: int) -> list[bytes]:
-    """Return the constant parts of each actor: the entity's name, its class, the box's size and colour."""
+    """Return the encoded part of each actor's box that is the same at every step: name, class, size and colour."""
     heads = []
     for name, kind, size, is_ego in zip(tracks.names, tracks.classes, tracks.sizes, tracks.is_ego, strict=True):
         length, width, height = (
@@ -156,7 +156,7 @@ def _heads(tracks: Tracks, lifetime_ns: int) -> list[bytes]:
 
 
 def _tails(tracks: Tracks, rows: NDArray[np.intp], log_time: NDArray[np.uint64]) -> wire.Bytes:
-    """Return the parts that change per row: the cube's pose (its last field), the entity's time."""
+    """Return the encoded part of a box that changes, per row: the cube's pose (its last field), and the entity's time."""
     half = tracks.yaw[rows] / 2
     z = tracks.z[rows]
     height = np.nan_to_num(tracks.sizes[tracks.actor[rows], 2], nan=_HEIGHT)

@@ -1,4 +1,4 @@
-"""Writes the annotated logs of a run, batch by batch, while the batch's tables are still there."""
+"""Writes the annotated logs of a run, batch by batch, while the batch's tables still exist."""
 
 from __future__ import annotations
 
@@ -33,17 +33,17 @@ if TYPE_CHECKING:
     from drivelint.road.map_reader import MapTables
 
 LAYOUT_FILE = "viewer-layout.json"
-"""Panels and topics as Foxglove and Lichtblick import them: there, topics are hidden until a user shows them."""
+"""Panels and topics for import into Foxglove and Lichtblick, where topics are hidden until a user shows them."""
 _BUFFER = 1 << 20
 _OF_PARTS = ("evidence/overtake_space", "evidence/chain_point", "evidence/first_ego_measures")
-"""What the database only has while it has that part: danger spaces in overtakes, the chains that they lie on, measures of the ego."""
+"""Queries on tables of one part of a batch: danger spaces in overtakes, the lane chains of these spaces, measures of the ego."""
 
 
 class Annotator:
     """Writes `<folder>/<drive_id>.mcap` for every drive, and a layout for the viewer.
 
     `rules` is the run's rule table, `fail_on`, `strict` and `required` are as those of its result. A drive that cannot be
-    annotated is judged all the same: `note` gets their names and the reasons. `release` gives back memory that the database can do without.
+    annotated keeps its verdicts: `note` is called with the drive and the reason. `release` frees unused memory of the database.
     """
 
     def __init__(
@@ -69,9 +69,9 @@ class Annotator:
         self._series: set[Series] = set()
 
     def __call__(self, con: duckdb.DuckDBPyConnection, drives: Sequence[Drive], *, first: bool, last: bool) -> None:
-        """Annotate the drives of a judged batch; of a batch judged in parts, after its last part.
+        """Annotate the drives of a judged batch. If it is judged in parts, collect data, and annotate after the last part.
 
-        Errors: `OutputError` when the folder cannot be written; other problems of a drive are reported.
+        Errors: `OutputError` if the folder cannot be written; other problems of a drive are reported.
         """
         ids = [drive.trace.drive_id for drive in drives]
         if first:
@@ -104,14 +104,14 @@ class Annotator:
                 with _whole(self._folder / f"{name}.mcap") as file:
                     write(file, Annotation(drive.trace, alone, spaces, chains, measures, margins, road, drive.geo))
             except (ChangedLogError, OutputError):
-                raise  # the verdicts are about what is not there any more; or no log can be written at all
-            except Exception as error:  # noqa: BLE001 - verdicts are not given up for a picture of them
+                raise  # the log has changed after the verdicts, or no log can be written at all
+            except Exception as error:  # noqa: BLE001 - the verdicts are kept, even if their annotation fails
                 self._note(f"not annotated: {refusal_of(drive.trace.path, error).error}")
         with _whole(self._folder / LAYOUT_FILE) as file:
             file.write(layout(self._series))
 
     def _road(self, environment: MapTables | None) -> Road | None:
-        """Return the road of a map; of several, only the last is kept."""
+        """Return the road of a map; only the road of the last map is cached."""
         if environment is None:
             return None
         if environment.environment_id not in self._roads:
@@ -121,7 +121,7 @@ class Annotator:
 
 @contextmanager
 def _whole(path: Path) -> Iterator[BinaryIO]:
-    """Open a file that appears under its name whole, or not at all. Errors: `OutputError`."""
+    """Open a file for writing, which gets its name only when it is complete. Errors: `OutputError`."""
     temporary = path.with_name(f".drivelint.{os.getpid()}.tmp")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

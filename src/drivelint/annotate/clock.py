@@ -1,4 +1,4 @@
-"""The times under which new messages are written, so that they line up with the log's own in a viewer."""
+"""Converts times of a trace to log times, so that a viewer shows new messages together with the log's own."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class LogClock:
-    """Converts times of the trace to log times: those of the frame at or before, if the container has its own clock.
+    """Converts times of the trace to log times. If the container has its own clock, the last frame up to that time gives the log time.
 
-    `t_ns` and `log_ns` are the frames' times in both clocks, `t_ns` strictly rising; both empty: the clocks are one, moved by
-    `shift_ns` where the trace's begins before 0, which log times cannot.
+    `t_ns` and `log_ns`: the frames' times on both clocks, `t_ns` strictly increasing. If both are empty, the log time is the trace's time
+    plus `shift_ns`, since log times cannot be less than 0.
     """
 
     t_ns: NDArray[np.int64]
@@ -24,19 +24,19 @@ class LogClock:
     shift_ns: int = 0
 
     def log_time(self, t_ns: NDArray[np.int64]) -> NDArray[np.uint64]:
-        """Return the log times of moments of the trace."""
+        """Convert times of the trace to log times."""
         if not len(self.t_ns):
             return (t_ns + self.shift_ns).astype(np.uint64)
         frame = np.clip(np.searchsorted(self.t_ns, t_ns, side="right") - 1, 0, None)
         return self.log_ns[frame]
 
     def at(self, t_ns: int) -> int:
-        """Return the log time of one moment."""
+        """Convert one time of the trace to a log time."""
         return int(self.log_time(np.array([t_ns], np.int64))[0])
 
 
 def of_frames(t_ns: NDArray[np.int64], log_ns: NDArray[np.uint64]) -> LogClock:
-    """Return the clock of a log whose frames have both times; the first of several frames at one time counts."""
+    """Return the clock of a log whose frames have both times; of several frames at the same time, the first is used."""
     times, first = np.unique(t_ns, return_index=True)
     return LogClock(times, log_ns[first])
 

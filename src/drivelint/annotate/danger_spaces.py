@@ -39,7 +39,7 @@ _LEAST_M: Final = 0.1
 def messages(spaces: pa.Table, chains: pa.Table, tracks: Tracks, clock: LogClock) -> list[Message]:
     """Return a SceneUpdate for every step of an overtake, and an empty one after its last step.
 
-    `spaces` and `chains` are the danger spaces and the centre lines, by station, of the chains that they were judged on.
+    `spaces`: the danger spaces. `chains`: the centre lines of the lane chains along which they lie, by station.
     """
     rows = spaces.to_pylist()
     every = max(1, -(-len(rows) // MAX_STEPS))
@@ -64,7 +64,7 @@ def messages(spaces: pa.Table, chains: pa.Table, tracks: Tracks, clock: LogClock
 
 
 def _behind(times: Times, drawn_times: Times) -> list[int]:
-    """Return the steps of the ego that follow a drawn one and are not drawn themselves."""
+    """Return the ego's steps that follow a drawn step and are not drawn."""
     after = np.searchsorted(times, drawn_times, side="right")
     return [int(t) for t in np.setdiff1d(times[after[after < len(times)]], drawn_times)]
 
@@ -77,7 +77,7 @@ def _line(chains: pa.Table, ego: str, chain: int) -> Floats:
 
 
 def _strip(line: Floats, start: float, end: float, d: float, half: float) -> tuple[Floats, Floats] | None:
-    """Return left and right edge of a strip around the offset `d`; None where the chain has no such stations."""
+    """Return the left and right edge of a strip around the lateral offset `d`; None if the chain has no such stations."""
     if not line.shape[1]:
         return None
     start, end = max(start, line[0, 0]), min(end, line[0, -1])
@@ -90,7 +90,7 @@ def _strip(line: Floats, start: float, end: float, d: float, half: float) -> tup
 
 
 def _roles(row: dict[str, Any], poses: Mapping[str, ActorPoses], k: int) -> bytes:
-    """Return the roles of the actors at one step, the k-th of `poses`, as texts above the boxes that are placed."""
+    """Return the roles of the actors at one step, the k-th of `poses`, as texts above the boxes with known positions."""
     roles = [(row["ego_id"], "ego: " + row["stage"].replace("_", " ")), *((name, "VBP") for name in row["vbp_ids"])]
     if row["ov_id"] is not None:
         roles.append((row["ov_id"], "OV"))

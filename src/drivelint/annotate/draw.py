@@ -1,4 +1,4 @@
-"""Primitives of a `foxglove.SceneEntity`, in map coordinates, as bytes."""
+"""Encodes primitives of a `foxglove.SceneEntity`, in map coordinates, as protobuf."""
 
 from __future__ import annotations
 
@@ -27,18 +27,18 @@ class Colour(NamedTuple):
     a: float = 1.0
 
     def faint(self, opacity: float) -> Colour:
-        """Return the same colour, less opaque."""
+        """Return the same colour with another opacity."""
         return self._replace(a=opacity)
 
 
 def entity(name: str, log_time: int, primitives: bytes, facts: dict[str, str] | None = None) -> bytes:
-    """Return a scene entity as a field of a SceneUpdate; `facts` are shown when it is clicked on."""
+    """Return a scene entity as a field of a SceneUpdate; `facts` are shown when a user clicks on the entity."""
     head = wire.time(1, log_time) + wire.text(2, MAP_FRAME) + wire.text(3, name)
     return wire.nested(2, head + facts_fields(facts or {}) + primitives)
 
 
 def facts_fields(facts: dict[str, str]) -> bytes:
-    """Return the fields of a scene entity that hold its facts."""
+    """Return the fields of a scene entity that contain its facts."""
     return b"".join(wire.nested(6, wire.text(1, key) + wire.text(2, value)) for key, value in facts.items())
 
 
@@ -49,18 +49,18 @@ def deletion(log_time: int) -> bytes:
 
 @cache
 def colour_field(number: int, value: Colour) -> bytes:
-    """Return a field that holds a colour."""
+    """Return a field that contains a colour."""
     return wire.nested(number, wire.doubles(*value))
 
 
 def pose(x: float, y: float, z: float, yaw: float = 0.0, *, number: int = 1) -> bytes:
-    """Return a primitive's pose, turned about the vertical: field 1 of all but lines."""
+    """Return a primitive's pose, rotated about the vertical axis: field 1 of all primitives except lines."""
     turned = wire.doubles(math.sin(yaw / 2), math.cos(yaw / 2), first=3)
     return wire.nested(number, wire.nested(1, wire.doubles(x, y, z)) + wire.nested(2, turned))
 
 
 def line(xyz: Points, value: Colour, *, thickness: float, kind: int, pixels: bool = True) -> bytes:
-    """Return a line; `thickness` is in pixels, or metres. Its points are relative to the first, which keeps them exact."""
+    """Return a line. `thickness`: pixels, or metres without `pixels`. Points are relative to the first, which keeps them exact."""
     origin = pose(*map(float, xyz[0]), number=2)
     head = wire.integer(1, kind) + origin + wire.doubles(thickness, first=3) + wire.integer(4, int(pixels))
     return wire.nested(_LINES, head + wire.points(5, xyz - xyz[0]) + colour_field(6, value))
@@ -76,19 +76,19 @@ def ribbon(left: Points, right: Points, value: Colour) -> bytes:
 
 
 def label(x: float, y: float, z: float, content: str, value: Colour) -> bytes:
-    """Return text that faces the viewer and stays as large at any distance."""
+    """Return a text that faces the viewer and has the same size at any distance."""
     look = wire.integer(2, 1) + wire.doubles(_LABEL_PX, first=3) + wire.integer(4, 1)
     return wire.nested(_TEXTS, pose(x, y, z) + look + colour_field(5, value) + wire.text(6, content))
 
 
 def arrow(foot: tuple[float, float, float], yaw: float, length: float, value: Colour) -> bytes:
-    """Return a flat-lying arrow from a point in direction `yaw`."""
+    """Return a horizontal arrow from a point in direction `yaw`."""
     shape = wire.doubles(0.6 * length, 0.15, 0.4 * length, 0.5, first=2)
     return wire.nested(_ARROWS, pose(*foot, yaw) + shape + colour_field(6, value))
 
 
 def cube_without_pose(length: float, width: float, height: float, value: Colour) -> bytes:
-    """Return size and colour of a cube, to which its pose is still to be added."""
+    """Return size and colour of a cube; its pose must be added."""
     return wire.nested(2, wire.doubles(length, width, height)) + colour_field(3, value)
 
 

@@ -1,4 +1,4 @@
-"""Markers of findings and near misses: the boxes of ego and object and a label, at every step of interest.
+"""Markers of findings and near misses: the boxes of ego and object and a label, at every step near the event.
 
 Each message is complete: it removes earlier drawings, so that a viewer that jumps to a time shows the right state.
 """
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 FAIL_COLOUR = Colour(0.90, 0.16, 0.16)
 NEAR_MISS_COLOUR = Colour(1.00, 0.62, 0.05)
 MAX_STEPS: Final = 5_000
-"""So many steps of findings are drawn per drive; of longer ones every second, third ... step."""
-DRAW_BEFORE_NS: Final = 1_000_000_000  # what lasts a moment is drawn a little longer: a person must see it
+"""The most steps of findings that are drawn per drive; if there are more, only every second, third ... step."""
+DRAW_BEFORE_NS: Final = 1_000_000_000  # a short event is drawn longer, so that a person sees it
 DRAW_AFTER_NS: Final = 2_000_000_000
 LABEL_OFFSET_M: Final = 9.0  # beside the ego: the role label is above it, and viewers that follow the ego show both
 MAX_LABEL_LINES: Final = 5
@@ -58,7 +58,7 @@ class Marker(NamedTuple):
 
 
 class MarkerFrame(NamedTuple):
-    """A window at one step: the boxes of ego and object, None where they are not known or there is no object."""
+    """A marker (`window`) at one step, with the boxes of ego and object; None: the box is unknown, or there is no object."""
 
     window: Marker
     ego: Box | None
@@ -66,7 +66,7 @@ class MarkerFrame(NamedTuple):
 
 
 def markers(verdicts: pa.Table, findings: pa.Table, sense_by_rule: Mapping[str, str]) -> list[Marker]:
-    """Return findings over their failing stretch, near misses around their worst step; fails first, by severity."""
+    """Return markers: first of findings by severity, during their failing steps; then of near misses, around their worst step."""
     drawn = [
         (row, FAIL_COLOUR, row["t_start_ns"], max(row["t_end_ns"], row["t_start_ns"] + DRAW_AFTER_NS))
         for row in sorted(findings.to_pylist(), key=lambda row: SEVERITIES.index(row["severity"]))
@@ -83,7 +83,7 @@ def markers(verdicts: pa.Table, findings: pa.Table, sense_by_rule: Mapping[str, 
 
 
 def messages(windows: Sequence[Marker], tracks: Tracks, clock: LogClock) -> list[Message]:
-    """Return the SceneUpdates of all windows: one for every step in a window, and an empty one after each window."""
+    """Return the SceneUpdates of all markers (`windows`): one for every step of a marker, and an empty one after each marker."""
     steps = [_steps(tracks, window) for window in windows]
     every = max(1, -(-sum(len(times) for times, _ in steps) // MAX_STEPS))
     frames_at: dict[int, list[MarkerFrame]] = {}
@@ -103,14 +103,14 @@ def messages(windows: Sequence[Marker], tracks: Tracks, clock: LogClock) -> list
 
 
 def _steps(tracks: Tracks, window: Marker) -> tuple[Times, int | None]:
-    """Return the ego's steps in a window, and the one behind it."""
+    """Return the ego's steps in the time range of a marker, and the next step after it."""
     times = tracks.times(window.ego_id)
     first, end = (int(i) for i in np.searchsorted(times, [window.start_ns, window.end_ns + 1]))
     return times[first:end], int(times[end]) if end < len(times) else None
 
 
 def _boxes(tracks: Tracks, name: str | None, times: Times) -> list[Box | None]:
-    """Return an actor's box at each time; None where its place or heading is not known."""
+    """Return an actor's box at each time; None if its position or heading is unknown."""
     if name is None:
         return [None] * len(times)
     p = tracks.poses_at(name, times)
@@ -121,7 +121,7 @@ def _boxes(tracks: Tracks, name: str | None, times: Times) -> list[Box | None]:
 
 
 def _entities(frames: list[MarkerFrame], time: int) -> Iterator[bytes]:
-    """Yield what is drawn at one step: each pair once, in the colour of its worst window, and one label per ego."""
+    """Yield the entities at one step: each pair of ego and object once, in the colour of its worst marker, and a label per ego."""
     pairs: dict[tuple[str, str | None], MarkerFrame] = {}
     egos: dict[str, list[MarkerFrame]] = {}
     for frame in frames:
@@ -138,7 +138,7 @@ def _entities(frames: list[MarkerFrame], time: int) -> Iterator[bytes]:
 
 
 def _pair(frame: MarkerFrame) -> bytes:
-    """Draw the outlines of both boxes and the line between them."""
+    """Return the outlines of both boxes and the line between them."""
     boxes = [box for box in (frame.ego, frame.object) if box is not None]
     parts = [draw.line(box_corners(box), frame.window.colour, thickness=3.0, kind=foxglove.LINE_LOOP) for box in boxes]
     if len(boxes) == 2:

@@ -1,4 +1,4 @@
-"""The layout that Foxglove and Lichtblick import: `layout.json`, and a line in its plot of margins for each rule of the run."""
+"""Makes the layout that Foxglove and Lichtblick import: `layout.json`, with a line per rule in its plot of margins."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from drivelint.annotate.measures import Series
 
 MAX_SERIES: Final = 10
-"""A person can distinguish this many lines; the margins of further rules still have their topics."""
+"""The most lines of the plot, as a person cannot distinguish more; the margins of further rules are in their topics."""
 _MARGINS: Final = "Plot!drivelint-margins"
 
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from drivelint.annotate.clock import LogClock
 
 MAX_STEPS: Final = 50_000
-"""A drive with more steps has the measures of every second, third ... step: no plot shows more points."""
+"""If a drive has more steps, only every second, third ... step is written: no plot shows more points."""
 
 
 class Series(NamedTuple):
@@ -35,13 +35,13 @@ class Series(NamedTuple):
 
 
 def measure_messages(rows: pa.Table, clock: LogClock) -> list[Message]:
-    """Return the measures of one drive, one message per step; `rows`: of `evidence/first_ego_measures.sql`, in time order."""
+    """Return the measures of one drive, one message per step; `rows`: result of `evidence/first_ego_measures.sql`, in time order."""
     every = max(1, -(-len(rows) // MAX_STEPS))
     return _messages(rows.drop_columns("drive_id").to_pylist()[::every], clock)
 
 
 def margin_messages(rows: pa.Table, clock: LogClock) -> dict[str, list[Message]]:
-    """Return rule -> its margins in time order; `rows`: those of one drive of `evidence/least_margin.sql`."""
+    """Return rule -> its margins in time order; `rows`: one drive's rows of `evidence/least_margin.sql`."""
     found = rows.drop_columns("drive_id").to_pylist()
     by_rule = groupby(found, key=lambda row: str(row["rule_id"]))
     return {
@@ -50,12 +50,12 @@ def margin_messages(rows: pa.Table, clock: LogClock) -> dict[str, list[Message]]
 
 
 def margin_topic(rule_id: str) -> str:
-    """Return the topic of a rule's margins below the prefix; a path in a viewer can have no dots within a topic."""
+    """Return the topic of a rule's margins without the prefix. It has no dots, as viewers do not allow them in the path of a message."""
     return "margins/" + re.sub(r"[^\w/-]", "_", rule_id.replace(".", "/"))
 
 
 def series_of(rows: pa.Table, rules: Iterable[Mapping[str, Any]]) -> set[Series]:
-    """Return the series in rows of `evidence/least_margin.sql` that have margins."""
+    """Return the series that have margins; `rows`: result of `evidence/least_margin.sql`."""
     about = {rule["rule_id"]: rule for rule in rules}
     measured = rows.filter(rows["margin"].is_valid()).select(["rule_id", "profile"])
     keys = measured.group_by(["rule_id", "profile"]).aggregate([]).to_pylist()

@@ -1,4 +1,4 @@
-"""The drive on the earth, for a viewer's map: the ego's positions, and findings, paths of egos and lanes as GeoJSON (RFC 7946)."""
+"""The drive in geographic coordinates, for a viewer's map: the ego's positions; findings, paths of egos and lanes as GeoJSON (RFC 7946)."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from drivelint.road.geo_reference import GeoFrame
 
 STEP_NS: Final = 200_000_000
-"""A position each: the first in every fifth of a second."""
-_SMOOTHED_M: Final = 0.1  # outlines of lanes have no more points than this needs
+"""The interval of positions: the first position in each fifth of a second is written."""
+_SMOOTHED_M: Final = 0.1  # tolerance of the simplified outlines of lanes
 _DECIMALS: Final = 7  # of a degree: a centimetre
 _FINDING: Final = ("finding_id", "rule_id", "profile", "severity", "margin", "unit", "ego_id", "object_id")
 _STYLES: Final = {
@@ -37,7 +37,7 @@ _STYLES: Final = {
 
 
 def location_messages(tracks: Tracks, geo: GeoFrame, clock: LogClock, frame: str) -> list[Message]:
-    """Return the `foxglove.LocationFix` messages of the first ego; `frame`: the name of its frame, empty if it has none.
+    """Return the `foxglove.LocationFix` messages of the first ego; `frame`: its coordinate frame, empty if it has none.
 
     A map's projection has no heights above the ellipsoid: the altitude stays 0, and the type of the covariance 0, unknown.
     """
@@ -54,7 +54,7 @@ def location_messages(tracks: Tracks, geo: GeoFrame, clock: LogClock, frame: str
 def geojson(
     findings: pa.Table, tracks: Tracks, geo: GeoFrame, road: Road | None, sense_by_rule: Mapping[str, str]
 ) -> bytes:
-    """Return a `foxglove.GeoJSON`: the drivable lanes near the paths of all actors, the paths of the egos, the findings."""
+    """Return a `foxglove.GeoJSON` with the drivable lanes near the paths of all actors, the paths of the egos, and the findings."""
     shapes = [*_lanes(road, tracks), *_ways(tracks)]
     degrees = geo.degrees(np.concatenate([points for _, _, points in shapes] or [np.zeros((0, 2))]))
     ends = np.cumsum([len(points) for _, _, points in shapes])[:-1]
@@ -87,7 +87,7 @@ def _lanes(road: Road | None, tracks: Tracks) -> Iterator[tuple[str, str, Floats
 
 
 def _ways(tracks: Tracks) -> Iterator[tuple[str, str, Floats]]:
-    """Yield each ego's way, in pieces where it is not known for a while."""
+    """Yield each ego's path, split where its position is unknown for some time."""
     for name in tracks.egos:
         rows, steps = _thinned(tracks, name), np.diff(tracks.times(name))
         gap = max(MAX_GAP_PERIODS * float(np.median(steps)), 2 * STEP_NS) if len(steps) else 0.0
@@ -97,7 +97,7 @@ def _ways(tracks: Tracks) -> Iterator[tuple[str, str, Floats]]:
 
 
 def _thinned(tracks: Tracks, name: str) -> NDArray[np.intp]:
-    """Return the rows in which an actor has a place, at most one each `STEP_NS` of its time."""
+    """Return the rows in which an actor has a position, at most one per `STEP_NS`."""
     span = tracks.rows_by_actor[name]
     rows = np.arange(span.start, span.stop)
     rows = rows[np.isfinite(tracks.x[rows]) & np.isfinite(tracks.y[rows])]

@@ -1,4 +1,4 @@
-"""Verdicts and findings as messages: JSON with the columns of `verdicts.parquet` and `findings.parquet`, and lines of a log."""
+"""Verdicts and findings as messages: JSON with the columns of `verdicts.parquet` and `findings.parquet`, events, and lines of text."""
 
 from __future__ import annotations
 
@@ -35,23 +35,23 @@ _LEVELS: Final = {"fail": foxglove.WARNING, "error": foxglove.ERROR, "unknown": 
 
 @cache
 def schema(name: str) -> Schema:
-    """Return the MCAP schema record (still without id) of our message: `verdict`, `finding`, `measures` or `margin`."""
+    """Return the MCAP schema record, without an id, of a message of drivelint: `verdict`, `finding`, `measures` or `margin`."""
     content = (folder("schemas") / f"{name}-message.schema.json").read_bytes()
     return Schema(id=0, name=f"drivelint.{name.title()}", encoding="jsonschema", data=content)
 
 
 def verdict_messages(rows: pa.Table, clock: LogClock, t_start_ns: int) -> list[Message]:
-    """Return every verdict at its reference point, else at its worst step, else where its interval begins."""
+    """Return a message per verdict, at its reference point, else at its worst step, else at the start of its interval."""
     return _in_order([_json(row, clock.at(display_time(row, t_start_ns))) for row in rows.to_pylist()])
 
 
 def finding_messages(rows: pa.Table, clock: LogClock) -> list[Message]:
-    """Return every finding where its failing stretch begins."""
+    """Return a message per finding, at its first failing step."""
     return _in_order([_json(row, clock.at(row["t_start_ns"])) for row in rows.to_pylist()])
 
 
 def event_messages(rows: pa.Table, clock: LogClock, sense_by_rule: Mapping[str, str]) -> list[Message]:
-    """Return a `foxglove.Event` for every finding: its failing stretch, and its facts as text."""
+    """Return a `foxglove.Event` for every finding, with its first and last failing step, and its facts as text."""
     events = []
     for row in rows.to_pylist():
         start, end = clock.at(row["t_start_ns"]), clock.at(row["t_end_ns"])
@@ -68,7 +68,7 @@ def event_messages(rows: pa.Table, clock: LogClock, sense_by_rule: Mapping[str, 
 def log_messages(
     verdicts: pa.Table, findings: pa.Table, clock: LogClock, t_start_ns: int, sense_by_rule: Mapping[str, str]
 ) -> list[Message]:
-    """Return `foxglove.Log` lines for a person: each finding once, where it begins; near misses, unknowns and errors."""
+    """Return `foxglove.Log` lines for a person: each finding once, at its start; near misses, unknown verdicts and errors."""
     rows = [{**row, "verdict": "fail", "t_ns": row["t_start_ns"]} for row in findings.to_pylist()]
     rows += [
         {**row, "t_ns": display_time(row, t_start_ns)}
@@ -90,13 +90,13 @@ def _log_line(row: dict[str, Any], time: int, sense_by_rule: Mapping[str, str]) 
 
 
 def display_time(row: dict[str, Any], t_start_ns: int) -> int:
-    """Return the one time (ns, the trace's clock) at which a verdict is shown; the drive's start if it has none."""
+    """Return the time (ns, the trace's clock) at which a verdict is shown; the drive's start if the verdict has no time."""
     times = (row["t_ref_ns"], row["t_worst_ns"], row["t_start_ns"], t_start_ns)
     return int(next(t for t in times if t is not None))
 
 
 def headline(row: dict[str, Any], sense_by_rule: Mapping[str, str]) -> str:
-    """Return a verdict or finding in a few words: what, which rule, which object, how much.
+    """Return a verdict or finding in a few words: outcome, rule, object and numbers.
 
     `sense_by_rule`: rule -> relation that must hold.
     """
@@ -108,7 +108,7 @@ def headline(row: dict[str, Any], sense_by_rule: Mapping[str, str]) -> str:
 
 
 def _subject(row: dict[str, Any]) -> str:
-    """Return the outcome, the rule and the object in words; a finding that stays in too few copies of the drive is only possible."""
+    """Return the outcome, the rule and the object in words; "possible" if too few copies of the drive have the finding."""
     word = "NEAR MISS" if row.get("near_miss") else row.get("verdict", "fail").upper().replace("_", " ")
     possible = "POSSIBLE " if "n_copies" in row and certainty(row) == POSSIBLE else ""
     profile = f" [{row['profile']}]" if row["profile"] else ""
@@ -117,7 +117,7 @@ def _subject(row: dict[str, Any]) -> str:
 
 
 def _json(row: dict[str, Any], log_time: int) -> Message:
-    # viewers refuse a schema that allows null, so a message has no field whose value is unknown
+    # viewers refuse a schema that allows null, so a message leaves out fields with unknown values
     known = {key: value for key, value in row.items() if finite(value) is not None}
     return Message(log_time, msgspec.json.encode(known))
 

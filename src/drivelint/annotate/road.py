@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from drivelint.road.map_reader import MapTables
 
 NEAR_M: Final = 40.0
-"""Lanes within this distance of an actor's path are drawn (the path is kept on a grid of the same size)."""
+"""Lanes within about this distance of an actor's path are drawn (the path is reduced to cells of a grid of this size)."""
 _ROWS: Final = 1 << 31  # more than any map has in one column of the grid
 ASPHALT = Colour(0.27, 0.28, 0.30)
 PAVEMENT = Colour(0.42, 0.40, 0.37)
@@ -36,7 +36,7 @@ _SURFACE_DOWN_M: Final = 0.05  # below the bounds, so that neither flickers thro
 
 
 class Road:
-    """The lanelets of one map; each is encoded once, whichever drives are near it."""
+    """The lanelets of one map; each is encoded once for all drives."""
 
     def __init__(self, environment: MapTables) -> None:
         points, lanelets = environment.tables["lane_point"], environment.tables["lanelet"]
@@ -53,7 +53,7 @@ class Road:
         return b"".join(self._entity(int(i), log_time) for i in self._near(x, y))
 
     def drivable_outlines(self, x: Floats, y: Floats) -> Iterator[tuple[str, Floats]]:
-        """Yield the drivable lanes near some positions: lanelet, closed outline (n, 2), counter-clockwise."""
+        """Yield the drivable lanes near some positions: lanelet id, and closed outline (n, 2), counterclockwise."""
         for i in self._near(x, y):
             name, rows = str(self._names[i]), self._rows[i]
             if self._about[name]["drivable"]:
@@ -72,7 +72,7 @@ class Road:
 
     @cached_property
     def _lanelet_of(self) -> NDArray[np.int64]:
-        """The lanelet of each segment in the spatial index."""
+        """The number of the lanelet of each segment in the spatial index."""
         return np.repeat(np.arange(len(self._rows)), [r.stop - r.start - 1 for r in self._rows])
 
     @cached_property

@@ -1,4 +1,4 @@
-"""One drive's actor states as arrays, and the places of the actors at a given time."""
+"""One drive's actor states as arrays, and the poses of the actors at given times."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class ActorPoses(NamedTuple):
-    """One actor's box at several times, NaN where it is not known: centre, heading; its length and width."""
+    """One actor's box: centre and heading at several times, NaN where they are unknown, and its length and width."""
 
     x: Floats
     y: Floats
@@ -34,7 +34,10 @@ class ActorPoses(NamedTuple):
 
 @dataclass(frozen=True)
 class Tracks:
-    """Rows of `actor_state` in their own order (actor, then time), with NaN for NULL; `actor` indexes the other lists."""
+    """Rows of `actor_state` in their own order (actor, then time), with NaN for NULL.
+
+    `actor`: the index of each row's actor in `names`, `classes`, `sizes` and `is_ego`.
+    """
 
     names: list[str]
     classes: list[str | None]
@@ -59,11 +62,11 @@ class Tracks:
         return {name: slice(int(edges[i]), int(edges[i + 1])) for i, name in enumerate(self.names)}
 
     def times(self, name: str) -> Times:
-        """Return the times of an actor's samples; none if it is not there."""
+        """Return the times of an actor's samples; empty if there is no such actor."""
         return self.t_ns[self.rows_by_actor.get(name, slice(0, 0))]
 
     def poses_at(self, name: str, t_ns: Times) -> ActorPoses:
-        """Return where an actor is at some times, by its last sample not too long before each."""
+        """Return an actor's poses at some times, from its last sample before each time, unless that is too old."""
         span, times = self.rows_by_actor.get(name, slice(0, 0)), self.times(name)
         if not len(times):
             nowhere = np.full(len(t_ns), np.nan)

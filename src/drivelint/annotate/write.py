@@ -1,4 +1,4 @@
-"""One annotated log: the original's bytes, or a generated scene, with the verdicts and their evidence beside it."""
+"""Writes one annotated log: a copy of the log, if it is an undamaged MCAP file, with scenes, verdicts and evidence added."""
 
 from __future__ import annotations
 
@@ -40,11 +40,11 @@ _TRANSFORMS: Final = ("FrameTransform", "FrameTransforms", "TFMessage", "tfMessa
 
 @dataclass(frozen=True)
 class Annotation:
-    """The results of one drive, which are written beside its log.
+    """The results of one drive that are written into its annotated log.
 
-    `result` is that of the drive as if it had been checked alone. `spaces` are the danger spaces in overtakes, `chains` what they
-    lie on. `measures` and `margins` are rows of `evidence/first_ego_measures.sql` and of `evidence/least_margin.sql`. `road` is
-    None without a map. `geo` is None if neither log nor map has a usable reference.
+    `result` is the result as if the drive had been checked alone. `spaces` are the danger spaces in overtakes, `chains` the lane chains
+    along which they lie. `measures` and `margins` are rows of `evidence/first_ego_measures.sql` and of `evidence/least_margin.sql`.
+    `road` is None without a map. `geo` is None if neither log nor map has a usable geographic reference.
     """
 
     trace: Trace
@@ -58,9 +58,9 @@ class Annotation:
 
 
 def write(file: BinaryIO, annotation: Annotation) -> None:
-    """Write the annotated log of one drive; of a damaged one, without its own messages. Same inputs, same bytes.
+    """Write the annotated log of one drive; messages of a damaged log are not copied. The same inputs give the same bytes.
 
-    Errors: `TraceError` where the log cannot be copied.
+    Errors: `TraceError` if the log cannot be copied.
     """
     sink = Sink(file)
     log = annotation.trace.tables["data_log"].to_pylist()[0]
@@ -76,12 +76,12 @@ def write(file: BinaryIO, annotation: Annotation) -> None:
 
 
 def _is_damaged(trace: Trace) -> bool:
-    """Whether the log's records do not follow one another to its end, as who copies them must rely on."""
+    """Return whether the log lacks an end or has unreadable records, so that it cannot be copied."""
     return not {LOST_TIME, "no_footer"}.isdisjoint(trace.tables["quality"]["check_id"].to_pylist())
 
 
 class _Writer:
-    """Adds the channels of one drive to a sink that holds the original, or nothing yet."""
+    """Adds the channels of one drive to a sink, which contains a copy of the log or nothing yet."""
 
     def __init__(self, sink: Sink, annotation: Annotation, t_start_ns: int) -> None:
         self._sink = sink
@@ -96,7 +96,7 @@ class _Writer:
         self._moves = any(schema.name.endswith(_TRANSFORMS) for schema in sink.schemas.values())
 
     def run(self) -> None:
-        """Write every channel, then metadata and attachment."""
+        """Write every channel, then the metadata and the attachment."""
         annotation, tracks, times, start = self._annotation, self._tracks, self._clock, self._start_ns
         verdicts, findings, senses = annotation.result.verdicts, annotation.result.findings, self._sense_by_rule
         boxes, every = actor_boxes.select_boxes(tracks)
@@ -106,7 +106,7 @@ class _Writer:
             lanes = annotation.road.lanes_near(tracks.x[boxes], tracks.y[boxes], at)
             self._write_messages("map", scene, [result_messages.Message(at, lanes)])
         self._write_chunks("scene", scene, lambda channel: actor_boxes.messages(tracks, boxes, times, channel))
-        if not self._moves:  # a log that has transforms of its own gets none from us
+        if not self._moves:  # no transforms are added to a log that has its own
             transform = foxglove.schema("FrameTransform")
             self._write_chunks(
                 "tf", transform, lambda channel: actor_boxes.ego_transforms(tracks, boxes, times, channel)
@@ -182,7 +182,7 @@ class _Writer:
 
 
 def _cut(messages: list[Message]) -> Iterator[tuple[int, list[Message]]]:
-    """Yield messages in groups of about a chunk, each with the number of its first."""
+    """Yield groups of messages, each of about `CHUNK_BYTES`, with the number of its first message."""
     first, size = 0, 0
     for k, message in enumerate(messages):
         size += len(message.data)
@@ -192,6 +192,6 @@ def _cut(messages: list[Message]) -> Iterator[tuple[int, list[Message]]]:
 
 
 def _free_prefix(topics: set[str]) -> str:
-    """Return the first of /drivelint, /drivelint_2, ... under which the log has no topic: it may be annotated already."""
+    """Return the first of /drivelint, /drivelint_2, ... that no topic of the log starts with: the log may already be annotated."""
     names = ("/drivelint" if n == 1 else f"/drivelint_{n}" for n in count(1))
     return next(name for name in names if not any(t == name or t.startswith(f"{name}/") for t in topics))

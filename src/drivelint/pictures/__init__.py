@@ -1,4 +1,4 @@
-"""Pictures from the log's own cameras: the frames nearest to the moments of findings and near misses, downscaled, in a table."""
+"""Pictures from the cameras in a log: the frames nearest to findings and near misses in time, downscaled, in a table."""
 
 from drivelint.pictures.gather import Camerawork
 from drivelint.pictures.shots import chosen_rows, planned_shots

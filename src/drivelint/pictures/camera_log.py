@@ -1,4 +1,4 @@
-"""The frames of a drive's cameras in its MCAP files, found by their times through the indexes of the files: no image is decoded."""
+"""Finds the frames of a drive's cameras in its MCAP files by time, with the indexes of the files and without decoding images."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 _RECORD: Final = struct.Struct("<BQ")
 _MESSAGE: Final = struct.Struct("<HIQQ")
 _CHUNKS_KEPT: Final = 4
-"""Unpacked chunks that are kept: frames of one moment often share one."""
+"""How many unpacked chunks are kept: frames of the same time are often in the same chunk."""
 
 
 class Place(NamedTuple):
@@ -39,9 +39,9 @@ class Place(NamedTuple):
 
 
 def camera_topics(files: Sequence[Path]) -> tuple[str, ...]:
-    """Return the topics of the cameras in MCAP files as far as their indexes name them; those that look ahead first.
+    """Return the topics of the cameras in the indexes of MCAP files; cameras that look ahead come first.
 
-    Of topics that send the frames of one camera, the compressed ones count.
+    If a camera has several topics, the topic with compressed frames is used.
     """
     of_camera: dict[str, str] = {}
     for summary in map(_index, files):
@@ -51,7 +51,7 @@ def camera_topics(files: Sequence[Path]) -> tuple[str, ...]:
 
 
 class CameraLog:
-    """The MCAP files of one drive, open for reading frames. Errors of all: `FrameError` for damaged data."""
+    """The MCAP files of one drive, open for reading frames. Errors of all methods: `FrameError` for damaged data."""
 
     def __init__(self, files: Sequence[Path]) -> None:
         self._stack = ExitStack()
@@ -72,7 +72,7 @@ class CameraLog:
         self._stack.close()
 
     def places(self, topic: str, since_ns: int, until_ns: int) -> list[Place]:
-        """Return where the frames of a camera with log times from `since_ns` to `until_ns` are, in the order of these."""
+        """Return the places of a camera's frames with log times from `since_ns` to `until_ns`, in time order."""
         frame_places: list[Place] = []
         for no, summary in enumerate(self._summaries):
             mine = [number for number, channel in summary.channels.items() if channel.topic == topic]
@@ -86,7 +86,7 @@ class CameraLog:
         return sorted(frame_places)
 
     def frame(self, place: Place) -> Frame:
-        """Return the message at a place."""
+        """Return the frame at a place."""
         records, summary = self._chunk(place.file, place.chunk), self._summaries[place.file]
         try:
             _, length = _RECORD.unpack_from(records, place.at)
@@ -135,7 +135,7 @@ def _index(file: Path) -> Summary:
     try:
         return read_index(file)
     except (OSError, ValueError):
-        return Summary()  # gone, or empty: reading the log reports it
+        return Summary()  # the file is missing or empty: reading the log reports it
 
 
 def _cameras(summary: Summary) -> list[str]:

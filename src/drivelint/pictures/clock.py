@@ -1,4 +1,4 @@
-"""The clock of a drive beside that of its log, and the frame that is nearest in time."""
+"""Converts times of a drive to times of its log, and finds the frame that is nearest in time."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ if TYPE_CHECKING:
     from drivelint.pictures.camera_log import CameraLog, Place
 
 SEARCHED_NS: Final = 2_000_000_000
-"""Frames are looked for so far around a time in the log: one may be recorded up to a second after it was taken."""
+"""Frames are searched up to this far from a time in the log: a frame may be recorded up to a second after it was taken."""
 NEAR_NS: Final = 500_000_000
-"""A frame farther from the requested time does not show it."""
+"""The greatest difference between the requested time and the time of a frame."""
 _SAME_CLOCK_NS: Final = 1_000_000_000
-"""A camera's stamps are of the drive's clock if both differ from the log's by the same up to this."""
+"""A camera's stamp counts as a time of the drive's clock if it differs from the converted log time by at most this."""
 
 
 class DriveClock:
-    """Converts times of a drive to those of its log. `times`: of its frames in both clocks; None: they are one."""
+    """Converts times of a drive to log times. `times`: the times of the drive's frames on both clocks; None: the clocks are the same."""
 
     def __init__(self, times: FrameTimes | None) -> None:
         self._t_ns, ahead = np.zeros(1, np.int64), np.zeros(1, np.int64)
@@ -31,7 +31,7 @@ class DriveClock:
         self._ahead_ns = ahead
 
     def ahead_ns(self, t_ns: int) -> int:
-        """Return by how much the drive's clock is ahead of the log's at a time of the drive: at its nearest frame."""
+        """Return by how much the drive's clock is ahead of the log's clock, at the frame nearest to a time of the drive."""
         at = int(np.clip(np.searchsorted(self._t_ns, t_ns), 1, max(len(self._t_ns) - 1, 1)))
         before, after = (min(i, len(self._t_ns) - 1) for i in (at - 1, at))
         is_after = abs(int(self._t_ns[after]) - t_ns) < abs(int(self._t_ns[before]) - t_ns)
@@ -39,14 +39,14 @@ class DriveClock:
 
     @property
     def is_of_log(self) -> bool:
-        """Whether the times of the drive are those at which the log was written."""
+        """Whether the times of the drive are log times."""
         return not self._ahead_ns.any()
 
 
 def nearest_frame(log: CameraLog, topic: str, clock: DriveClock, t_ns: int) -> tuple[Place, int] | None:
-    """Return the frame of a camera nearest to a time of the drive, and its own time; None: none is near.
+    """Return the frame of a camera nearest to a time of the drive, and the frame's time; None: no frame is near.
 
-    The time of a frame is what its message says, if that is on the drive's clock, else when it was logged. Errors: `FrameError`.
+    The time of a frame is its message's stamp, if that is on the drive's clock, else its log time. Errors: `FrameError`.
     """
     ahead_ns = clock.ahead_ns(t_ns)
     wanted_ns = t_ns - ahead_ns
@@ -56,13 +56,13 @@ def nearest_frame(log: CameraLog, topic: str, clock: DriveClock, t_ns: int) -> t
     times_by_index: dict[int, int] = {}
 
     def off_ns(i: int) -> int:
-        """Return how far a frame is from the time, 0 being best."""
+        """Return the difference between the time of a frame and the requested time."""
         if i not in times_by_index:
             times_by_index[i] = _time_of(log, places[i], clock, ahead_ns)
         return abs(times_by_index[i] - t_ns)
 
     best = min(range(len(places)), key=lambda i: abs(places[i].log_ns - wanted_ns))
-    # messages are logged in the order in which frames are taken: from the nearest by log time it can only be one way
+    # messages are logged in the order in which frames are taken: only one direction leads to nearer frames
     for way in (-1, 1):
         while 0 <= best + way < len(places) and off_ns(best + way) < off_ns(best):
             best += way
@@ -76,5 +76,5 @@ def _time_of(log: CameraLog, place: Place, clock: DriveClock, ahead_ns: int) -> 
     try:
         stamp_ns = log.frame(place).stamp_ns
     except FrameError:
-        return logged_ns  # showing it reports the problem
+        return logged_ns  # decoding the frame reports the problem
     return logged_ns if stamp_ns is None or abs(stamp_ns - logged_ns) > _SAME_CLOCK_NS else stamp_ns

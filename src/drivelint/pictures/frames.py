@@ -1,4 +1,4 @@
-"""The messages of cameras: their types, and the content of one: the time of the frame, and its encoded image.
+"""Reads camera messages of several types: the time of the frame, and its encoded image.
 
 ROS 2: https://docs.ros.org/en/rolling/p/sensor_msgs; Foxglove: https://docs.foxglove.dev/docs/sdk/schemas.
 """
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class FrameError(Exception):
-    """A frame cannot be shown; the text says why."""
+    """A frame cannot be shown; the text states why."""
 
 
 class EncodedImage(NamedTuple):
@@ -40,14 +40,14 @@ class RawImage(NamedTuple):
 
 
 class VideoFrame(NamedTuple):
-    """One frame of a video, which may need those before it."""
+    """One frame of a video, which may need earlier frames for decoding."""
 
     codec: str
     data: bytes
 
 
 class Frame(NamedTuple):
-    """What a message says; `stamp_ns`: when the frame was taken, None: it does not say."""
+    """The content of a camera message; `stamp_ns`: when the frame was taken; None: the message has no time."""
 
     stamp_ns: int | None
     image: EncodedImage | RawImage | VideoFrame
@@ -65,37 +65,37 @@ _KINDS: Final = {
     ("json", "foxglove.CompressedVideo"): "video",
     ("json", "foxglove.RawImage"): "raw",
 }
-"""Encoding and schema of the messages of cameras -> how they are read."""
+"""Encoding and schema of a camera message -> the kind of its content, which decides how it is read."""
 _NO_PICTURES: Final = ("depth", "disparity", "segmentation", "instance", "optical_flow", "mask", "dvs")
 """Words in the topics of images that are not camera pictures."""
 _SIDES: Final = ("left", "right", "rear", "back", "side")
 
 
 def is_camera(channel: Channel, schema: Schema) -> bool:
-    """Whether the messages of a channel are frames of a camera."""
+    """Return whether the messages of a channel are frames of a camera."""
     return has_pictures(channel.topic, schema.name, channel.message_encoding)
 
 
 def has_pictures(topic: str, schema: str, encoding: str) -> bool:
-    """Whether the messages of a topic are frames of a camera. `schema`: its name; `encoding`: of the messages."""
+    """Return whether the messages of a topic are frames of a camera. `schema`: name of their schema; `encoding`: their encoding."""
     is_known = (encoding, short_type_name(schema)) in _KINDS
     return is_known and not any(word in topic.lower() for word in _NO_PICTURES)
 
 
 def ahead_first(topic: str) -> tuple[int, str]:
-    """Return the place of a camera among the others: those that look ahead come first."""
+    """Return the sort key of a camera's topic: cameras that look ahead come first."""
     name = topic.lower()
     is_aside = any(side in name for side in _SIDES)
     return (2 if is_aside else 0 if "front" in name else 1), topic
 
 
 def camera_name(topic: str) -> str:
-    """Return the name of a camera, however its frames are sent."""
+    """Return the name of a camera, which is the same for all topics with its frames."""
     return topic.removesuffix("/compressed").removesuffix("/image_raw").removesuffix("/image") or topic
 
 
 def read_frame(channel: Channel, schema: Schema, data: bytes | memoryview) -> Frame:
-    """Return the content of a message of a camera. Errors: `FrameError` for one that cannot be read."""
+    """Return the content of a camera message. Errors: `FrameError` if the message cannot be read."""
     kind = _KINDS[channel.message_encoding, short_type_name(schema.name)]
     try:
         if channel.message_encoding == "cdr":
@@ -108,7 +108,7 @@ def read_frame(channel: Channel, schema: Schema, data: bytes | memoryview) -> Fr
 
 
 class _Cdr:
-    """Reads the members of one CDR message (XCDR1) in their order."""
+    """Reads the members of one CDR message (XCDR1), one after another."""
 
     def __init__(self, data: bytes | memoryview) -> None:
         self._data = data
@@ -139,9 +139,9 @@ class _Cdr:
 
 def _cdr_frame(kind: str, message: _Cdr) -> Frame:
     stamp_ns = message.stamp()
-    message.text()  # the frame of the coordinates
+    message.text()  # the coordinate frame
     if kind == "ros image":
-        message.text()  # the file says itself of what kind it is
+        message.text()  # the format, which the image file itself contains
         return Frame(stamp_ns, EncodedImage(message.block()))
     if kind == "ros raw":
         height, width, encoding = message.number("I"), message.number("I"), message.text()
@@ -166,7 +166,7 @@ def _foxglove_frame(kind: str, fields: dict[str, Any]) -> Frame:
 
 
 def _protobuf_fields(name: str, described: bytes, data: bytes) -> dict[str, Any]:
-    """Return the fields of a message by their names, those of its time in a dictionary."""
+    """Return field name -> value of a message; its time stamp becomes a dictionary."""
     message = _message_class(name, described).FromString(data)
     fields = {field.name: getattr(message, field.name) for field in message.DESCRIPTOR.fields}
     if "timestamp" in fields:

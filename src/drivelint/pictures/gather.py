@@ -1,4 +1,4 @@
-"""Takes the pictures of a run: remembers the drives with cameras while they are judged, and reads the chosen frames at its end."""
+"""Takes the pictures of a run: stores which judged drives have cameras, and reads the chosen frames at the end of the run."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 class DriveCameras(NamedTuple):
-    """The log of a drive that has cameras: its files, the drive's clock, and the topics of the cameras as they are shown."""
+    """The log of a drive that has cameras: its files, the drive's clock, and the topics of the cameras in the order of importance."""
 
     path: Path
     files: tuple[Path, ...]
@@ -45,13 +45,13 @@ class Trouble(NamedTuple):
 
 
 class Camerawork:
-    """Remembers the drives with cameras of each judged batch; takes the pictures when all are judged."""
+    """Stores the drives with cameras of each judged batch, and takes the pictures when all batches are judged."""
 
     def __init__(self) -> None:
         self._drives: dict[str, DriveCameras] = {}
 
     def __call__(self, _con: duckdb.DuckDBPyConnection, drives: Sequence[Drive], **_part: bool) -> None:
-        """Remember those drives of a batch whose logs have cameras."""
+        """Store the drives of a batch whose logs have cameras."""
         for drive in drives:
             trace = drive.trace
             (format_,) = trace.tables["data_log"]["format"].to_pylist()
@@ -63,11 +63,11 @@ class Camerawork:
 
     @property
     def topics(self) -> dict[str, tuple[str, ...]]:
-        """drive_id -> topics of its cameras, of the drives with cameras."""
+        """drive_id -> topics of its cameras; only drives with cameras."""
         return {drive_id: each.topics for drive_id, each in self._drives.items()}
 
     def take(self, result: Result) -> tuple[pa.Table, list[Trouble]]:
-        """Return the table `picture` of a result, in order, and why pictures are missing, a line for each camera."""
+        """Return the table `picture` of a result, sorted, and why pictures are missing, each reason once per camera."""
         rows: list[dict[str, Any]] = []
         troubles: dict[Trouble, None] = {}
         of_drives = group_rows(planned_shots(result, self.topics), lambda shot: shot.drive_id)
@@ -88,7 +88,7 @@ class Camerawork:
 def _picture_rows(
     log: CameraLog, drive: DriveCameras, shots: Sequence[Shot], troubles: dict[Trouble, None]
 ) -> list[dict[str, Any]]:
-    """Return the rows of the shots of one moment by one camera, in time order, each of another frame."""
+    """Return the rows of the shots of one moment by one camera, in time order; no frame is used twice."""
     from drivelint.pictures.images import small_jpeg
 
     topic = drive.topics[shots[0].camera_no]

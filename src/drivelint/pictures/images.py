@@ -1,4 +1,4 @@
-"""Images as small JPEG files. Pillow is imported here alone, and so only for a log with cameras."""
+"""Converts images to small JPEG files. Only this module imports Pillow, so that it is loaded only for a log with cameras."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 MOST_PX: Final = (640, 480)
-"""Width and height that a picture has at most."""
+"""The greatest width and height of a picture."""
 MOST_BYTES: Final = 30_000
-"""A picture that is larger is encoded with a lower quality; noise may then still be a little larger."""
+"""A larger picture is encoded with a lower quality; a noisy picture may still be a little larger then."""
 _QUALITY, _LESS, _LEAST = 70, 35, 10
 _FORMATS: Final = ("JPEG", "PNG", "WEBP")
 _MOST_PIXELS: Final = 100_000_000
@@ -24,9 +24,9 @@ _PLAIN: Final = {
     "rgb8": ("RGB", "RGB", 3), "bgr8": ("RGB", "BGR", 3), "8UC3": ("RGB", "BGR", 3), "rgba8": ("RGB", "RGBX", 4),
     "bgra8": ("RGB", "BGRX", 4), "mono8": ("L", "L", 1), "8UC1": ("L", "L", 1),
 }  # fmt: skip
-"""Encoding of a raw image -> mode and raw mode of Pillow, bytes of a pixel; OpenCV, whose words 8UC3 are, has blue first."""
+"""Encoding of a raw image -> mode and raw mode of Pillow, bytes per pixel. In 8UC3, a name of OpenCV, blue is the first channel."""
 _LUMA: Final = {"yuv422": 1, "uyvy": 1, "yuv422_yuy2": 0, "yuyv": 0}
-"""Encoding of two bytes a pixel -> which of them is its brightness."""
+"""Encoding with two bytes per pixel -> which byte is the brightness."""
 _COLOUR_FILTERS: Final = {f"bayer_{order}8": order for order in ("rggb", "bggr", "gbrg", "grbg")}
 
 
@@ -41,7 +41,7 @@ class Jpeg(NamedTuple):
 def small_jpeg(image: EncodedImage | RawImage | Image.Image) -> Jpeg:
     """Return an image as a JPEG of at most 640 by 480 pixels, without the metadata of its file. Errors: `FrameError`.
 
-    It is made smaller by a whole number, which costs a third of any other scale.
+    Its sides are divided by a whole number, which takes a third of the time of any other scale.
     """
     try:
         opened = _image(image)
@@ -80,7 +80,7 @@ def _open_image(image: EncodedImage) -> Image.Image:
         times = _times_too_large(picture)
         picture.draft(
             "RGB", (picture.width // times, picture.height // times)
-        )  # a JPEG is decoded no larger than it has to be
+        )  # a JPEG is decoded in the smallest size that is sufficient
     except UnidentifiedImageError as error:
         raise FrameError("an image that is no JPEG, PNG or WebP") from error
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
@@ -89,7 +89,7 @@ def _open_image(image: EncodedImage) -> Image.Image:
 
 
 def _of_pixels(image: RawImage) -> Image.Image:
-    """Return a raw image; one with a colour filter at half its size."""
+    """Return a raw image in Pillow's form; an image with a Bayer filter is returned at half its size."""
     mode, raw_mode, size = _PLAIN.get(image.encoding, ("", "", 2 if image.encoding in _LUMA else 1))
     if not mode and image.encoding not in _LUMA and image.encoding not in _COLOUR_FILTERS:
         raise FrameError(f"an image in {image.encoding!r}, which is not read")

@@ -1,4 +1,4 @@
-"""Chooses the pictures of a run: of the worst moments, so that their number and bytes are bounded whatever the logs hold."""
+"""Chooses the pictures of a run: only those of the worst moments, so that their number and size are limited for any logs."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
 
 SHOTS_NS: Final = {"before": -1_000_000_000, "at": 0, "after": 1_000_000_000}
-"""Shot -> when, from the moment on."""
+"""Shot -> its time relative to the moment."""
 _IN_ORDER: Final = ("at", "before", "after")
 MOST_MOMENTS: Final = 30
 MOST_CAMERAS: Final = 3
 MOST_SHOTS: Final = 120
-"""Pictures of a run."""
+"""The most pictures of a run."""
 
 
 class Shot(NamedTuple):
-    """A picture to be taken: of a moment of a drive, by one of its cameras."""
+    """A picture to take: of a moment of a drive, by one of the drive's cameras."""
 
     drive_id: str
     t_ns: int
@@ -33,16 +33,16 @@ class Shot(NamedTuple):
 
 
 def planned_shots(result: Result, cameras: Mapping[str, Sequence[str]]) -> list[Shot]:
-    """Return the pictures to take of a result, most important first. `cameras`: drive_id -> topics of its cameras.
+    """Return the pictures to take for a result, the most important first. `cameras`: drive_id -> topics of its cameras.
 
-    The first camera shows every moment, then the other cameras the worst ones. So what is left out of a part of the drives is
-    left out of all of them too.
+    The first camera shows every moment, then the other cameras show the worst moments. So a picture that is not planned for a part of
+    the drives is not planned for all drives either.
     """
     return shots_of_moments(_moments(result, cameras), cameras)
 
 
 def shots_of_moments(moments: Sequence[tuple[str, int]], cameras: Mapping[str, Sequence[str]]) -> list[Shot]:
-    """Return the pictures to take of moments (drive and time), the worst first, which all are of drives with cameras."""
+    """Return the pictures to take of moments (drive and time), which are sorted, the worst first. All drives must have cameras."""
     moments = moments[:MOST_MOMENTS]
     first = [Shot(*moment, 0, shot) for shot in _IN_ORDER for moment in moments]
     later_shots = [
@@ -55,14 +55,14 @@ def shots_of_moments(moments: Sequence[tuple[str, int]], cameras: Mapping[str, S
 
 
 def chosen_rows(pictures: pa.Table, planned: Sequence[Shot]) -> pa.Table:
-    """Return the rows of the table `picture` that are planned."""
+    """Return the rows of the table `picture` whose shots are planned."""
     wanted = set(planned)
     keys = zip(*(pictures[name].to_pylist() for name in Shot._fields), strict=True)
     return pictures.filter(pa.array([Shot(*key) in wanted for key in keys], pa.bool_()))
 
 
 def _moments(result: Result, cameras: Mapping[str, Sequence[str]]) -> list[tuple[str, int]]:
-    """Return drive and time of the findings, then of the near misses, the worst first, in drives with cameras."""
+    """Return drive and time of the findings, then of the near misses, each with the worst first; only drives with cameras."""
     if not cameras:
         return []
     rules = {row["rule_id"]: row for row in result.rules.to_pylist()}

@@ -1,4 +1,4 @@
-"""Frames of a video, by PyAV where it is installed: drivelint does not bring it, for its wheels hold codecs under the GPL."""
+"""Decodes frames of a video with PyAV, if it is installed. drivelint does not require PyAV, whose wheels contain codecs under the GPL."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ if TYPE_CHECKING:
     from drivelint.pictures.camera_log import CameraLog, Place
 
 _LOOKED_BACK_NS: Final = 10_000_000_000
-"""A frame that needs no other is looked for so far back."""
+"""How far back a key frame, which can be decoded alone, is searched."""
 _CODECS: Final = {"h264": "h264", "h265": "hevc", "hevc": "hevc", "vp9": "vp9", "av1": "av1"}
 _ENTRY_UNITS: Final = {"h264": lambda head: head & 0x1F == 5, "hevc": lambda head: 16 <= (head >> 1) & 0x3F <= 23}
-"""Codec -> whether the first byte of a unit begins a picture that needs no other."""
+"""Codec -> whether a unit with this first byte belongs to a key frame."""
 
 
 def video_image(log: CameraLog, topic: str, place: Place) -> Image:
-    """Return a frame of a video, decoded from the last one before it that needs no other. Errors: `FrameError`."""
+    """Return a frame of a video, decoded from the last key frame up to it. Errors: `FrameError`."""
     try:
         import av
     except ImportError:
@@ -42,7 +42,7 @@ def video_image(log: CameraLog, topic: str, place: Place) -> Image:
 
 
 def is_entry(frame: VideoFrame) -> bool:
-    """Whether a frame needs no other; False where its codec does not say so by its units."""
+    """Return whether a frame is a key frame; False if the units of its codec do not show this."""
     codec = _CODECS.get(frame.codec.lower(), "")
     if codec not in _ENTRY_UNITS:
         return False
@@ -51,7 +51,7 @@ def is_entry(frame: VideoFrame) -> bool:
 
 
 def _decoded(av: Any, codec: str, data: list[bytes]) -> Image | None:
-    """Return the image of the last of some frames."""
+    """Return the image of the last of several frames; None: no image was decoded."""
     context = av.CodecContext.create(codec, "r")
     image: Image | None = None
     try:

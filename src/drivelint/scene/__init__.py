@@ -1,4 +1,4 @@
-"""Scenes as data: a road, the actors on it and their motion, and the verdicts of a careful examiner, as YAML.
+"""Scenes in YAML, for authors of rules: a road, the actors on it and their motion, and the expected verdicts.
 
-For authors of rules: `drivelint docs scenes`. A scene becomes a map and a log, and is judged as any log is.
+`drivelint docs scenes` explains them. A scene is converted to a map and a log, and judged like any log.
 """

@@ -1,4 +1,4 @@
-"""An actor of a scene: its way, its motion on it, and its columns of `actor_state` in the drawn frame."""
+"""An actor of a scene: its path and its motion, as drawn for right-hand traffic."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from drivelint.scene.road import Road
 
 DT_S: Final = 0.01
-"""Step of the motion, before it is recorded."""
+"""Time step of the motion; the recorder picks samples from these steps."""
 SIZES: Final[dict[str, tuple[float, float, float]]] = {
     "car": (4.5, 1.8, 1.5),
     "van": (5.5, 2.0, 2.2),
@@ -38,13 +38,13 @@ SIZES: Final[dict[str, tuple[float, float, float]]] = {
 """Class -> length, width and height in metres."""
 WITH_LIGHTS: Final = frozenset({"car", "van", "truck", "bus", "motorcycle", "vehicle", "trailer"})
 BRAKING_MPS2: Final = 1.0
-"""From here on the brake lights shine."""
+"""The deceleration above which the brake lights are on."""
 _SLOW_MPS: Final = 0.3
-"""Slower than this no actor turns: the heading stays that of the path."""
+"""Below this speed, the motion does not change the heading."""
 
 
 class Motion(NamedTuple):
-    """Samples of an actor: seconds, metres, radians, m/s, and its acceleration along its heading."""
+    """Samples of an actor: seconds, metres, radians, m/s; `push`: its acceleration along its heading, m/s2."""
 
     t: Floats
     x: Floats
@@ -66,7 +66,7 @@ class Actor:
 
     @property
     def size(self) -> tuple[float | None, float | None, float | None]:
-        """Length, width and height; None: the log does not know."""
+        """Length, width and height in metres; None: unknown in the log."""
         if self.text.size is None:
             kind = self.text.kind or "vehicle"
             if kind not in SIZES:
@@ -76,7 +76,7 @@ class Actor:
         return length, width, height
 
     def motion(self, seconds: float) -> Motion:
-        """Return its motion every DT_S from second 0 on. Errors: `UsageError` for a way or a step that cannot be."""
+        """Return the actor's motion, every `DT_S` from second 0 on. Errors: `UsageError` for an impossible path or step."""
         t: Floats = np.arange(round(seconds / DT_S) + 1).astype(np.float64) * DT_S
         if self.text.track:
             return self._tracked(t)
@@ -135,7 +135,7 @@ class Actor:
         return way_along(self.roads, self._lanes())
 
     def _knots(self) -> tuple[Sequence[Sequence[float]], Sequence[Sequence[float]]]:
-        """Return the knots of speed and offset, those that the steps make among them."""
+        """Return the knots of speed and offset, including the knots that result from the steps."""
         speed: Sequence[Sequence[float]] = _as_knots(self.text.speed)
         offset: Sequence[Sequence[float]] = _as_knots(self.text.offset)
         for step in self.text.do:
@@ -186,7 +186,7 @@ class Actor:
 
 
 def eased(knots: Sequence[Sequence[float]], t: Floats) -> Floats:
-    """Return the value of knots at times: smooth between them without overshooting, level before the first and after the last."""
+    """Return the values at times of a curve through knots: smooth without overshooting, constant before the first and after the last."""
     times, values = _columns(knots)
     if len(times) == 1:
         return np.full(t.shape, values[0])
@@ -196,8 +196,8 @@ def eased(knots: Sequence[Sequence[float]], t: Floats) -> Floats:
 
 
 def _smooth(times: Floats, values: Floats, t: Floats) -> Floats:
-    """Return the values at t, smooth between those at the times, without overshooting them."""
-    from scipy.interpolate import PchipInterpolator  # as dear as all that a check imports
+    """Return the values at `t` of a smooth curve through `values` at `times`, without overshooting."""
+    from scipy.interpolate import PchipInterpolator  # takes as long as all imports of a check
 
     result: Floats = PchipInterpolator(times, values)(t)
     return result
@@ -206,7 +206,7 @@ def _smooth(times: Floats, values: Floats, t: Floats) -> Floats:
 def light_states(
     word_or_changes: str | Sequence[tuple[float, str]], t: Floats, words: Sequence[str], light: str
 ) -> list[str | None]:
-    """Return the word that holds at each time; None where it is unknown. Errors: `UsageError`."""
+    """Return the state of a light at each time; None where it is unknown. Errors: `UsageError`."""
     changes = [(0.0, word_or_changes)] if isinstance(word_or_changes, str) else list(word_or_changes)
     for _, word in changes:
         if word not in {*words, "unknown"}:
@@ -226,7 +226,7 @@ def _columns(knots: Sequence[Sequence[float]]) -> tuple[Floats, Floats]:
 
 
 def _rounded(x: Floats, y: Floats) -> tuple[Floats, Floats]:
-    """Return points every few centimetres of the straight lines between these points."""
+    """Return points every 5 cm along the straight lines between these points."""
     s = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
     fine = np.union1d(np.arange(0.0, s[-1], 0.05), s)
     return np.interp(fine, s, x), np.interp(fine, s, y)

@@ -1,7 +1,7 @@
-"""Reads a file of scenes: YAML with roads by name, and scenes that name one of them.
+"""Reads a file of scenes: YAML with named layouts of roads, and scenes, each of which names a layout.
 
-The whole vocabulary is here; `drivelint docs scenes` explains it. Scenes are drawn as if the right were driven on, with x to the east and
-y to the north; where the left is driven on, the drawing is mirrored.
+The types define all keys and words; `drivelint docs scenes` explains them. Scenes are drawn for right-hand traffic, with x to the east and
+y to the north; for left-hand traffic, the drawing is mirrored.
 """
 
 from __future__ import annotations
@@ -25,27 +25,27 @@ Side = Literal["left", "right"]
 Arm = Literal["west", "north", "east", "south"]
 Numbers = list[float]
 Knots = float | list[Annotated[Numbers, msgspec.Meta(min_length=2, max_length=2)]]
-"""A number that holds throughout, or [second, number] pairs."""
+"""A constant number, or [second, number] pairs."""
 Spans = list[Annotated[Numbers, msgspec.Meta(min_length=2, max_length=2)]]
-"""[first, last] second of each."""
+"""[first second, last second] of each span."""
 
 
 class _Part(
     msgspec.Struct, forbid_unknown_fields=True, frozen=True, kw_only=True, rename=lambda name: name.rstrip("_")
 ):
-    """A mapping of the document: it has the keys of its fields and no others."""
+    """A mapping of the document; only the names of its fields are allowed as keys."""
 
 
 class LaneText(_Part, frozen=True):
-    """A lane in full; most are written as one text: kind, width and outer mark."""
+    """A lane as a mapping. Most lanes are written as a text instead: kind, width and outer mark."""
 
     kind: str = "driving"
     width: float = 3.5
     mark: str | list[tuple[float, str]] | None = None
-    """Of its outer border, from stations of the road on; None: solid at the edge of what is driven on, else broken."""
+    """The mark of the outer border, or [station, mark] pairs; None: solid at the edge of the drivable lanes, broken between them."""
     from_: float = 0.0
     to: float | None = None
-    """Where along the road it is there; None: to the end."""
+    """The lane exists from station `from_` to station `to`; None: to the end of the road."""
 
 
 class Thing(_Part, frozen=True):
@@ -68,66 +68,66 @@ class RoadText(_Part, frozen=True):
     line: list[float | Numbers] = msgspec.field(default_factory=lambda: [1000.0])
     """Pieces: metres of a straight, or [metres, radius]; a positive radius turns left, as drawn."""
     start: Numbers | None = None
-    """x, y and heading in degrees of its start; none: as its neighbour's end says, else the origin, to the east."""
+    """x, y and heading in degrees of the road's start; None: the end of the road `after`, or else the origin, to the east."""
     after: str | None = None
-    """The road that it continues, lane by lane."""
+    """The road that this road continues, lane by lane."""
     kind: str = "rural"
     limit: str | list[tuple[float, str]] | None = "60 mph"
     lanes: list[str | LaneText] = msgspec.field(default_factory=lambda: ["driving 3.5"])
-    """Those that run along the line, from the middle outwards: lanes 1, 2, ..."""
+    """The lanes along the line, from the middle outwards: lanes 1, 2, ..."""
     against: list[str | LaneText] = msgspec.field(default_factory=lambda: ["driving 3.5"])
-    """Those that run against it, from the middle outwards: lanes -1, -2, ..."""
+    """The lanes in the opposite direction, from the middle outwards: lanes -1, -2, ..."""
     middle: str | list[tuple[float, str]] = "broken"
     height: Knots = 0.0
-    """Metres, or [station, metres] pairs, straight between them."""
+    """Metres, or [station, metres] pairs, linear between them."""
     things: list[Thing] = []
 
 
 class Crossing(_Part, frozen=True):
-    """Arms of one kind that lead away from a junction, to compass points."""
+    """A junction whose arms, roads with the same lanes, lead away from it to points of the compass."""
 
     arms: tuple[Arm, ...] = ("west", "north", "east", "south")
     half: float = 12.0
-    """From the middle of the junction to where the arms begin, in metres."""
+    """Metres from the middle of the junction to the start of the arms."""
     road: RoadText = RoadText(line=[200.0], kind="town", limit="30 mph")
     things: dict[str, list[Thing]] = {}
-    """Arm -> the things that only it has."""
+    """Arm -> things on this arm alone."""
 
 
 class Roundabout(_Part, frozen=True):
-    """A ring with arms to compass points."""
+    """A ring with arms to points of the compass."""
 
     arms: tuple[Arm, ...] = ("west", "north", "east", "south")
     radius: float = 20.0
-    """Of the middle of the ring's lane."""
+    """The radius of the centre line of the ring's lane, in metres."""
     road: RoadText = RoadText(line=[150.0], kind="town", limit="30 mph")
 
 
 class Layout(_Part, frozen=True):
-    """Roads that belong together, and how one gets from one to another."""
+    """Roads that belong together, and the turns that connect them."""
 
     traffic: Side | Literal["both"] = "right"
     roads: dict[str, RoadText] = {}
     crossing: Crossing | None = None
     roundabout: Roundabout | None = None
     turns: Literal["all"] | list[str] = []
-    """Lanes that a junction joins, as `west -1 > north 1`; all: every lane that ends where others begin."""
+    """Pairs of lanes that a junction connects, as `west -1 > north 1`; all: each arriving lane with the leaving lanes of other roads."""
 
 
 class Step(_Part, frozen=True):
-    """A step of an actor from a time or place on, instead of knots."""
+    """A change of an actor's motion that begins at a time or a place. Steps can be written instead of knots."""
 
     at: float | None = None
-    """Second."""
+    """The second at which the step begins."""
     place: float | None = None
-    """Metre along its way."""
+    """The metre along the actor's path at which the step begins."""
     speed: float | None = None
     by: float = 2.0
-    """Acceleration or braking up to that speed, m/s2."""
+    """Acceleration or deceleration until `speed` is reached, m/s2."""
     stop: float | None = None
-    """Metre along its way where its front comes to stand, braking with `by`."""
+    """The metre along the actor's path at which its front stops, braking with `by`."""
     lane: int | None = None
-    """The number of the lane beside, of the road that it is on."""
+    """The number of the lane to which the actor changes, on the first road of its path."""
     offset: float | None = None
     over: float = 4.0
     """Seconds that a change of lane or offset takes."""
@@ -138,86 +138,86 @@ class Faults(_Part, frozen=True):
     """The faults of the recorder in the samples of one actor."""
 
     jitter: float = 0.0
-    """Standard deviation of places, and of speeds in m/s; always the same draw."""
+    """Standard deviation of the noise of positions (m) and speeds (m/s); the random numbers are always the same."""
     lost_spans: Spans = msgspec.field(default_factory=list, name="lost")
     turned: Spans = []
-    """The heading is the wrong way round."""
+    """When the heading is turned by 180 degrees."""
     frozen: Spans = []
-    """The place stays, the speed goes on."""
+    """When the recorded position stays the same, although the recorded speed continues."""
     swapped: bool = False
     """Length and width are exchanged."""
     shift: list[Numbers] = []
-    """[first second, last second, metres ahead, metres to the left]: the place jumps."""
+    """[first second, last second, metres ahead, metres to the left]: the position is shifted."""
     unknown: list[Literal["speed", "heading", "size", "width", "class"]] = []
 
 
 class ActorText(_Part, frozen=True):
-    """An actor and its motion. One of `lane`, `route`, `path`, `track` and `place` says where."""
+    """An actor and its motion. One of `lane`, `route`, `path`, `track` and `place` defines where the actor is."""
 
     kind: str | None = "car"
     size: list[float | None] | None = None
-    """Length, width and height; none: those usual for its kind."""
+    """Length, width and height in metres; None: the usual size of its kind."""
     lane: str | None = None
     """A road and the number of a lane: `main 1`."""
     route: list[str] = []
-    """Lanes one after another; the way through a junction is found."""
+    """Successive lanes; the turns through junctions are added."""
     path: list[Numbers] = []
-    """Points x, y that it walks past in straight lines."""
+    """Points [x, y], with straight lines between them."""
     track: list[Numbers] = []
-    """Second, x and y, smooth between."""
+    """Points [second, x, y], with smooth motion between them."""
     place: Numbers | None = None
-    """x, y and heading in degrees of one that stands."""
+    """x, y and heading in degrees of a standing actor."""
     from_: float = 0.0
-    """Metres along its way at second 0, of the middle of its box."""
+    """Position of the middle of its box at second 0, in metres along its path."""
     speed: Knots = 0.0
-    """m/s; between knots it changes evenly."""
+    """m/s; linear between knots."""
     offset: Knots = 0.0
-    """Metres to the left of its way as drawn, which is the side to overtake on; between knots it changes smoothly."""
+    """Metres to the left of its path as drawn, which is the side to overtake on; smooth between knots."""
     do: list[Step] = []
     facing: Literal["ahead", "back"] = "ahead"
-    """back: it is turned round, and what moves goes backwards."""
+    """back: the actor is turned round, so that it drives backwards if it moves."""
     heading: Knots | None = None
     """Degrees, anticlockwise from the east as drawn, for an actor whose heading does not follow from its motion."""
     indicator: str | list[tuple[float, str]] = "off"
     """off, left, right, hazard or unknown, as drawn: left is the side to overtake on."""
     brake: str | list[tuple[float, str]] | None = None
-    """off, on, strong or unknown; none: as it brakes."""
+    """off, on, strong or unknown; None: derived from its deceleration."""
     height: float | None = None
-    """Of the ground under it, metres; none: of the road that it is on."""
+    """Height of the ground under the actor, in metres; None: the height of its road."""
     there: list[float] | None = None
-    """First and last second in the log."""
+    """First and last second of the actor in the log; None: all seconds."""
     faults: Faults = Faults()
 
 
 class SceneText(_Part, frozen=True, kw_only=True):
-    """A scene and the verdicts of a careful examiner."""
+    """A scene and its expected verdicts."""
 
     name: str
     summary: str = msgspec.field(name="what")
     roads: str
     traffic: Side | None = None
-    """Instead of the value of the layout."""
+    """Replaces the value of the layout."""
     seconds: float = 20.0
     rate: float = 10.0
     conditions: dict[str, str] = msgspec.field(default_factory=dict, name="given")
-    """Conditions; dry weather and daylight are given unless it says otherwise, or `unknown`."""
+    """Conditions of the drive. Dry weather and daylight are the default; the value `unknown` removes a condition."""
     lights: dict[str, list[tuple[float, str]]] = {}
     says: list[list[float | str | None]] = []
-    """[second, event] or [second, event, value] that the ego declares."""
+    """Events that the ego declares: [second, event] or [second, event, value]."""
     actors: dict[str, ActorText]
     expect: dict[str, str]
     """Rule -> verdict, a reason code in brackets, and why: `unknown (no_width): the log has no width`."""
     line: int = 0
-    """Its line in the file: filled in, never written."""
+    """The line of the scene in the file; set by the reader, not by an author."""
 
 
 class SceneFile(_Part, frozen=True):
-    """All of a file."""
+    """The content of a file of scenes."""
 
     roads_from: list[str] = []
-    """Files beside it, for their roads."""
+    """Files in the same folder whose roads can be used, too."""
     all_fails: bool = False
-    """Every fail of a stable critical or major rule is listed, and another is a fault."""
+    """Whether a critical or major fail of a stable rule is an error if it is not expected."""
     roads: dict[str, Layout] = {}
     scenes: list[SceneText] = []
 
@@ -263,7 +263,7 @@ def _parsed(path: Path) -> SceneFile:
 
 
 def _parts_with_lines(raw: dict[str, Any], root: Any) -> Iterator[tuple[int, dict[str, Any]]]:
-    """Yield the parts of a document with their lines, and give each scene its line."""
+    """Yield the parts of a document with their lines, and set the key `line` of each scene."""
     for key_node, node in root.value:
         key, value = str(key_node.value), raw[str(key_node.value)]
         if key == "scenes" and isinstance(value, list):

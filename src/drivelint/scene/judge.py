@@ -51,7 +51,7 @@ Key = tuple[str, str]
 
 
 class Expectation(NamedTuple):
-    """The verdict that a rule has to give, with its reason code, and why."""
+    """The expected verdict of a rule, its reason code (None: any), and the author's explanation."""
 
     verdict: str
     code: str | None
@@ -64,17 +64,17 @@ class Verdicts(NamedTuple):
     rows: Mapping[Key, Sequence[Row]]
 
     def verdict(self, key: Key) -> str:
-        """Return the verdict of a rule on a scene: its worst row's."""
+        """Return the verdict of a rule on a scene: the worst verdict of its rows."""
         found = {row["verdict"] for row in self.rows.get(key, ())}
         return next((verdict for verdict in _WORST if verdict in found), NOT_JUDGED)
 
     def codes(self, key: Key) -> set[str]:
-        """Return the reason codes of its rows with that verdict."""
+        """Return the reason codes of the rows with the worst verdict."""
         worst = self.verdict(key)
         return {code for row in self.rows.get(key, ()) if row["verdict"] == worst for code in reason_codes(row)}
 
     def reasons(self, key: Key) -> str:
-        """Return the sentences of those rows."""
+        """Return the reasons, as sentences, of the rows with the worst verdict."""
         worst = self.verdict(key)
         return "; ".join(sorted({row["reason"] for row in self.rows.get(key, ()) if row["verdict"] == worst}))
 
@@ -88,7 +88,7 @@ def reason_codes(row: Row) -> set[str]:
 
 
 def expectation(text: str) -> Expectation:
-    """Read an expectation: `fail: it touches the car`. Errors: `UsageError`."""
+    """Read an expectation, such as `fail: it touches the car`. Errors: `UsageError`."""
     found = _EXPECTATION.fullmatch(text.strip())
     verdict = found["verdict"] if found else text.partition(":")[0]
     if found is None or verdict not in _MET:
@@ -99,7 +99,7 @@ def expectation(text: str) -> Expectation:
 def judge_scenes(
     scenes: Sequence[Scene], rules: Sequence[str], folder: Path, rules_dirs: Sequence[Path] = ()
 ) -> Verdicts:
-    """Write the scenes into an empty folder and judge them as drives of one run. Errors: those of `check`."""
+    """Write the scenes into an empty folder and judge them as drives of one run. Errors: as `check`."""
     for scene in scenes:
         at = folder / scene.name
         at.mkdir(parents=True)
@@ -114,7 +114,7 @@ def judge_scenes(
     )
     try:
         rows = check(options, Silent()).verdicts.to_pylist()
-    except TraceError:  # not one of them could be judged
+    except TraceError:  # no scene could be judged
         rows = []
     rows_by_key: dict[Key, list[Row]] = defaultdict(list)
     names = {scene.name for scene in scenes}
@@ -125,7 +125,7 @@ def judge_scenes(
 
 
 def differences(scene: Scene, verdicts: Verdicts, gating: Container[str]) -> Iterator[str]:
-    """Yield the differences from the expectations of the scene. `gating`: rules whose critical and major fails must be expected."""
+    """Yield each difference between verdicts and expectations. `gating`: rules whose critical and major fails must be expected."""
     expectations = {rule: expectation(text) for rule, text in scene.text.expect.items()}
     for rule, expected_verdict in expectations.items():
         key = scene.name, rule
@@ -152,10 +152,10 @@ def scene_test(
     out: Path | None = None,
     to: Literal["mcap", "parquet"] = "parquet",
 ) -> ExitCode:
-    """Judge the scenes of a file whose names begin with one of `only` (none: all) and `say` a line for each.
+    """Judge the scenes of a file whose names begin with one of `only` (empty: all), and call `say` with the result of each.
 
-    `out`: where the log and the map of each go, a folder of its name. Returns FAILED where a verdict is another than expected.
-    Errors: `UsageError` for what the file says, `OutputError`.
+    `out`: the log and the map of each scene are written there, in a folder with its name. Return FAILED if a verdict is not as expected.
+    Errors: `UsageError` for mistakes in the file, `OutputError`.
     """
     file = document.read(path)
     texts = [text for text in file.scenes if not only or text.name.startswith(tuple(only))]
@@ -184,17 +184,17 @@ def scene_test(
 
 
 def rules_for(texts: Sequence[SceneText], *, all_fails: bool) -> list[str]:
-    """Return the rules by which scenes are judged: those that they name, and with `all_fails` every stable one."""
+    """Return the rules by which scenes are judged: the rules that they name, and with `all_fails` all stable rules."""
     return [*(["status:stable"] if all_fails else []), *sorted({rule for text in texts for rule in text.expect})]
 
 
 def gating_rules(rules: Mapping[str, Rule]) -> frozenset[str]:
-    """Return the rules of which no fail goes unnoticed."""
+    """Return the rules whose critical and major fails must be expected: all stable rules."""
     return frozenset(rule.id for rule in rules.values() if rule.status == "stable")
 
 
 def _no_rule(rule_id: str, rules: Mapping[str, Rule]) -> str:
-    """Return in words that there is no such rule, with the nearest one, or where its pack may be."""
+    """Return the message for an unknown rule, with the most similar known rule, or with how to add its pack."""
     pack, dot, name = rule_id.partition(".")
     packs = {rule.pack for rule in rules.values()}
     if dot and pack not in packs:

@@ -1,4 +1,4 @@
-"""Makes the roads of a layout: its own, those of a crossing or a roundabout, and the turns of junctions between them."""
+"""Makes the roads of a layout: the roads in its text, the roads of a crossing or roundabout, and the turns through junctions."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ _LIMIT: Final = re.compile(r"(\d+(?:\.\d+)?) (mph|km/h|m/s)|no limit")
 
 
 def roads_of(layout: Layout) -> dict[str, Road]:
-    """Return the roads of a layout by name, those of its junctions among them. Errors: `UsageError`."""
+    """Return name -> road of a layout, including the roads through its junctions. Errors: `UsageError`."""
     texts = dict(layout.roads)
     turns: str | Sequence[str] = layout.turns
     if layout.crossing:
@@ -61,7 +61,7 @@ def roads_of(layout: Layout) -> dict[str, Road]:
 
 
 def lane_named(text: str, roads: Mapping[str, Road]) -> tuple[str, int]:
-    """Return the road and the number in `main -1`. Errors: `UsageError`."""
+    """Return the name of the road and the number of the lane in a text such as `main -1`. Errors: `UsageError`."""
     if (found := _LANE.fullmatch(text.strip())) is None:
         raise UsageError(f"{text!r} is no lane: write the name of a road and a number, such as {next(iter(roads))} 1")
     name, number = found[1], int(found[2])
@@ -72,7 +72,7 @@ def lane_named(text: str, roads: Mapping[str, Road]) -> tuple[str, int]:
 
 
 def _in_order(texts: Mapping[str, RoadText]) -> list[str]:
-    """Return the names so that each road stands after the one that it continues."""
+    """Return the names of the roads, each after the road that it continues."""
     order: list[str] = []
     for name in texts:
         chain: list[str] = []
@@ -120,7 +120,7 @@ def _road(name: str, text: RoadText, roads: Mapping[str, Road]) -> Road:
 
 
 def _refuse_strange(name: str, text: RoadText, lanes: Sequence[Lane]) -> None:
-    """Refuse unknown words of things, lanes and marks. Errors: `UsageError`."""
+    """Raise `UsageError` for unknown words of things, lanes and marks."""
     for thing in text.things:
         what, _, rest = thing.kind.partition(" ")
         if what in _FORM_WITH_NAME and not rest:
@@ -174,7 +174,7 @@ def _turn(text: str, roads: Mapping[str, Road]) -> tuple[str, int, str, int]:
 
 
 def _all_turns(roads: Mapping[str, Road]) -> list[tuple[str, int, str, int]]:
-    """Return each driving lane against an arm, which ends at the junction, with each along another, which begins there."""
+    """Return the turns from each driving lane that ends at the junction (number < 0) to each that begins there on another road."""
     ends = [(road.name, lane.number) for road in roads.values() for lane in road.lanes if lane.kind == "driving"]
     arriving = [(name, number) for name, number in ends if number < 0]
     leaving = [(name, number) for name, number in ends if number > 0]
@@ -182,7 +182,7 @@ def _all_turns(roads: Mapping[str, Road]) -> list[tuple[str, int, str, int]]:
 
 
 def _junction_roads(roads: Mapping[str, Road], turns: Sequence[tuple[str, int, str, int]]) -> dict[str, Road]:
-    """Return a road for each turn; those that share an end of a road are of one junction."""
+    """Return a road for each turn; turns that share an end of a road belong to the same junction."""
     group: dict[tuple[str, bool], int] = {}
     for a, n, b, m in turns:
         one, other = (a, n > 0), (b, m < 0)
@@ -229,9 +229,9 @@ def _arms(crossing: Crossing) -> dict[str, RoadText]:
 
 
 def _ring(roundabout: Roundabout) -> dict[str, RoadText]:
-    """Return the arms, and for each the part of the ring that begins behind it, driven anticlockwise."""
+    """Return the arms, and for each arm the part of the ring that begins after it; the ring is driven anticlockwise."""
     ring: dict[str, RoadText] = {}
-    gap = 10.0 / roundabout.radius  # half of what an arm's junction takes of the ring, as an angle
+    gap = 10.0 / roundabout.radius  # half of the part of the ring that an arm's junction occupies, as an angle
     angles = sorted((_COMPASS[arm], arm) for arm in roundabout.arms)
     lane = next(iter(roundabout.road.lanes))
     width = _lane_words(lane)[1] if isinstance(lane, str) else lane.width

@@ -1,4 +1,4 @@
-"""Writes the roads of a scene as OpenDRIVE 1.7; where the left is driven on, the drawing is mirrored."""
+"""Writes the roads of a scene as OpenDRIVE 1.7; for left-hand traffic, the drawing is mirrored."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _LIGHT: Final = ("OpenDRIVE", "1000001")
 
 
 def opendrive(roads: Mapping[str, Road], *, left: bool) -> str:
-    """Return the text of the map. `left`: the left is driven on."""
+    """Return the text of the map. `left`: mirror the drawing for left-hand traffic."""
     return _Writer(roads, left=left).text()
 
 
@@ -29,7 +29,7 @@ class _Writer:
     def __init__(self, roads: Mapping[str, Road], *, left: bool) -> None:
         self.roads = roads
         self.hand = -1 if left else 1
-        """Sign of what is left in the drawing."""
+        """The factor of lateral values: -1 mirrors the drawing for left-hand traffic."""
         self.numbers = {name: n for n, name in enumerate(roads, 1)}
         self.after = {road.after: road.name for road in roads.values() if road.after}
         self.things = 0
@@ -103,7 +103,7 @@ class _Writer:
         return text
 
     def mirrored(self, mark: str) -> str:
-        """A double line in the middle is said from left to right."""
+        """Return the mark of the road's middle; the parts of a double mark are listed from left to right, so mirroring swaps them."""
         return mark if self.hand > 0 else " ".join(reversed(mark.split()))
 
     def lane(self, lane: Lane, lane_id: int, link: str, span: tuple[float, float]) -> str:
@@ -122,7 +122,7 @@ class _Writer:
         )
 
     def over_the_end(self, road: Road, end: str) -> dict[int, int]:
-        """Return a road's lane -> the lane that goes on from it beyond an end, as numbered where it is."""
+        """Return lane number -> number, in the neighbouring road, of the lane that continues it beyond `end`."""
         if road.turn:
             turn = road.turn
             return {1: turn.from_lane if end == "predecessor" else turn.to_lane}
@@ -223,7 +223,7 @@ class _Writer:
 
 
 def _driven_width(road: Road) -> float:
-    """Twice the wider half of what is driven on."""
+    """Return twice the width of the wider side of the road, without sidewalks."""
     halves = [
         sum(lane.width for lane in road.lanes if lane.number * side > 0 and lane.kind != "sidewalk") for side in (1, -1)
     ]
@@ -231,7 +231,7 @@ def _driven_width(road: Road) -> float:
 
 
 def _numbered(lanes: Sequence[Lane]) -> dict[int, int]:
-    """Return the lanes that are there -> how many each is from the middle, with its sign."""
+    """Return lane number -> number without gaps among the given lanes: 1, 2, ... or -1, -2, ... from the middle outwards."""
     found: dict[int, int] = {}
     for side in (1, -1):
         numbers = sorted((lane.number for lane in lanes if lane.number * side > 0), key=abs)

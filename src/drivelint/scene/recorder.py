@@ -1,4 +1,4 @@
-"""Records the actors of a scene as rows of `actor` and `actor_state`, with the faults that the scene gives to the recorder."""
+"""Records the actors of a scene as rows of `actor` and `actor_state`, with the recorder's faults that the scene defines."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _STRONG_MPS2: Final = 6.0
 
 
 def actor_row(actor: Actor) -> dict[str, Any]:
-    """Return the row of `actor`. Errors: `UsageError` for a kind that there is not."""
+    """Return the row of `actor`. Errors: `UsageError` for an unknown kind."""
     kind, faults = actor.text.kind, actor.text.faults
     if kind is not None and kind not in ACTOR_CLASSES:
         raise UsageError(f"actor {actor.name}: kind {kind!r}: {hint(kind, ACTOR_CLASSES)}")
@@ -46,7 +46,7 @@ def actor_row(actor: Actor) -> dict[str, Any]:
 
 
 def states(actor: Actor, seconds: float, rate: float, *, left: bool, with_height: bool, seed: int) -> dict[str, Any]:
-    """Return the columns of an actor's samples, mirrored where the left is driven on."""
+    """Return the columns of an actor's samples, mirrored if `left`, that is, for left-hand traffic."""
     motion = actor.motion(seconds)
     picked = np.arange(0, len(motion.t), round(1 / rate / DT_S))
     t = motion.t[picked]
@@ -84,7 +84,7 @@ def light_rows(lights: Mapping[str, Sequence[tuple[float, str]]], seconds: float
 
 
 def _present_steps(actor: Actor, t: Floats) -> Mask:
-    """Return at which times (n) the recorder has the actor."""
+    """Return for each of n times whether the log has a sample of the actor."""
     first, last = actor.text.there or (-1.0, math.inf)
     present: Mask = (t >= first - 1e-6) & (t <= last + 1e-6)
     for begin, end in actor.text.faults.lost_spans:

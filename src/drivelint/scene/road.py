@@ -1,4 +1,4 @@
-"""Roads, their lanes, and ways along lanes, in the drawn frame: traffic keeps right, x is east, metres, radians."""
+"""Roads, their lanes, and paths along lanes, as drawn: right-hand traffic, x to the east, in metres and radians."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ if TYPE_CHECKING:
     from drivelint.scene.document import Thing
 
 STEP_M: Final = 0.1
-"""Distance of the points of a way."""
+"""Distance between the points of a path along lanes."""
 DRIVABLE_KINDS: Final = ("driving", "exit", "entry", "onRamp", "offRamp", "bidirectional")
 _STRAIGHT_RAD: Final = 1e-6
 
 
 class Pose(NamedTuple):
-    """A place and a heading."""
+    """A position and a heading."""
 
     x: float
     y: float
@@ -34,7 +34,7 @@ class Pose(NamedTuple):
 
 
 class Piece(NamedTuple):
-    """A straight or an arc; or, with `curve`, the cubic (bu, cu, du, bv, cv, dv) of its own frame over 0..1."""
+    """A straight or an arc; with `curve`, a cubic with the coefficients (bu, cu, du, bv, cv, dv) in its own frame, over 0..1."""
 
     length: float
     curvature: float = 0.0
@@ -42,7 +42,10 @@ class Piece(NamedTuple):
 
 
 class Lane(NamedTuple):
-    """A lane: 1, 2, ... along the road from the middle outwards, -1, -2, ... against it; `marks`: (station, its outer border's)."""
+    """A lane. Numbers from the middle outwards: 1, 2, ... along the road, -1, -2, ... against it.
+
+    `marks`: (station, mark) pairs of the outer border.
+    """
 
     number: int
     kind: str
@@ -54,7 +57,7 @@ class Lane(NamedTuple):
 
 @dataclass(frozen=True)
 class Road:
-    """A line of pieces from a pose, and its lanes."""
+    """A line of pieces that starts at a pose, and the lanes along this line."""
 
     name: str
     start: Pose
@@ -66,13 +69,13 @@ class Road:
     heights: Sequence[tuple[float, float]] = ((0.0, 0.0),)
     things: Sequence[Thing] = field(default_factory=tuple)
     after: str | None = None
-    """The road that it continues."""
+    """The road that this road continues."""
     turn: Turn | None = None
-    """The lanes of a junction that it joins; None: it is not part of a junction."""
+    """The lanes that this road connects through a junction; None: the road is not part of a junction."""
 
     @property
     def length(self) -> float:
-        """Of its line."""
+        """The length of the line in metres."""
         return sum(piece.length for piece in self.pieces)
 
     def lane(self, number: int) -> Lane:
@@ -88,7 +91,7 @@ class Road:
         return [0.0, *sorted(ends)]
 
     def aside(self, lane: Lane, s: float) -> float:
-        """Return the offset of a lane's middle from the line, left positive; an absent one as where it is there."""
+        """Return the offset of a lane's middle from the line, left positive; where the lane is absent, the offset at its nearer end."""
         s = min(max(s, lane.start), lane.end - 1e-6)
         sign = int(math.copysign(1, lane.number))
         inner = sum(
@@ -99,7 +102,7 @@ class Road:
         return -sign * (inner + lane.width / 2)
 
     def at(self, s: Floats, aside: Floats | float = 0.0) -> tuple[Floats, Floats, Floats]:
-        """Return x, y and heading at stations, so far to the left of the line; straight on beyond both ends."""
+        """Return x, y and heading at stations, `aside` metres to the left of the line, which is straight beyond both ends."""
         s = np.asarray(s, float)
         x, y, heading = np.zeros(s.shape), np.zeros(s.shape), np.zeros(s.shape)
         pose, begin = self.start, 0.0
@@ -116,21 +119,21 @@ class Road:
         return x - aside * np.sin(heading), y + aside * np.cos(heading), heading
 
     def end(self) -> Pose:
-        """Return where its line ends."""
+        """Return the pose at the end of the line."""
         pose = self.start
         for piece in self.pieces:
             pose = end_of(pose, piece)
         return pose
 
     def lane_end(self, lane: Lane, *, last: bool) -> Pose:
-        """Return where a lane's traffic leaves it (`last`) or enters it, heading with the traffic."""
+        """Return the pose at which traffic leaves a lane (`last`) or enters it, in the direction of the traffic."""
         s = self.length if last == (lane.number > 0) else 0.0
         x, y, heading = (float(v) for v in self.at(np.array(s), self.aside(lane, s)))
         return Pose(x, y, heading if lane.number > 0 else heading + math.pi)
 
 
 class Turn(NamedTuple):
-    """A way through a junction, from the end of one road's lane to the begin of another's."""
+    """A path through a junction, from the end of one road's lane to the beginning of another road's lane."""
 
     junction: int
     from_road: str
@@ -159,7 +162,7 @@ def _along(pose: Pose, piece: Piece, u: Floats) -> tuple[Floats, Floats, Floats]
 
 
 def end_of(pose: Pose, piece: Piece) -> Pose:
-    """Return where a piece that begins there ends."""
+    """Return the pose at the end of a piece that begins at `pose`."""
     return Pose(*(float(v) for v in _along(pose, piece, np.array(piece.length))))
 
 
@@ -174,7 +177,7 @@ def connecting_piece(start: Pose, end: Pose) -> Piece:
         radius = ahead / math.sin(turn) if abs(math.sin(turn)) > 1e-3 else left / 2
         if radius * turn > 0 and abs(radius * (1 - math.cos(turn)) - left) < 0.02:
             return Piece(radius * turn, 1 / radius)
-    # handles as long as those of the cubic that is nearest to an arc
+    # the control points are as far away as those of the cubic that is nearest to an arc
     hold = (
         away if abs(turn) < 0.1 else min(4 * math.tan(abs(turn) / 4) * away / (2 * abs(math.sin(turn / 2))), 2 * away)
     )
@@ -194,7 +197,7 @@ def _in_frame(pose: Pose, x: float, y: float) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class Way:
-    """A line that an actor follows: points every STEP_M, stations from 0, straight on beyond both ends."""
+    """The path of an actor: points with stations from 0; beyond both ends, the path is straight."""
 
     s: Floats
     x: Floats
@@ -204,7 +207,7 @@ class Way:
 
     @classmethod
     def through(cls, x: Floats, y: Floats, heading: Floats | None = None, z: Floats | None = None) -> Way:
-        """Return the way through points, whose headings are those of the line between them unless given."""
+        """Return the path through points; without `heading`, the headings are the directions from point to point."""
         steps = np.hypot(np.diff(x), np.diff(y))
         distinct = np.concatenate([[True], steps > 1e-9])
         x, y, z = x[distinct], y[distinct], np.zeros(int(distinct.sum())) if z is None else z[distinct]
@@ -224,7 +227,7 @@ class Way:
 
 
 def way_along(roads: Mapping[str, Road], lanes: Sequence[tuple[str, int]]) -> Way:
-    """Return the way along the middles of these lanes, each as its traffic drives, with the turns of junctions between them."""
+    """Return the path along the middles of these lanes, in the direction of their traffic, with the turns through junctions."""
     parts = []
     for road_name, number in with_turns(roads, lanes):
         road = roads[road_name]
@@ -245,7 +248,7 @@ def way_along(roads: Mapping[str, Road], lanes: Sequence[tuple[str, int]]) -> Wa
 
 
 def with_turns(roads: Mapping[str, Road], lanes: Sequence[tuple[str, int]]) -> list[tuple[str, int]]:
-    """Return the lanes with the roads through junctions between them."""
+    """Return the lanes, and between them the lanes of the junctions that connect them."""
     found = list(lanes[:1])
     for (before, n), (behind, m) in pairwise(lanes):
         found += [(road.name, 1) for road in roads.values() if road.turn and road.turn[1:] == (before, n, behind, m)]

@@ -1,4 +1,4 @@
-"""A scene: its roads, its actors, and the map and the log that are made of them."""
+"""A scene: its roads, its actors, and the map and the log that are made from them."""
 
 from __future__ import annotations
 
@@ -26,34 +26,34 @@ if TYPE_CHECKING:
     from drivelint.scene.road import Road
 
 USUAL: Final = {"weather": "dry", "light": "day"}
-"""Conditions of a scene that says nothing else."""
+"""The default conditions of a scene."""
 NOT_GIVEN: Final = "unknown"
-"""The word of a condition that the log does not have."""
+"""The value of a condition that the log shall not have."""
 MAP_FILE: Final = "map.xodr"
 
 
 @dataclass(frozen=True)
 class Scene:
-    """A scene on one side of the road."""
+    """A scene for right-hand or left-hand traffic."""
 
     text: SceneText
     layout: Layout
     left: bool
-    """The left is driven on."""
+    """Whether the traffic is left-hand."""
     name: str
 
     @cached_property
     def roads(self) -> dict[str, Road]:
-        """Its roads by name, those of junctions among them. Errors: `UsageError`."""
+        """Name -> road of the scene, including the roads through junctions. Errors: `UsageError`."""
         return roads_of(self.layout)
 
     @property
     def map_text(self) -> str:
-        """Its map as OpenDRIVE."""
+        """The map of the scene as OpenDRIVE."""
         return opendrive(self.roads, left=self.left)
 
     def tables(self) -> dict[str, pa.Table]:
-        """Return the tables of its log, named and typed as in `schemas/model.sql`. Errors: `UsageError`."""
+        """Return the tables of the scene's log, named and typed as in `schemas/model.sql`. Errors: `UsageError`."""
         text = self.text
         if "ego" not in text.actors:
             raise UsageError(f"no actor is called ego: {hint('ego', text.actors)}")
@@ -104,7 +104,7 @@ class Scene:
 
 
 def scenes_of(texts: Sequence[SceneText], layouts: Mapping[str, Layout]) -> list[Scene]:
-    """Return each scene, for both sides of the road where it or its layout asks for both."""
+    """Return the scenes; a scene for both right-hand and left-hand traffic is returned twice, once for each."""
     scenes = []
     for text in texts:
         layout = layouts[text.roads]

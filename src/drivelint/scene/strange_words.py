@@ -1,4 +1,4 @@
-"""Finds the keys and words of a document that its types do not know, and the nearest known ones."""
+"""Finds unknown keys and words in a document, and the most similar known ones."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 _FILLED_IN = "line"
-"""The key that a reader adds."""
+"""The key that the reader of the document adds."""
 
 
 def problems(raw: Any, kind: Any, where: str = "") -> Iterator[str]:
-    """Yield a line for each key of a struct and each word of a Literal that there is not; wrong shapes are left to msgspec."""
+    """Yield a line for each unknown key of a struct and each unknown word of a Literal. Other errors are reported by msgspec."""
     kinds = _alternatives(kind)
     if isinstance(raw, dict):
         for struct in (each for each in kinds if isinstance(each, type) and issubclass(each, msgspec.Struct)):

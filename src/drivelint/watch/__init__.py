@@ -1,5 +1,5 @@
-"""Judges a drive while it is recorded: alarms at once, verdicts at its end.
+"""Judges a drive while it is recorded: alarms at once, verdicts at the end of the drive.
 
-A source gives frames as they come and keeps a recording of them. The last seconds of it, the window, are written as a small log and
-judged by the rules as any log is. What fails in it for the first time is an alarm. When the source has ended, the recording is checked.
+A source provides frames as they arrive, and keeps a recording. The last seconds of the recording, the window, are written as a small log
+and judged like any log. A new failure in the window is an alarm. When the source has ended, the whole recording is checked.
 """

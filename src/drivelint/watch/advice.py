@@ -1,4 +1,4 @@
-"""Advises with which profile an overtake would still be possible. Advice only: nothing is controlled from here."""
+"""Finds the profile with which an overtake would still be possible. This is only advice: nothing is controlled from here."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ _REFERENCE = ("rule_id", "ego_id", "object_id", "t_ref_ns")
 
 
 class Advice:
-    """What was advised so far, each occasion once."""
+    """The advice of a watch: each occasion is reported once."""
 
     def __init__(self, styles: Mapping[str, int]) -> None:
         self._styles = styles
         self._told: set[tuple[object, ...]] = set()
 
     def take(self, window: JudgedWindow, start_ns: int) -> list[dict[str, Any]]:
-        """Return a message for each new occasion that is judged by profile: the most relaxed one that is kept, or none.
+        """Return a message for each new occasion: the most relaxed profile whose verdict is pass, or none.
 
-        A rule of several assertions is one occasion per rule. Where a profile is unknown, so are those more relaxed than the answer.
+        An occasion is a rule, ego, object and reference point, judged by profile. A profile whose verdict is unknown is never the answer.
         """
         occasions: dict[tuple[Any, ...], dict[str, str]] = defaultdict(dict)
         for row in window.verdicts.to_pylist():

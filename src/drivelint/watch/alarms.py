@@ -1,7 +1,7 @@
-"""Finds which findings of a window are new, and stores those that were reported.
+"""Finds the new findings of a window, and stores the reported findings as alarms.
 
-Windows overlap, so a finding is seen again and again. It is the same finding if rule, profile, ego and object are the same, and its
-failing steps follow those that were reported. A reference point that moved a little is the same, too.
+Windows overlap, so one finding appears in many windows. Two findings are the same if rule, profile, ego and object are equal and their
+failing steps overlap or follow each other closely. Reference points are the same if their times differ by at most 2 s.
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ if TYPE_CHECKING:
     from drivelint.watch.judge import JudgedWindow
 
 WARM_UP_NS: Final = 5_000_000_000
-"""In the first seconds of a window that is not the log's beginning the past is missing that some rules need."""
+"""In the first seconds of a window that starts after the log's beginning, some rules lack the past that they need."""
 SAME_REFERENCE_NS: Final = 2_000_000_000
 Key = tuple[str, str, str | None, str | None]
 
 
 @dataclass(eq=False)
 class Alarm:
-    """A finding as it was when it was first seen: a row of `finding`, and until when it was seen to fail.
+    """A reported finding: the row of `finding` when it was first seen, and the time of its last failing step so far.
 
-    `number`: 0.. in the order in which alarms were said. `said_ns`: the newest step that was known then.
+    `number`: 0, 1, ... in the order of the reports. `said_ns`: the newest step that was known at the report.
     """
 
     number: int
@@ -35,27 +35,27 @@ class Alarm:
     said_ns: int
     t_end_ns: int
     is_over: bool = False
-    """Its rule is kept again."""
+    """The rule is kept again."""
     withdrawn_ns: int | None = None
-    """The newest step that was known when a window did not show it any more."""
+    """The newest step when the alarm was withdrawn, since a window lacked the finding; None: it was not withdrawn."""
     finding_ids: list[str] = field(default_factory=list)
-    """The findings of the whole log that it is of, once they are known."""
+    """The findings of the whole log that match the alarm; empty before the whole log is checked."""
     is_early: bool = False
-    """It was seen in the newest frames, before a window with them was judged."""
+    """The finding was seen in the newest frames, before a window with these frames was judged."""
 
     @property
     def from_ns(self) -> int:
-        """The time from which on a window must know the drive to show it."""
+        """The earliest time that a window must contain to show the finding."""
         start, ref = int(self.row["t_start_ns"]), self.row["t_ref_ns"]
         return start if ref is None else min(start, int(ref))
 
     @property
     def latency_s(self) -> float:
-        """Seconds of log time from the first failing step to the step at which it was reported."""
+        """Seconds of log time from the first failing step to the newest step at the report."""
         return float((self.said_ns - self.row["t_start_ns"]) / 1e9)
 
     def is_seen_in(self, row: Row, gap_ns: int) -> bool:
-        """Whether a finding of another window, or of the whole log, is this one or goes on with it."""
+        """Return whether a finding of another window, or of the whole log, is the finding of this alarm or continues it."""
         mine = self.row
         if mine["t_ref_ns"] is not None or row["t_ref_ns"] is not None:
             refs = mine["t_ref_ns"], row["t_ref_ns"]
@@ -65,7 +65,7 @@ class Alarm:
 
 @dataclass(frozen=True)
 class Change:
-    """The changes of a window: new alarms, alarms whose rule is kept again, and alarms that it does not show any more."""
+    """The changes that a window causes: new alarms, alarms whose rule is kept again, and withdrawn alarms."""
 
     new: list[Alarm]
     over: list[Alarm]
@@ -73,14 +73,14 @@ class Change:
 
 
 def key_of(row: Row) -> Key:
-    """Return the values that two findings must share to be one."""
+    """Return the values that are equal in two records of the same finding."""
     return row["rule_id"], row["ego_id"], row["profile"], row["object_id"]
 
 
 class AlarmLog:
     """The alarms of a watch.
 
-    `gaps_ns`: rule -> within how much time failing steps are one finding. `profiles`: those whose findings are alarms.
+    `gaps_ns`: rule -> the longest gap between failing steps of one finding. `profiles`: the profiles whose findings are alarms.
     """
 
     def __init__(self, gaps_ns: Mapping[str, int], profiles: Sequence[str]) -> None:
@@ -90,7 +90,7 @@ class AlarmLog:
         self._standing: list[Alarm] = []
 
     def look(self, rows: Sequence[Row], now_ns: int) -> list[Alarm]:
-        """Take the contacts in the newest frames, up to the step at `now_ns`; return the new alarms."""
+        """Add the contacts in the newest frames, up to the step at `now_ns`, and return the new alarms."""
         new: list[Alarm] = []
         for row in rows:
             same = [each for each in self._standing if self._is_same(each, row)]
@@ -104,10 +104,10 @@ class AlarmLog:
         return new
 
     def take(self, window: JudgedWindow, judged_until_ns: int | None, from_ns: int | None) -> Change:
-        """Take the findings of a window; return the changes.
+        """Add the findings of a window, and return the changes.
 
-        `judged_until_ns`: the last step of the window before; None: this is the first. `from_ns`: the window's own beginning, before which
-        it may have single states that still hold; None: it begins where the log does.
+        `judged_until_ns`: the last step of the previous window; None: this is the first window. `from_ns`: the start of the window, which
+        may also contain earlier states that are still valid; None: the window starts with the log.
         """
         known_from_ns = window.t_start_ns if from_ns is None else max(window.t_start_ns, from_ns) + WARM_UP_NS
         is_first = judged_until_ns is None and from_ns is None
@@ -139,7 +139,7 @@ class AlarmLog:
         return Change(new, over, withdrawn)
 
     def _withdrawn(self, window: JudgedWindow, shown_numbers: Collection[int], known_from_ns: int) -> list[Alarm]:
-        """Return the alarms that a window knows and does not show. A rule that says nothing in it withdraws none."""
+        """Return the alarms whose finding is missing in a window that covers its time. An unknown verdict or an error withdraws none."""
         silent = {
             (row["rule_id"], row["ego_id"], row["profile"])
             for row in window.verdicts.select(["rule_id", "ego_id", "profile", "verdict"]).to_pylist()
@@ -158,7 +158,7 @@ class AlarmLog:
         return found
 
     def _over(self, now_ns: int) -> list[Alarm]:
-        """Return the alarms whose rule is kept again; one that goes on after all can be over once more."""
+        """Return the alarms whose rule is kept again; an alarm that continues later can be over a second time."""
         found = []
         for each in self._standing:
             ended = now_ns > each.t_end_ns + self._gap_ns(each)
@@ -174,9 +174,9 @@ class AlarmLog:
         return key_of(alarm.row) == key_of(row) and alarm.is_seen_in(row, self._gap_ns(alarm))
 
     def hold_against(self, findings: Sequence[Row], verdicts: pa.Table) -> list[Row]:
-        """Assign to each alarm its findings of the whole log; return the findings without an alarm.
+        """Assign the findings of the whole log to the alarms, and return the findings without an alarm.
 
-        Whether it was withdrawn does not matter here: what is a finding in the end was one.
+        Withdrawn alarms are included: the whole log may confirm their findings.
         """
         by_key: dict[Key, list[Alarm]] = {}
         for alarm in self.alarms:
@@ -192,7 +192,7 @@ class AlarmLog:
 
 
 def _with_reference_times(findings: Sequence[Row], verdicts: pa.Table) -> list[Row]:
-    """Return findings with the time of their reference point, `t_ref_ns`, None where they have none."""
+    """Return findings with the time of their reference point, `t_ref_ns`; None without a reference point."""
     columns = ("drive_id", "rule_id", "ego_id", "ref_id")
     rows = verdicts.select([*columns, "t_ref_ns"]).to_pylist()
     times = {tuple(row[c] for c in columns): row["t_ref_ns"] for row in rows if row["ref_id"] is not None}

@@ -1,8 +1,8 @@
-"""Looks at the newest frames for contacts, so that a contact is an alarm long before its window is judged.
+"""Finds contacts in the newest frames, so that a contact is an alarm long before its window is judged.
 
-It reads the log as the windows are read, and takes the boxes' distance by the macro of the rules. It only reports contacts that need no
-more than that: an actor that was never seen apart from the ego may be its trailer or another id of it, and is left to the window. The
-window that has the step confirms the alarm, or withdraws it.
+The frames are read like a window, and the macro of the rules gives the distance of the boxes. A contact is only reported if the actor was
+seen apart from the ego before. Another actor may be the ego's trailer, or the ego under a second id: only the window can decide this.
+The window with the step of the contact confirms the alarm or withdraws it.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 OVERLAP: Final = "ukhc.no-collision"
 JOLT: Final = "ukhc.contact-signature"
 RULES: Final = (OVERLAP, JOLT)
-"""The rules whose alarms come early."""
+"""The rules on contacts, whose alarms can come before a window is judged."""
 LOOK_NS: Final = 1_000_000_000
-"""So long a look is at least: what a reader takes from the steps before is there, and a box that comes near is seen apart first."""
+"""The least length of log that is examined: readers derive values from earlier steps, and boxes must be seen apart before a contact."""
 NEAR_M: Final = 50.0
-"""Centres farther from each other along x or y are not looked at."""
+"""Actors whose centres are farther apart than this along x or y are not examined."""
 _JOLT_PARAMS: Final = ("within_m", "tyre_mps2", "jolt_s", "walk_mps")
 _NOT_KNOWN: Final = ("profile", "t_ref_ns", "lon", "lat", "lanelet_id", "closing_mps")
 
@@ -37,8 +37,8 @@ _NOT_KNOWN: Final = ("profile", "t_ref_ns", "lon", "lat", "lanelet_id", "closing
 class ContactLook:
     """Finds contacts in the newest frames of a log. Memory: the actors that are near an ego.
 
-    `con`: a database with the macros; used by this thread alone. `rules_by_id`: the catalogue's rules. `rule_ids`: those of `RULES` that
-    are looked for. `params`: parameters that were given, by rule.
+    `con`: a database with the macros, used by this thread alone. `rules_by_id`: the catalogue's rules. `rule_ids`: the examined rules, a
+    part of `RULES`. `params`: rule id -> given parameters.
     """
 
     def __init__(
@@ -56,7 +56,7 @@ class ContactLook:
         self._apart: set[tuple[str, str, str]] = set()
 
     def look(self, trace: Trace, since_ns: int | None) -> list[Row]:
-        """Return the breaches at the steps after `since_ns` (None: at all steps), each as a row of `finding` that lasts one step.
+        """Return the contacts at the steps after `since_ns` (None: at all steps), each as a row of `finding` that lasts one step.
 
         `trace`: the newest steps and about `LOOK_NS` before them.
         """

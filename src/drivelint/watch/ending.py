@@ -1,4 +1,4 @@
-"""What follows the live part of a watch: the recording is checked, and the alarms and verdicts are compared with the result."""
+"""The end of a watch: checks the recording, and compares the alarms and verdicts with the result."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ def check_recording(
     progress: Progress,
     interruption: Interruption,
 ) -> Result:
-    """Check the recording like any log. `folder`: where a copy may lie. Errors: as `check`; `TraceError` for an empty recording."""
+    """Check the recording like any log. `folder`: for a copy, if needed. Errors: as `check`; `TraceError` for an empty recording."""
     if not recording.exists() or (recording.is_file() and not recording.stat().st_size):
         raise TraceError(f"{options.source}: nothing was recorded: {watch.watched.broken or 'no frame came'}")
     try:
         result = run.check(run.CheckOptions.judging((str(recording),), options, work), progress, interruption)
     except ChangedLogError:
-        # another program goes on with it: what is there now is checked
+        # another program still writes the recording: a copy of its present content is checked
         copy = folder / recording.name
         shutil.copy(recording, copy)
         result = run.check(run.CheckOptions.judging((str(copy),), options, work), progress, interruption)
@@ -60,7 +60,7 @@ def check_recording(
 
 
 def conclude(result: Result, watch: Watch, emit: Callable[[Message], None]) -> str:
-    """Report the result of the check of the whole log for each alarm, then its verdicts. Return the counts in one sentence."""
+    """Report for each alarm whether the whole log confirms it, then the late and the revised verdicts. Return the counts as a text."""
     missed = watch.alarms.hold_against(result.findings.to_pylist(), result.verdicts)
     for alarm in watch.alarms.alarms:
         emit(messages.confirmed(alarm))

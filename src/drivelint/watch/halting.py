@@ -18,18 +18,18 @@ if TYPE_CHECKING:
 
 _PR_SET_PDEATHSIG: Final = 1
 GRACE_S: Final = 5.0
-"""So long a program may take to end by itself when it is asked to."""
+"""How long a program may take to end before it is killed."""
 
 
 class Child:
-    """A program and all that it starts, in a process group of its own. What it prints goes to stderr: stdout is for data.
+    """A program and all processes that it starts, in a process group of its own. Its output goes to stderr: stdout is for data.
 
-    It is ended if this process dies, for whatever reason.
+    The program is ended if this process dies, for whatever reason.
     """
 
     def __init__(self, command: Sequence[str]) -> None:
         try:
-            self._process = subprocess.Popen(  # noqa: S603 - asked for
+            self._process = subprocess.Popen(  # noqa: S603 - the user gave the command
                 command,
                 stdin=subprocess.DEVNULL,
                 stdout=sys.stderr.fileno(),
@@ -41,18 +41,18 @@ class Child:
 
     @property
     def code(self) -> int | None:
-        """The program's exit code; None: it runs."""
+        """The program's exit code; None: it still runs."""
         return self._process.poll()
 
     def leave(self) -> int | None:
-        """Give the program time to end by itself, then end it. Return its own exit code; None: it did not end by itself."""
+        """Wait until the program ends, but end it after `GRACE_S`. Return its exit code; None: it did not end by itself."""
         with suppress(subprocess.TimeoutExpired):
             return self._process.wait(GRACE_S)
         self.end()
         return None
 
     def end(self) -> None:
-        """Request the group to end, and kill the remaining processes after a while."""
+        """Send SIGTERM to the process group, and kill the processes that remain after `GRACE_S`."""
         self._signal(signal.SIGTERM)
         until = time.monotonic() + GRACE_S
         while self._is_there() and time.monotonic() < until:
@@ -61,8 +61,8 @@ class Child:
         self._process.wait()
 
     def _is_there(self) -> bool:
-        """Whether any process of the group runs: the program may be a shell that has ended before what it started."""
-        self._process.poll()  # a program that was not waited for is there
+        """Return whether any process of the group runs: a shell may end before the processes that it started."""
+        self._process.poll()  # an ended process counts as running until it is polled
         return self._signal(0)
 
     def _signal(self, number: int) -> bool:

@@ -1,4 +1,4 @@
-"""What Ctrl-C ends: the recording while a drive is watched, and then the check of it."""
+"""The effect of Ctrl-C: it ends the recording while a drive is watched, and later the check of the recording."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from drivelint.engine.interruption import Interruption
 
 
 class WatchInterruption:
-    """Two runs in a row, of which one alone is interrupted: the one that goes on when it is asked for first."""
+    """Interrupts only one of two successive parts, the watch and the check: the part that runs at the first request."""
 
     def __init__(self) -> None:
         self.of_watch = Interruption()
@@ -15,10 +15,10 @@ class WatchInterruption:
         self._asked: Interruption | None = None
 
     def begin_check(self) -> None:
-        """From now on an interruption ends the check, unless it has ended the watch."""
+        """Let later interruptions end the check, unless the watch was already interrupted."""
         self._running = self.of_check
 
     def request(self) -> None:
-        """Interrupt the present part; to be called again until it has ended, as that of `Interruption`."""
+        """Interrupt the running part; to be called again until it has ended, like `Interruption.request`."""
         self._asked = self._asked or self._running
         self._asked.request()

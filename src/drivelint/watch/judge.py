@@ -41,13 +41,13 @@ if TYPE_CHECKING:
     from drivelint.watch.options import WatchOptions
 
 PASSES_PER_RELEASE = 64
-"""After so many windows the database gives back the memory that it does not need."""
+"""The number of calls of `judge` after which the database releases unused memory."""
 _LASTING_TABLES = frozenset({"profile", "environment", "map_quality"})
 
 
 @dataclass(frozen=True)
 class JudgedWindow:
-    """What the rules say of a window: rows of `finding`, `verdict` and `course`, and from when to when it is.
+    """The result of a window: its first and last step, and rows of `finding`, `verdict` and `course`.
 
     `courses`: margins over time around findings and near misses; empty if they are not requested.
     """
@@ -64,7 +64,7 @@ class JudgedWindow:
         return sorted({(row["rule_id"], row["reason"]) for row in rows.to_pylist()})
 
     def margins_since(self, t_ns: int | None) -> list[Row]:
-        """Return the steps of the courses after a time, None: all, with columns of `margins.parquet`, in the order of time."""
+        """Return the steps of the courses after `t_ns` (None: all steps) in time order, with columns of `margins.parquet`."""
         same = ("drive_id", "ego_id", "rule_id", "profile", "object_id")
         steps = ("t_ns", "observed", "required", "margin", "holds")
         rows = [
@@ -76,10 +76,10 @@ class JudgedWindow:
 
 
 class WindowJudge:
-    """A database with rules and a map, which judges window after window. Between them only the map stays in it.
+    """Judges window after window in one database, in which only the map stays between windows.
 
-    `rules`: by their ids. Memory does not grow with the number of windows.
-    Errors: `UsageError`, `RuleError`, `MapError` for what was asked, before there is a window.
+    `rules`: rule id -> rule. Memory does not grow with the number of windows.
+    Errors: `UsageError`, `RuleError`, `MapError` for wrong options, rules or maps, before the first window.
     """
 
     def __init__(self, options: WatchOptions) -> None:
@@ -102,7 +102,7 @@ class WindowJudge:
         self._con = self._stack.enter_context(store.workspace(options.memory, threads=1))
         store.insert(self._con, "profile", profile_table(profiles, sorted(asked)))
         self._memory = Memory(self._con, options.memory)
-        # courses are written for those who look at the tables before they are cleared
+        # the session writes courses only if it has an observer
         observers = [_look] if options.warn or options.serve else []
         limits = RuleLimits(options.rule_timeout, task="windows")
         self._session = JudgingSession(
@@ -111,7 +111,7 @@ class WindowJudge:
         self._n_passes = 0
 
     def contact_look(self) -> ContactLook | None:
-        """Return the finder of contacts in frames that no window was judged with; None: no rule of contacts is selected."""
+        """Return an object that finds contacts in frames that are not judged yet; None: no rule on contacts is selected."""
         asked = tuple(rule_id for rule_id in contact.RULES if rule_id in self.rules)
         if not asked:
             return None
@@ -119,9 +119,9 @@ class WindowJudge:
         return ContactLook(self._stack.enter_context(self._con.cursor()), self._known, asked, self._params)
 
     def judge(self, traces: Sequence[Trace], start_ns: int | None = None) -> list[JudgedWindow | DriveLintError]:
-        """Judge windows together; of one that cannot be judged, return why. Errors: faults that are no window's.
+        """Judge windows together; return the result of each, or the error that prevents it. Raise only errors that concern all windows.
 
-        `start_ns`: the log's first step, from which reasons and seconds count; None: the window's.
+        `start_ns`: the log's first step, from which seconds in reasons count; None: each window's first step.
         """
         store.recreate_empty(self._con, [t for t in store.tables_of_lifetime("run") if t not in _LASTING_TABLES])
         self._session.forget_judged()
@@ -162,7 +162,7 @@ class WindowJudge:
 
 
 def _as_of(trace: Trace, start_ns: int | None) -> Trace:
-    """Return a window in which seconds count from the log's first step."""
+    """Return a window whose seconds count from the log's first step."""
     if start_ns is None:
         return trace
     log = with_columns(trace.tables["data_log"], {"t_start_ns": [start_ns]})
@@ -170,4 +170,4 @@ def _as_of(trace: Trace, start_ns: int | None) -> Trace:
 
 
 def _look(con: duckdb.DuckDBPyConnection, _drives: object, /, **_part: bool) -> None:
-    """Do nothing: the call itself is enough."""
+    """Do nothing: the session writes courses if there is any observer."""

@@ -44,7 +44,7 @@ def alarm(alarm: Alarm, rule: Rule, start_ns: int) -> Message:
 
 
 def over(alarm: Alarm, start_ns: int) -> Message:
-    """Return the message of an alarm whose rule is kept again, or is not judged any more."""
+    """Return the message of an alarm whose rule is kept again, or has stopped being judged."""
     return {
         "type": "over",
         "alarm": alarm.number,
@@ -78,12 +78,12 @@ def halt(alarm: Alarm, now_ns: int, start_ns: int) -> Message:
 
 
 def note(text: str) -> Message:
-    """Return the message of something that a person should know."""
+    """Return the message with a note for the user."""
     return {"type": "note", "text": text}
 
 
 def confirmed(alarm: Alarm) -> Message:
-    """Return the message with the result of the check of the whole log for an alarm."""
+    """Return the message that states which findings of the whole log confirm an alarm."""
     return {
         "type": "checked",
         "alarm": alarm.number,
@@ -100,12 +100,12 @@ def settled(row: Row, start_ns: int) -> Message:
 
 
 def verdict(row: Row) -> Message:
-    """Return the message of a row of `verdicts.parquet` that was not said before, with the names that it has there."""
+    """Return the message of a row of `verdicts.parquet` that was not reported before, with the names of its columns."""
     return {"type": "verdict", **{name: _plain(value) for name, value in row.items()}}
 
 
 def revised(row: Row) -> Message:
-    """Return the message of a verdict of the whole log that differs from the reported one; `verdict` None: the whole log has none."""
+    """Return the message of a verdict of the whole log that differs from the reported one; `verdict` None: the log has no such verdict."""
     return {"type": "revised", **{name: _plain(value) for name, value in row.items()}}
 
 

@@ -14,27 +14,27 @@ DEFAULT_IDLE_S = 10.0
 
 @dataclass(frozen=True, kw_only=True)
 class WatchOptions(JudgingOptions):
-    """The options of `watch`, under the names that they have there."""
+    """The options of the command `watch`; each field is named like its option."""
 
     source: str
     command: tuple[str, ...] = ()
-    """Arguments of a program to start, which writes what is watched; empty: it is started elsewhere."""
+    """Name and arguments of a program to start, which writes the source; empty: another program writes it."""
     out: Path | None = None
     window_s: float = DEFAULT_WINDOW_S
     """Seconds of log time that are judged at a time."""
     every_s: float = DEFAULT_EVERY_S
-    """Seconds of log time after which the window is judged again, where the machine keeps up."""
+    """Seconds of log time after which the window is judged again, if the machine is fast enough."""
     idle_s: float | None = DEFAULT_IDLE_S
-    """Seconds without anything new after which the source has ended; None: it is waited for without end."""
+    """Seconds without new data after which the source counts as ended; None: there is no such limit."""
     replay: float | None = None
-    """A finished log is watched as if it were recorded now: seconds of log time per second, 0: as fast as it can be judged."""
+    """The speed at which a finished log is replayed: seconds of log time per second; 0: as fast as it can be judged."""
     halt_on: str | None = None
-    """The least severity of an alarm that halts."""
+    """The least severity of alarms that halt the drive."""
     warn: bool = False
     advise: bool = False
     on: tuple[str, ...] = ()
-    """`SEL=COMMAND`: the command for an alarm of these rules."""
+    """`SEL=COMMAND`: the command to start at an alarm of the rules that SEL selects."""
     serve: str | None = None
     """`HOST:PORT` of the watch's own WebSocket server for viewers."""
     allow_origin: tuple[str, ...] = ()
-    """Origins of pages that may watch at `serve`."""
+    """Origins of web pages that may connect to `serve`."""

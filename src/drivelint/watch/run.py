@@ -1,4 +1,4 @@
-"""The loop of a watch: frames in, the window judged, messages out."""
+"""The loop of a watch: reads frames, judges windows, and emits messages."""
 
 from __future__ import annotations
 
@@ -42,32 +42,33 @@ if TYPE_CHECKING:
     from drivelint.watch.source import Frame, Source
 
 READ_S: Final = 0.05
-"""So long a source is waited for at a time."""
+"""How long one read waits for new frames."""
 FIRST_NS: Final = S
-"""The first window is judged this soon: it shows the ego, and problems of the log or the map."""
+"""The log time after which the first window is judged. It shows the ego, and problems of the log or the map."""
 LOOK_PAUSE_S: Final = 0.05
-"""So long there is no look at new frames after the last one: it would take as much as the windows do."""
+"""The pause after each search for contacts: without it, the searches would take as much time as the windows."""
 GIVES_WAY: Final = 3
-"""Priority of what judges windows (nice): half of what the looks get, so that another program does not stop it."""
+"""The nice value of the thread that judges windows. It gets half as much processor time as the search for contacts; a greater value
+would let other programs stop it."""
 AFTER_CHILD_S: Final = 1.0
-"""After the program that writes the log has ended, the source is read until nothing new came for so long."""
+"""After the program that writes the log has ended, the source is read until no frames have come for this long."""
 
 
 @dataclass
 class Watched:
-    """What the live part of a watch came to."""
+    """The outcome of the live part of a watch."""
 
     n_unjudged: int = 0
     """Windows that could not be read or judged."""
     broken: str | None = None
-    """Why the source ended, if it broke."""
+    """Why the source failed; None: it did not fail."""
     halted: Alarm | None = None
     halted_ns: int | None = None
     busy_s: list[float] = field(default_factory=list)
-    """The seconds that each window took that was judged: for a line on stderr, not for results."""
+    """The seconds that each judged window took: for a line on stderr, not for results."""
 
     def timing_text(self) -> str:
-        """Say how many windows were judged, and how long that took."""
+        """Return in words how many windows were judged, and how long that took."""
         took = sorted(self.busy_s)
         if not took:
             return "no window could be judged"
@@ -75,7 +76,7 @@ class Watched:
 
 
 class _Pass(NamedTuple):
-    """What became of a window, and the seconds that it took."""
+    """The outcome of a window, and the seconds that it took."""
 
     trace: Trace | None
     outcome: JudgedWindow | DriveLintError
@@ -83,7 +84,7 @@ class _Pass(NamedTuple):
 
 
 def _give_way() -> None:
-    """Let the looks at new frames have the machine before this thread and those that it starts, where threads have priorities."""
+    """Lower the priority of this thread and of threads that it starts below that of the search for contacts; on Linux only."""
     if sys.platform == "linux":
         os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), GIVES_WAY)
 
@@ -95,9 +96,9 @@ def egos_of(trace: Trace) -> set[str]:
 
 
 class Watch:
-    """Watches one source. `emit` takes each message; `server` shows the watch to viewers.
+    """Watches one source. `emit` is called with each message; `server` shows the watch to viewers.
 
-    `judge`: one that was made before the source was opened; None: one is made here. It is closed with the watch.
+    `judge`: a judge that was created before the source was opened; None: create one. The watch closes the judge at its end.
     """
 
     def __init__(
@@ -129,7 +130,7 @@ class Watch:
         self._running: Future[_Pass] | None = None
         self._contacts = self._judge.contact_look()
         self._egos: set[str] = set()
-        """Those of the window that was judged last."""
+        """The egos of the window that was judged last."""
         self._looked_until_ns: int | None = None
         self._has_begun = False
         self._unseen: list[Frame] = []
@@ -158,9 +159,9 @@ class Watch:
         self._stack.close()
 
     def watch(self) -> Watched:
-        """Judge until the source has ended, an alarm halts it, or the run is interrupted; then let go of the windows' database.
+        """Judge until the source has ended, an alarm halts it, or the run is interrupted; then close the windows' database.
 
-        A source that breaks has ended; what it recorded is there to be checked. Errors: `UsageError`, faults of the machine.
+        A source that fails counts as ended; its recording can still be checked. Errors: `UsageError`, errors of the machine.
         """
         child = Child(self._options.command) if self._options.command else None
         try:
@@ -195,10 +196,10 @@ class Watch:
             self._judge_what_waits(is_over=is_over)
 
     def _judge_what_waits(self, *, is_over: bool) -> None:
-        """Judge the windows that are due, one after another: while a source goes on by itself, in the background."""
+        """Judge the windows that are due, one after another; in the background, unless the source is in step or has ended."""
         in_step, every_ns = self._source.in_step, round(self._options.every_s * S)
         due_ns = every_ns if self._has_begun else min(every_ns, FIRST_NS)
-        # what came while a window was judged is judged at once, but no step without its past
+        # frames that came while a window was judged are judged in one pass, but each step with `WARM_UP_NS` of its past
         most_ns = every_ns if in_step else self._window_ns - WARM_UP_NS
         while not self._is_stopped:
             if self._running is not None:
@@ -218,7 +219,7 @@ class Watch:
         return self._interruption.requested or self.watched.halted is not None
 
     def _read(self) -> Sequence[Frame] | None:
-        """Return the next frames of the source, and report its notes; a source that breaks has ended."""
+        """Return the next frames of the source, and report its notes; None: the source has ended or failed."""
         try:
             frames = self._source.read(READ_S)
         except TraceError as error:
@@ -251,7 +252,7 @@ class Watch:
                 return
             rows = self._contacts.look(trace, self._looked_until_ns)
         except DriveLintError:
-            return  # too little of a log, or none: the window reports the problem
+            return  # the log is too short or cannot be read: the window reports the problem
         except Exception as error:  # noqa: BLE001 - the windows are still judged
             self._contacts = None
             self._emit(messages.note(f"contacts are only found in windows: {error}"))
@@ -269,7 +270,7 @@ class Watch:
             try:
                 trace = read()
                 outcome = self._judge.judge([trace], start_ns)[0]
-            except Exception as error:  # noqa: BLE001 - whatever a window does to a reader, the recording is still to be checked
+            except Exception as error:  # noqa: BLE001 - whatever error a window causes, the recording must still be checked
                 outcome = refusal_of(Path(self._options.source), error).error
             return _Pass(trace, outcome, time.perf_counter() - begun_s)
 
@@ -281,7 +282,7 @@ class Watch:
         return judge
 
     def _conclude(self, window_pass: _Pass) -> None:
-        """Report new results. A window that cannot be read or judged is reported, and the watch continues."""
+        """Report the new results of a window. If it cannot be read or judged, report this and continue."""
         if isinstance(window_pass.outcome, DriveLintError):
             self._doubt_of(window_pass.outcome)
             return
@@ -296,7 +297,7 @@ class Watch:
             self._server.publish_margins(window_pass.outcome.margins_since(since_ns))
 
     def _doubt_of(self, error: DriveLintError) -> None:
-        """Say why the log cannot be judged as far as it is known; once, whatever numbers are in it."""
+        """Report why the log so far cannot be judged; not again for a text that differs only in its numbers."""
         self.watched.n_unjudged += 1
         text = str(error).replace(str(self._folder), "...")
         if (what := re.sub(r"\d+", "0", text)) != self._doubt:
@@ -318,7 +319,7 @@ class Watch:
             self._emit(messages.settled(row, self._start_ns))
         change = self.alarms.take(judged_window, self._judged_until_ns, from_ns)
         self._judged_until_ns = judged_window.t_end_ns
-        # what came while the window was judged is known, too
+        # frames that came while the window was judged are known, too
         now_ns = judged_window.t_end_ns + self._window.behind_ns
         for alarm in change.withdrawn:
             self._emit(messages.withdrawn(alarm, now_ns, self._start_ns))
@@ -335,7 +336,7 @@ class Watch:
                 self._emit(message)
 
     def _say(self, alarms: Sequence[Alarm], now_ns: int, start_ns: int) -> None:
-        """Say the alarms of a window, start commands with them, and halt if one of them halts."""
+        """Report alarms, start the commands for them, and halt the source if one of the alarms requires it."""
         said = []
         for alarm in alarms:
             said.append(messages.alarm(alarm, self._judge.rules[alarm.row["rule_id"]], start_ns))
@@ -352,7 +353,7 @@ class Watch:
             self._source.halt()
 
     def _halts(self, alarm: Alarm) -> bool:
-        """Whether an alarm halts: at or above the severity that was asked for, by a rule that is no draft."""
+        """Return whether an alarm halts the source: its severity is at least `halt_on`, and its rule is no draft."""
         least, severity = self._options.halt_on, alarm.row["severity"]
         if least is None or self._judge.rules[alarm.row["rule_id"]].status != "stable":
             return False

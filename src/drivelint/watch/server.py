@@ -1,6 +1,6 @@
-"""The running watch, for viewers: a Foxglove WebSocket server with the road users, the alarms and the margins.
+"""Shows the running watch to viewers: a Foxglove WebSocket server with the road users, the alarms and the margins.
 
-Topics and messages are those of annotated logs where these have them, so that the same layout shows both.
+Where annotated logs have the same content, topics and messages are the same, so that one layout shows both.
 """
 
 from __future__ import annotations
@@ -41,16 +41,16 @@ _ALARM: Final = {
     "latency_s": ("number", "seconds of the log between both"),
     "status": ("string", "that of the rule"),
 }
-"""What an alarm says beside the columns of a finding."""
+"""The fields of an alarm in addition to the columns of a finding."""
 
 
 @contextmanager
 def open_server(
     address: str | None, rule_ids: Iterable[str], origins: Sequence[str] = ()
 ) -> Iterator[LiveServer | None]:
-    """Serve viewers at `HOST:PORT` as long as the block runs; None: nobody. `:PORT` is this machine alone.
+    """Serve viewers at `HOST:PORT` as long as the block runs; None: start no server. `:PORT` serves this machine alone.
 
-    `rule_ids`: those that are judged; `origins`: of the pages that may watch. Errors: `UsageError`.
+    `rule_ids`: the judged rules; `origins`: the origins of web pages that may connect. Errors: `UsageError`.
     """
     if address is None:
         yield None
@@ -66,9 +66,9 @@ def open_server(
 
 
 class LiveServer:
-    """Serves viewers at `ws://host:port`. Port 0: any that is free. `rule_ids`: the rules that may have margins.
+    """Serves viewers at `ws://host:port`. Port 0: any free port. `rule_ids`: the rules that may have margins.
 
-    `origins`: of the pages that may watch. Errors: `UsageError` where the extra is missing, or where the server cannot start there.
+    `origins`: the origins of web pages that may connect. Errors: `UsageError` if the extra `live` is missing or the server cannot start.
     """
 
     def __init__(self, host: str, port: int, rule_ids: Iterable[str] = (), origins: Sequence[str] = ()) -> None:
@@ -88,7 +88,7 @@ class LiveServer:
         self._channels: dict[str, int] = {}
         self._clock: LogClock | None = None
         scene, transform = foxglove_messages.schema("SceneUpdate"), foxglove_messages.schema("FrameTransform")
-        # announced at once, so that a viewer can choose them before anything happens
+        # announced at once, so that a viewer can subscribe before the first message
         self._scene = self._channel(f"{PREFIX}/scene", "protobuf", scene)
         self._transform = self._channel(f"{PREFIX}/tf", "protobuf", transform)
         self._alarms = self._channel(ALARMS, "json", alarm_schema())
@@ -101,12 +101,12 @@ class LiveServer:
         return self._server.port
 
     def notes(self) -> list[str]:
-        """Return notes on the address and on refused clients, once."""
+        """Return the new notes on the address and on refused clients."""
         found, self._notes = self._notes, []
         return [*found, *self._server.notes()]
 
     def publish_scene(self, trace_window: Trace) -> None:
-        """Show the boxes of all actors at the newest step of a window, instead of those shown before."""
+        """Publish the boxes of all actors at the newest step of a window; they replace the boxes shown before."""
         states = trace_window.tables["actor_state"]
         if not len(states):
             return
@@ -131,7 +131,7 @@ class LiveServer:
             self._log(self._margins(row["rule_id"]), told, row["t_ns"])
 
     def close(self) -> None:
-        """Send viewers away. May be called twice."""
+        """Disconnect the viewers and end the server. May be called twice."""
         self._server.close()
 
     def _margins(self, rule_id: str) -> int:
@@ -143,19 +143,19 @@ class LiveServer:
         return number
 
     def _log(self, channel: int, message: Mapping[str, Any], t_ns: int) -> None:
-        # viewers refuse a schema that allows null, so a message has no field whose value is unknown
+        # viewers refuse a schema that allows null, so a message leaves out fields with unknown values
         known = {name: value for name, value in message.items() if finite(value) is not None}
         self._server.publish(channel, msgspec.json.encode(known), self._times(t_ns).at(t_ns))
 
     def _times(self, t_ns: int) -> LogClock:
-        """Return the clock of the log times: one for the whole watch, which no time before 0 can have begun."""
+        """Return the clock of the log times. It is kept for the whole watch, unless a time would be negative with it."""
         if self._clock is None or t_ns + self._clock.shift_ns < 0:
             self._clock = of_trace(t_ns)
         return self._clock
 
 
 def alarm_schema() -> Schema:
-    """Return the schema of alarms: the columns of a finding that they have, and their own."""
+    """Return the schema of alarms: the columns of a finding, and the fields of `_ALARM`."""
     finding = result_messages.schema("finding")
     content = json.loads(finding.data)
     own = {name: {"type": kind, "description": told} for name, (kind, told) in _ALARM.items()}
@@ -170,9 +170,9 @@ def alarm_schema() -> Schema:
 
 
 def _contents(chunks: Iterable[RecordChunk]) -> Iterator[bytes]:
-    """Yield the messages of chunks of which each holds one record: without its head."""
+    """Yield the message of each chunk, which contains one record, without the record's header."""
     none = np.zeros(0, np.uint64)
     head = actor_boxes.message_headers(0, none, none.astype(np.int64), 0).shape[1]
     for records, index in chunks:
-        assert len(index) == 1  # noqa: S101 - they are of one step
+        assert len(index) == 1  # noqa: S101 - all boxes are of one step
         yield bytes(records[head:])

@@ -1,4 +1,4 @@
-"""Reports verdicts whose windows have closed, and compares them with those of the whole log."""
+"""Finds verdicts that can be reported before the log's end, and compares them with the verdicts of the whole log."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ if TYPE_CHECKING:
     from drivelint.watch.judge import JudgedWindow
 
 SETTLE_NS: Final = 15 * S
-"""So long after the end of what is judged a verdict is said: an overtake is judged by how it ended, too, and that takes seconds."""
+"""The delay from the end of an episode to the report of its verdict: the end of an overtake, which takes seconds, is judged, too."""
 KEY: Final = ("rule_id", "ego_id", "profile", "object_id", "t_ref_ns", "t_start_ns")
-"""What two verdicts of a log must have in common to be one; numbers of occurrences and reference points count from the log's beginning."""
+"""The columns that identify a verdict. Numbers of occurrences and reference points do not: they depend on where the window starts."""
 VALUE_COLUMNS: Final = (
     "verdict", "severity", "t_end_ns", "t_worst_ns", "reason_code", "reason", "observed", "required", "margin", "unit", "near_miss",
     "n_expected", "n_judged", "x_m", "y_m", "lanelet_id",
 )  # fmt: skip
-"""The columns that a message has beside the key."""
+"""The columns of a message in addition to the key."""
 _COMPARED: Final = tuple(name for name in VALUE_COLUMNS if name != "reason")
 Key = tuple[Any, ...]
 
@@ -32,10 +32,10 @@ class SettledVerdicts:
         self._said: dict[Key, Row] = {}
 
     def take(self, window: JudgedWindow, known_from_ns: int) -> list[Row]:
-        """Return the verdicts of a window that have settled in it and were not reported yet.
+        """Return the verdicts of a window that are settled and were not reported yet.
 
-        `known_from_ns`: from then on the window knows all that the whole log does. An episode that may have begun before has no verdict
-        yet, nor has one that may go on. An unknown is said at the end: what is missing may still come.
+        `known_from_ns`: the time from which the window has the same data as the whole log. A verdict is not settled if its episode may have
+        begun earlier or may continue. Unknown verdicts are reported at the end, since the missing data may still come.
         """
         found = []
         for key, row in _single(window.verdicts).items():
@@ -52,9 +52,9 @@ class SettledVerdicts:
         return len(self._said)
 
     def hold_against(self, verdicts: pa.Table) -> tuple[list[Row], list[Row]]:
-        """Return the verdicts of the whole log that were not reported, and those that were reported differently.
+        """Return the verdicts of the whole log that were not reported, and those that differ from the report.
 
-        A verdict that was said and that the whole log does not have is among the latter, as it was said, its verdict None.
+        A reported verdict that the whole log does not have is in the second list, with `verdict` None.
         """
         judged = [row for row in verdicts.to_pylist() if row["verdict"] != "not_applicable"]
         there = {_key(row) for row in judged}
@@ -65,7 +65,7 @@ class SettledVerdicts:
 
 
 def _single(verdicts: pa.Table) -> dict[Key, Row]:
-    """Return the verdicts that apply, by their key, without those that share a key, such as overtakes with unknown beginnings."""
+    """Return key -> verdict for all applicable verdicts whose key is unique; overtakes with unknown beginnings may share a key."""
     rows: dict[Key, list[Row]] = {}
     for row in verdicts.to_pylist():
         if row["verdict"] != "not_applicable":

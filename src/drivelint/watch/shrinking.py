@@ -14,14 +14,14 @@ if TYPE_CHECKING:
     from drivelint.watch.judge import JudgedWindow
 
 SLOPE_NS: Final = 1_000_000_000
-"""The last second shows how fast a margin shrinks."""
+"""The time before the newest step from which the rate of change of a margin is computed."""
 
 MOST_S: Final = 60.0
-"""A margin that would be used up later does not shrink: the numbers of a constant one differ in their last digits."""
+"""A margin that would reach 0 later than this counts as constant: the last digits of a constant margin may vary."""
 
 
 class ShrinkingMargins:
-    """The near misses of a watch that were reported; each again only after its rule was kept with a margin."""
+    """The margins that were reported as shrinking; each is reported again only after it was above `near_margin`."""
 
     def __init__(self) -> None:
         self._open: dict[Key, int] = {}

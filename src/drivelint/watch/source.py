@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
 
 class Frame(NamedTuple):
-    """A piece of a log that came at one time: only its source knows its content.
+    """A piece of a log that arrived at one time; only its source can read its content.
 
-    `t_ns`: its time on a clock of the log that advances as the drive does, in nanoseconds. `size`: about how many bytes it takes.
-    What must be known of earlier frames, such as a map that only the first message has, its source adds to a window.
+    `t_ns`: the time in nanoseconds, on a clock of the log that advances with the drive. `size`: the approximate number of bytes.
+    A window may need data of earlier frames, such as a map in the first message; the source adds these data.
     """
 
     t_ns: int
@@ -28,7 +28,7 @@ class Frame(NamedTuple):
 
 
 class Source(Protocol):
-    """Gives the frames of one drive while it is recorded."""
+    """Provides the frames of one drive while it is recorded."""
 
     @property
     def recording(self) -> Path:
@@ -37,18 +37,18 @@ class Source(Protocol):
 
     @property
     def in_step(self) -> bool:
-        """Whether the source waits until it is asked for more, as a simulation that is stepped from here does."""
+        """Whether the source advances only when it is read, like a simulation that drivelint steps."""
         ...
 
     @property
     def is_due(self) -> bool:
-        """Whether such a source has given all steps until the next window is to be judged; never of one that goes on by itself."""
+        """Whether a source in step has provided all steps up to the next window; always False for other sources."""
         ...
 
     def read(self, timeout_s: float) -> Sequence[Frame] | None:
-        """Return the frames that came since, in the order of the recording; none after so many seconds; None: it has ended.
+        """Return the frames since the last call, in the order of the recording; empty after `timeout_s`; None: the source has ended.
 
-        Errors: `TraceError` for what is no log of this kind.
+        Errors: `TraceError` if the data are no log of this kind.
         """
         ...
 
@@ -57,41 +57,41 @@ class Source(Protocol):
         ...
 
     def window(self, frames: Sequence[Frame], folder: Path, options: IngestOptions) -> Callable[[], Trace]:
-        """Return what reads a log of these frames alone, as the recording is read, and may do so in another thread.
+        """Return a function that reads a log of these frames alone, as the recording is read. Another thread may call the function.
 
-        `folder` may be written to. Windows begin one after another as the drive does. Both raise what `read_trace` does, while there is
-        too little to judge.
+        `folder`: for temporary files. Each window starts no earlier than the previous one. While there is too little to judge, this
+        method and the function raise the errors of `read_trace`.
         """
         ...
 
     def latest(self, frames: Sequence[Frame], folder: Path, options: IngestOptions) -> Trace:
-        """Return a log of the newest frames alone, read as the recording is read; what holds of earlier ones may be missing.
+        """Return a log of the newest frames alone, read as the recording is read. Data that only earlier frames contain may be missing.
 
-        Errors: as above.
+        Errors: as `window`.
         """
         ...
 
     def halt(self) -> None:
-        """End what makes the frames, where it can be ended from here."""
+        """End the program that produces the frames, if drivelint can end it."""
         ...
 
     def close(self) -> None:
-        """Finish the recording and let go of files, sockets and simulations. May be called twice."""
+        """Finish the recording, and close files, sockets and simulations. May be called twice."""
         ...
 
 
 class WrittenWindows(ABC):
-    """The part of a source that writes windows as small logs of its format."""
+    """Base class of sources that write windows as small logs of their format."""
 
     is_due = False
     window_name: str
-    """Name of the file of a window, which determines the format."""
+    """File name of a window; its suffix determines the format."""
 
     @abstractmethod
     def write_window(self, frames: Sequence[Frame], path: Path, *, latest: bool = False) -> None:
-        """Write a log of these frames alone, as one that `read_trace` reads as it reads the recording.
+        """Write a log of these frames alone, which `read_trace` reads like the recording.
 
-        `latest`: what holds of earlier frames may be left out.
+        `latest`: data that only earlier frames contain may be left out.
         """
 
     def window(self, frames: Sequence[Frame], folder: Path, options: IngestOptions) -> Callable[[], Trace]:

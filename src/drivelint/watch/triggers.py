@@ -21,28 +21,28 @@ if TYPE_CHECKING:
     from drivelint.catalogue import Rule
 
 LEAST_S: Final = 1.0
-"""Seconds between two starts of one command; alarms between them are not passed on."""
+"""The least number of seconds between two starts of one command; alarms in between are not passed on."""
 MOST_RUNNING: Final = 4
-"""Runs of one command at a time."""
+"""The most simultaneous runs of one command."""
 
 
 @dataclass
 class Trigger:
-    """A command and the rules whose alarms start it. It gets the alarms on stdin, a line of JSON each, and no shell."""
+    """A command and the rules whose alarms start it. It runs without a shell and gets the alarms on stdin, one line of JSON each."""
 
     rules: frozenset[str]
     command: Sequence[str]
     n_run: int = 0
     n_left_out: int = 0
-    """Alarms for which it was not started."""
+    """Alarms for which the command was not started."""
     _n_told: int = 0
     _last_s: float = -LEAST_S
     _running: list[subprocess.Popen[bytes]] = field(default_factory=list)
 
     def pull(self, alarms: Sequence[Mapping[str, Any]]) -> str | None:
-        """Start the command once for the alarms of its rules, unless it was started just now.
+        """Start the command once for the alarms of its rules, unless it is started too often.
 
-        Return a note: an error, or the number of alarms that were left out before.
+        Return a note: an error, or the number of alarms that were left out before; None: there is nothing to report.
         """
         mine = [alarm for alarm in alarms if alarm["rule_id"] in self.rules]
         if not mine:
@@ -54,11 +54,11 @@ class Trigger:
             return None
         self._last_s = now
         try:
-            process = subprocess.Popen(self.command, stdin=subprocess.PIPE, stdout=sys.stderr.fileno())  # noqa: S603 - asked for
+            process = subprocess.Popen(self.command, stdin=subprocess.PIPE, stdout=sys.stderr.fileno())  # noqa: S603 - given by the user
         except OSError as error:
             return f"--on: {self.command[0]}: cannot be started: {error.strerror or error}"
         assert process.stdin is not None  # noqa: S101 - it is a pipe
-        with suppress(BrokenPipeError, OSError):  # it need not read
+        with suppress(BrokenPipeError, OSError):  # the command need not read stdin
             process.stdin.writelines(json.dumps(alarm).encode() + b"\n" for alarm in mine)
             process.stdin.close()
         self._running.append(process)
@@ -66,7 +66,7 @@ class Trigger:
         return self.left_out()
 
     def left_out(self) -> str | None:
-        """Return in words how many alarms were left out since the last note; None: none."""
+        """Return in words how many alarms were left out since the last note; None if there are none."""
         n, self._n_told = self.n_left_out - self._n_told, self.n_left_out
         if not n:
             return None
@@ -74,14 +74,14 @@ class Trigger:
         return f"--on: {self.command[0]} was not started for {plural(n, 'alarm')}: it starts {limits}"
 
     def close(self) -> None:
-        """Wait a little for those that still run, then leave them alone."""
+        """Wait up to `LEAST_S` for each command that still runs; after that, leave it running."""
         for process in self._running:
             with suppress(subprocess.TimeoutExpired):
                 process.wait(LEAST_S)
 
 
 def parse(texts: Sequence[str], rules_by_id: Mapping[str, Rule], selected: Mapping[str, Rule]) -> list[Trigger]:
-    """Read `SEL=COMMAND`, the command as a list of words. Errors: `UsageError`, also where no selected rule is meant."""
+    """Return the triggers of texts `SEL=COMMAND`. Errors: `UsageError` for a wrong text, or if SEL names no selected rule."""
     found = []
     for text in texts:
         names, sign, words = text.partition("=")

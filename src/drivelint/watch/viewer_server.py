@@ -1,7 +1,7 @@
 """A Foxglove WebSocket server: announces channels, and sends their messages to the subscribers.
 
-Source: foxglove/ws-protocol, docs/spec.md; the subprotocol foxglove.sdk.v1 has the same messages. A page of another site is refused by its
-`Origin`, which Foxglove's own server does not look at; and a connected client does not keep the program from ending.
+Source: foxglove/ws-protocol, docs/spec.md; the subprotocol foxglove.sdk.v1 has the same messages. Unlike Foxglove's own server, it checks
+the `Origin` of web pages and refuses pages of other sites. A connected client does not prevent the end of the program.
 """
 
 from __future__ import annotations
@@ -31,30 +31,30 @@ if TYPE_CHECKING:
 
 SUBPROTOCOLS: Final = (Subprotocol("foxglove.sdk.v1"), Subprotocol("foxglove.websocket.v1"))
 BACKLOG: Final = 1024
-"""Messages that are kept for a viewer that does not keep up; then the oldest go."""
+"""The most messages that wait for a slow viewer; beyond that, the oldest are dropped."""
 FLUSH_S: Final = 0.5
 CLOSE_S: Final = 0.5
-"""So long the end waits until viewers have what was published, and until they have said that they leave."""
+"""At the end, the server waits `FLUSH_S` for the delivery of all messages, and `CLOSE_S` for the closing handshake."""
 MOST_BYTES: Final = 1 << 16
-"""A viewer only subscribes; a longer message is not from a viewer."""
+"""The longest message that is accepted: viewers only send subscriptions, which are shorter."""
 _MESSAGE: Final = struct.Struct("<BIQ")
 _MESSAGE_DATA: Final = 1
 
 
 def _silent() -> logging.Logger:
-    """Return a silent logger: connections are not reported, and stderr has only our words."""
+    """Return a disabled logger: connections are not reported, and stderr has only drivelint's messages."""
     logger = logging.getLogger("drivelint.viewers")
     logger.disabled = True
     return logger
 
 
 class _Viewer:
-    """A connected client, and its waiting messages."""
+    """A connected client, and the messages that wait for it."""
 
     def __init__(self, connection: ServerConnection) -> None:
         self.connection = connection
         self.subscriptions: dict[int, int] = {}
-        """By its own number: the channel."""
+        """The client's number of a subscription -> the channel."""
         self.waiting: deque[bytes | str] = deque(maxlen=BACKLOG)
         self.news = asyncio.Event()
 
@@ -71,9 +71,9 @@ class _Viewer:
 
 
 class ViewerServer:
-    """Serves viewers at `ws://host:port` in a thread of its own. Port 0: any that is free.
+    """Serves viewers at `ws://host:port` in a thread of its own. Port 0: any free port.
 
-    `allowed_origins`: origins of pages that may connect. Errors: `OSError` where the server cannot start there.
+    `allowed_origins`: origins of web pages that may connect. Errors: `OSError` if the server cannot start.
     """
 
     def __init__(self, host: str, port: int, allowed_origins: Sequence[str] = ()) -> None:
@@ -98,7 +98,7 @@ class ViewerServer:
         return int(next(iter(self._server.sockets)).getsockname()[1])
 
     def add_channel(self, topic: str, encoding: str, schema: Schema) -> int:
-        """Announce a channel, and return its number. `schema`: as a log has it."""
+        """Announce a channel, and return its number. `schema`: as in an MCAP log."""
         text = base64.b64encode(schema.data) if schema.encoding == "protobuf" else schema.data
         self._n_channels += 1
         channel = {
@@ -113,21 +113,21 @@ class ViewerServer:
         return self._n_channels
 
     def publish(self, channel: int, content: bytes, log_ns: int) -> None:
-        """Send a message to those who subscribed to its channel."""
+        """Send a message to the viewers that subscribe to its channel."""
         self._call(self._put, channel, content, log_ns)
 
     def n_subscriptions(self, channel: int) -> int:
-        """Return how many viewers get a channel."""
+        """Return how many viewers subscribe to a channel."""
         return sum(channel in viewer.subscriptions.values() for viewer in list(self._viewers))
 
     def notes(self) -> list[str]:
-        """Return notes on clients that tried to connect, once."""
+        """Return the new notes on refused clients."""
         found = list(self._notes)
         del self._notes[: len(found)]  # the thread may have added more
         return found
 
     def close(self) -> None:
-        """Send viewers away; it does not wait for those who do not go. May be called twice."""
+        """Disconnect the viewers and end the server, even if a viewer does not respond. May be called twice."""
         if self._thread.is_alive():
             with suppress(TimeoutError):
                 asyncio.run_coroutine_threadsafe(self._stopped(), self._loop).result(FLUSH_S + 2 * CLOSE_S)
@@ -170,7 +170,7 @@ class ViewerServer:
             await asyncio.wait(left, timeout=CLOSE_S)
 
     def _refusal(self, connection: ServerConnection, request: Request) -> Response | None:
-        """Return the answer to a page of another site; None: the client may connect. A program that is no page has no origin."""
+        """Return the refusal of a web page of another site; None: the client may connect. Other programs send no origin."""
         origins = request.headers.get_all("Origin")
         if all(origin.rstrip("/").casefold() in self._allowed for origin in origins):
             return None
@@ -191,7 +191,7 @@ class ViewerServer:
             async for said in connection:
                 self._understand(viewer, said)
         except WebSocketException:
-            pass  # it has left, and did not say so
+            pass  # the client disconnected without a closing handshake
         finally:
             self._viewers.discard(viewer)
             sending.cancel()
@@ -199,7 +199,7 @@ class ViewerServer:
                 await sending
 
     def _understand(self, viewer: _Viewer, message: str | bytes) -> None:
-        """Handle a request of a viewer; unknown words are ignored."""
+        """Handle a request of a viewer; unknown requests are ignored."""
         with suppress(ValueError, KeyError, TypeError):
             request = json.loads(message)
             if request["op"] == "subscribe":

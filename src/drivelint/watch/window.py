@@ -1,4 +1,4 @@
-"""Keeps the frames of the last seconds of a log, and those that came and are not judged yet."""
+"""Keeps the frames of the last seconds of a log, and newer frames that are not judged yet."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from drivelint.watch.source import Frame
 
 S: Final = 1_000_000_000
-"""Nanoseconds of a second."""
+"""One second in nanoseconds."""
 
 
 class _PlacedFrame(NamedTuple):
@@ -24,10 +24,10 @@ class _PlacedFrame(NamedTuple):
 
 
 class Window:
-    """The frames of the last `length_ns` of a log, and those that wait.
+    """The frames of the last `length_ns` of a log, and the waiting frames: newer ones that `advance` has not reached.
 
-    Where the log's clock jumps by more than `length_ns`, forwards or back, the window begins anew: nothing is judged across the jump.
-    Memory: the frames of the window and those that wait.
+    If the log's clock jumps by more than `length_ns`, forwards or backwards, the window starts again: nothing is judged across the jump.
+    Memory: the frames of the window and the waiting frames.
     """
 
     def __init__(self, length_ns: int) -> None:
@@ -38,14 +38,14 @@ class Window:
         self._latest_ns = 0
         """The latest time of all frames on the clock without jumps."""
         self._newest_ns: int | None = None
-        """The same of the frames in the window."""
+        """The latest time of the frames in the window on the clock without jumps."""
         self.is_whole = True
         """No frame of the log has left the window yet."""
         self.jumps: list[tuple[int, int]] = []
-        """The time before and after a jump of the log's clock, for the note about it."""
+        """The times before and after each jump of the log's clock, for notes about it."""
 
     def add(self, frames: Iterable[Frame]) -> None:
-        """Take frames that came; they wait until `advance`."""
+        """Add new frames, which wait for `advance`."""
         for frame in frames:
             last = self._last
             step_ns = 0 if last is None else frame.t_ns - last.frame.t_ns
@@ -59,7 +59,7 @@ class Window:
 
     @property
     def behind_ns(self) -> int:
-        """How much log time waits to be judged."""
+        """The log time that is not judged yet."""
         if not self._waiting:
             return 0
         since_ns = self._waiting[0].at_ns if self._newest_ns is None else self._newest_ns
@@ -86,11 +86,11 @@ class Window:
 
     @property
     def frames(self) -> list[Frame]:
-        """The frames in the order in which they came."""
+        """The frames of the window in the order of their arrival."""
         return [placed.frame for placed in self._frames]
 
     def since(self, t_ns: int) -> list[Frame]:
-        """Return the newest frames in the order in which they came, those that wait too: all after the last one that is older."""
+        """Return the frames after the last frame older than `t_ns`, including waiting frames, in the order of their arrival."""
         found: list[Frame] = []
         for placed in chain(reversed(self._waiting), reversed(self._frames)):
             if placed.frame.t_ns < t_ns:

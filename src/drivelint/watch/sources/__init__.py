@@ -1,4 +1,4 @@
-"""One module per kind of source, and the names by which each is opened."""
+"""The kinds of sources, one module per kind, and the names that open them."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
     from drivelint.watch.source import Source
 
 UDP_PORT: Final = 48198
-"""The port that esmini sends OSI to."""
+"""The port to which esmini sends OSI messages."""
 
 
 class SourceOptions(NamedTuple):
-    """`folder`: where a recording is written, if what is watched is none itself. `idle_s`, `every_s`: see `open_source`."""
+    """The options of a source, see `open_source`."""
 
     folder: Path
     idle_s: float | None
@@ -28,23 +28,23 @@ class SourceOptions(NamedTuple):
 
 
 class Opener(NamedTuple):
-    """A kind of source: the pattern of its names, in small letters, their description for a user, and the function that opens one."""
+    """A kind of source: the pattern of its names in lower case, their description for users, and the function that opens a source."""
 
     pattern: str
     label: str
     open: Callable[[str, SourceOptions], Source]
 
     def accepts(self, name: str) -> bool:
-        """Say whether a name is of this kind."""
+        """Return whether a name is of this kind."""
         return fnmatchcase(name.lower(), self.pattern)
 
 
 def open_source(name: str, folder: Path, *, idle_s: float | None, every_s: float = 0.5) -> Source:
-    """Open the source of this name.
+    """Open the source with this name.
 
-    `folder`: where its recording is written, unless it is a file that grows and so is the recording itself. `idle_s`: it ends when nothing
-    has come for so many seconds; None: it does not. `every_s`: what a simulation is advanced by at a time.
-    Errors: `UsageError` for a name of no known kind, or one that lacks its port.
+    `folder`: for the recording, unless the source is a growing file, which is the recording itself. `idle_s`: seconds without data after
+    which the source ends; None: no limit. `every_s`: simulated seconds per window.
+    Errors: `UsageError` for a name of no known kind, or an address without a port.
     """
     for opener in OPENERS:
         if opener.accepts(name):
@@ -100,7 +100,7 @@ def _sumo(name: str, options: SourceOptions) -> Source:
 
 
 def _address(name: str, usual_port: int | None) -> tuple[str, int]:
-    """Return host ("": none is named) and port. Errors: `UsageError`."""
+    """Return the host ("" if the name has none) and the port. Errors: `UsageError`."""
     try:
         parts = urlsplit(name)
         port = usual_port if parts.port is None else parts.port
@@ -124,4 +124,4 @@ OPENERS: Final[tuple[Opener, ...]] = (
     Opener("*.sumocfg", "a .sumocfg (SUMO is started and stepped)", _sumo),
     Opener("-", "- (OSI on standard input)", _standard_input),
 )
-"""The first that accepts a name opens it. Each imports its module when it is asked, so that `drivelint --help` stays fast."""
+"""The first opener that accepts a name is used. Openers import their modules when they are called, so that `drivelint --help` is fast."""

@@ -1,4 +1,4 @@
-"""This module reads a socket or a pipe in a thread of its own, so that nothing is lost between two reads."""
+"""Reads a socket or a pipe in a thread of its own, so that no data are lost between two reads."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 MOST_WAITING_BYTES: Final = 256 << 20
-"""If more than this is waiting, no more is read. Then the writer waits, or drops the oldest."""
+"""If more bytes than this wait to be taken, the thread does not read. Then the writer waits, or drops its oldest data."""
 TICK_S: Final = 0.1
 """The interval at which a wait for a socket checks whether to stop."""
 
@@ -21,7 +21,7 @@ TICK_S: Final = 0.1
 class BackgroundReader(Generic[T]):
     """Runs a generator in a thread, and keeps its items until they are taken.
 
-    The generator yields something empty at least every `TICK_S`, so that it can be stopped. `size` returns the number of bytes of an item.
+    The generator yields an empty item at least every `TICK_S`, so that it can be stopped. `size` returns the number of bytes of an item.
     """
 
     def __init__(
@@ -39,12 +39,12 @@ class BackgroundReader(Generic[T]):
         self._bytes = 0
         self._error: BaseException | None = None
         self._ended = self._stopped = False
-        # a daemon: an interrupted watch must end even where a read never returns
+        # a daemon: an interrupted watch must end even if a read never returns
         self._thread = Thread(target=self._run, name="drivelint-source", daemon=True)
         self._thread.start()
 
     def take(self, timeout_s: float) -> list[T] | None:
-        """Return what came since; nothing after so many seconds; None: it has ended. Errors: those of the generator."""
+        """Return the items since the last call; empty after `timeout_s`; None: the generator has ended. Errors: as the generator."""
         with self._changed:
             self._changed.wait_for(lambda: self._waiting or self._ended, timeout_s)
             if found := self._take_waiting():
@@ -54,12 +54,12 @@ class BackgroundReader(Generic[T]):
             return None if self._ended else []
 
     def rest(self) -> list[T]:
-        """Return the waiting items, whatever ended the thread."""
+        """Return the waiting items, even if the thread ended with an error."""
         with self._changed:
             return self._take_waiting()
 
     def stop(self) -> None:
-        """End the thread. What waits is still there to be taken. May be called twice."""
+        """End the thread; waiting items can still be taken. May be called twice."""
         with self._changed:
             self._stopped = True
             self._changed.notify_all()
@@ -78,7 +78,7 @@ class BackgroundReader(Generic[T]):
                 for item in self._items:
                     if not self._put(item):
                         break
-        except BaseException as error:  # noqa: BLE001 (whoever takes gets it)
+        except BaseException as error:  # noqa: BLE001 (`take` raises it)
             self._error = error
         finally:
             with self._changed:
@@ -86,7 +86,7 @@ class BackgroundReader(Generic[T]):
                 self._changed.notify_all()
 
     def _put(self, item: T) -> bool:
-        """Keep an item, wait while there are too many, and return whether to continue."""
+        """Keep an item, wait while there are too many bytes, and return whether to continue."""
         with self._changed:
             if item:
                 self._waiting.append(item)

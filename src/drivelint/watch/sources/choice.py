@@ -1,4 +1,4 @@
-"""Chooses the source that a name means, and where its recording lies."""
+"""Opens the source that the options name, and chooses the folder of its recording."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ if TYPE_CHECKING:
     from drivelint.watch.source import Source
 
 RECORDED: Final = "recorded"
-"""The folder of recordings in that of the results. No result file: what was recorded is never replaced."""
+"""The folder of recordings in the folder of results. Recordings are no result files: they are never replaced."""
 
 
 @contextmanager
 def open_source(options: WatchOptions, progress: Progress) -> Iterator[Source]:
-    """Open the source of a watch; close it afterwards. A recording that no `--out` keeps goes, unless something went wrong.
+    """Open the source of a watch, and close it after the block. Without `--out`, the recording is then deleted, but not after an error.
 
-    Errors: `UsageError` for a name that means none, those of the source.
+    Errors: `UsageError` for a name of no source; the errors of the source.
     """
     with nullcontext(options.out / RECORDED) if options.out is not None else temporary_folder() as home:
         source, is_done = None, False
@@ -55,7 +55,7 @@ def _open_source(options: WatchOptions, folder: Path) -> Source:
 
 
 def _refuse_with_command(options: WatchOptions) -> None:
-    """Refuse sources that a program started with the watch cannot write. Errors: `UsageError`."""
+    """Raise `UsageError` for a source that cannot be written by a program that the watch starts."""
     if not options.command:
         return
     if options.source == "-":

@@ -1,4 +1,4 @@
-"""Receives datagrams with signs of lost ones: the time of each, and how many the system had dropped by then."""
+"""Receives datagrams with data that reveal losses: the time of each, and how many the system had dropped by then."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ _ANCILLARY_BYTES: Final = 256
 _TIMESPEC: Final = struct.Struct("@ll")
 _COUNT: Final = struct.Struct("@I")
 ROOM: Final = 16 << 20
-"""So many bytes the system is asked to keep until they are read; it may give less."""
+"""The size in bytes of the receive buffer that is requested; the system may provide less."""
 MOST_BYTES: Final = 65535
 
 
 def ask_for_losses(receiver: socket.socket) -> None:
-    """Let the system keep many datagrams, and report its facts about each."""
+    """Request a large receive buffer, and the arrival time and the number of drops with each datagram."""
     receiver.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, ROOM)
     receiver.settimeout(TICK_S)
     if _LINUX:
@@ -34,7 +34,7 @@ def ask_for_losses(receiver: socket.socket) -> None:
 
 
 def datagrams(receiver: socket.socket) -> Generator[Datagram | None, None, None]:
-    """Yield datagrams as they come; None at least ten times a second."""
+    """Yield datagrams as they arrive; None at least ten times a second."""
     while True:
         try:
             if _LINUX:
@@ -45,7 +45,7 @@ def datagrams(receiver: socket.socket) -> Generator[Datagram | None, None, None]
             yield None
             continue
         at_ns, dropped = _time_and_drops(told)
-        # only where the system counts what it drops, it is known that nothing else was lost on this machine
+        # only if the system counts its drops, it is certain that no other datagram was lost on this machine
         yield Datagram(data, sender, at_ns, dropped, local=_LINUX and _is_local(sender))
 
 

@@ -1,4 +1,4 @@
-"""A client of a Foxglove WebSocket server: messages of the channels that are read, as they come.
+"""A client of a Foxglove WebSocket server, which receives the messages of the channels that drivelint reads.
 
 Source: foxglove/ws-protocol, docs/spec.md. The SDK's later subprotocol, foxglove.sdk.v1, has the same messages.
 """
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 SUBPROTOCOLS: Final = ("foxglove.sdk.v1", "foxglove.websocket.v1")
 CONNECT_S: Final = 10.0
 _SCHEMA_ENCODINGS: Final = {"protobuf": "protobuf", "json": "jsonschema", "cdr": "ros2msg", "ros1": "ros1msg"}
-"""Encoding of messages -> that of their schema, where the server does not say it."""
+"""Encoding of messages -> encoding of their schema, if the server does not name it."""
 _IN_BASE64: Final = frozenset({"protobuf", "flatbuffer"})
 _MESSAGE_DATA: Final = 1
 _MESSAGE: Final = struct.Struct("<BIQ")
@@ -40,10 +40,10 @@ _WARNING: Final = 1
 
 
 class FoxgloveClient:
-    """Reads in a thread of its own, so that the server need not wait while a window is judged.
+    """Receives messages in a thread of its own, so that the server need not wait while a window is judged.
 
-    A server that is not there yet is waited for; `idle_s`: so long, and so long for each next message; None: for ever.
-    Errors: `UsageError` for an address that is none or where the extra is missing.
+    `idle_s`: how long it waits for the server to start, and then for each message; None: for ever.
+    Errors: `UsageError` for an invalid address, or if the extra `live` is missing.
     """
 
     def __init__(self, uri: str, *, idle_s: float | None = None) -> None:
@@ -57,26 +57,26 @@ class FoxgloveClient:
         self._reader = BackgroundReader(self._received(), size=_size)
 
     def take(self, timeout_s: float) -> list[LiveMessage] | None:
-        """Return what came since; nothing after so many seconds; None: the server has gone, or nothing came for too long.
+        """Return the messages since the last call; empty after `timeout_s`; None: the server closed, or was idle for too long.
 
-        Errors: `TraceError` where no such server answers.
+        Errors: `TraceError` if no such server answers.
         """
         found = self._reader.take(timeout_s)
         return None if found is None else [message for messages in found for message in messages]
 
     def notes(self) -> list[str]:
-        """Return notes on the server: its status, its unread channels, and that it is waited for, once."""
+        """Return the new notes on the server: its status, channels that are not read, and the wait for its start."""
         found = list(self._notes)
         del self._notes[: len(found)]  # the thread may have added more
         return found
 
     def close(self) -> list[LiveMessage]:
-        """Leave the server. Return the items that were not taken. May be called twice."""
+        """Close the connection, and return the messages that were not taken. May be called twice."""
         self._reader.stop()
         return [message for messages in self._reader.rest() for message in messages]
 
     def _received(self) -> Generator[list[LiveMessage], None, None]:
-        """Connect, waiting for the server if it is not there yet, and yield what it sends until it leaves."""
+        """Connect, waiting for the server to start, and yield its messages until it closes the connection."""
         from websockets.exceptions import WebSocketException
 
         with ExitStack() as stack:
@@ -93,7 +93,7 @@ class FoxgloveClient:
                     patience.came()
 
     def _connected(self, stack: ExitStack) -> Generator[list[LiveMessage], None, ClientConnection]:
-        """Return a connection, which `stack` closes, and yield nothing until there is one. Errors: `TraceError`."""
+        """Return a connection, which `stack` closes; yield empty lists until it is open. Errors: `TraceError`."""
         from websockets.exceptions import WebSocketException
         from websockets.sync.client import connect
         from websockets.typing import Subprotocol
@@ -128,7 +128,7 @@ class FoxgloveClient:
             return ws
 
     def _understood(self, ws: ClientConnection, data: str | bytes) -> list[LiveMessage]:
-        """Handle a message of the server itself; return a message of one of its channels, if it is one."""
+        """Handle a WebSocket message; return the channel's message that it contains, if any."""
         if isinstance(data, bytes):
             if len(data) < _MESSAGE.size or data[0] != _MESSAGE_DATA:
                 return []
@@ -152,7 +152,7 @@ class FoxgloveClient:
         return []
 
     def _advertised(self, ws: ClientConnection, channels: list[dict[str, Any]]) -> None:
-        """Subscribe to the channels that are read. The id of a subscription is never used again."""
+        """Subscribe to the channels that drivelint reads. The id of a subscription is never reused."""
         new = []
         for each in channels:
             if each["id"] in self._by_channel:
@@ -185,10 +185,10 @@ def _advertised(advertisement: dict[str, Any]) -> LiveChannel:
 
 
 def _refuse_what_is_no_address(uri: str) -> None:
-    """Errors: `UsageError`, also where the extra is missing."""
+    """Raise `UsageError` for an invalid address, or if the extra `live` is missing."""
     try:
         from websockets.exceptions import InvalidURI
-        from websockets.sync.client import connect  # noqa: F401 - whether it is there
+        from websockets.sync.client import connect  # noqa: F401 - checks that it is installed
         from websockets.uri import parse_uri
     except ImportError as error:
         raise UsageError(f"{uri}: {error.name} is not installed: pip install 'drivelint[live]'") from error

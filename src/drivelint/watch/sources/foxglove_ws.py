@@ -1,4 +1,4 @@
-"""The messages of a Foxglove WebSocket server, recorded as MCAP."""
+"""A source of the messages of a Foxglove WebSocket server, recorded as MCAP."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ if TYPE_CHECKING:
 
 
 def open(name: str, folder: Path, *, idle_s: float | None = None) -> FoxgloveWebSocket:  # noqa: A001
-    """Watch `ws://HOST:PORT` or `wss://...`; its recording goes into `folder`.
+    """Return a source for `ws://HOST:PORT` or `wss://...` with its recording in `folder`.
 
-    Errors: `UsageError` for an address that is none or where the extra is missing.
+    Errors: `UsageError` for an invalid address, or if the extra `live` is missing.
     """
     return FoxgloveWebSocket(name, folder, idle_s=idle_s)
 
 
 class FoxgloveWebSocket(WrittenWindows):
-    """A source of the messages that our MCAP readers read. Ends with the server, or where nothing came for `idle_s`.
+    """A source of the messages that drivelint's MCAP readers read. It ends with the server, or after `idle_s` without messages.
 
-    Frames and windows are those of the recording: an MCAP file that grows. `read` waits for a server that is not there yet.
-    Errors of `read`: `TraceError` where none answers.
+    Frames and windows are read from the recording, a growing MCAP file. `read` waits until the server starts.
+    Errors of `read`: `TraceError` if no such server answers.
     """
 
     window_name = "window.mcap"
@@ -63,7 +63,7 @@ class FoxgloveWebSocket(WrittenWindows):
             self._writer.add(messages)
 
     def notes(self) -> Sequence[str]:
-        """Return notes on the server: its status, its unread channels, and that it is waited for, once."""
+        """Return the new notes on the server and on the recording."""
         return [*self._client.notes(), *self._reader.notes()]
 
     def write_window(self, frames: Sequence[Frame], path: Path, *, latest: bool = False) -> None:
@@ -73,10 +73,10 @@ class FoxgloveWebSocket(WrittenWindows):
         self._reader.write_window(frames, path, latest=latest)
 
     def halt(self) -> None:
-        """See `Source`. Who sends the messages cannot be ended from here."""
+        """See `Source`. The sender of the messages cannot be ended from here."""
 
     def close(self) -> None:
-        """Leave the server and finish the recording, with the messages that were not taken."""
+        """Close the connection, and finish the recording with the messages that were not taken."""
         rest = self._client.close()
         if self._closed:
             return

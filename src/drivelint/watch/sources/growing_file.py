@@ -1,4 +1,4 @@
-"""This module reads what another process appends to a file, each byte once."""
+"""Reads the bytes that another process appends to a file, each byte once."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 POLL_S: Final = 0.05
-"""So often a file that does not grow is looked at."""
+"""The interval at which a file is checked for growth."""
 BLOCK: Final = 4 << 20
-"""At most so many bytes are read at a time."""
+"""The most bytes that are read at a time."""
 
 
 class GrowingFile:
     """A file that grows, or that does not exist yet.
 
-    `idle_s`: after so many seconds without growth it has ended; None: it never has.
+    `idle_s`: seconds without growth after which the file counts as ended; None: no limit.
     """
 
     def __init__(self, path: Path, *, idle_s: float | None) -> None:
@@ -33,9 +33,9 @@ class GrowingFile:
         self._file: FileIO | None = None
 
     def read(self, timeout_s: float) -> bytes | None:
-        """Return what was appended; nothing after so many seconds; None: the file has not grown for too long.
+        """Return the appended bytes; empty after `timeout_s`; None: the file has not grown for `idle_s`.
 
-        Errors: `TraceError` for a file that was truncated, replaced or taken away, or that cannot be read.
+        Errors: `TraceError` for a file that was truncated, replaced or removed, or that cannot be read.
         """
         until = time.monotonic() + timeout_s
         while True:
@@ -50,7 +50,7 @@ class GrowingFile:
             time.sleep(min(POLL_S, until - now))
 
     def close(self) -> None:
-        """Let go of the file."""
+        """Close the file."""
         if self._file is not None:
             self._file.close()
 

@@ -1,4 +1,4 @@
-"""An MCAP file that another process writes. It is the recording itself, and is only read."""
+"""A source of the messages of an MCAP file that another process writes. The file is the recording itself."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ if TYPE_CHECKING:
 
 LIBRARY: Final = "drivelint watch"
 MOST_PENDING_BYTES: Final = 512 << 20
-"""So much is kept of what no window has begun behind yet. No window is as large."""
+"""The most bytes of pending messages, those later than the start of the last window. No window is as large."""
 MOST_AT_ONCE: Final = 32 << 20
-"""About so many bytes of messages are given at a time, of a file that is long when the watch begins."""
+"""About how many bytes of messages one `read` returns at most, if the file is long when the watch begins."""
 
 
 class McapFile(WrittenWindows):
     """A source of the messages of an MCAP file, see `drivelint.watch.source.Source`.
 
-    A frame is a message that our readers read, at its log time, or a damaged chunk. What holds of the messages before a window is
-    written into it, so windows must begin one after another as the drive does.
+    A frame is a message that drivelint's readers read, at its log time, or a damaged chunk. Earlier messages that are still valid in a
+    window are written into it, so a window must not start before the previous one.
     """
 
     window_name = "window.mcap"
@@ -46,10 +46,10 @@ class McapFile(WrittenWindows):
         self._ended = False
         self._count = 0
         self._last_ns = 0
-        self._pending: deque[Numbered] = deque()  # what no window has begun behind yet
+        self._pending: deque[Numbered] = deque()  # messages after the start of the last window
         self._pending_bytes = 0
         self._memories: dict[int, Memory] = {}
-        self._first: dict[int, Numbered] = {}  # of each channel of OSI
+        self._first: dict[int, Numbered] = {}  # OSI channel -> its first message
         self._static: dict[int, StaticContent] = {}
 
     def read(self, timeout_s: float) -> Sequence[Frame] | None:
@@ -79,7 +79,7 @@ class McapFile(WrittenWindows):
             schema = self._schema(each.channel)
             if not is_watched(schema):
                 continue
-            if each.log_ns <= LATEST_NS:  # a later time is malformed and says nothing of the clock
+            if each.log_ns <= LATEST_NS:  # a later time is malformed
                 self._last_ns = each.log_ns
             numbered = Numbered(self._count, each)
             self._count += 1
@@ -111,7 +111,7 @@ class McapFile(WrittenWindows):
         with path.open("wb") as file:
             writer = _WindowWriter(Sink(file))
             writer.begin(self._stream)
-            # entities that were replaced since the last window began must not come back
+            # the memory of a scene may contain entities that were replaced since the start of the last window
             kept = [each for each in self._memories.values() if not (latest and isinstance(each, SceneMemory))]
             held = [each for memory in kept for each in memory.current_messages()]
             for numbered in sorted(held, key=lambda each: each.number):
@@ -127,7 +127,7 @@ class McapFile(WrittenWindows):
             writer.finish()
 
     def _remember_next(self) -> None:
-        """Take the first message out of what is pending into the memory of its channel."""
+        """Move the first pending message into the memory of its channel."""
         numbered = self._pending.popleft()
         self._pending_bytes -= len(numbered.message.record)
         channel = numbered.message.channel
@@ -136,7 +136,7 @@ class McapFile(WrittenWindows):
         self._memories[channel].take(numbered)
 
     def _with_static(self, number: int, message: Message) -> Message:
-        """Give the first message of an OSI channel in a window what only the first one in the file says."""
+        """Return a window's first message of an OSI channel, with the static content of the file's first message."""
         first = self._first.get(message.channel)
         if first is None or first.number == number:
             return message
@@ -146,7 +146,7 @@ class McapFile(WrittenWindows):
         return message.with_content(self._static[message.channel].added_to(message.content))
 
     def halt(self) -> None:
-        """See `Source`. Who writes the file cannot be ended from here."""
+        """See `Source`. The program that writes the file cannot be ended from here."""
 
     def close(self) -> None:
         """See `Source`."""
@@ -154,7 +154,7 @@ class McapFile(WrittenWindows):
 
 
 class _WindowWriter:
-    """Writes messages as they stand in another file, with its schemas, channels and metadata."""
+    """Writes messages of another file unchanged, with its schemas, channels and metadata."""
 
     _CHUNK: Final = 4 << 20
 
@@ -165,7 +165,7 @@ class _WindowWriter:
         self._size = 0
 
     def begin(self, stream: McapStream) -> None:
-        """Write what describes the messages."""
+        """Write the schemas, channels and metadata."""
         self._sink.begin(LIBRARY)
         for schema in stream.schemas.values():
             self._sink.announce_schema(schema)
@@ -183,7 +183,7 @@ class _WindowWriter:
             self._flush()
 
     def add_damaged(self, chunk: DamagedChunk) -> None:
-        """Write a chunk that cannot be read: its content is lost in the window, too."""
+        """Write a chunk that cannot be read, so that its content is missing in the window, too."""
         self._flush()
         self._sink.write(chunk.record)
 

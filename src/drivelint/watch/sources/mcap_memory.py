@@ -1,8 +1,8 @@
-"""The messages from before a window that still apply in it, by the purpose of their channel.
+"""Keeps earlier messages that are still valid in a window, according to the purpose of their channel.
 
-Road users and odometry hold at their time alone, traffic lights until the next message. Transforms, maps, parameters, reports
-and declared events are rare or hold for a while: the first ones of a channel are kept, and the last. Entities of a scene hold until
-they are replaced, deleted or expired, see `mcap_scene`.
+Messages of road users and odometry are valid only at their own time, messages of traffic lights until the next message. Transforms, maps,
+parameters, reports and declared events are rare or valid for longer: the first and the last messages of a channel are kept. Entities of a
+scene are valid until they are replaced, deleted or expired, see `mcap_scene`.
 """
 
 from __future__ import annotations
@@ -31,29 +31,30 @@ if TYPE_CHECKING:
     from drivelint.watch.sources.mcap_stream import Numbered
 
 RECENT_NS: Final = 2_000_000_000
-"""A report of lights holds for one second, and transforms half a second apart are joined: what is older holds no longer."""
+"""Older messages are not valid: a report of lights is valid for one second, and transforms are joined over at most half a second."""
 MOST_FIRST: Final = 200
 MOST_EVENTS: Final = 20_000
-"""So many of the first messages of a channel are kept; of declared events and parameters more, each of which may hold to the end."""
+"""How many first messages of a channel are kept: `MOST_EVENTS` of events and parameters, which may be valid to the end, else
+`MOST_FIRST`."""
 _MOST_FIRST: Final = {EVENT_MESSAGE: MOST_EVENTS, PARAMETERS: MOST_EVENTS, LIGHT_GROUPS: 0, OLD_LIGHT_GROUPS: 0}
 MOST_FIRST_BYTES: Final = 64 << 20
 _READABLE_KINDS: Final = {*OSI_SCHEMAS, OPEN_DRIVE, EVENT_MESSAGE, *ROS_ROLES, *FOXGLOVE_ROLES}
 
 
 class Memory(Protocol):
-    """Keeps the messages of a channel that still hold when a window begins."""
+    """Keeps the messages of a channel that are still valid when a window begins."""
 
     def take(self, numbered: Numbered) -> None:
-        """Take the next message."""
+        """Add the next message."""
         ...
 
     def current_messages(self) -> list[Numbered]:
-        """Return messages that say what still holds."""
+        """Return messages with the content that is still valid."""
         ...
 
 
 def is_watched(schema: str) -> bool:
-    """Say whether messages with a schema of this name are read by any of our readers."""
+    """Return whether any of drivelint's readers reads messages with a schema of this name."""
     return message_kind(schema) in _READABLE_KINDS
 
 
@@ -68,7 +69,7 @@ def memory_for(channel: Channel, schema: str) -> Memory:
 
 
 class NoMemory:
-    """Keeps nothing: each message holds at its own time alone."""
+    """Keeps nothing: each message is valid only at its own time."""
 
     def take(self, numbered: Numbered) -> None:
         """See `Memory`."""
@@ -79,7 +80,7 @@ class NoMemory:
 
 
 class LatchedMemory:
-    """Keeps the first messages, of equal ones in a row one, and those of the last seconds."""
+    """Keeps the first messages, without repeated equal ones, and the messages of the last `RECENT_NS`."""
 
     def __init__(self, most_first: int) -> None:
         self._most = most_first

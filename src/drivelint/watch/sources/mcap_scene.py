@@ -1,7 +1,7 @@
-"""The entities of a Foxglove scene that are still there, as messages that say only these.
+"""Keeps the entities of a Foxglove scene that still exist, and returns messages with these entities alone.
 
-How long an entity is there, and whether it stood still, follows from its last two updates (`formats.foxglove.entity_lifetime`). One that
-went before a window and comes again in it is new there: its old place would be a sample of a track, which others interpolate. Schema:
+The last two updates of an entity determine how long it exists, and whether it stood still (`formats.foxglove.entity_lifetime`). An entity
+that ended before a window and returns in it is new there: a reader that got its old place would interpolate between both. Schema:
 https://docs.foxglove.dev/docs/visualization/message-schemas/scene-update.
 """
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from drivelint.watch.sources.mcap_stream import Numbered
 
 GONE_KEPT_NS: Final = 120_000_000_000
-"""An entity that is gone is remembered for so long: one of its name that comes again has moved in between, or not."""
+"""How long an ended entity is kept: if an entity with its id returns, the old place shows whether it has moved."""
 MOST_DOUBTFUL: Final = 1000
-"""So many deletions are kept that delete nothing by the entities' own clock, and may do so by the log's, if a reader chooses that."""
+"""How many deletions are kept that have no effect by the entities' own times: a reader that uses log times may apply them."""
 _DELETIONS, _ENTITIES = 1, 2
 _TIMESTAMP, _ID, _LIFETIME = 1, 3, 4
 _DELETE_ALL: Final = 1
@@ -29,7 +29,7 @@ _NS: Final = 1_000_000_000
 
 
 class _Entity(NamedTuple):
-    """An update of an entity: `content` as it stands in its message, its time and when it expires (None: never)."""
+    """An update of an entity: `content` as in its message, its time, and when it expires (None: never)."""
 
     source: Numbered
     content: Any
@@ -49,7 +49,7 @@ class _Track:
 
 
 class SceneMemory:
-    """Keeps the last two updates of every entity, see `mcap_memory.Memory`. Messages that cannot be decoded say nothing."""
+    """Keeps the last two updates of every entity, see `mcap_memory.Memory`. Messages that cannot be decoded are ignored."""
 
     def __init__(self, encoding: str) -> None:
         self._codec: _Protobuf | _Json = _Json() if encoding == "json" else _Protobuf()
@@ -58,7 +58,7 @@ class SceneMemory:
         self._latest_ns = 0
 
     def take(self, numbered: Numbered) -> None:
-        """Take the next message."""
+        """Add the next message."""
         try:
             entities, deletions = self._codec.parts(numbered.message.content)
             updates = [(self._codec.id_time_lifetime(content), content) for content in entities]
@@ -90,7 +90,7 @@ class SceneMemory:
                 self._doubtful.append(deletion)
 
     def current_messages(self) -> list[Numbered]:
-        """Return messages with the updates of the entities that are still there, each at the log time of its own."""
+        """Return messages with the updates of existing entities, each at the log time of its original message."""
         for track in self._tracks.values():
             expires = track.updates[-1].expires_ns
             track.is_gone |= expires is not None and expires < self._latest_ns
@@ -110,7 +110,7 @@ class SceneMemory:
 
 
 class _Protobuf:
-    """Takes a `SceneUpdate` in protobuf apart; an entity or a deletion is its bytes."""
+    """Splits a `SceneUpdate` in protobuf into entities and deletions, each as encoded bytes."""
 
     def parts(self, data: bytes) -> tuple[list[bytes], list[bytes]]:
         """Return entities and deletions. Errors: `ValueError`."""
@@ -121,19 +121,19 @@ class _Protobuf:
         return found[_ENTITIES], found[_DELETIONS]
 
     def id_time_lifetime(self, entity: bytes) -> tuple[bytes, int, int]:
-        """Return id, time and lifetime of an entity; 0: none is said."""
+        """Return id, time and lifetime of an entity; 0 for a missing time or lifetime."""
         spans = {each.number: entity[each.start : each.end] for each in fields(entity)}
         return spans.get(_ID, b""), _time(spans.get(_TIMESTAMP, b"")), _time(spans.get(_LIFETIME, b""))
 
     def deleted(self, deletion: bytes) -> tuple[bytes | None, int]:
-        """Return the ids that a deletion deletes (None: all), and its time."""
+        """Return the id that a deletion deletes (None: all ids), and its time."""
         found = {each.number: each for each in fields(deletion)}
         spans = {number: deletion[each.start : each.end] for number, each in found.items()}
         every = 2 in found and found[2].value == _DELETE_ALL
         return None if every else spans.get(_ID, b""), _time(spans.get(_TIMESTAMP, b""))
 
     def encode(self, entities: list[bytes], deletions: list[bytes]) -> bytes:
-        """Return a message of these."""
+        """Return a message with these entities and deletions."""
         return b"".join(
             [*(nested(_DELETIONS, each) for each in deletions), *(nested(_ENTITIES, each) for each in entities)]
         )
@@ -145,7 +145,7 @@ def _time(data: bytes) -> int:
 
 
 class _Json:
-    """Takes a `SceneUpdate` in JSON apart; an entity or a deletion is its object."""
+    """Splits a `SceneUpdate` in JSON into entities and deletions, each as a JSON object."""
 
     def parts(self, data: bytes) -> tuple[list[Any], list[Any]]:
         """Return entities and deletions. Errors: `ValueError` or `AttributeError`."""
@@ -153,16 +153,16 @@ class _Json:
         return message.get("entities") or [], message.get("deletions") or []
 
     def id_time_lifetime(self, entity: Any) -> tuple[str, int, int]:
-        """Return id, time and lifetime of an entity; 0: none is said."""
+        """Return id, time and lifetime of an entity; 0 for a missing time or lifetime."""
         return entity.get("id") or "", _json_time(entity.get("timestamp")), _json_time(entity.get("lifetime"))
 
     def deleted(self, deletion: Any) -> tuple[str | None, int]:
-        """Return the ids that a deletion deletes (None: all), and its time."""
+        """Return the id that a deletion deletes (None: all ids), and its time."""
         every = deletion.get("type") in {_DELETE_ALL, "ALL"}
         return None if every else deletion.get("id") or "", _json_time(deletion.get("timestamp"))
 
     def encode(self, entities: list[Any], deletions: list[Any]) -> bytes:
-        """Return a message of these."""
+        """Return a message with these entities and deletions."""
         return json.dumps({"deletions": deletions, "entities": entities}).encode()
 
 

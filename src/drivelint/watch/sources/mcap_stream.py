@@ -1,4 +1,4 @@
-"""An MCAP file read as it grows: whole records only, each once, and each chunk unpacked once."""
+"""Reads an MCAP file while it grows: only complete records, each once, and each chunk unpacked once."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ if TYPE_CHECKING:
 RECORD: Final = struct.Struct("<BQ")
 MESSAGE: Final = struct.Struct("<HIQQ")
 MOST_RECORD_BYTES: Final = MAX_CHUNK_BYTES + (1 << 20)
-"""A record that is read and says it is longer is none. Others, such as attachments, may be."""
+"""The longest record of the kinds that are read: a greater length is damage. Other records, such as attachments, may be longer."""
 _READABLE_OPCODES: Final = frozenset(
     {Opcode.SCHEMA, Opcode.CHANNEL, Opcode.MESSAGE, Opcode.CHUNK, Opcode.METADATA, Opcode.DATA_END}
 )
 _STANDARD_OPCODES: Final = frozenset(Opcode)
 _PRIVATE: Final = 0x80
-"""Opcodes from here on belong to applications."""
+"""The first of the opcodes that applications may define."""
 _FOOTER_BYTES: Final = 20
 
 
 class Message(NamedTuple):
-    """A message record: the id of its channel, its log time, and the record as it stands in the file, with its head."""
+    """A message record: the id of its channel, its log time, and the unchanged bytes of the record, with its header."""
 
     channel: int
     log_ns: int
@@ -41,33 +41,33 @@ class Message(NamedTuple):
 
     @property
     def content(self) -> bytes:
-        """The message itself."""
+        """The data of the message, without any header."""
         return self.record[RECORD.size + MESSAGE.size :]
 
     def with_content(self, content: bytes) -> Message:
-        """Return a message of the same channel and times that says something else."""
+        """Return a message of the same channel and times with other data."""
         head = RECORD.pack(Opcode.MESSAGE, MESSAGE.size + len(content))
         return self._replace(record=head + self.record[RECORD.size : RECORD.size + MESSAGE.size] + content)
 
 
 class Numbered(NamedTuple):
-    """A message and its place among all those of the file that are watched."""
+    """A message and its number among all watched messages of the file."""
 
     number: int
     message: Message
 
 
 class DamagedChunk(NamedTuple):
-    """A chunk record that cannot be read, as it stands in the file."""
+    """The unchanged bytes of a chunk record that cannot be read."""
 
     record: bytes
 
 
 class McapStream:
-    """Takes the bytes of an MCAP file one piece after another.
+    """Parses the bytes of an MCAP file piece by piece.
 
-    `schemas`, `channels`: records by id, as they were announced so far; `metadata`: records by name, of several the first.
-    `ended`: the file is complete, or nothing more of it can be read; `notes`: why, and what else was wrong.
+    `schemas`, `channels`: id -> record, for the records read so far; `metadata`: name -> the first record with this name.
+    `ended`: the file is complete, or its remainder cannot be read; `notes`: the reason for this, and other problems.
     """
 
     def __init__(self, where: str) -> None:
@@ -79,15 +79,15 @@ class McapStream:
         self._where = where
         self._buffer = bytearray()
         self._at = 0  # the byte of the file at which the buffer begins
-        self._place = 0  # within the buffer: what is before it was read
-        self._skip = 0  # so many bytes from there on are of no use
+        self._place = 0  # the position in the buffer up to which it was read
+        self._skip = 0  # the number of bytes to skip from there on
         self._begun = False
         self._in_data = True
 
     def take(self, data: bytes) -> list[Message | DamagedChunk]:
-        """Return the messages that are whole now, in the order of the file.
+        """Add bytes, and return the messages that are complete, in the order of the file.
 
-        Errors: `TraceError` for what is no MCAP file, or has a chunk that no reader would read.
+        Errors: `TraceError` if the file is no MCAP file, or has a chunk that no reader accepts.
         """
         self._buffer += data
         found: list[Message | DamagedChunk] = []
@@ -116,7 +116,7 @@ class McapStream:
         self.notes.append(f"{self._where}: {reason} at byte {at}: nothing after it is watched")
 
     def _next_record(self) -> bytes | None:
-        """Return the next record, once it is complete; None: not yet, or there will be no more."""
+        """Return the next record; None: it is not complete yet, or no more records follow."""
         while not self.ended:
             skipped = min(self._skip, len(self._buffer) - self._place)
             self._skip -= skipped
@@ -181,7 +181,7 @@ class McapStream:
             yield DamagedChunk(record)
 
     def _content(self, opcode: int, record: bytes, at: int) -> Iterator[Message]:
-        """Take a schema, a channel or a message."""
+        """Store a schema or a channel, or yield a message."""
         if opcode == Opcode.MESSAGE:
             number, _, log_ns, _ = MESSAGE.unpack_from(record, RECORD.size)
             if number in self.channels:

@@ -1,4 +1,4 @@
-"""OSI ground truths or sensor views as they come: from a file that grows, standard input, TCP, or UDP as esmini sends it."""
+"""Sources of OSI ground truths or sensor views: a growing file, standard input, TCP, or UDP as esmini sends it."""
 
 from __future__ import annotations
 
@@ -28,26 +28,26 @@ RECORDING: Final = "recording"
 
 
 class Receiver(Protocol):
-    """Gives messages one by one, wherever they come from."""
+    """Provides OSI messages from a file, a stream or datagrams."""
 
     def take(self, timeout_s: float) -> list[bytes] | None:
-        """Return the messages that came since; nothing after so many seconds; None: no more will come."""
+        """Return the messages since the last call; empty after `timeout_s`; None: no more will come."""
         ...
 
     def notes(self) -> list[str]:
-        """Return the losses since the last call."""
+        """Return the notes on losses since the last call."""
         ...
 
     def close(self) -> None:
-        """Let go of what the messages come from. May be called twice."""
+        """Close the file or connection of the messages. May be called twice."""
         ...
 
 
 class OsiSource(WrittenWindows):
     """A source of OSI messages, see `drivelint.watch.source.Source`.
 
-    A frame is a message; its time is the message's own. What only the first message says, such as its lanes, is put into the first
-    message of every window.
+    A frame is a message, at the message's own time. Content that only the drive's first message has, such as lanes, is copied into the
+    first message of every window.
     """
 
     window_name = "window.osi"
@@ -82,7 +82,7 @@ class OsiSource(WrittenWindows):
         """See `Source`."""
         return self._receiver.notes()
 
-    def write_window(self, frames: Sequence[Frame], path: Path, *, latest: bool = False) -> None:  # noqa: ARG002 - of all sources
+    def write_window(self, frames: Sequence[Frame], path: Path, *, latest: bool = False) -> None:  # noqa: ARG002 - as in all sources
         """See `Source`."""
         with path.open("wb") as file:
             for k, frame in enumerate(frames):
@@ -95,7 +95,7 @@ class OsiSource(WrittenWindows):
         return data if self._static is None else self._static.added_to(data)
 
     def halt(self) -> None:
-        """See `Source`. Who sends the messages cannot be ended from here."""
+        """See `Source`. The sender of the messages cannot be ended from here."""
 
     def close(self) -> None:
         """See `Source`."""
@@ -103,12 +103,12 @@ class OsiSource(WrittenWindows):
 
 
 def with_length(data: bytes) -> bytes:
-    """Return a message behind its length, as it stands in a trace file."""
+    """Return a message preceded by its length, as in a trace file."""
     return len(data).to_bytes(LENGTH, "little") + data
 
 
 class FileReceiver:
-    """Cuts the messages of a file that another process writes."""
+    """Reads the messages of a file that another process writes."""
 
     def __init__(self, path: Path, *, idle_s: float | None) -> None:
         self._path = path
@@ -139,7 +139,7 @@ class FileReceiver:
 
 
 class StreamReceiver:
-    """Cuts the messages of a stream, whose bytes are written down as they come: what is checked in the end is just what came."""
+    """Reads the messages of a stream, and records its bytes as they arrive: the check at the end reads exactly these bytes."""
 
     def __init__(self, where: str, blocks: Generator[bytes, None, None], recording: BinaryIO, notes: list[str]) -> None:
         self._where = where
@@ -179,7 +179,7 @@ def _written_through(blocks: Generator[bytes, None, None], recording: BinaryIO) 
 
 
 def _write_down(recording: BinaryIO, data: bytes) -> None:
-    """Hand bytes over to the system at once, so that they are there even if this process is killed."""
+    """Write and flush bytes, so that they are kept even if this process is killed."""
     try:
         recording.write(data)
         recording.flush()
@@ -188,7 +188,7 @@ def _write_down(recording: BinaryIO, data: bytes) -> None:
 
 
 class DatagramReceiver:
-    """Puts together the messages that come over UDP, and writes down those that are whole."""
+    """Joins the datagrams of UDP to messages, and records the complete messages."""
 
     def __init__(
         self, where: str, receiver: socket.socket, recording: BinaryIO, notes: list[str], *, idle_s: float | None
@@ -222,7 +222,7 @@ class DatagramReceiver:
         return found
 
     def notes(self) -> list[str]:
-        """See `Receiver`. Losses are reported when there are twice as many as were reported, and at the end."""
+        """See `Receiver`. Losses are reported when their number has doubled since the last report, and at the end."""
         found, self._notes = [f"{self._where}: {note}" for note in self._notes], []
         losses = self._assembler.losses
         if losses.total >= max(2 * self._told, 1) or (self._ended and losses.total > self._told):
@@ -238,24 +238,24 @@ class DatagramReceiver:
 
 
 def open_file(path: Path, *, idle_s: float | None) -> OsiSource:
-    """Watch a file, which is the recording."""
+    """Return a source for a file, which is the recording itself."""
     return OsiSource(path, FileReceiver(path, idle_s=idle_s))
 
 
 def open_standard_input(folder: Path, *, idle_s: float | None) -> OsiSource:
-    """Watch what comes from standard input."""
+    """Return a source for standard input."""
     blocks = transports.from_descriptor(sys.stdin.fileno(), idle_s)
     return _stream("standard input", blocks, folder, [])
 
 
 def open_tcp(host: str, port: int, folder: Path, *, idle_s: float | None) -> OsiSource:
-    """Watch what a writer sends that waits for a connection at an address."""
+    """Return a source for a writer that waits for a connection at an address."""
     notes: list[str] = []
     return _stream(f"tcp://{host}:{port}", transports.connected(host, port, idle_s, notes), folder, notes)
 
 
 def open_tcp_server(host: str, port: int, folder: Path, *, idle_s: float | None) -> OsiSource:
-    """Watch what the first writer sends that connects to a port of this machine."""
+    """Return a source for the first writer that connects to a port of this machine."""
     where = f"tcp-listen://{host}:{port}"
     server = transports.bound_socket(socket.SOCK_STREAM, host, port, where)
     server.listen(1)
@@ -265,7 +265,7 @@ def open_tcp_server(host: str, port: int, folder: Path, *, idle_s: float | None)
 
 
 def open_udp(host: str, port: int, folder: Path, *, idle_s: float | None) -> OsiSource:
-    """Watch what esmini sends to a port of this machine."""
+    """Return a source for messages that esmini sends to a port of this machine."""
     where = f"udp://{host}:{port}"
     receiver = transports.bound_socket(socket.SOCK_DGRAM, host, port, where)
     with _closed_on_error(receiver):
@@ -288,7 +288,7 @@ def _stream(where: str, blocks: Generator[bytes, None, None], folder: Path, note
 
 
 def _new_recording(folder: Path) -> tuple[Path, BinaryIO]:
-    """Open a recording under a name that no other has: none is ever replaced. Errors: `UsageError` where none can be written."""
+    """Open a recording under a new name, since recordings are never replaced. Errors: `UsageError` if it cannot be written."""
     for number in count(1):
         path = folder / (f"{RECORDING}.osi" if number == 1 else f"{RECORDING}-{number}.osi")
         try:

@@ -1,11 +1,11 @@
-"""OSI messages over UDP as esmini sends them, each split into datagrams.
+"""Joins datagrams to OSI messages: esmini sends each message over UDP in one or more datagrams.
 
 A datagram is a header of a signed and an unsigned 32-bit integer, counter and size, and `size` bytes of the message, at most 8192.
-The datagrams of a message count 1, 2, 3, ...; the counter of the last one is negative: a message of three has 1, 2, -3, a message of
-one -1. Only its place shows a receiver to which message a datagram belongs: nothing in the header names the message. Source:
+The datagrams of a message count 1, 2, 3, ...; the last counter is negative: three datagrams have 1, 2, -3, a single datagram has -1.
+The header does not name the message: only the order shows to which message a datagram belongs. Source:
 `OSIReporter::UpdateOSIGroundTruth` and `osi_udp_buf` in esmini's EnvironmentSimulator/Modules/ScenarioEngine/SourceFiles/OSIReporter.cpp,
-received by `OSIReceiver` in its scripts/udp_driver/udp_osi_common.py (https://github.com/esmini/esmini). Before that, it counted from 0
-and ended each message with -1, so that a lost datagram cannot be detected: such a stream is refused.
+received by `OSIReceiver` in its scripts/udp_driver/udp_osi_common.py (https://github.com/esmini/esmini). Older versions count from 0 and
+end each message with -1, so that a lost datagram cannot be detected: such a stream is refused.
 """
 
 from __future__ import annotations
@@ -24,18 +24,18 @@ from drivelint.watch.sources.osi_messages import is_whole, message_time
 
 HEADER: Final = struct.Struct("<iI")
 MOST_PAUSE_NS: Final = 10_000_000
-"""The datagrams of a message are sent at once. A longer pause between two from another machine is where others were lost."""
+"""The longest pause between two datagrams of a message from another machine: they are sent at once, so in a longer pause some were lost."""
 HOLE_PERIODS: Final = MAX_GAP_PERIODS + 0.25
-"""Where a message is known to be lost, so many steps of time are left out: the checker joins what is less far apart."""
+"""The length, in time steps, of the hole that is left after a lost message: the checker joins states that are closer together."""
 _STEPS: Final = 101
-"""Of so many messages the usual step of time is known."""
+"""The number of steps from which the usual time step is computed."""
 
 
 @dataclass(frozen=True)
 class Datagram:
-    """What came: its bytes, from where, when (of any clock), and how many the system had dropped by then for lack of room.
+    """A received datagram. `at_ns`: its arrival, on any clock. `dropped`: how many datagrams the system had dropped by then.
 
-    `local`: its sender is on this machine, so that only the system can have dropped any.
+    `local`: the sender is on this machine, so that only the system can have dropped datagrams.
     """
 
     data: bytes
@@ -47,7 +47,7 @@ class Datagram:
 
 @dataclass
 class Losses:
-    """Counts of what was left out."""
+    """Counts of the losses, by their kind."""
 
     gaps: int = 0
     distrusted: int = 0
@@ -57,7 +57,7 @@ class Losses:
 
     @property
     def total(self) -> int:
-        """All of them."""
+        """The sum of the counts."""
         return sum(vars(self).values())
 
     def summary_text(self) -> str:
@@ -73,15 +73,13 @@ class Losses:
 
 
 class Assembler:
-    """Puts messages together of which every datagram came in its order; all others are counted in `losses`, and left out.
+    """Returns messages of which every datagram came in order; all other messages are left out and counted in `losses`.
 
-    The next messages behind a lost one are left out, too. What is missing of it may have come in their place; and the checker, which
-    takes a single missing step for a slow recorder, then sees a hole, across which it judges nothing. All messages are of the sender
-    of the first one.
+    The next messages after a lost one are left out, too: they may contain its late datagrams. The resulting hole is so long that the
+    checker judges nothing across it; a single missing step would look like a slow recorder. Only the first message's sender is accepted.
 
-    What nothing tells: that all datagrams of a message were lost on the way from another machine; that one came as late as the message
-    after the next, in the place of one that was lost; and, where messages follow one another within `MOST_PAUSE_NS`, that what is left
-    of two counts on from one to the other.
+    Three losses cannot be detected: (1) all datagrams of a message from another machine are lost; (2) a datagram that comes two messages
+    late replaces a lost one; (3) the remaining datagrams of two messages within `MOST_PAUSE_NS` have consecutive counters.
     """
 
     def __init__(self, where: str) -> None:
@@ -89,9 +87,9 @@ class Assembler:
         self._where = where
         self._parts: list[bytes] = []
         self._previous: Datagram | None = None
-        self._is_lost = False  # the message whose datagrams come now
+        self._is_lost = False  # whether the message that arrives at present is lost
         self._in_doubt = False
-        self._left_out = 0  # messages since the last one that was not
+        self._left_out = 0  # messages since the last one that was returned
         self._sender: object = None
         self._last = b""
         self._last_part = b""
@@ -124,7 +122,7 @@ class Assembler:
 
     def _is_next(self, counter: int, data: bytes) -> bool:
         """Return whether a datagram is the expected one; if not, the parts of its message are left out."""
-        # the first part of a message has its time in it: none of another message is the same
+        # the first part of a message contains the message's time: an equal one is a duplicate
         if counter == 1 and [data] == self._parts:
             return False
         if counter < 0 and not self._parts and data == self._last_part:
@@ -141,7 +139,7 @@ class Assembler:
         return True
 
     def _is_interrupted(self, datagram: Datagram) -> bool:
-        """Say whether others may have been lost just before this one."""
+        """Return whether datagrams may have been lost just before this one."""
         previous, self._previous = self._previous, datagram
         if previous is None:
             return False
@@ -181,7 +179,7 @@ class Assembler:
         return message
 
     def _is_in_hole(self, t_ns: int) -> bool:
-        """Say whether the message that follows one of this time is still too near to the last one for a hole between them."""
+        """Return whether the hole is still too short if the message at `t_ns` is the last one that is left out."""
         if self._last_ns is None:
             return False
         if not self._steps_ns:

@@ -1,4 +1,4 @@
-"""This module cuts a stream of OSI messages, each behind its length, and reads their times without decoding them."""
+"""Splits a stream into OSI messages, each preceded by its length, and reads their times without decoding them."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from drivelint.formats.protobuf.scan import fields, signed
 
 _NS: Final = 1_000_000_000
 _TIMESTAMP, _TRUTH, _MOVING_OBJECT, _BASE, _POSITION = 2, 7, 5, 2, 2
-"""Numbers of fields in a ground truth or a sensor view, of the truth in a view, and from an object down to its position."""
+"""Field numbers: the time stamp, the ground truth of a sensor view, and the path from a ground truth to an object's position."""
 
 
 class MessageCutter:
-    """Cuts bytes that come piece by piece into messages, by the same signs of damage as `formats.osi.trace_file`.
+    """Splits bytes that arrive piece by piece into messages, and finds the same damage as `formats.osi.trace_file`.
 
-    `trouble`: why nothing more can be cut, None: it goes on.
+    `trouble`: the damage at which the splitting stopped; None: no damage was found.
     """
 
     def __init__(self) -> None:
@@ -25,7 +25,7 @@ class MessageCutter:
         self._at = 0  # the byte of the stream at which the buffer begins
 
     def cut(self, data: bytes, *, ended: bool = False) -> list[bytes]:
-        """Return the messages that are whole now. `ended`: nothing more comes, and a remainder is reported as trouble."""
+        """Add bytes, and return the complete messages. `ended`: no more bytes come, so that a remainder is `trouble`."""
         self._buffer += data
         found: list[bytes] = []
         place = 0
@@ -61,7 +61,7 @@ def _begins(buffer: bytearray, at: int) -> bool:
 
 
 def message_kind(data: bytes) -> str | None:
-    """Return whether a message is a ground truth or a sensor view, by the place of its objects; None: it has none."""
+    """Return the type of a message, ground truth or sensor view, by the place of its objects; None: it has no objects."""
     try:
         if _places_objects(data, 0, len(data)):
             return GROUND_TRUTH
@@ -85,7 +85,7 @@ def _places_objects(data: bytes, start: int, end: int) -> bool:
 
 
 def message_time(data: bytes, kind: str | None) -> int | None:
-    """Return the time of a message in nanoseconds, of a sensor view that of its ground truth; None where it says none."""
+    """Return the time of a message (for a sensor view, of its ground truth) in nanoseconds; None: it has no time."""
     try:
         inner = outer = None
         for field in fields(data):
@@ -102,9 +102,9 @@ def message_time(data: bytes, kind: str | None) -> int | None:
 
 
 def is_whole(data: bytes) -> bool:
-    """Say whether bytes are fields one after another up to their end, a time stamp among them."""
+    """Return whether bytes are a complete sequence of protobuf fields that includes a time stamp."""
     try:
-        numbers = {field.number for field in fields(data)}  # a set, so that all of them are gone through
+        numbers = {field.number for field in fields(data)}  # a set, so that all fields are read
     except ValueError:
         return False
     return _TIMESTAMP in numbers

@@ -1,4 +1,4 @@
-"""The content that only the first OSI message of a drive has, and the part of it that is copied into a later part of the drive."""
+"""Copies the content that only the first OSI message of a drive has into a later message."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ _SAID_ONCE: Final = (
 )  # fmt: skip
 """Fields that the reader takes from the first message only, see `formats.osi.decode.read_first_message`."""
 _LIGHT_STATE_FIELDS: Final = ("color", "mode")
-"""What a traffic light shows at a time; all else about it is of the first message, too."""
+"""The fields of a traffic light that change over time; the others are copied from the first message, too."""
 
 
 class StaticContent:
-    """The map, projection and traffic lights of the first message. Empty where that cannot be decoded."""
+    """The map, projection and traffic lights of the first message; empty if this message cannot be decoded."""
 
     def __init__(self, first: bytes, name: str) -> None:
         self._name = name
@@ -37,9 +37,9 @@ class StaticContent:
         self._first = kept
 
     def added_to(self, data: bytes) -> bytes:
-        """Return a later message that is read as the first one of a log: with the first one's static content in place of its own.
+        """Return a later message with the static content of the first one, so that a log can start with it.
 
-        What its traffic lights show stays. One that it does not name shows nothing that is known.
+        The states of its traffic lights are kept. A traffic light that it does not contain is added with an unknown state.
         """
         if self._first is None:
             return data
@@ -81,7 +81,7 @@ def _copy(source: Any, target: Any, field: str) -> None:
 
 
 def _complete(bulb: Any, first: Any) -> None:
-    """Give a bulb that has only its state the place and the lanes from the first message."""
+    """Add the place and lanes from the first message to a traffic-light bulb that has only a state."""
     shown = type(bulb).FromString(bulb.SerializeToString())
     bulb.CopyFrom(first)
     for field in _LIGHT_STATE_FIELDS:

@@ -1,4 +1,4 @@
-"""Recordings that grow: messages that come live, written as MCAP, and why one cannot be written."""
+"""Writes live messages to a growing MCAP file, the recording."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _MOST_NUMBERS: Final = 1 << 32
 
 @contextmanager
 def writing(path: Path) -> Iterator[None]:
-    """Write a recording within. Errors: `TraceError` for errors of the system, such as a full disk."""
+    """Convert errors of the system within the block, such as a full disk, to `TraceError`."""
     try:
         yield
     except OSError as error:
@@ -35,7 +35,7 @@ def writing(path: Path) -> Iterator[None]:
 
 
 class LiveChannel(NamedTuple):
-    """What messages are on; the schema is still without an id."""
+    """A channel of live messages; its schema has no id yet."""
 
     topic: str
     encoding: str
@@ -51,7 +51,7 @@ class LiveMessage(NamedTuple):
 
 
 class McapRecording:
-    """An MCAP file that is written as messages come. What was added is in the file; `finish` makes it a whole one."""
+    """An MCAP file that is written while messages arrive. Added messages are in the file at once; `finish` completes it."""
 
     def __init__(self, path: Path) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -61,7 +61,7 @@ class McapRecording:
         self._count = 0
 
     def add(self, messages: Sequence[LiveMessage]) -> None:
-        """Write messages as a chunk, behind what describes them."""
+        """Write messages as a chunk, after their new schemas and channels."""
         records, entries, at = [], [], 0
         for each in messages:
             channel = self._channel(each.channel)
@@ -76,13 +76,13 @@ class McapRecording:
         self._file.flush()
 
     def finish(self) -> None:
-        """End the file. May be called twice."""
+        """Complete and close the file. May be called twice."""
         if not self._file.closed:
             self._sink.finish()
             self._file.close()
 
     def _channel(self, live_channel: LiveChannel) -> int:
-        """Return the id of a channel, which is announced unless it is already."""
+        """Return the id of a channel; announce the channel if it is new."""
         for number, known in self._sink.channels.items():
             schema = replace(self._sink.schemas[known.schema_id], id=0)
             if (known.topic, known.message_encoding, schema) == live_channel:

@@ -1,4 +1,4 @@
-"""A finished log, watched as if it were recorded now. Any format that `check` reads."""
+"""A source that replays a finished log, of any format that `check` reads, as if it were being recorded."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ if TYPE_CHECKING:
 
 
 FIRST_NS: Final = 1_000_000_000
-"""The first steps are given for a window of their own, which shows the ego early."""
+"""The length of the first window, which is short so that the ego is known early."""
 
 
 class Replay:
-    """Gives the steps of a log at its own pace, or as fast as they are asked for.
+    """Provides the steps of a log at a given speed, or as fast as they are read.
 
-    `speed`: seconds of log time per second; 0: `every_ns` of log time each time it is asked. What the log's reader found out from all
-    of it, such as velocities that it does not hold, is known from the beginning; everything later than the window is not.
+    `speed`: seconds of log time per second; 0: `every_ns` of log time per `read`. Values that the log's reader derives from the whole log,
+    such as velocities, are known from the beginning; the steps after the window are not.
     """
 
     def __init__(self, path: Path, options: IngestOptions, *, speed: float, every_ns: int) -> None:
@@ -51,7 +51,7 @@ class Replay:
         return found
 
     def _due(self, timeout_s: float) -> int:
-        """Return the number of steps that have come, after a wait of at most so long."""
+        """Return how many steps are due, after a wait of at most `timeout_s`."""
         if self.in_step:
             span_ns = self._every_ns if self._at else min(self._every_ns, FIRST_NS)
             return int(np.searchsorted(self._times, self._times[self._at] + span_ns, side="left"))
@@ -66,10 +66,10 @@ class Replay:
         return int(np.searchsorted(self._times, self._times[0] + gone_ns, side="right"))
 
     def notes(self) -> Sequence[str]:
-        """Return nothing: a finished log loses nothing on the way."""
+        """Return no notes: nothing is lost from a finished log."""
         return ()
 
-    def window(self, frames: Sequence[Frame], folder: Path, options: IngestOptions) -> Callable[[], Trace]:  # noqa: ARG002 - of all sources
+    def window(self, frames: Sequence[Frame], folder: Path, options: IngestOptions) -> Callable[[], Trace]:  # noqa: ARG002 - see `Source`
         """See `Source`."""
         times = [frame.t_ns for frame in frames]
         return partial(cut_trace, self._trace, min(times), max(times))
@@ -79,8 +79,8 @@ class Replay:
         return self.window(frames, folder, options)()
 
     def halt(self) -> None:
-        """Give no more steps."""
+        """Provide no more steps."""
         self._halted = True
 
     def close(self) -> None:
-        """Keep the log as it is."""
+        """Do nothing: the log stays as it is."""

@@ -1,7 +1,6 @@
-"""A simulation in SUMO, stepped from here: it waits while a window is judged.
+"""A source that steps a simulation in SUMO, which waits while a window is judged.
 
-The recording is SUMO's floating car data, with the files that its reader needs beside it: the sizes of the vehicles, and the states of
-lights.
+The recording is SUMO's floating car data, and beside it the files that its reader needs: the sizes of vehicles, and the states of lights.
 """
 
 from __future__ import annotations
@@ -29,10 +28,10 @@ if TYPE_CHECKING:
     from drivelint.watch.sources.sumo_process import VehicleType
 
 LEAST_PRECISION: Final = 4
-"""Decimals that are recorded, unless the configuration asks for more."""
+"""The number of decimals that are recorded, unless the configuration requires more."""
 DEFAULT_SPAN_S: Final = 0.5
 PART_S: Final = 0.5
-"""So much is simulated at a time at most, that a contact halts it soon."""
+"""The most seconds that one `read` simulates, so that a contact halts the simulation soon."""
 _BEGIN: Final = b'<?xml version="1.0" encoding="UTF-8"?>\n<fcd-export>\n'
 _END: Final = b"</fcd-export>\n"
 _LIGHTS_BEGIN: Final = b"<tlsStates>\n"
@@ -46,9 +45,9 @@ _LEAVES_OUT: Final = (
 
 
 def open(name: str, folder: Path, *, span_s: float = DEFAULT_SPAN_S, until_s: float | None = None) -> SumoSimulation:  # noqa: A001
-    """Start the simulation of a `*.sumocfg`; its recording goes into a folder of its own in `folder`.
+    """Start the simulation of a `*.sumocfg`, and return it as a source; it is recorded in a new folder within `folder`.
 
-    Errors: `UsageError` without SUMO or traci, `TraceError` with SUMO's own message where it cannot begin.
+    Errors: `UsageError` without SUMO or traci, `TraceError` with SUMO's own message if it cannot start.
     """
     from pathlib import Path
 
@@ -56,7 +55,7 @@ def open(name: str, folder: Path, *, span_s: float = DEFAULT_SPAN_S, until_s: fl
 
 
 class SumoSimulation(WrittenWindows):
-    """Advances a simulation by `span_s` each time it is read, until SUMO's clock shows `until_s` or its own end."""
+    """Advances a simulation by `span_s` per window, until SUMO's clock reaches `until_s` or the simulation ends."""
 
     window_name = "window.fcd.xml"
     in_step = True
@@ -69,7 +68,7 @@ class SumoSimulation(WrittenWindows):
             if found
             else []
         )
-        base = config.stem.replace(".", "-")  # the reader knows the lights' file by the part before the first dot
+        base = config.stem.replace(".", "-")  # the reader finds the file of lights by the name before the first dot
         own = next(each for n in count(1) if not (each := folder / (base if n == 1 else f"{base}-{n}")).exists())
         self.recording = own / f"{base}.fcd.xml"
         self._types: dict[bytes, VehicleType | None] = {}
@@ -77,12 +76,12 @@ class SumoSimulation(WrittenWindows):
         self._sumo = SumoProcess(config, precision=max(LEAST_PRECISION, _precision(options)), until_s=until_s)
         self._is_over = False
         self._n_steps = max(1, round(span_s / self._sumo.step_s))
-        # a window ends where a span does: the first one begins with the log's first step, the others after the last of the one before
+        # a window ends with a span: the first span includes the log's first step, each other starts after the last step of the previous one
         self._n_left = self._n_steps + 1
         self._n_part = max(1, round(PART_S / self._sumo.step_s))
 
     def read(self, timeout_s: float) -> Sequence[Frame] | None:
-        """Simulate the next part of the span, a frame for each step: `PART_S` of it, less where that takes longer than `timeout_s`."""
+        """Simulate the next part of the span, at most `PART_S` and about `timeout_s` of real time; return a frame per step."""
         if self._is_over:
             return None
         until = time.monotonic() + timeout_s
@@ -103,11 +102,11 @@ class SumoSimulation(WrittenWindows):
         return frames or None
 
     def notes(self) -> Sequence[str]:
-        """Return notes on actors that the configuration leaves out of the recording, once."""
+        """Return, on the first call, a note on actors that the configuration leaves out of the recording."""
         found, self._notes = self._notes, []
         return found
 
-    def write_window(self, frames: Sequence[Frame], path: Path, *, latest: bool = False) -> None:  # noqa: ARG002 - of all sources
+    def write_window(self, frames: Sequence[Frame], path: Path, *, latest: bool = False) -> None:  # noqa: ARG002 - as in all sources
         """Write these steps as floating car data, and the types and lights beside it."""
         steps = [frame.data for frame in frames if isinstance(frame.data, Step)]
         path.write_bytes(b"".join([_BEGIN, *(step.xml for step in steps), _END]))
@@ -132,13 +131,13 @@ class SumoSimulation(WrittenWindows):
                     file.write(end)
 
     def _record(self, step: Step) -> None:
-        """Write a step through, so that nothing of it is lost with us."""
+        """Write a step to the recording at once, so that it is kept even if this process is killed."""
         self._append(self.recording, self._sumo.head, step.xml, _END)
         if step.lights:
             self._append(_beside(self.recording, "tls"), _LIGHTS_BEGIN, _lights(step), _LIGHTS_END)
         new = set(_TYPE.findall(step.xml)) - self._types.keys()
         if new:
-            # while a vehicle of it is there: types of single vehicles end with them
+            # requested while the vehicle exists: the type of a single vehicle ends with it
             self._types |= {name: self._sumo.vehicle_type(unescape(name.decode())) for name in sorted(new)}
             _beside(self.recording, "vtypes").write_bytes(self._vtypes(self._types))
 
@@ -166,7 +165,7 @@ def _beside(log: Path, kind: str) -> Path:
 
 
 def _lights(step: Step) -> bytes:
-    """Return the states of all lights at a step: every step has them, as where SUMO saves them all the time."""
+    """Return the states of all traffic lights at a step, in the format of SUMO's own output of states."""
     return "".join(
         f'<tlsState time="{step.time}" id={quoteattr(light)} state="{state}"/>\n'
         for light, state in step.lights.items()

@@ -1,7 +1,7 @@
-"""SUMO as a child process: started, stepped through TraCI, ended.
+"""Runs SUMO as a child process, and steps it through TraCI.
 
-What is in a step is SUMO's own floating car data. Vehicles are not asked one by one, which would be slower and rounded in another way.
-It is no library in this process: libsumo brings an Arrow of its own, which clashes with pyarrow's.
+A step consists of SUMO's own floating car data: requests for single vehicles would be slower, and their values rounded differently.
+SUMO is not loaded as a library, because libsumo contains its own Arrow, which clashes with pyarrow's.
 Source: SUMO's documentation of "TraCI/Protocol" and "Simulation/Output/FCDOutput".
 """
 
@@ -27,13 +27,13 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 GRACE_S: Final = 5.0
-"""So long SUMO may take to end by itself, and to write its other outputs."""
+"""How long SUMO may take to end by itself and to write its other outputs."""
 CONNECT_S: Final = 30.0
 _STEP_S: Final = 10.0
 _RETRY_S: Final = 0.02
 _STARTS: Final = 3
 _IN_USE: Final = "bind"
-"""Words in SUMO's message if another program took the port in the meantime."""
+"""A word in SUMO's message if another program took the port in the meantime."""
 _NO_SUMO: Final = "SUMO is not installed: pip install 'drivelint[sumo]'"
 _OPTIONS: Final = (
     ("fcd-output.attributes", "id,x,y,z,angle,type,speed,pos,lane,edge,slope,signals,acceleration,vehicle"),
@@ -51,7 +51,7 @@ class Step(NamedTuple):
 
 
 class VehicleType(NamedTuple):
-    """SUMO's facts about a vType."""
+    """The class and size of a vType in SUMO."""
 
     vehicle_class: str
     length_m: float
@@ -59,9 +59,9 @@ class VehicleType(NamedTuple):
 
 
 def program() -> tuple[str, str | None]:
-    """Return SUMO's program and, where it is known, its home. Errors: `UsageError` where there is none.
+    """Return the path of SUMO's program and, if it is known, SUMO_HOME. Errors: `UsageError` if SUMO is not installed.
 
-    The program inside the package is taken: the script of that name starts it as a child that would outlive the script.
+    The program inside the package is used: the script of the same name starts it as a child, which would outlive the script.
     """
     homes = [os.environ.get("SUMO_HOME")]
     with suppress(ImportError):
@@ -77,9 +77,9 @@ def program() -> tuple[str, str | None]:
 
 
 class SumoProcess:
-    """A simulation that waits between its steps, which are `step_s` apart, until `until_s` of its own clock or where SUMO would end.
+    """A simulation that waits between its steps, which are `step_s` apart. It ends at `until_s` of its clock, or when SUMO would end.
 
-    Errors: `UsageError` without SUMO or traci, `TraceError` with SUMO's own message where it cannot go on.
+    Errors: `UsageError` without SUMO or traci, `TraceError` with SUMO's own message if it cannot continue.
     """
 
     def __init__(self, config: Path, *, precision: int, until_s: float | None) -> None:
@@ -96,13 +96,13 @@ class SumoProcess:
         self._process: subprocess.Popen[bytes] | None = None
         self._con: Any = None
         self._is_asked = False
-        """It was asked for something that it has not answered yet."""
+        """Whether SUMO has not yet answered the last request."""
         with ExitStack() as undo:
             undo.callback(self.end)
             self._begin(precision)
             with self._guarded_connection() as con:
                 self.step_s = float(con.simulation.getDeltaT())
-                end_s = float(con.simulation.getEndTime())  # less than 0: until all have arrived
+                end_s = float(con.simulation.getEndTime())  # less than 0: until all vehicles have arrived
                 for light in con.trafficlight.getIDList():
                     con.trafficlight.subscribe(light, (self._light_state,))
             undo.pop_all()
@@ -111,7 +111,7 @@ class SumoProcess:
 
     @property
     def head(self) -> bytes:
-        """What SUMO writes before the first step."""
+        """The output of SUMO before the first step."""
         return self._steps.head
 
     def step(self) -> Step:
@@ -126,15 +126,15 @@ class SumoProcess:
         return Step(*found, {light: states[self._light_state] for light, states in sorted(lights.items())})
 
     def is_over(self) -> bool:
-        """Say whether it is at its end."""
+        """Return whether the simulation is at its end."""
         with self._guarded_connection() as con:
             if self._ends_empty and con.simulation.getMinExpectedNumber() == 0:
                 return True
             return float(con.simulation.getTime()) >= self._end_s - self.step_s / 2
 
     def vehicle_type(self, name: str) -> VehicleType | None:
-        """Return the facts about a vType; None: SUMO does not know it any more."""
-        # one that was changed for a single vehicle is called BASE@ID, after the one that it was
+        """Return the class and size of a vType; None: SUMO does not know the type."""
+        # a type that was changed for a single vehicle is called BASE@ID, after its original type BASE
         parts = name.split("@")
         with self._guarded_connection() as con:
             known = con.vehicletype
@@ -145,7 +145,7 @@ class SumoProcess:
         return None
 
     def end(self) -> None:
-        """End SUMO: at its own pace if it waits, else at once. May be called twice."""
+        """End SUMO: give it `GRACE_S` if it waits for a request, else kill it at once. May be called twice."""
         con, self._con = self._con, None
         if self._process is not None:
             if con is not None and not self._is_asked:
@@ -165,7 +165,7 @@ class SumoProcess:
         process.wait()
 
     def _begin(self, precision: int) -> None:
-        """Start SUMO and connect to it; again at another port if another program took the first."""
+        """Start SUMO and connect to it; try another port if another program took the first."""
         found, home = program()
         environment = {**os.environ, **({"SUMO_HOME": home} if home else {})}
         for start in range(_STARTS):
@@ -174,8 +174,8 @@ class SumoProcess:
             options = [*_OPTIONS, ("fcd-output", f"{HOST}:{self._steps.port}"), ("precision", str(precision))]
             command = [found, "-c", str(self._config), "--remote-port", str(port)]
             command += [part for name, value in options for part in (f"--{name}", value)]
-            # in a session of its own: Ctrl-C is for us, who then end it
-            self._process = subprocess.Popen(  # noqa: S603 - the program that was asked for
+            # in a session of its own: only drivelint receives Ctrl-C, and then ends SUMO
+            self._process = subprocess.Popen(  # noqa: S603 - the user chose to run SUMO
                 command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=self._messages,
                 start_new_session=True, env=environment,
             )  # fmt: skip
@@ -185,7 +185,7 @@ class SumoProcess:
                 raise self._failed()
 
     def _connect(self, port: int, process: subprocess.Popen[bytes]) -> bool:
-        """Connect as soon as SUMO listens; false: it ended before. traci's own function writes to stdout while it waits."""
+        """Connect as soon as SUMO listens, and return whether it did. traci's own function would write to stdout meanwhile."""
         from traci.connection import Connection
 
         until = time.monotonic() + CONNECT_S
@@ -201,7 +201,7 @@ class SumoProcess:
 
     @contextmanager
     def _guarded_connection(self) -> Iterator[Any]:
-        """Give the connection. Errors: `TraceError` where it breaks."""
+        """Provide the connection within the block. Errors: `TraceError` if the connection fails."""
         self._is_asked = True
         try:
             yield self._con
@@ -210,7 +210,7 @@ class SumoProcess:
         self._is_asked = False
 
     def _failed(self) -> TraceError:
-        """Return why SUMO ended, in its own words."""
+        """Return an error with SUMO's own message on why it ended."""
         code: int | None = None
         if self._process is not None:
             with suppress(subprocess.TimeoutExpired):

@@ -1,6 +1,6 @@
-"""The steps of a simulation as SUMO writes them into a socket, one by one.
+"""Reads the steps of a simulation that SUMO writes into a socket.
 
-Into a socket SUMO writes every step at once; into a file or a pipe it writes a block of some steps at a time.
+Into a socket, SUMO writes every step at once; into a file or a pipe, it writes several steps in a block.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ _BEGIN: Final = re.compile(rb"<fcd-export[^>]*>[ \t]*\r?\n?")
 
 
 class StepReader:
-    """Listens at `port`, and keeps what came until it is asked for.
+    """Listens at `port`, and keeps the received steps until they are taken.
 
-    A thread reads: SUMO answers that a step is done only after it has written it, which it cannot while the socket is full.
+    A thread reads, because SUMO reports the end of a step only after it has written the step, and cannot write into a full socket.
     """
 
     def __init__(self) -> None:
@@ -30,7 +30,7 @@ class StepReader:
         self._server.settimeout(_ACCEPT_S)
         self.port: int = self._server.getsockname()[1]
         self.head = b""
-        """All that stands before the first step."""
+        """The output of SUMO before the first step."""
         self._found: deque[tuple[str, bytes]] = deque()
         self._news = threading.Condition()
         self._ended = False
@@ -38,13 +38,13 @@ class StepReader:
         self._thread.start()
 
     def take(self, timeout_s: float) -> tuple[str, bytes] | None:
-        """Return the next step: its time as SUMO writes it, and its element; None: none came in that time."""
+        """Return the next step: its time as SUMO writes it, and its element; None: no step came within `timeout_s`."""
         with self._news:
             self._news.wait_for(lambda: self._found or self._ended, timeout_s)
             return self._found.popleft() if self._found else None
 
     def close(self) -> None:
-        """Listen no more. What SUMO still writes is read until it ends, which must have been requested before."""
+        """Stop listening, after SUMO has ended and its output was read. SUMO's end must have been requested before."""
         self._ended = True
         self._thread.join()
 

@@ -1,4 +1,4 @@
-"""Bytes as they come from standard input or TCP, an empty piece at least ten times a second."""
+"""Yields bytes from standard input or TCP as they arrive, and an empty piece at least ten times a second."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 
 BLOCK: Final = 1 << 18
 RETRY_S: Final = 0.5
-"""So often it is tried again to connect to a writer that is not there yet."""
+"""The interval between attempts to connect to a writer that is not started yet."""
 
 
 LOOPBACK: Final = "127.0.0.1"
 
 
 def is_loopback(host: str) -> bool:
-    """Whether only programs of this machine reach an address."""
+    """Return whether only programs of this machine can reach an address."""
     try:
         return ip_address(host).is_loopback
     except ValueError:
@@ -32,24 +32,24 @@ def is_loopback(host: str) -> bool:
 
 
 def open_to_others(host: str) -> list[str]:
-    """Return the note that other machines reach an address; nothing where they do not."""
+    """Return the note that other machines can reach an address; empty if they cannot."""
     return [] if is_loopback(host) else ["whoever reaches this address can send what is judged"]
 
 
 class Patience:
-    """Reports when nothing has come for `idle_s` seconds; None: it waits for ever."""
+    """A timeout after `idle_s` seconds without data; None: there is no timeout."""
 
     def __init__(self, idle_s: float | None) -> None:
         self._idle_s = idle_s
         self._came_at = time.monotonic()
 
     def came(self) -> None:
-        """Something came."""
+        """Restart the timeout, because data came."""
         self._came_at = time.monotonic()
 
     @property
     def is_over(self) -> bool:
-        """Whether nothing has come for too long."""
+        """Whether no data came for `idle_s` seconds."""
         return self._idle_s is not None and time.monotonic() - self._came_at >= self._idle_s
 
 
@@ -71,7 +71,7 @@ def from_descriptor(number: int, idle_s: float | None) -> Generator[bytes, None,
 
 
 def from_socket(connection: socket.socket, idle_s: float | None, notes: list[str]) -> Generator[bytes, None, None]:
-    """Yield the bytes of a TCP connection until its peer closes it; a broken connection is reported in `notes`, and ends it, too."""
+    """Yield the bytes of a TCP connection until the writer closes it or the connection fails; a failure is added to `notes`."""
     patience = Patience(idle_s)
     with connection:
         connection.settimeout(TICK_S)
@@ -91,9 +91,9 @@ def from_socket(connection: socket.socket, idle_s: float | None, notes: list[str
 
 
 def connected(host: str, port: int, idle_s: float | None, notes: list[str]) -> Generator[bytes, None, None]:
-    """Connect to a writer, waiting for it if it is not there yet, and yield what it sends.
+    """Connect to a writer, waiting for it to start, and yield the bytes that it sends.
 
-    Errors: `TraceError` for a host that is not known.
+    Errors: `TraceError` for an unknown host.
     """
     where = f"tcp://{host}:{port}"
     patience = Patience(idle_s)
@@ -111,7 +111,7 @@ def connected(host: str, port: int, idle_s: float | None, notes: list[str]) -> G
 
 
 def listening(server: socket.socket, idle_s: float | None, notes: list[str]) -> Generator[bytes, None, None]:
-    """Wait for one writer to connect, and yield what it sends."""
+    """Wait for one writer to connect, and yield the bytes that it sends."""
     patience = Patience(idle_s)
     with server:
         server.settimeout(TICK_S)
@@ -127,7 +127,7 @@ def listening(server: socket.socket, idle_s: float | None, notes: list[str]) -> 
 
 
 def bound_socket(kind: socket.SocketKind, host: str, port: int, where: str) -> socket.socket:
-    """Return a socket bound to an address of this machine. Errors: `TraceError` where it is taken."""
+    """Return a socket bound to an address of this machine. Errors: `TraceError` if the address cannot be used."""
     try:
         family = socket.getaddrinfo(host, port, type=kind)[0][0]
         bound = socket.socket(family, kind)
