@@ -146,7 +146,7 @@ class Sandbox:
         ]
 
     def _judgements(self, params_by_name: Mapping[str, Mapping[str, object]]) -> dict[str, Judgement]:
-        """Judge by the rule under several names, each with its parameters."""
+        """Judge by the rule with each setting of parameters in `params_by_name`, and return the judgements by name."""
         for table in _RESULT_TABLES:
             self.con.execute(f"DELETE FROM {table}")
         rules = [msgspec.structs.replace(self._rule, id=name) for name in params_by_name]

@@ -87,7 +87,7 @@ def _read(run_options: RunRequest, path: Path, map_: Path | None, drive_id: str,
         raise UsageError(
             f"{path} is not the log that was judged ({drive_id}) but {read.drive_id}: name the right log with --trace"
         )
-    if read.drive_id != drive_id:  # the same bytes under another name
+    if read.drive_id != drive_id:  # the same content under another name
         read = renamed(read, drive_id)
     return drive_with_map(read, MapLibrary(run_options))
 

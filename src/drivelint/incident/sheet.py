@@ -208,7 +208,7 @@ def _least_gap(motion: Motion, finding: NamedFinding) -> str | None:
 
 
 def _contacts(case: Case) -> list[Row]:
-    """Return the other contacts of A in this drive, in time order."""
+    """Return the contacts of A in this drive, except the sheet's finding, in time order."""
     mine = case.finding.row
     tagged = {rule["rule_id"] for rule in case.result.rules.to_pylist() if CONTACT in rule["tags"]}
     found = [

@@ -48,7 +48,7 @@ _COUNTED_LABEL: Final = "counted"
 
 
 class Part(NamedTuple):
-    """A part of the sentence; `kind`: contact, possible contact, warning, or ''."""
+    """A part of the outcome's sentence; `kind`: contact, possible contact, warning, or ''."""
 
     words: str
     kind: str = ""

@@ -24,7 +24,7 @@ _AT_ONCE_S: Final = 0.5
 
 
 class Progress:
-    """Listener of the pipeline: progress and diagnostics, never results. This one ignores all messages."""
+    """Receives progress and notes from the pipeline, but no results. This base class ignores all messages."""
 
     def stage(self, name: str, total: int | None = None) -> None:
         """Begin a stage of `total` units of work (None: not known)."""
@@ -39,11 +39,11 @@ class Progress:
         """Print a line for the user."""
 
     def leave(self) -> None:
-        """Leave the terminal as it was, before another program takes over."""
+        """Restore the terminal before another program uses it."""
 
 
 class Silent(Progress):
-    """A `Progress` without a listener."""
+    """A `Progress` that ignores all messages."""
 
 
 class NotePrinter(Silent):

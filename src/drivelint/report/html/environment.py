@@ -78,7 +78,7 @@ def visible(value: Any) -> Any:
 
     The unit m/s2, alone or after a number, becomes m/s².
     """
-    return _MPS2.sub("m/s\u00b2", escape_invisible(value)) if type(value) is str else value  # Markup is ours
+    return _MPS2.sub("m/s\u00b2", escape_invisible(value)) if type(value) is str else value  # Markup is safe
 
 
 def _concatenated_texts(files: Iterable[Path]) -> str:

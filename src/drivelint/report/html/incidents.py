@@ -72,7 +72,7 @@ def finding_line(
 ) -> FindingLine:
     """Return a finding or near miss as the page shows it.
 
-    `linked`: its drive has a section in the page; `steps`: its row of `course`; `same`: other findings of the same contact.
+    `linked`: its drive has a section in the page; `steps`: its row of the table `course`; `same`: other findings of the same contact.
     """
     unit, long = row["unit"], row["t_end_ns"] is not None and row["t_end_ns"] != row["t_start_ns"]
     sense = _SENSE.get(rule["sense"])

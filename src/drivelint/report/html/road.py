@@ -30,7 +30,7 @@ UNITS_PER_M: Final = 10.0
 _ARROW_EVERY_M: Final = 25.0
 _ON_ROAD_M: Final = 6.0  # a lane bound nearer than this belongs to the road that the ego is on
 _SLANT_RAD: Final = math.radians(50)  # a bound at a greater angle to the ego's heading does not give the road's heading
-_TILE_M: Final = 200.0  # lanes that begin in one square are drawn together
+_TILE_M: Final = 200.0  # the side of a tile: lanes that begin in the same square are drawn together
 
 
 class Road:

@@ -23,7 +23,7 @@ _ORDER: Final = ("fail", "error", "unknown", "pass", "not_applicable")
 _LAYERS: Final = ("pass", "unknown", "error", "fail")  # the most important verdict is drawn last
 _TICKS: Final = (1, 2, 5, 10, 20, 30, 60, 120, 300, 600, 1200, 1800, 3600)
 _MOST_TICKS: Final = 9
-_THIN: Final = 0.35  # percent: a shorter stretch is drawn as a mark
+_THIN: Final = 0.35  # percent: a shorter period is drawn as a mark
 
 
 class TimelineRow(NamedTuple):
