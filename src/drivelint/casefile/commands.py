@@ -1,7 +1,7 @@
 """Runs the commands for authors of rules: create a rule, test rules by their cases, test cases by mutants.
 
 An invalid rule is refused with `file:line: message`, and the other rules are still tested. Unlike `check`, these commands do not load
-the shipped rules in addition to the user's folder, so the folder may contain copies of shipped rules.
+the shipped rules if a folder is given, so the folder may contain copies of shipped rules.
 """
 
 from __future__ import annotations

@@ -135,9 +135,9 @@ def explain(request: ExplainRequest) -> Explanation:
 def _what_would_change_it(
     case: VerdictContext, drive: Drive, whole: Sandbox, now: str, *, errors: MeasurementErrors, exit_stack: ExitStack
 ) -> tuple[list[Change], Sensitivity | None]:
-    """Return the least changes of the rule's numbers that change the verdict, and its sensitivity to measurement errors.
+    """Return the least changes of the rule's numbers that change the verdict, and the verdict's sensitivity to measurement errors.
 
-    `whole`: a sandbox with the whole drive, on which the verdict is `now`. Sensitivity None: no copies were requested.
+    `whole`: a sandbox with the whole drive, on which the verdict is `now`. The sensitivity is None if no copies were requested.
     """
     row = case.target.verdict_row
     part, span, sandbox = sufficient_part(case, drive, whole, now, exit_stack)
@@ -169,7 +169,7 @@ def _case(run_options: RunRequest, target: Target, rules: pa.Table, memory: int 
 
 
 def _asks(rule: Rule, row: Mapping[str, Any], start_ns: int) -> str | None:
-    """Return in words what the user can record or provide, by the reason of a verdict; None for nothing."""
+    """Return in words what the user can record or provide, given the reason of a verdict; None for nothing."""
     if row["cause_code"] is not None:
         return reason_text.advice_sentence(
             row["cause_code"], json.loads(row["cause_args"] or "{}"), start_ns, rule.reasons

@@ -1,4 +1,4 @@
-"""Searches the nearest value of each parameter and profile number that would change the verdict.
+"""Searches for the nearest value of each parameter and profile number that would change the verdict.
 
 The searches of all numbers run side by side: each requests verdicts for some values, and one evaluation judges all requested values.
 """
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 SEARCH_FACTORS: Final = (0.02, 0.1, 0.25, 0.5, 1.0, 3.0, 10.0)
 """The distances of the tried values in each direction, as multiples of the present value (of 1 if it is 0)."""
 _NEAR_FACTORS: Final = 3
-"""The number of distances that are judged first, because most verdicts that change do so there."""
+"""The number of distances that are judged first, because most changes of a verdict occur there."""
 _HALVINGS: Final = 8
 _MOST_HALVINGS: Final = 12
 _EXACT: Final = 0.005
@@ -35,7 +35,7 @@ _PROFILE: Final = {
 
 
 class _Number(NamedTuple):
-    """A number that is varied. `column`: a profile's column, None for a parameter; `halvings`: judged in one evaluation."""
+    """A number that is varied. `column`: a profile's column, None for a parameter; `halvings`: number per evaluation."""
 
     name: str
     description: str
@@ -156,7 +156,7 @@ def _values(number: _Number, scale: float, least: float) -> list[float]:
 
 
 def _same(becomes: str, verdict: str) -> bool:
-    """Return whether the verdict counts as unchanged; this includes pass or fail becoming unknown, as the value is then not sensible."""
+    """Return whether a verdict counts as unchanged: it is the same, or a pass or fail became unknown, which is no useful change."""
     return becomes == verdict or (becomes == "unknown" and verdict in {"pass", "fail"})
 
 

@@ -86,7 +86,7 @@ class Explanation:
     other_verdicts: list[Row]
     """Further verdict rows of this rule in this drive: profile, object_id, t_start_ns, verdict."""
     asks: str | None
-    """What the user can record or provide to decide the verdict, by its reason."""
+    """What the user can record or provide so that the verdict can be decided; None: nothing."""
     decides_ns: int | None
     parts: list[Part]
     """The summands of the verdict's `required`; empty: not known."""

@@ -82,5 +82,5 @@ def _cell(margin: float | None, row: int, size: float) -> str:
         return " "
     if row > 0:
         return _EIGHTHS[min(8, max(1, round(part * 8)))]
-    # Unicode has no blocks of other eighths at the top of a cell
+    # of blocks at the top of a cell, Unicode has only these
     return "█" if part >= 0.75 else "▀" if part >= 0.25 else "▔"

@@ -44,7 +44,7 @@ def perturbed_copies(drive: Drive, errors: MeasurementErrors) -> Iterator[tuple[
 def verdict_sensitivity(
     context: VerdictContext, drive: Drive, errors: MeasurementErrors, span: tuple[int, int] | None
 ) -> Sensitivity:
-    """Return how often each verdict occurs on copies of `drive`. `span`: its interval if it is a part of the drive."""
+    """Return how often each verdict occurs on copies of `drive`. `span`: the interval of `drive` if it is only a part of the log."""
     found: list[str] = []
     for ids, batch in perturbed_copies(drive, errors):
         with context.sandbox([batch]) as sandbox:

@@ -180,7 +180,7 @@ def _cell(column: str, value: Any, start_ns: int) -> str:
 
 
 def _comment(text: str, value: Any) -> str:
-    """Return a column's comment, shortened; for NULL only the meaning of NULL, if stated, for other values without it."""
+    """Return a column's comment, shortened. For NULL: only the part about NULL, if any; for other values: without that part."""
     of_value, null, of_null = text.partition("NULL: ")
     if null:
         text = null + of_null if value is None else of_value.rstrip("; ") or text

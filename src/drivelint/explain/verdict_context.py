@@ -27,13 +27,13 @@ if TYPE_CHECKING:
 SAME_REFERENCE_NS: Final = 2_000_000_000
 """A reference point that moved by at most this time counts as the same reference point."""
 CROP_MARGINS_NS = (20_000_000_000, 60_000_000_000)
-"""The time before and after the explained interval in the tried parts of a drive, until a part gives the same verdict."""
+"""The margins around the explained interval with which parts of the drive are tried, in this order."""
 _WORST: Final = ("error", "fail", "unknown", "pass", "not_applicable")
 
 
 @dataclass(frozen=True)
 class VerdictContext:
-    """A verdict to explain, and the values with which it is judged again."""
+    """A verdict to explain, with the rule, parameters and profiles to judge it again."""
 
     rule: Rule
     target: Target
@@ -54,7 +54,7 @@ class VerdictContext:
     def verdicts_on(self, judgement: Judgement, drives: Sequence[str]) -> list[str]:
         """Return the verdict on the target's interval, profile and object in each of these drives, in the same order."""
         wanted, about = self.target.verdict_row, ["ego_id", "profile"]
-        if self.target.span is not None and self.rule.combine == "each":  # else the object only decided the verdict
+        if self.target.span is not None and self.rule.combine == "each":  # else it is just the deciding object
             about.append("object_id")
         verdicts, steps = (
             group_rows(

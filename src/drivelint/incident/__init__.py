@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from drivelint.result.request import RunRequest
 
 FOLDER: Final = "incidents"
-"""The folder, within the result folder, of the sheets; each file has the finding's id as its name."""
+"""The subfolder of the result folder that contains the sheets; each file has the finding's id as its name."""
 _HERE: Final = Path(__file__).parent
 _REPORT_TEMPLATES: Final = Path(report_page.__file__).parent / "templates"
 _NO_VEHICLES: Final = frozenset({"pedestrian", "animal", "object"})
@@ -128,7 +128,7 @@ def _other_party(
             for table in (result.verdicts, result.findings)
         ]
         return EgoRows(rows[0], rows[1], result.verdicts.slice(0, 0))
-    # the option --ego-size is about the ego only, not about the other party, whose object the ego now is
+    # the option --ego-size is about the ego of the run: with this option, read the log with that ego
     read_as = other if run_options.ego_size is None else finding.row["ego_id"]
     drive, _ = open_drive(
         request.folder, run_options, drive_id, read_as, trace=_log(request, run_options, finding), map_=request.map
@@ -142,7 +142,7 @@ def _other_party(
 
 
 def _log(request: IncidentRequest, run_options: RunRequest, finding: NamedFinding) -> Path | None:
-    """Return the log's path, so that the log is read even if a database was kept; None if the log is not at its path."""
+    """Return the log's path, so that the log is read even if a database was kept; None if the log does not exist there."""
     if request.trace is not None:
         return request.trace
     known = run_options.traces.get(finding.row["drive_id"])

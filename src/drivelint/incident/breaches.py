@@ -49,7 +49,7 @@ def broken_line(rule: Row, rows: Sequence[Row], start_ns: int) -> str:
 def kept_line(rule: Row, rows: Sequence[Row], span: tuple[int, int], start_ns: int) -> str:
     """Return the line of a rule that all `rows` kept: its worst measured value, and when it was judged if not in all of `span`.
 
-    The title replaces the value if the rule measures nothing, or may excuse a breach, which the value would not show.
+    The title replaces the value if the rule measures nothing, or may excuse a breach, because the value does not show the excuse.
     """
     row = min(rows, key=lambda r: (r["margin"] is None, r["margin"] or 0.0, r["t_worst_ns"] or 0))
     said, about = quoted(rule), [_stretches(rows, span, start_ns)]

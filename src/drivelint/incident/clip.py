@@ -33,7 +33,7 @@ SPANS_S: Final = ((15, 7), (30, 15), (60, 60))
 """Seconds before the first and after the last failing step, tried in this order; then the whole log."""
 _S: Final = 1_000_000_000
 _IN_THE_LOG: Final = ("map", "map_dir", "map_offset", "mapping", "topic", "ego_size")
-"""Options that a converted log does not need, because it contains their effects."""
+"""Options whose effects a converted log already contains."""
 
 
 def write_clip(request: ConvertRequest, name: str, folder: Path, memory: int | None) -> ConvertedTrace:

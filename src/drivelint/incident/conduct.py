@@ -34,8 +34,8 @@ def conduct(
 
     A rule counts once, by its worst verdict in the span: broken, undecided (or in error), kept, or never applicable. A verdict without
     a time is about the whole drive. `elsewhere`: rules broken only outside the span. `excused`: kept rules that may excuse what their
-    titles forbid. `beside`: rules of contacts that found no contact although another rule did; these rules do not count as kept.
-    `only_hit`: only rules of contacts were broken. `touched`: the sheet is about a contact.
+    titles forbid. `beside`: rules about contacts that found none although another rule did; these rules do not count as kept.
+    `only_hit`: only rules about contacts were broken. `touched`: the sheet is about a contact.
     """
     told = {name: [row for row in rows if _within(row, span)] for name, rows in (("v", verdicts), ("f", findings))}
     by_rule = group_rows(told["v"], lambda row: row["rule_id"])
@@ -101,7 +101,7 @@ def _within(row: Row, span: tuple[int, int]) -> bool:
 
 
 def _reasons(undecided: Mapping[str, Sequence[Row]], rules: Mapping[str, Row]) -> list[Reason]:
-    """Return the reasons why rules are undecided: reasons of rules of contacts first, then the reason of most rules."""
+    """Return the reasons why rules are undecided: reasons of rules about contacts first, then the most frequent reasons."""
     unknown = [row for rows in undecided.values() for row in rows if row["verdict"] in _UNDECIDED]
     of_rules: dict[str, set[str]] = {}
     for rows in group_rows(unknown, lambda row: verdict_reason(row).kind).values():

@@ -19,13 +19,13 @@ _LEAST_DEGREES: Final = 5.0
 _LEAST_MPS: Final = 0.5
 """The direction of a smaller velocity, or of a smaller change of velocity, is not meaningful."""
 _MOST_STEPS: Final = 2.5
-"""A greater distance between samples, in usual steps, is a gap, as in the rules (`max_gap`)."""
+"""If samples are farther apart than this many usual steps, there is a gap, as in the rules (`max_gap`)."""
 
 
 class DeltaV(NamedTuple):
     """The greatest change of velocity in m/s, and its time in seconds from the moment.
 
-    `is_least`: the recording ends before the window, so the change may have been greater.
+    `is_least`: the recording ends within the window, so the change may have been greater.
     """
 
     mps: float

@@ -29,8 +29,7 @@ SHARED_HEAD: Final = 100
 _TITLES_NOTE_CHARACTERS: Final = 80
 """The characters of the sentence that refers to the titles that were left out."""
 _WIDE, _CELL, _FACT, _CHECK = 92, 43, 41, 98
-"""The characters of a line in the widest possible font: across page 1, in a column of the parties, in a column of the facts, and in a row
-of the hashes."""
+"""The characters of a line in the widest possible font: across page 1, in a column of the parties or the facts, and beside a hash."""
 _LINE_PX, _TEXT_PX = 13.7, 15.7
 """The height of a line in the tables of page 1, and in its first sentences."""
 _FIRST_PX: Final = 465
@@ -92,7 +91,7 @@ def is_crowded(page: dict[str, Any]) -> bool:
 
 
 def check_room(texts: Sequence[str]) -> int:
-    """Return the characters that the columns of page 2 lose if texts of the hashes need more than one line each."""
+    """Return the characters that the columns of page 2 lose because the lines with hashes (`texts`) wrap."""
     return _CHECK_LINE * sum(_lines(text, _CHECK) - 1 for text in texts)
 
 

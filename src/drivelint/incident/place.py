@@ -68,7 +68,7 @@ def surroundings(drive: Row) -> str:
 
 
 def coordinates(case: Case) -> str:
-    """Return in words which coordinates x and y are: those of the log or the clip, with any change of sign or offset of the map."""
+    """Return in words whether x and y are coordinates of the log or of a clip, and any change of y's sign or offset of the map."""
     checks = {check["check_id"] for check in case.finding.drive["quality"]}
     said = "the recording's coordinates"
     if CLIP in checks:

@@ -58,7 +58,7 @@ _CLIP_NOTE: Final = "; numbers that depend on what is before or after it may dif
 _SPACES: Final = "danger_space"
 _LONGEST: Final = 330
 _LINE_ROOM: Final = 370
-"""The characters that warnings about the log take in the columns of page 2, and that the source of a clip takes."""
+"""The characters that warnings about the log, or the source of a clip, take in the columns of page 2."""
 _WARNING_ROOM: Final = 300
 _LABEL_SHARE: Final = 0.1
 """Size of the plan view's labels as a share of its height; at the least height (`sheet.css`) they are 6 pt or more."""
@@ -394,6 +394,6 @@ def _courses(case: Case) -> tuple[list[dict[str, Any]], dict[str, Any] | None]:
 
 
 def _rules_hash(result: Result) -> str:
-    """Return the SHA-256 of a text with one line per rule, its id and version, in the order of the ids."""
+    """Return the SHA-256 of the lines `ID VERSION` of all rules, in the order of the ids."""
     rows = sorted((rule["rule_id"], rule["rule_version"]) for rule in result.rules.to_pylist())
     return hashlib.sha256("".join(f"{rule} {version}\n" for rule, version in rows).encode()).hexdigest()

@@ -91,7 +91,7 @@ def how_sure(row: Row) -> str:
 
 
 def contact(row: Row, rule: Row) -> str:
-    """Return the overlap of the boxes in the recording and its copies in words; '' if the finding is no overlap of boxes."""
+    """Return the overlap of the boxes in the recording and its copies in words; '' if the finding is not about overlapping boxes."""
     if CONTACT not in rule["tags"] or row["unit"] != "m" or row["observed"] is None or row["observed"] >= 0:
         return ""
     said = f"the boxes overlap by {amount(-row['observed'], 'm')} in the recording"

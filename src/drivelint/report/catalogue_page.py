@@ -129,7 +129,7 @@ def page(rules: Iterable[Rule], folder: Path) -> str:
 
 
 def _inert_cell(value: Any) -> Any:
-    """Return a value for a cell without HTML except line breaks, and without links and pictures, as a rule may be from anyone."""
+    """Return a value for a table cell, without links, pictures and HTML (except line breaks), because rules may be untrusted."""
     if not isinstance(value, str):
         return value
     return cell(escape_invisible(_TAG.sub("&lt;", value).replace("](", "]\\(")))

@@ -1,4 +1,4 @@
-"""The inputs of a run in one line: whether the map fits, whether logs are complete or copies, and what was not judged."""
+"""The inputs of a run in one line: whether the map fits, whether logs are complete, and what was not judged."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _EGO: Final = ["drive_id", "ego_id"]
 
 
 class InputNote(NamedTuple):
-    """A part of the line: `label: words`; `is_warning`: a verdict may be wrong or missing because of this input."""
+    """A note on the inputs, printed as `label: words`; `is_warning`: a verdict may be wrong or missing because of this input."""
 
     label: str
     words: str
@@ -41,7 +41,7 @@ class InputNote(NamedTuple):
 
 
 def input_notes(result: Result) -> list[InputNote]:
-    """Return the parts of the line: law (if a rule is the law of a nation), map, log, missing signals, parked egos, not judged."""
+    """Return the notes on the inputs: law (if a rule implements a nation's law), map, log, missing signals, parked egos, not judged."""
     drives = [drive for drive in result.drives.to_pylist() if drive["status"] == "judged"]
     law = [InputNote(LAW, words, is_warning=False)] if (words := law_words(result)) else []
     return [
@@ -136,7 +136,7 @@ def _unrecorded(result: Result) -> list[InputNote]:
 
 
 def _parked(result: Result) -> list[InputNote]:
-    """Return the note on egos that never move, to which only rules about standing apply; in perception logs these are two thirds."""
+    """Return the note on egos that never move (two thirds in perception logs); only rules about standing apply to them."""
     parked = result.verdicts.filter(pc.equal(result.verdicts["reason_code"], _NEVER_MOVES))
     n, of = (len(counts.distinct_rows(verdicts, _EGO)) for verdicts in (parked, result.verdicts))
     words = f"{n} of {plural(of, 'ego')} never move{'s' if n == 1 else ''}: rules about standing alone hold"

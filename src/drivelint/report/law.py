@@ -19,14 +19,14 @@ _SOURCES: Final = {"env": "--env", "trace": "the log", "map": "the map"}
 
 
 def law_words(result: Result) -> str:
-    """Return in words the nations whose law the rules are, and whether that law was applied; '' if no rule is the law of a nation."""
+    """Return in words which nations' laws the rules implement, and whether these were applied; '' if no rule implements a law."""
     laws = sorted({tuple(rule["law"]) for rule in result.rules.select(["law"]).to_pylist() if rule["law"]})
     drives = [drive for drive in result.drives.to_pylist() if drive["status"] == "judged"]
     return "; ".join([*(_law(law, drives) for law in laws), *_left_out(laws, drives)]) if drives and laws else ""
 
 
 def _left_out(laws: list[tuple[str, ...]], drives: list[Row]) -> Iterator[str]:
-    """Yield the packs with the law of a drive's nation, for each nation whose law no rule of the run has."""
+    """Yield in words the packs that implement the law of a drive's nation, if no rule of the run implements it."""
     nations = {said["value"] for drive in drives for said in drive["conditions"] if said["condition"] == "nation"}
     lacking = sorted(nation for nation in nations if not any(nation in all_values(law) for law in laws))
     for nation in lacking:

@@ -54,7 +54,7 @@ def same_log(path: Path, drive_id: str) -> LogNote:
 
 
 def told_once(notes: Iterable[LogNote]) -> Iterator[LogNote]:
-    """Yield the notes; of several notes with `once` and the same text, only the first."""
+    """Yield the notes, but of several notes with `once` and the same text only the first."""
     told: set[str] = set()
     for note in notes:
         if not (note.once and note.text in told):

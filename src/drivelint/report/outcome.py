@@ -238,14 +238,14 @@ def _findings(result: Result, rows: Sequence[Row]) -> str:
 
 
 def _worse(gate: Gate | None) -> list[Part]:
-    """Return the part on known findings with a worse margin than in the baseline; [] if there are none."""
+    """Return the sentence's part about known findings with a worse margin than in the baseline; [] if there are none."""
     entries = gate.baseline.entries if gate is not None and gate.baseline is not None else ()
     n = n_findings(e for e in entries if gate and e.worse and gate.standing(e.finding_id) == "known")
     return [Part("1 known finding is worse" if n == 1 else f"{n} known findings are worse", "warning")] if n else []
 
 
 def _contacts(result: Result, rows: Sequence[Row], rules: Mapping[str, Row]) -> list[Part]:
-    """Return the parts on drives with a contact, and with a possible contact only; contacts known from the baseline count too."""
+    """Return the sentence's parts about drives with a contact or a possible contact; contacts known from the baseline count too."""
     contacts = [row for row in rows if is_contact(row, rules)]
     touched = {row["drive_id"] for row in contacts if not doubt(row)}
     sure = [row for row in contacts if row["drive_id"] in touched]

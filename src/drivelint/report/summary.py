@@ -1,4 +1,4 @@
-"""`summary.json`: all counts, the inputs, and the exit code with its reason. It contains no time of day: same run, same bytes."""
+"""`summary.json`: all counts, the inputs, and the exit code with its reason. The same run gives the same bytes."""
 
 from __future__ import annotations
 

@@ -210,7 +210,7 @@ def _assumptions(result: Result) -> Text | None:
 
 
 def _table(title: str, style: str, columns: Mapping[str, int] | None = None) -> Table:
-    """Return a table with folded text; `columns`: the name of each column and its share of the width."""
+    """Return a table with wrapped text; `columns`: the name of each column and its share of the width."""
     table = Table(title=Text(title, style=style), title_justify="left", box=box.SIMPLE_HEAD)
     table.show_edge = table.pad_edge = False
     for name, ratio in (columns or {}).items():

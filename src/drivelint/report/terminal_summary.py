@@ -101,7 +101,7 @@ def _rules(result: Result) -> dict[str, Any]:
 
 
 def _verdict(result: Result) -> Text:
-    """Return the run's outcome as word and sentence; if nothing was judged, also the reason, as "no findings" is then no good news."""
+    """Return the run's outcome as word and sentence; if nothing was judged, also the reason."""
     told, ended = headline(result), exit_status(result)
     text = Text(f"{told.label}  ", _STYLE_OF.get(told.label, _CAREFUL))
     for n, part in enumerate(told.parts):

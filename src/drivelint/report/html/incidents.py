@@ -112,9 +112,9 @@ def _measurement_sentence(row: Row, rule: Row, required: str) -> str:
 
 
 def how_sure(finding: Row, same: Sequence[Row] = ()) -> dict[str, str]:
-    """Return whether a finding is sure or possible (`kind`, '' if no copies were judged), in how many copies it stays, and why.
+    """Return whether a finding is sure or possible (`kind`, '' if no copies were judged), and in how many copies it stays.
 
-    Copies are judged copies of the drive with assumed recording errors. `same`: other findings of the same contact.
+    Copies are copies of the drive with assumed recording errors. `same`: other findings of the same contact.
     """
     said = certainty(finding)
     if said is None:

@@ -35,7 +35,7 @@ def contacts(result: Result, lines: Sequence[FindingLine], rules: Mapping[str, R
     """Return the contacts of all findings, with their times; None if no finding is a contact. `lines`: the findings of the page.
 
     `named`: the first contacts in words, each with a link to its surest finding; `n_more`: the number of further contacts;
-    `sure`: whether at least one contact is more than possible.
+    `sure`: False if all contacts are only possible.
     """
     starts = result.start_times
     hrefs = {line.row["finding_id"]: line.href for line in lines}
@@ -46,7 +46,7 @@ def contacts(result: Result, lines: Sequence[FindingLine], rules: Mapping[str, R
     for found in met.values():
         first = min(found, key=sureness)
         who = ego_name(first["ego_id"]) + ("" if first["object_id"] is None else f" and object {first['object_id']}")
-        # report how deep the boxes overlapped: one centimetre may be an error of the recorder
+        # print the depth of the overlap: one centimetre may be an error of the recorder
         measured = [row for row in found if row["unit"] == "m" and row["observed"] is not None]
         worst = min(measured, key=lambda row: row["observed"], default=None)
         later = "" if worst is None else worst_later(worst, rules, starts[worst["drive_id"]]).removeprefix("deepest")
@@ -166,7 +166,7 @@ def drive_summaries(sections: Sequence[Mapping[str, Any]], n_drives: int) -> lis
 def first_page_texts(
     rules: Sequence[Mapping[str, Any]], summaries: Sequence[Mapping[str, Any]], lines: Sequence[FindingLine]
 ) -> list[str]:
-    """Return the texts of the first page about rules and findings, in which the page searches for words to explain."""
+    """Return the texts of the first page about rules and findings; words in them may need an explanation."""
     worst = [b["worst"] for b in rules if b["worst"] is not None]
     leading = [
         line for story in summaries for moment in story["moments"] for _, lines_ in moment["cards"] for line in lines_

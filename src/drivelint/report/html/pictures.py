@@ -34,7 +34,7 @@ def pictures_by_moment(pictures: pa.Table) -> dict[Moment, list[dict[str, Any]]]
 def add_pictures(
     worst: dict[str, Any] | None, sections: Sequence[dict[str, Any]], cameras: Mapping[Moment, list[dict[str, Any]]]
 ) -> None:
-    """Add the pictures to the moments of a page, each picture only once; later moments of the same time link to it.
+    """Add the pictures to the moments of a page, each picture only once; other moments at the same time link to it.
 
     The worst moment gets its pictures first.
     """

@@ -113,7 +113,7 @@ class Lanes:
         return "".join(polygon(np.rint(self.to_units(ring if _area(ring) > 0 else ring[::-1]))) for ring in rings)
 
     def _markings(self) -> list[tuple[str, str, str]]:
-        """Return each bound once, as tile, kind and path. Kinds: solid, broken, and edge (a kerb, or no marking in the map)."""
+        """Return each bound once, as tile, kind and path. Kinds: solid, broken, and edge (a kerb, or a bound of unknown kind)."""
         seen: set[frozenset[tuple[float, float]]] = set()
         marks = []
         # bounds inside a junction are not painted on the road

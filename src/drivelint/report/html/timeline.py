@@ -29,7 +29,7 @@ _THIN: Final = 0.35  # percent: a shorter period is drawn as a mark
 class TimelineRow(NamedTuple):
     """One row of a timeline: a rule and profile, its worst verdict, and its bars.
 
-    `bands`: judged periods, or moments (`w` is empty); `marks`: findings, with their links, and near misses.
+    `bands`: judged periods, or moments (width `w` is empty); `marks`: findings, with their links, and near misses.
     """
 
     rule_id: str
@@ -177,7 +177,7 @@ def _is_missing(row: Row) -> bool:
 
 
 def _bands(stretches: Sequence[Row], clock: TimeAxis) -> list[dict[str, str]]:
-    """Return the judged periods as bands by verdict; touching periods of one verdict, as of several objects, become one band."""
+    """Return the judged periods as bands by verdict; touching periods of one verdict become one band."""
     bands = []
     for verdict in _LAYERS:
         spans: list[tuple[float, float, set[VerdictReason]]] = []
@@ -194,7 +194,7 @@ def _bands(stretches: Sequence[Row], clock: TimeAxis) -> list[dict[str, str]]:
 
 
 def _span(row: Row, clock: TimeAxis) -> tuple[float, float]:
-    """Return start and end of the judged period in percent: its reference time, or the whole drive, if the verdict has no period."""
+    """Return start and end of the judged period in percent of the drive; without a period, its reference time, else 0 and 100."""
     if row["t_start_ns"] is None:
         return (0.0, 100.0) if row["t_ref_ns"] is None else (clock.at(row["t_ref_ns"]),) * 2
     return clock.at(row["t_start_ns"]), clock.at(row["t_end_ns"])
