@@ -20,9 +20,9 @@ The file is a list of cases. Each case gives a small scene as rows of tables, an
   block such as `clock: {max_gap_s: 1}` replaces the computed value.
 * `ego_condition`: the conditions that rules with `[applies]` need. In rows without `engaged`, and at steps without a
   row, the automated driver drives (`engaged: true`); other conditions that are not given are not known.
-* `expect`: one verdict, which every row must have, or a list of all rows in order of time, profile and object, each
-  with the columns to compare (`t_worst_s` for `t_worst_ns`; a part of `reason` is enough). Numbers must agree to the
-  written decimals, at least to two: 12 means 12.00.
+* `expect`: one verdict, which every row must have, or a list of all rows in order of time, profile and object. Each row
+  has the columns to compare (`t_worst_s` for `t_worst_ns`; a part of `reason` is enough). Numbers must agree to the
+  written decimals, at least two: 12 means 12.00.
 * The cases of a rule must show `clean`, `violation`, `boundary`, `not_applicable` and `unknown`. A case shows the
   categories in its name, or in `shows:`.
 """

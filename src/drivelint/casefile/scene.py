@@ -48,7 +48,7 @@ def _tables() -> dict[str, dict[str, Any]]:
 
 
 def complete_scene(rule: Rule, given_tables: Mapping[str, Any], missing_signals: Sequence[str]) -> dict[str, list[Row]]:
-    """Return the rows of each table: those of a case, and those derived from them. Errors: `RuleError`."""
+    """Return the rows of each table: the rows in the case, and rows derived from these. Errors: `RuleError`."""
     scene = {table: _rows(table, blocks) for table, blocks in given_tables.items()}
     clock = scene.pop("clock", [{}])
     scene["step"] = _steps(scene, clock[0].get("max_gap_ns"))

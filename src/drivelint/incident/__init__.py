@@ -142,7 +142,7 @@ def _other_party(
 
 
 def _log(request: IncidentRequest, run_options: RunRequest, finding: NamedFinding) -> Path | None:
-    """Return the log's path, so that the log is read even if a database was kept; None if the log does not exist there."""
+    """Return the log's path, from which the log is read even if a database was kept; None if there is no log at that path."""
     if request.trace is not None:
         return request.trace
     known = run_options.traces.get(finding.row["drive_id"])

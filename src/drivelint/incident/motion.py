@@ -37,8 +37,8 @@ class Motion:
     """The steps of a drive as arrays; in each pair the ego's comes first, then the other party's. NaN: not known.
 
     `t`: seconds from the moment; `velocity`: along x and y, shape (2, n), in m/s; `backwards`: moves against its heading;
-    `lane_offset`: from the centre of the ego's lane, left positive; `gap`: distance of the boxes in m, negative: depth of overlap;
-    `closing`: speed at which the distance of the box centres decreases; `relative`: relative speed; `turn`: angle between the headings;
+    `lane_offset`: from the centre of the ego's lane, left positive. `gap`: distance of the boxes in m, negative: depth of overlap;
+    `closing`: speed at which the distance of the box centres decreases; `relative`: relative speed; `turn`: angle between the headings.
     `out_since`: when the ego left its lane, in seconds from the moment; NaN: the ego is in its lane, or this was not examined.
     """
 

@@ -42,7 +42,7 @@ def print_page(html: bytes, browser: str) -> bytes:
         page, out = Path(folder, "page.html"), Path(folder, "page.pdf")
         page.write_bytes(html)
         flags = ["--headless=new", "--disable-gpu", "--no-first-run", f"--user-data-dir={folder}/profile"]
-        # Chromium's sandbox refuses to run as root, as in a container; the page is safe and loads nothing
+        # Chromium's sandbox refuses to run as root, as in containers; our page loads nothing
         flags += ["--no-sandbox"] if getattr(os, "geteuid", lambda: 1)() == 0 else []
         command = [browser, *flags, "--no-pdf-header-footer", f"--print-to-pdf={out}", page.as_uri()]
         try:

@@ -54,9 +54,9 @@ def render(result: Result) -> bytes:
     """Return the report as UTF-8 XML; failures and errors are consistent with the exit code.
 
     A failure is a drive, rule and profile with a finding that causes exit code 1. An error is anything that causes exit code 2, 3 or 4:
-    a rule in error, a forbidden unknown verdict, a drive that was not judged, a map that does not fit, a lossy log, a finding of the
-    baseline that is gone but not fixed, a run with too few decisions. A case is skipped if it is not applicable, if it has other unknown
-    verdicts, or if its findings do not gate. Failed and erroneous cases list such verdicts and findings in their system-out.
+    a rule in error, a forbidden unknown verdict, a drive that was not judged, a map that does not fit, or a lossy log. A finding of
+    the baseline that is gone but not fixed, and a run with too few decisions, are errors too. A case is skipped if it is not
+    applicable, has other unknown verdicts, or has only findings that do not gate. Other cases list these in their system-out.
     """
     root = etree.Element("testsuites", name="drivelint")
     cases = _cases(result)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def _renderer(format_: str) -> Callable[[Result], bytes]:
-    """Return the renderer of a report; it imports the report's module only when called, because most runs write no report."""
+    """Return the renderer of a report, which imports the report's module only when called: most runs write no report."""
 
     def render(result: Result) -> bytes:
         rendered: bytes = import_module(f"drivelint.report.{format_}").render(result)

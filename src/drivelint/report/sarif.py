@@ -1,8 +1,8 @@
 """`report.sarif`: findings as SARIF 2.1.0 (OASIS), for code scanning and for viewers of static analysis.
 
-Only findings are results. Drives and rules that could not be judged are notifications, because servers such as GitHub's code scanning
-show a result of any kind as an alert, so a result of the kind "open" would be a false alarm. The properties of the run and of each
-rule contain the counts of all verdicts, so that the absence of results is not mistaken for a pass.
+Only findings are results. Drives and rules that could not be judged are notifications, not results of the kind "open", because servers
+such as GitHub's code scanning show results of any kind as alerts. The properties of the run and of each rule contain the counts of
+all verdicts, so that the absence of results is not mistaken for a pass.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The summary of a run on one screen of a terminal, for a catalogue of any size: the worst drives and rules, and counts of the others."""
+"""The summary of a run on one screen of a terminal, for a catalogue of any size: the worst drives and rules; others are counted."""
 
 from __future__ import annotations
 
@@ -227,7 +227,7 @@ def _let_through(result: Result, every: list[Row]) -> str:
 
 
 def _broken(findings: list[Row], without: str) -> Table:
-    """Return a table with a row per broken rule, the worst first; if findings are only possible, with a column of their numbers.
+    """Return a table with a row per broken rule, the worst first; a column counts the findings that are only possible, if any.
 
     `without`: the findings that the table leaves out, in words.
     """

@@ -32,7 +32,7 @@ _STYLES: Final = ("report.css", "charts.css", "narrow.css", "first.css")
 def page_environment(
     scripts: Sequence[str], folder: Path | None = None, styles: Sequence[str] = (), *, base: Sequence[str] = _STYLES
 ) -> Environment:
-    """Return the template environment of a page: the report's templates, and those of `folder`, which take precedence.
+    """Return the template environment of a page: the report's templates, and the templates in `folder`, which take precedence.
 
     `scripts`: scripts from the report's templates. `base`: the report's styles for the page; the `styles` of `folder` follow them.
     """

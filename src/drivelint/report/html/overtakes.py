@@ -38,7 +38,7 @@ _LABELS: Final = 10
 _NOT_COMPUTED: Final = {"zone": None, "sda_m": None, "spare_m": None, "reason": "not computed"}
 _TIMES: Final = ("t0_ns", "t1_ns", "t2_ns", "t3_ns")
 FAR_M: Final = 2000.0
-"""A longer safe distance ahead shows only that the ego was hardly faster than the vehicle being passed."""
+"""A longer safe distance ahead only shows that the ego was hardly faster than the vehicle being passed."""
 _BARS_W, _BARS_H = 560, 230
 _BINS: Final = 12
 _PREFERRED: Final = "nominal"

@@ -69,7 +69,7 @@ _NAMES: Final = {
 
 
 def content(result: Result) -> dict[str, Any]:
-    """Return everything that the template shows."""
+    """Return all values of the template."""
     rules = {row["rule_id"]: row for row in result.rules.to_pylist()}
     drives = result.drives.to_pylist()
     starts = {row["drive_id"]: row["t_start_ns"] or 0 for row in drives}

@@ -74,7 +74,7 @@ def axis_around(values: Iterable[float], start: float, end: float, room: float =
 def axis_that_decides(
     values: Iterable[float], deciding: Iterable[float], start: float, end: float
 ) -> tuple[Axis, list[float]]:
-    """Return an axis on which the `deciding` values can be told apart, and the least and greatest value if the axis cuts them off.
+    """Return an axis on which the `deciding` values are distinguishable, and the least and greatest value if the axis cuts them off.
 
     The axis shows all values, unless their range is so wide that the deciding values would be drawn on top of each other.
     """

@@ -194,7 +194,10 @@ def _bands(stretches: Sequence[Row], clock: TimeAxis) -> list[dict[str, str]]:
 
 
 def _span(row: Row, clock: TimeAxis) -> tuple[float, float]:
-    """Return start and end of the judged period in percent of the drive; without a period, its reference time, else 0 and 100."""
+    """Return start and end of the judged period in percent of the drive.
+
+    Without a period, both are the reference time; without that, they are 0 and 100.
+    """
     if row["t_start_ns"] is None:
         return (0.0, 100.0) if row["t_ref_ns"] is None else (clock.at(row["t_ref_ns"]),) * 2
     return clock.at(row["t_start_ns"]), clock.at(row["t_end_ns"])
