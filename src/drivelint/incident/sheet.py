@@ -375,7 +375,7 @@ def _at(table: pa.Table, at: tuple[str, str, int]) -> list[dict[str, Any]]:
 def _courses(case: Case) -> tuple[list[dict[str, Any]], dict[str, Any] | None]:
     """Return the distances that rules required between the two parties over time, and the finding's own measured values.
 
-    The latter are None for a required distance, and for a contact measured in metres, because the gap is drawn in any case.
+    The measured values are None if the rule requires a distance or measures a contact in metres: the gap is always drawn.
     """
     rules = {rule["rule_id"]: rule for rule in case.result.rules.to_pylist()}
     units = {row["finding_id"]: row["unit"] for row in case.result.findings.to_pylist()}

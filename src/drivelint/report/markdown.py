@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 MAX_ROWS: Final = 40
 """The greatest number of rows in a table."""
 MAX_CHARS: Final = 60_000
-"""A comment on GitHub has at most 65,536 characters."""
+"""The greatest length of a report, below GitHub's limit of 65,536 characters for a comment."""
 MAX_REASON_CHARS: Final = 160
 """The greatest number of characters of a reason."""
 
