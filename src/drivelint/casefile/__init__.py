@@ -1,30 +1,30 @@
-"""`<rule>.cases.yml`, the regression cases beside every rule, and their harness.
+"""Reads and runs `<rule>.cases.yml`, the regression cases beside every rule.
 
-A list of cases; each fills tables with a tiny scene, judges the rule, and states the expected verdicts:
+The file is a list of cases. Each case gives a small scene as rows of tables, and states the expected verdicts:
 
     - name: faster than the limit            # shows: violation, if the name does not say it
       given:
         step: {t_s: 0..10 by 0.1}
         ego_state: {t_s: 0..10 by 0.1, speed_mps: {else: 12, 5.0..5.3: 14}, limit_mps: 13.4}
       params: {tolerance_mps: 0.2}           # optional
-      missing: [indicator]                   # signals the log does not have; everything else the rule requires is there
+      missing: [indicator]                   # signals that the log lacks; other required signals are present
       expect: [{verdict: fail, t_worst_s: 5.0, margin: -0.6}]
       findings: 1                            # optional
 
-* `given`: table -> a block or a list of blocks. A column is a scalar (broadcast), a list, a range `a..b by c` (both
-  ends included) or `a..b` (spread over the block's length), or by time `{else: v, 5.0..5.3: w, 7.2: u}`. Seconds may
-  stand for nanoseconds: `t_s` for `t_ns`. Drive 'd', ego 'e' and every other column that must not be NULL have
-  defaults; the rest is NULL.
-* `step`: only `t_s` is needed. Without it the steps are the times of the tables that have a row per step, or else of
-  the events. `clock` and the rest of `step` are worked out (hole = longer than 2.5 median periods); a block
-  `clock: {max_gap_s: 1}` replaces what it names.
-* `ego_condition`: what rules with `[applies]` ask for. At steps without a row, and in rows without `engaged`, the
-  automated driver drives (`engaged: true`); everything else that is not given is not known.
-* `expect`: a verdict, which then every row must have, or the list of all rows in order of time, profile and object,
-  each with the columns that matter (`t_worst_s` for `t_worst_ns`; of `reason` a part is enough). Numbers must agree to
-  the decimals written, at least two; 12 means 12.00.
-* Over its cases a rule must show `clean`, `violation`, `boundary`, `not_applicable` and `unknown`: words of the name,
-  or `shows:`.
+* `given`: for each table, a block or a list of blocks. A column is a scalar (broadcast), a list, a range `a..b by c`
+  (both ends included) or `a..b` (spread over the block's length), or by time `{else: v, 5.0..5.3: w, 7.2: u}`. `t_s`
+  in seconds may replace `t_ns`. Columns that must not be NULL have defaults (drive 'd', ego 'e'); other columns are
+  NULL.
+* `step`: only `t_s` is needed. Without this table, the steps are the times in tables with a row per step, or else the
+  times of events. `clock` and the other columns of `step` are computed (a gap is longer than 2.5 median periods); a
+  block such as `clock: {max_gap_s: 1}` replaces the computed value.
+* `ego_condition`: the conditions that rules with `[applies]` need. In rows without `engaged`, and at steps without a
+  row, the automated driver drives (`engaged: true`); other conditions that are not given are not known.
+* `expect`: one verdict, which every row must have, or a list of all rows in order of time, profile and object. Each row
+  has the columns to compare (`t_worst_s` for `t_worst_ns`; a part of `reason` is enough). Numbers must agree to the
+  written decimals, at least two: 12 means 12.00.
+* The cases of a rule must show `clean`, `violation`, `boundary`, `not_applicable` and `unknown`. A case shows the
+  categories in its name, or in `shows:`.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ CATEGORIES = ("clean", "violation", "boundary", "not_applicable", "unknown")
 
 
 class CaseResult(NamedTuple):
-    """One case: its name, whether its outcome is the expected one, and the difference if not."""
+    """The result of one case: its name, whether the outcome is as expected, and the difference if not."""
 
     name: str
     ok: bool
@@ -65,7 +65,7 @@ class CaseResult(NamedTuple):
 
 
 class Case(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """One case as written."""
+    """One case as written in the file."""
 
     name: str
     given_tables: dict[str, Any] = msgspec.field(name="given")
@@ -75,17 +75,17 @@ class Case(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True
     missing_signals: tuple[str, ...] = msgspec.field(default=(), name="missing")
     findings: int | None = None
     line: int = 0
-    """Its line in the file: filled in, never written."""
+    """The case's line in the file, set by the reader."""
 
     def categories(self) -> set[str]:
-        """Return which of CATEGORIES this case shows: those in `shows`, else those in its name."""
+        """Return the categories that this case shows: those in `shows`, or else those of `CATEGORIES` in its name."""
         said = {self.shows} if isinstance(self.shows, str) else set(self.shows)
         words = re.sub(r"[\s_-]+", "_", self.name.lower())
         return said or {name for name in CATEGORIES if re.search(rf"(^|_){name}(_|$)", re.sub(r"[^a-z_]", "", words))}
 
 
-class WordLoader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[misc]  # a build without libyaml has no CSafeLoader
-    """YAML in which `off` and `on` are words: an indicator is off, not false."""
+class WordLoader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[misc]  # builds without libyaml lack it
+    """A YAML loader that reads `off` and `on` as strings, not as booleans, because an indicator may be `off`."""
 
 
 WordLoader.yaml_implicit_resolvers = {
@@ -98,7 +98,7 @@ WordLoader.add_implicit_resolver("tag:yaml.org,2002:bool", re.compile(r"^(?:true
 def read_cases(rule: Rule) -> list[Case]:
     """Read the rule's cases.
 
-    Errors: `RuleError` where the file is missing, is not YAML, or says what is not understood.
+    Errors: `RuleError` if the file is missing, is not YAML, or is not a valid list of cases.
     """
     file = cases_path(rule)
     try:
@@ -115,7 +115,7 @@ def read_cases(rule: Rule) -> list[Case]:
         mark = getattr(error, "problem_mark", None)
         line = (
             min(mark.line + 1, len(text.splitlines())) if mark else 1
-        )  # what ends too early is missed in a line after the last
+        )  # PyYAML reports an early end after the last line
         raise RuleError(f"{file}:{line}: not YAML: {' '.join(str(error).split())}") from error
     seen: dict[str, Case] = {}
     for case in cases:
@@ -137,7 +137,7 @@ def read_cases(rule: Rule) -> list[Case]:
 
 
 def _refuse_wrong_words(rule: Rule, case: Case) -> None:
-    """Refuse words that no verdict has, or that no column has which the rule compares with a parameter. Errors: `RuleError`."""
+    """Raise `RuleError` for an unknown word in `expect` or `missing`, or in a parameter that the rule compares with a column of words."""
     expected = [{"verdict": case.expect}] if isinstance(case.expect, str) else case.expect
     for row in expected:
         for name, value in row.items():
@@ -177,7 +177,7 @@ def _parsed(file: Path, text: str) -> list[Case]:
 
 
 def _key_meant(message: str) -> str:
-    """Return the key of a case that is nearest to the unknown one in msgspec's message, in words; '' where there is none."""
+    """Return a hint with the valid key most similar to the unknown key in msgspec's message; '' if there is none."""
     unknown = re.search(r"unknown field `([^`]+)`$", message)
     keys = [about.encode_name for about in msgspec.structs.fields(Case) if about.name != "line"]
     near = nearest_word(unknown[1], keys) if unknown else None
@@ -185,15 +185,16 @@ def _key_meant(message: str) -> str:
 
 
 def run_cases(rule: Rule) -> list[CaseResult]:
-    """Run every case beside the rule, in order; then all of them together, as drives of one database and as egos of one
-    drive: each must come out as it does alone. Two more results say whether all kinds of case are there, and whether each reason that
-    the rule gives is given in some case.
+    """Run the rule's cases and return their results, in order, and results about all cases together.
+
+    If all cases pass alone, they are judged together, as drives of one database and as egos of one drive, and must give the same
+    outcomes. Two more results state whether the cases show all categories, and all reasons that the rule can give.
 
     Errors: `RuleError` for a cases file that cannot be read.
     """
     cases = read_cases(rule)
     results = [run_case(rule, case) for case in cases]
-    if all(result.ok for result in results):  # if one fails alone, judging all together says nothing new
+    if all(result.ok for result in results):  # else judging them together gives no new information
         mixed, codes = run_merged_cases(rule, cases)
         never = unused_reasons(rule, codes)
         results += [CaseResult("all cases together", not mixed, mixed), CaseResult("reasons", not never, never)]
@@ -202,13 +203,13 @@ def run_cases(rule: Rule) -> list[CaseResult]:
 
 
 def unused_reasons(rule: Rule, codes: AbstractSet[str]) -> str:
-    """Return '' if every reason that the SQL can give is among `codes`, the reasons given in the cases; else name those that are not."""
+    """Return a message with the reasons that the rule's SQL can give but no case gave (`codes`: reasons in the cases); '' for none."""
     never = sorted(rule.reason_codes - codes)
     return f"{cases_path(rule)}:1: no case has the reason {', '.join(never)}" if never else ""
 
 
 def coverage_problem(cases: Sequence[Case]) -> str:
-    """Return '' if the cases show every category, else `line: what` is missing."""
+    """Return the first problem with the cases' categories as `LINE: message`; '' if they show every category."""
     for case in cases:
         if unknown := sorted(case.categories() - set(CATEGORIES)):
             return f"{case.line}: shows: {unknown[0]!r} is not one of {', '.join(CATEGORIES)}"
@@ -225,7 +226,7 @@ def coverage_problem(cases: Sequence[Case]) -> str:
 
 
 def run_case(rule: Rule, case: Case) -> CaseResult:
-    """Fill a scene, judge it by this rule alone, compare. Errors: `RuleError` with file, line and case."""
+    """Judge one case by this rule alone, and compare the outcome with `expect`. Errors: `RuleError` with file, line and case."""
     with _with_location(rule, case):
         message = difference(case, judge(rule, case))
     of_pairs = rule.kind == "invariant" and rule.per_object and "applies" not in rule.sections
@@ -251,7 +252,7 @@ def _with_location(rule: Rule, case: Case) -> Iterator[None]:
 
 
 def difference(case: Case, outcome: merged_cases.CaseOutcome) -> str:
-    """Return '' where the rows are as the case expects, else one line that says how they differ."""
+    """Return how an outcome differs from what the case expects, in one line; '' if it does not."""
     message = _difference(case.expect, outcome.verdicts)
     if not message and case.findings not in {None, len(outcome.findings)}:
         message = f"expected {case.findings} findings, got {len(outcome.findings)}"
@@ -278,7 +279,7 @@ def numbered_cases(rule: Rule, cases: Sequence[Case]) -> list[merged_cases.Numbe
 def merged_cases_difference(
     cases: Sequence[Case], numbered: Sequence[merged_cases.NumberedCase], outcome: merged_cases.CaseOutcome
 ) -> tuple[Case, str] | None:
-    """Return the first of the merged cases whose outcome differs from what it expects, and the difference; None if all agree."""
+    """Return the first merged case whose outcome differs from what the case expects, and the difference; None if all agree."""
     found = ((cases[each.no], merged_cases.outcome_of_case(outcome, each.no)) for each in numbered)
     return next(((case, message) for case, rows in found if (message := difference(case, rows))), None)
 
@@ -286,9 +287,9 @@ def merged_cases_difference(
 def run_merged_cases(
     rule: Rule, cases: Sequence[Case], keys: Mapping[str, str] = merged_cases.MERGE_KEYS
 ) -> tuple[str, set[str]]:
-    """Judge all cases in one database; return '' or the first problem, and all reason codes.
+    """Judge all cases together; return the first problem ('' for none), and all reason codes.
 
-    Errors: `RuleError`. `keys`: the columns that distinguish them there, in turn.
+    `keys`: the columns that distinguish the merged cases, used one after the other. Errors: `RuleError`.
     """
     everybody = numbered_cases(rule, cases)
     codes: set[str] = set()
@@ -305,7 +306,7 @@ def run_merged_cases(
 
 
 def _difference(expect: str | Sequence[Mapping[str, Any]], rows: Sequence[Row]) -> str:
-    """Return '' where the rows are as expected, else one line that says how they differ."""
+    """Return how the rows differ from `expect`, in one line; '' if they do not."""
     got = "; ".join(_brief(row) for row in rows)
     if isinstance(expect, str):
         wrong = [row for row in rows if row["verdict"] != expect]

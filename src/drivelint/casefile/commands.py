@@ -1,7 +1,7 @@
 """Runs the commands for authors of rules: create a rule, test rules by their cases, test cases by mutants.
 
-A rule that is wrong is refused with `file:line: what`, and the others go on. Here, unlike in `check`, the shipped rules
-are not loaded beside a folder of yours: copies of them can be worked on.
+An invalid rule is refused with `file:line: message`, and the other rules are still tested. Unlike `check`, these commands do not load
+the shipped rules if a folder is given, so the folder may contain copies of shipped rules.
 """
 
 from __future__ import annotations
@@ -34,13 +34,13 @@ if TYPE_CHECKING:
     Say = Callable[[str], None]
 
 _LOOK_S: Final = 0.5
-"""So often `watch` looks for changes."""
+"""The time between two checks of `watch` for changed files."""
 
 
 def new_rule(rule_id: str, root: Path, kind: str) -> tuple[Path, Path]:
     """Write a small runnable rule of this kind and its cases into `<root>/<pack>/`, for an author to edit.
 
-    Returns both files. Errors: `UsageError` for an id that is none or is taken, and where one of the files is there.
+    Return both paths. Errors: `UsageError` if the id is not valid or belongs to a shipped rule, or if one of the files exists.
     """
     pack, dot, name = rule_id.partition(".")
     if not (dot and PACK_NAME.fullmatch(pack) and RULE_NAME.fullmatch(name)):
@@ -68,9 +68,9 @@ def new_rule(rule_id: str, root: Path, kind: str) -> tuple[Path, Path]:
 
 
 def case_test(root: Path | None, only: Sequence[str], say: Say) -> ExitCode:
-    """Judge each rule by its cases and `say` a line for each, and one for each case that failed.
+    """Judge each rule by its cases, and `say` a line for each rule and for each failed case.
 
-    Returns FAILED where a case failed and USAGE where a rule or its cases were refused, which counts for more.
+    Return USAGE if a rule or its cases were refused, else FAILED if a case failed.
     """
     code = ExitCode.OK
     for rule in _rules(root, only):
@@ -96,7 +96,7 @@ def watch(
     say: Say,
     over: Event,
 ) -> ExitCode:
-    """Test the rules, and then, until `over` is set, each rule whose file or cases were changed; return the result of the last test."""
+    """Test the rules, then, until `over` is set, each rule whose file or cases change; return the code of the last test."""
     code, before = test(root, only, say), _stamps(root)
     say("waiting for changes; press Ctrl-C to end")
     while not over.wait(_LOOK_S):
@@ -109,7 +109,7 @@ def watch(
 
 
 def _stamps(root: Path | None) -> dict[Path, int]:
-    """Return the files of rules and cases, and when each was changed; one that is being replaced has none."""
+    """Return the times of the last change of all files of rules and cases; a file that is being replaced is left out."""
     found = {}
     for file in _files(root):
         for each in (file, file.with_suffix(".cases.yml")):
@@ -119,9 +119,9 @@ def _stamps(root: Path | None) -> dict[Path, int]:
 
 
 def mutation_test(root: Path | None, only: Sequence[str], say: Say) -> ExitCode:
-    """Judge each rule's mutants by its cases and `say` which mutants no case noticed, and the counts.
+    """Judge each rule's mutants by its cases, and `say` the counts and the mutants that no case noticed.
 
-    Returns FAILED where a mutant of a stable rule lives that is not listed, and USAGE where a rule was refused.
+    Return USAGE if a rule was refused, else FAILED if a mutant of a stable rule survives without being listed, or a list is outdated.
     """
     found = list(_rules(root, only))
     refused = [error for error in found if isinstance(error, RuleError)]
@@ -143,9 +143,9 @@ def mutation_test(root: Path | None, only: Sequence[str], say: Say) -> ExitCode:
 
 
 def _rules(root: Path | None, only: Sequence[str]) -> Iterator[Rule | RuleError]:
-    """Yield the rules of a folder (None: the shipped ones) that `only` selects, or why each cannot be used.
+    """Yield the rules of a folder (None: the shipped rules) that `only` selects; for an invalid rule, yield the error.
 
-    `root` may be the file of one rule, or of its cases. Errors: `UsageError` where nothing is selected.
+    `root` may also be the file of one rule, or of its cases. Errors: `UsageError` if `only` selects no rule.
     """
     found = _files(root)
     chosen = [file for file in found if _is_chosen(file, only)]
@@ -162,7 +162,7 @@ def _rules(root: Path | None, only: Sequence[str]) -> Iterator[Rule | RuleError]
 
 
 def _files(root: Path | None) -> Sequence[Path]:
-    """Return the rules of a folder, or the one whose file, or cases, this is. Errors: `UsageError` for another file."""
+    """Return the rule files of a folder, or of a file of a rule or its cases. Errors: `UsageError` for another file."""
     if root is None or not root.is_file():
         return rule_files(root or folder("queries") / "assertions")
     if not _rule_file(root).is_file():
@@ -171,7 +171,7 @@ def _files(root: Path | None) -> Sequence[Path]:
 
 
 def _rule_file(file: Path) -> Path:
-    """Return the file of the rule that a file is, or has the cases of."""
+    """Return the rule's file, given that file or the file of the rule's cases."""
     return file.with_name(file.name.removesuffix(".cases.yml").removesuffix(".sql") + ".sql")
 
 
@@ -180,7 +180,7 @@ def _is_chosen(file: Path, only: Sequence[str]) -> bool:
 
 
 def _check_plans(rule: Rule) -> None:
-    """Refuse a rule whose SQL does not match the tables, or that compares every row with every other."""
+    """Raise `RuleError` if the rule's SQL does not fit the tables, or has a join that compares every row with every other row."""
     try:
         plans = query_plans(case_database(), rule)
     except duckdb.Error as error:

@@ -1,7 +1,7 @@
-"""Cases judged together: as drives of one database, or as egos of one drive.
+"""Judges cases together, as drives of one database or as egos of one drive.
 
-A drive checked alone has the same rows as one among others: a rule whose join leaves out `drive_id` or `ego_id` mixes the cases up, and
-fails. And many variants of a rule can be judged at once on tables that are filled once.
+A case must give the same rows alone and among other cases; a rule whose join lacks `drive_id` or `ego_id` mixes cases, and fails here.
+Besides, several variants of a rule can be judged on tables that are filled once.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from drivelint.catalogue import Rule
 
 MERGE_KEYS = {"drive_id": "drives of one database", "ego_id": "egos of one drive"}
-"""The key column that keeps merged cases apart -> what each case is in the merged scene."""
+"""The key columns that distinguish merged cases, and the meaning of the cases in the merged scene, in words."""
 
 _MARKED = ("drive_id", "ego_id", "environment_id")
 _FINDING_ORDER = "drive_id, ego_id, t_start_ns, profile NULLS LAST, object_id NULLS LAST, occurrence"
@@ -31,7 +31,7 @@ Scene = dict[str, list[Row]]
 
 
 class CaseOutcome(NamedTuple):
-    """The result of one rule for one case: its verdict rows, in the order that `expect` uses, and its finding rows."""
+    """The outcome of one rule for one case: verdict rows, in the order of `expect`, and finding rows."""
 
     verdicts: list[Row]
     findings: list[Row]
@@ -46,7 +46,7 @@ class NumberedCase(NamedTuple):
 
 
 def judge(rules: Sequence[Rule], scene: Scene, params: Mapping[str, Any]) -> dict[str, CaseOutcome]:
-    """Fill a scene, judge it by all the rules and return rule id -> outcome.
+    """Fill the tables with a scene, judge it by all rules, and return the outcomes by rule id.
 
     Errors: `RuleError` for a value that does not fit its column.
     """
@@ -67,9 +67,9 @@ def judge(rules: Sequence[Rule], scene: Scene, params: Mapping[str, Any]) -> dic
 
 
 def mergeable_groups(members: Sequence[NumberedCase], key: str) -> list[list[NumberedCase]]:
-    """Group the cases that can share one database as different drives (or egos: `key` = ego_id).
+    """Group the cases that can be judged together as different drives (`key` is `drive_id`) or egos (`ego_id`).
 
-    They must agree on parameters and on the tables that the key does not distinguish.
+    The cases of a group have the same parameters, and the same rows in tables without the key.
     """
     groups: dict[str, list[NumberedCase]] = {}
     for member in members:
@@ -79,12 +79,12 @@ def mergeable_groups(members: Sequence[NumberedCase], key: str) -> list[list[Num
 
 
 def _is_apart(table: str, scene: Scene, key: str) -> bool:
-    """Whether the rows of two cases can stand in one table and be distinguished by the key."""
+    """Return whether one table can contain the rows of several cases, distinguished by the key."""
     names = {name for row in scene[table] for name in row}
     if key == "drive_id":
         return key in names or _of_the_map(table)
     egos = {row["ego_id"] for row in scene["clock"]}
-    # or its rows are about actors, and here all of these are egos
+    # also if its rows are about actors that are all egos
     return key in names or ("actor_id" in names and {row.get("actor_id") for row in scene[table]} <= egos)
 
 
@@ -94,14 +94,14 @@ def _of_the_map(table: str) -> bool:
 
 
 def merge(cases: Sequence[NumberedCase], key: str) -> Scene:
-    """Return the tables of all cases as one scene; each case's number is put before its keys."""
+    """Return the tables of all cases as one scene, in which the case's number precedes each key."""
     merged: Scene = {}
     for member in cases:
         for table, rows in member.scene.items():
             if _is_apart(table, member.scene, key):
                 merged.setdefault(table, []).extend(_marked(row, table, key, member.no) for row in rows)
             else:
-                merged[table] = rows  # the same in every case
+                merged[table] = rows  # the same rows in every case
     return merged
 
 
@@ -117,7 +117,7 @@ def _marked(row: Row, table: str, key: str, no: int) -> Row:
 
 
 def outcome_of_case(outcome: CaseOutcome, no: int) -> CaseOutcome:
-    """Return the rows of case `no` from an outcome, with the keys of that case."""
+    """Return the rows of case `no` from an outcome of merged cases, with the original keys."""
     mark = f"{no}:"
     found = CaseOutcome([], [])
     for rows, mine in zip(outcome, found, strict=True):

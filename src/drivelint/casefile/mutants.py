@@ -1,14 +1,14 @@
-"""Wrong variants of a rule, each with one deliberate fault that some case beside the rule must notice.
+"""Creates mutants of a rule: variants with one deliberate fault that at least one case of the rule must notice.
 
-* the sense turned round, and (measured) its edge: >= becomes <, and >; `holds` becomes NOT holds
-* every ordering comparison in the SQL turned round
+* the sense reversed, and its boundary changed: >= becomes <, and >; `holds` becomes NOT holds
+* every ordering comparison in the SQL reversed
 * every threshold times 0.9 and 1.1: numeric parameters, numeric literals, constants of the library (`standing_mps()`) and
-  whatever else is `required`
-* every window halved and doubled: window_s, exempt_after_s, merge_gap_s (where the header sets it)
+  other expressions for `required`
+* every window halved and doubled: window_s, exempt_after_s, merge_gap_s (if the header sets it)
 * every term of every WHERE, HAVING, QUALIFY and JOIN ... ON or USING left out
 
-Left alone: what only words the reason; the literals 0 and 1 (counts and signs) and powers of ten from 1000 on (units).
-The faults are put into DuckDB's own syntax tree, which is then turned back into SQL.
+Not changed: expressions for the reason; the literals 0 and 1 (counts and signs) and powers of ten from 1000 on (units).
+The faults are made in DuckDB's syntax tree, which DuckDB converts back to SQL.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 Node = dict[str, Any]
 NodePath = tuple[str | int, ...]
-"""The keys from the node of a statement to one inside it."""
+"""The keys that lead from a statement's node to a node inside it."""
 
 OPPOSITE = {">": "<=", ">=": "<", "<": ">=", "<=": ">"}
 BOUNDARY_SWAP = {">": ">=", ">=": ">", "<": "<=", "<=": "<"}
@@ -49,14 +49,14 @@ _WINDOW = (0.5, 2.0)
 
 
 class Mutant(NamedTuple):
-    """A rule with one deliberate fault, and a stable text that names the fault."""
+    """A rule with one deliberate fault, and a text that identifies the fault."""
 
     fault: str
     rule: Rule
 
 
 def mutants(rule: Rule) -> list[Mutant]:
-    """Return every mutant of a rule, each fault named once (`#2` for the second of the same words)."""
+    """Return all mutants of a rule, each with a unique name of its fault (a second fault with the same text gets `#2`)."""
     seen: Counter[str] = Counter()
     found: list[Mutant] = []
     for fault, wrong in (*_of_the_sense(rule), *_of_the_params(rule), *_of_the_windows(rule), *_of_the_sql(rule)):
@@ -109,7 +109,7 @@ def _with_section(rule: Rule, name: str, sql: str) -> Rule:
 
 
 def _places(root: Node) -> list[tuple[NodePath, Node]]:
-    """Return every node that can matter to a verdict, in the order of the text, each with its path in the tree."""
+    """Return every node that can change a verdict, in the order of the text, each with its path in the tree."""
     wording = _columns(root, frozenset({"reason", "reason_code"}))
     found: list[tuple[NodePath, Node]] = []
     todo: list[tuple[NodePath, Any]] = [((), root)]
@@ -126,7 +126,7 @@ def _places(root: Node) -> list[tuple[NodePath, Node]]:
 
 
 def _outputs(root: Node) -> list[NodePath]:
-    """Return the paths of the SELECT nodes that give the statement's columns: itself or the branches of a UNION."""
+    """Return the paths of the SELECT nodes that produce the statement's columns: the root or the branches of a UNION."""
     if root["type"] == "SELECT_NODE":
         return [()]
     if root["type"] != "SET_OPERATION_NODE":
@@ -138,7 +138,7 @@ def _outputs(root: Node) -> list[NodePath]:
 
 
 def _columns(root: Node, names: frozenset[str]) -> set[NodePath]:
-    """Return the paths of the expressions that give the statement's columns of these names."""
+    """Return the paths of the expressions for the statement's columns with these names."""
     outputs = _outputs(root)
     if not outputs:
         return set()
@@ -154,7 +154,7 @@ def _at(root: Any, way: NodePath) -> Any:
 
 
 def _faults(tree: Node, way: NodePath, node: Node) -> Iterator[tuple[str, Node]]:
-    """Yield the faults of one node: words and the changed tree."""
+    """Yield the faults of one node, each as its text and the changed tree."""
     if (turned := _TURNED.get(str(node.get("type")))) is not None:
         yield f"turned: {_text(node)}", _replaced(tree, way, node | {"type": turned})
     if _is_threshold(tree, way, node):
@@ -224,7 +224,7 @@ def _text(node: Node) -> str:
 
 
 def _bare(text: str) -> str:
-    """Take off the brackets that the printer puts round a whole expression."""
+    """Return an expression without the brackets that DuckDB prints around it."""
     while text.startswith("(") and text.endswith(")") and _balanced(text[1:-1]):
         text = text[1:-1]
     return text

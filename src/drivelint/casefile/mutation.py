@@ -1,7 +1,7 @@
-"""Judges each mutant of a rule by the rule's cases, and counts the mutants that some case notices.
+"""Judges each mutant of a rule by the rule's cases, and counts the mutants that at least one case notices.
 
-A mutant that no case notices shows that a case is missing. Where none can be written (it is the same rule in other words), the
-pack's `survivors.toml` says so: `[[survivor]]` with `rule` (its id), `mutant` (the fault as printed) and `reason`.
+A mutant that no case notices shows that a case is missing. If no case can notice a mutant, because it is equivalent to the rule, the
+pack's `survivors.toml` lists it: `[[survivor]]` with `rule` (its id), `mutant` (the fault as printed) and `reason`.
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ if TYPE_CHECKING:
 
 SURVIVORS_FILE: Final = "survivors.toml"
 LEAST_NOTICED_SHARE: Final = 0.95
-"""The share of the mutants of stable rules that must be noticed, whatever is listed."""
+"""The share of the mutants of stable rules that must be noticed, even if survivors are listed."""
 
 
 class MutationResult(NamedTuple):
     """The result of judging a rule's mutants.
 
-    `survivors`: the faults that no case noticed; `listed`: those that the pack lets live; `problem`: why the mutants
-    could not be judged (the rule does not keep its own cases), or ''.
+    `survivors`: the faults that no case noticed; `listed`: the faults in the pack's `survivors.toml`; `problem`: why the
+    mutants could not be judged (the rule itself fails its cases), or ''.
     """
 
     rule_id: str
@@ -47,22 +47,22 @@ class MutationResult(NamedTuple):
 
     @property
     def noticed(self) -> int:
-        """The number of mutants that some case noticed; 0 if the mutants could not be judged."""
+        """The number of mutants that at least one case noticed; 0 if the mutants could not be judged."""
         return 0 if self.problem else self.n - len(self.survivors)
 
     @property
     def unlisted(self) -> tuple[str, ...]:
-        """Survivors without a reason."""
+        """The survivors that are not listed."""
         return tuple(fault for fault in self.survivors if fault not in self.listed)
 
     @property
     def stale(self) -> tuple[str, ...]:
-        """Listed survivors that are noticed after all, or that the rule has no more."""
+        """Listed faults that a case notices, or that are not among the rule's mutants."""
         return tuple(fault for fault in self.listed if fault not in self.survivors)
 
     @property
     def ok(self) -> bool:
-        """Whether nothing is left to do; the mutants of a rule that is not stable may survive."""
+        """Whether there is no problem, no stale entry, and, for a stable rule, no unlisted survivor."""
         return not (self.problem or self.stale or (self.stable and self.unlisted))
 
 
@@ -77,22 +77,22 @@ class _Survivors(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def judge_all_mutants(rules: Sequence[Rule], jobs: int) -> Iterator[MutationResult]:
-    """Yield the result of every rule, in order, judged by `jobs` processes."""
+    """Yield the result of each rule, in order, judged in `jobs` processes."""
     if jobs <= 1 or len(rules) < 4:
         yield from map(judge_mutants, rules)
         return
-    with get_context("spawn").Pool(min(jobs, len(rules))) as pool:  # the database does not survive a fork
+    with get_context("spawn").Pool(min(jobs, len(rules))) as pool:  # DuckDB does not work after a fork
         yield from pool.imap(judge_mutants, rules)
 
 
 def noticed_share(results: Sequence[MutationResult]) -> float:
-    """Return the share of the mutants of stable rules that some case noticed."""
+    """Return the share of the mutants of stable rules that at least one case noticed."""
     n = sum(result.n for result in results if result.stable)
     return sum(result.noticed for result in results if result.stable) / n if n else 1.0
 
 
 def result_text(result: MutationResult) -> str:
-    """Return the result as text: one line, and one more for each mutant to look at."""
+    """Return the result as text: one line, and one more for each unlisted survivor and stale entry."""
     draft = "" if result.stable else " (not stable yet: it may have survivors)"
     noticed = f"{result.noticed} of {result.n} mutants noticed{draft}"
     return "\n".join(
@@ -116,9 +116,9 @@ def summary(results: Sequence[MutationResult]) -> str:
 
 
 def judge_mutants(rule: Rule) -> MutationResult:
-    """Judge every mutant of a rule by the rule's cases; it is noticed where one case comes out otherwise than it expects.
+    """Judge every mutant of a rule by the rule's cases; a mutant is noticed if the outcome of a case differs from `expect`.
 
-    The cases are judged together, first as drives of one database, then (what is left) as egos of one drive.
+    The cases are judged together, first as drives of one database, then, by the remaining mutants, as egos of one drive.
     """
     listed: tuple[str, ...] = ()
     survivors: tuple[str, ...] = ()
@@ -146,7 +146,7 @@ def _survivors(rule: Rule, alive: list[Mutant]) -> list[Mutant]:
 
 
 def entries_without_rule(rules: Sequence[Rule]) -> list[str]:
-    """Return a line per entry of the packs' `survivors.toml` that names no rule. Errors: `RuleError` naming the file."""
+    """Return a line per entry of the packs' `survivors.toml` with an unknown rule. Errors: `RuleError` for an invalid file."""
     known = {rule.id for rule in rules}
     return [
         f"{pack / SURVIVORS_FILE}: there is no rule {name!r} here"

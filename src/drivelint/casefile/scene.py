@@ -1,4 +1,4 @@
-"""Completes the tables of a case from the few columns, ranges and times in it."""
+"""Completes the tables of a case from the columns, ranges and times that the case gives."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ Row = dict[str, Any]
 
 @cache
 def case_database() -> duckdb.DuckDBPyConnection:
-    """One database for all cases of the process, locked: every case leaves it empty."""
+    """Return the process's database for all cases, locked; every case leaves it empty."""
     con = store.connect(threads=1)
     store.lock(con)
     return con
@@ -38,7 +38,7 @@ def case_database() -> duckdb.DuckDBPyConnection:
 
 @cache
 def _tables() -> dict[str, dict[str, Any]]:
-    """Return table -> column -> the default of a NOT NULL column; None for a column that may be NULL."""
+    """Return, by table and column, the default of a NOT NULL column; None for a column that may be NULL."""
     zero = {"VARCHAR": "", "BOOLEAN": False, "DOUBLE": 0.0}
     tables: dict[str, dict[str, Any]] = {}
     columns = "SELECT table_name, column_name, data_type, is_nullable FROM duckdb_columns() WHERE NOT internal"
@@ -48,7 +48,7 @@ def _tables() -> dict[str, dict[str, Any]]:
 
 
 def complete_scene(rule: Rule, given_tables: Mapping[str, Any], missing_signals: Sequence[str]) -> dict[str, list[Row]]:
-    """Return table -> rows: those of a case, and those derived from it. Errors: `RuleError`."""
+    """Return the rows of each table: the rows in the case, and rows derived from these. Errors: `RuleError`."""
     scene = {table: _rows(table, blocks) for table, blocks in given_tables.items()}
     clock = scene.pop("clock", [{}])
     scene["step"] = _steps(scene, clock[0].get("max_gap_ns"))
@@ -75,7 +75,7 @@ def complete_scene(rule: Rule, given_tables: Mapping[str, Any], missing_signals:
 
 
 def _rows(table: str, blocks: Any) -> list[Row]:
-    """Spread the blocks of one table into rows."""
+    """Return the rows that the blocks of one table describe. Errors: `RuleError`."""
     if table not in _tables():
         raise RuleError(f"given: there is no table {table!r}; {hint(table, _tables())}")
     rows: list[Row] = []
@@ -110,7 +110,7 @@ def _block(table: str, block: Mapping[str, Any], where: str) -> list[Row]:
 
 
 def column_of(table: str, name: str, where: str) -> tuple[str, int]:
-    """Return the column that a case's name means, and the factor of its values: `t_s` means `t_ns`, factor 1e9."""
+    """Return the column for a name in a case, and the factor of its values: for `t_s`, `t_ns` and 1e9. Errors: `RuleError`."""
     columns = _tables()[table]
     if name in columns:
         return name, 1
@@ -122,9 +122,9 @@ def column_of(table: str, name: str, where: str) -> tuple[str, int]:
 
 
 def refuse_wrong_word(table: str, column: str, value: Any, where: str) -> None:
-    """Refuse a word that the column never has; `value` may be a list or a mapping of times to words, too.
+    """Raise `RuleError` for a word that is not in the column's vocabulary, with the most similar valid word.
 
-    Errors: `RuleError` with column, word and the nearest good one.
+    `value` may also be a list, or a mapping of times to words.
     """
     known = store.word_columns()[table].get(column)
     if known is None:
@@ -135,7 +135,7 @@ def refuse_wrong_word(table: str, column: str, value: Any, where: str) -> None:
 
 
 def _texts(value: Any, field: str) -> Iterator[str]:
-    """Yield the texts in a value, or with `field` those that stand under this key in its STRUCTs."""
+    """Yield the texts in a value; with `field`, only the texts under this key in its STRUCTs."""
     if isinstance(value, dict):
         inner = [(value[field], "")] if field in value else [(part, field) for part in value.values()]
     else:
@@ -156,7 +156,7 @@ def _scaled(value: Decimal, scale: int) -> float | int:
 
 
 def _values(value: Any, scale: int) -> Any:
-    """Return the values in the column's own unit: a list, a scalar, a by-time mapping, or for `a..b` a function of the number of rows."""
+    """Return a value in the column's unit: a list, a scalar, a mapping by time, or for `a..b` a function of the number of rows."""
     if isinstance(value, list):
         return [_values(item, scale) for item in value]
     if isinstance(value, dict):
@@ -173,7 +173,7 @@ def _values(value: Any, scale: int) -> Any:
 
 
 def _by_time(value: Mapping[Any, Any], times: Any, where: str) -> list[Any]:
-    """Choose each row's value by its time; later entries win."""
+    """Return the value of each row by its time; later entries take precedence."""
     if not isinstance(times, list):
         raise RuleError(f"{where}: a value by time needs the times: t_s as a list or range")
     rows = [value.get("else")] * len(times)
@@ -190,7 +190,7 @@ def _by_time(value: Mapping[Any, Any], times: Any, where: str) -> list[Any]:
 
 
 def _steps(scene: Mapping[str, Sequence[Row]], max_gap_ns: int | None) -> list[Row]:
-    """Return the step rows of every subject, from `step` or from the times that the scene uses."""
+    """Return the rows of `step` for each drive and ego, from the scene's table `step` or from the times in other tables."""
     grids = {t: rows for t, rows in scene.items() if rows and _is_grid(t)}
     sources = {"step": scene["step"]} if "step" in scene else grids
     times: dict[tuple[str, str], set[int]] = {}
@@ -213,7 +213,7 @@ def _steps(scene: Mapping[str, Sequence[Row]], max_gap_ns: int | None) -> list[R
 
 
 def _engaged(steps: Iterable[Row], condition_rows: Iterable[Row]) -> list[Row]:
-    """Return the conditions of every step: `engaged` is true by default, the others are unknown unless the case gives them."""
+    """Return the conditions of every step; the default of `engaged` is true, other conditions are unknown by default."""
     keys = ("drive_id", "ego_id", "t_ns")
     said = {tuple(row.get(key) for key in keys): row for row in condition_rows}
     at = dict.fromkeys([*(tuple(step[key] for key in keys) for step in steps), *said])
@@ -221,7 +221,7 @@ def _engaged(steps: Iterable[Row], condition_rows: Iterable[Row]) -> list[Row]:
 
 
 def _is_grid(table: str) -> bool:
-    """Whether a table has a row per step of the ego; events make steps only where no such table is given."""
+    """Return whether a table has a row per step of the ego. Without such a table, the times of events are the steps."""
     columns = _tables()[table]
     return {"ego_id", "t_ns"} <= columns.keys() and ("occurrence" not in columns or table.endswith("_step"))
 
@@ -247,7 +247,7 @@ def _clocks(steps: Iterable[Row], clock_rows: Sequence[Row]) -> list[Row]:
 
 
 def fill(con: duckdb.DuckDBPyConnection, table: str, rows: Sequence[Row]) -> None:
-    """Insert rows; columns that must not be NULL and are not given get a default of their type.
+    """Insert rows into a table; missing NOT NULL columns get the default of their type.
 
     Errors: `RuleError` for a value that does not fit its column.
     """

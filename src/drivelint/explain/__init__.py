@@ -1,6 +1,6 @@
-"""Explains one verdict: clause, SQL and numbers behind it, changes that would change it, and how sure it is.
+"""Explains one verdict: its clause, SQL and numbers, changes of numbers that would change it, and how sure it is.
 
-`explain` judges the drive again by that rule alone, from the kept database or from the log.
+`explain` judges the drive again by the verdict's rule alone, from the kept database or from the log.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ _DRIVE: Final = ["drive_id", "file_name", "format", "t_start_ns", "duration_s", 
 
 @dataclass(frozen=True)
 class ExplainRequest:
-    """A request to `explain`: a finding or rule, the result folder, and where log and map are if they were moved."""
+    """A request to `explain`: a finding or rule, the result folder, and the paths of log and map if they were moved."""
 
     name: str
     folder: Path
@@ -62,13 +62,13 @@ class ExplainRequest:
     map: Path | None = None
     errors: MeasurementErrors = field(default_factory=MeasurementErrors)
     memory: int | None = DEFAULT_MEMORY
-    """Bytes that the database keeps to before it uses the disk; None: 80 % of the machine's."""
+    """The bytes that the database may use before it uses the disk; None: 80 % of the machine's memory."""
 
 
 def explain(request: ExplainRequest) -> Explanation:
     """Explain one verdict of a result.
 
-    Errors: `UsageError` for a finding, rule, folder or log that is not there.
+    Errors: `UsageError` if the finding, rule, folder or log does not exist.
     """
     result = load_result(request.folder)
     target = find_verdict(result, request.name, request.verdict_filter)
@@ -135,9 +135,9 @@ def explain(request: ExplainRequest) -> Explanation:
 def _what_would_change_it(
     case: VerdictContext, drive: Drive, whole: Sandbox, now: str, *, errors: MeasurementErrors, exit_stack: ExitStack
 ) -> tuple[list[Change], Sensitivity | None]:
-    """Return the least changes of the rule's numbers that change a verdict, and how often it stays with measuring errors.
+    """Return the least changes of the rule's numbers that change the verdict, and the verdict's sensitivity to measurement errors.
 
-    `whole`: the drive as it was judged anew, with the verdict `now`. None: no copies were asked for.
+    `whole`: a sandbox with the whole drive, on which the verdict is `now`. The sensitivity is None if no copies were requested.
     """
     row = case.target.verdict_row
     part, span, sandbox = sufficient_part(case, drive, whole, now, exit_stack)
@@ -151,7 +151,7 @@ def _what_would_change_it(
 
 
 def _case(run_options: RunRequest, target: Target, rules: pa.Table, memory: int | None) -> VerdictContext:
-    """Return the rule of a verdict, as it was set in that run, whose table of rules is `rules`."""
+    """Return the context of a verdict, with the rule, parameters and profiles of its run. `rules`: the run's table of rules."""
     rule_id = target.verdict_row["rule_id"]
     rule = catalogue.load_rule(rule_id, run_options.rules_dirs)
     if rule is None:
@@ -169,7 +169,7 @@ def _case(run_options: RunRequest, target: Target, rules: pa.Table, memory: int 
 
 
 def _asks(rule: Rule, row: Mapping[str, Any], start_ns: int) -> str | None:
-    """Return what to record or to provide, by the reason of a verdict, with its subject; None: nothing."""
+    """Return in words what the user can record or provide, given the reason of a verdict; None for nothing."""
     if row["cause_code"] is not None:
         return reason_text.advice_sentence(
             row["cause_code"], json.loads(row["cause_args"] or "{}"), start_ns, rule.reasons
@@ -178,8 +178,8 @@ def _asks(rule: Rule, row: Mapping[str, Any], start_ns: int) -> str | None:
 
 
 def _decides(target: Target, series: list[Step], now: str) -> int | None:
-    """Return the step that the verdict hangs on; None: it is about no step."""
-    # a lost actor has no step after its last one: that one is shown
+    """Return the time of the step that decides the verdict; None if no step decides it."""
+    # for an actor whose track ends, the first unknown step
     unknown = [step.t_ns for step in series if step.holds is None and now == "unknown"]
     times = [*unknown[:1], target.verdict_row["t_worst_ns"], target.verdict_row["t_start_ns"]]
     return next((t_ns for t_ns in times if t_ns is not None), None)
@@ -199,7 +199,7 @@ def _notes(case: VerdictContext, now: str) -> list[str]:
 
 
 def _left_out(drive: Row, reason_code: str | None) -> list[str]:
-    """Return a note on the tracks whose ends drivelint itself left out, if the verdict is unknown because a track ends."""
+    """Return notes on tracks whose ends drivelint removed, if the verdict is unknown because a track ends."""
     removed = [check["message"] for check in drive["quality"] if check["check_id"] == "removed"]
     told = "drivelint left out the ends of tracks, which no longer recording brings back"
     return [f"{told}: {message}." for message in removed if (reason_code or "").startswith("lost_")]

@@ -1,6 +1,6 @@
-"""The nearest value of each parameter and profile number that would change the verdict.
+"""Searches for the nearest value of each parameter and profile number that would change the verdict.
 
-The searches of all numbers run side by side: each requests the verdict at some values, and all of these are judged at once.
+The searches of all numbers run side by side: each requests verdicts for some values, and one evaluation judges all requested values.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ if TYPE_CHECKING:
     Search = Generator[Sequence[float], dict[float, str], Change]
 
 SEARCH_FACTORS: Final = (0.02, 0.1, 0.25, 0.5, 1.0, 3.0, 10.0)
-"""How far to look in each direction, in parts of the value as it is (of 1 where it is 0)."""
+"""The distances of the tried values in each direction, as multiples of the present value (of 1 if it is 0)."""
 _NEAR_FACTORS: Final = 3
-"""So many of them are judged first: most verdicts that change do so there."""
+"""The number of distances that are judged first, because most changes of a verdict occur there."""
 _HALVINGS: Final = 8
 _MOST_HALVINGS: Final = 12
 _EXACT: Final = 0.005
-"""In parts of the value: the stretch between two verdicts is halved until it is so short, and a shorter number is not farther off."""
+"""The interval in which the verdict changes is halved to this share of the value; a value is rounded by at most this share."""
 _PROFILE: Final = {
     "pull_out_angle_rad": ("rad", "angle at which this profile pulls out"),
     "cut_in_angle_rad": ("rad", "angle at which this profile cuts in"),
@@ -35,7 +35,7 @@ _PROFILE: Final = {
 
 
 class _Number(NamedTuple):
-    """A number that is varied. `column`: of a profile, None for a parameter. `halvings`: how many are judged at once."""
+    """A number that is varied. `column`: a profile's column, None for a parameter; `halvings`: number per evaluation."""
 
     name: str
     description: str
@@ -47,9 +47,9 @@ class _Number(NamedTuple):
 
 
 def verdict_changes(context: VerdictContext, sandbox: Sandbox, verdict: str) -> list[Change]:
-    """Return the nearest change of each number that changes `verdict` on the drive in `sandbox`, the least relative one first.
+    """Return the nearest change of each number that changes `verdict` on the drive in `sandbox`, the least relative change first.
 
-    The tables of `sandbox` that follow from the profiles are of no use afterwards.
+    The tables of `sandbox` that are derived from profiles are not valid afterwards.
     """
     changes = [
         *_search(
@@ -71,7 +71,7 @@ def _parameters(context: VerdictContext) -> Iterator[_Number]:
     for name, param in context.rule.params.items():
         now = context.params[name]
         if not isinstance(now, bool) and isinstance(now, int | float):
-            # a value more costs as much as half of an evaluation's beginning and end
+            # one more value costs half as much as starting and ending an evaluation
             yield _Number(name, param.why, param.unit, float(now), math.inf, None, halvings=2)
 
 
@@ -82,9 +82,9 @@ def _profile_numbers(context: VerdictContext, sandbox: Sandbox) -> Iterator[_Num
     for row in sandbox.query("SELECT * FROM profile WHERE profile = ?", [profile]):
         for column, (unit, what) in _PROFILE.items():
             now = row[column]
-            if now is not None:  # else the profile that this overtake itself had
+            if now is not None:  # NULL: the profile `observed`
                 maximum = math.pi / 2 if unit == "rad" else math.inf
-                # a value more is a row more, which costs next to nothing
+                # one more value is one more row, which costs almost nothing
                 yield _Number(f"{profile}.{column}", what, unit, float(now), maximum, column, halvings=4)
 
 
@@ -123,9 +123,9 @@ def _search(
 
 
 def _nearest(number: _Number, verdict: str) -> Search:
-    """Look outwards on both sides at once until the verdict changes on one, then halve the last stretch there."""
+    """Try values further away on both sides until the verdict changes on one side, then halve the last interval there."""
     scale = abs(number.now) or 1.0
-    least = 0.0 if number.now >= 0 else -math.inf  # a number that is not negative stays so
+    least = 0.0 if number.now >= 0 else -math.inf  # keep a number that is not negative at 0 or more
     sides = [_values(number, scale * sign, least) for sign in (1, -1)]
     low, high = min(number.now, *sides[1]), max(number.now, *sides[0])
     none = Change(number.name, number.description, number.unit, number.now, None, None, False, low, high)
@@ -140,7 +140,7 @@ def _nearest(number: _Number, verdict: str) -> Search:
                 continue
             becomes = verdicts[values[n]]
             if becomes == "error":
-                shut.add(side)  # no value beyond it means anything
+                shut.add(side)  # values beyond are not valid either
             elif not _same(becomes, verdict):
                 value, becomes, beyond = yield from _edge(number, values, n, verdict, verdicts)
                 edges.append(none._replace(nearest_value=value, becomes=becomes, beyond=beyond))
@@ -150,20 +150,20 @@ def _nearest(number: _Number, verdict: str) -> Search:
 
 
 def _values(number: _Number, scale: float, least: float) -> list[float]:
-    """Return the values to look at on one side, nearest first."""
+    """Return the values to try on one side, the nearest first."""
     reached = dict.fromkeys(min(number.maximum, max(least, number.now + scale * factor)) for factor in SEARCH_FACTORS)
     return [value for value in reached if value != number.now]
 
 
 def _same(becomes: str, verdict: str) -> bool:
-    """Whether the verdict is the same; a decided one that becomes unknown counts as the same: such a value makes no sense."""
+    """Return whether a verdict counts as unchanged: it is the same, or a pass or fail became unknown, which is no useful change."""
     return becomes == verdict or (becomes == "unknown" and verdict in {"pass", "fail"})
 
 
 def _edge(
     number: _Number, values: list[float], at: int, verdict: str, verdicts: dict[float, str]
 ) -> Generator[Sequence[float], dict[float, str], tuple[float, str, bool]]:
-    """Return the nearest value on one side that changes the verdict, into which, and whether those further away agree."""
+    """Return the nearest value on one side that changes the verdict, the new verdict, and whether values further away give it too."""
     near, far = (values[at - 1] if at else number.now), values[at]
     becomes = verdicts[far]
     for n in range(0, _MOST_HALVINGS, number.halvings):
@@ -174,7 +174,7 @@ def _edge(
             middle = (near + far) / 2
             if halved[middle] == "error" or _same(halved[middle], verdict):
                 near = middle
-            else:  # it may be another one than further away: fail, then pass, then not applicable
+            else:  # the verdict may differ from that further away: fail, then pass, then not applicable
                 far, becomes = middle, halved[middle]
     further = values[at + 1 : at + 3] or [values[at]]
     short = _short_values(number, far)
@@ -189,7 +189,7 @@ def _edge(
 
 
 def _middles(near: float, far: float, halvings: int) -> Iterator[float]:
-    """Yield every value that so many halvings of a stretch may come to."""
+    """Yield every value that `halvings` halvings of the interval from `near` to `far` can reach."""
     if halvings:
         middle = (near + far) / 2
         yield middle
@@ -198,7 +198,7 @@ def _middles(near: float, far: float, halvings: int) -> Iterator[float]:
 
 
 def _short_values(number: _Number, far: float) -> list[float]:
-    """Return the short numbers at or just beyond `far`, the shortest first."""
+    """Return numbers with few digits at or just beyond `far`, the shortest first."""
     away = math.ceil if far > number.now else math.floor
     size = math.floor(math.log10(max(abs(far), 1e-12)))
     found = []

@@ -1,4 +1,4 @@
-"""The evidence of a verdict: the rule's SQL with its values, and the rows it read at the deciding step."""
+"""The evidence of a verdict: the rule's SQL with the values of its parameters, and the rows that it read at the deciding step."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ if TYPE_CHECKING:
     from drivelint.explain.target import Target
 
 MAX_ROWS: Final = 6
-"""Rows shown of one table."""
+"""The number of rows that are shown of each table."""
 CONDITION_TABLES: Final = ("ego_condition", "ego_state")
 """Tables that show why a condition is not known."""
 TRACK_TABLES: Final = ("pair",)
-"""Tables with a row at each step of an object's track. Where the track has ended, its last row says where the object was."""
+"""Tables with a row at each step of an object's track. After the end of the track, its last row is shown."""
 SERIES_PADDING_NS: Final = 30_000_000_000
-"""The part of a longer episode that is shown on each side of the explained step."""
+"""Of a longer episode, this much time is shown before and after the explained interval."""
 _SPANS: Final = (
     ("t_ns", "t_ns"),
     ("t_start_ns", "t_end_ns"),
@@ -37,7 +37,7 @@ _OBJECTS: Final = ("object_id", "vbp_id", "ov_id", "lead_id")
 
 
 def sql_with_values(rule: Rule, params: Mapping[str, object]) -> dict[str, str]:
-    """Return the rule's SQL sections with parameter values written in, for reading only."""
+    """Return the rule's SQL sections with the parameters replaced by their values, for display only."""
     literals = {name: _literal(value) for name, value in params.items()}
     return {section: with_values(sql, literals) for section, sql in rule.sections.items()}
 
@@ -49,7 +49,7 @@ def _literal(value: object) -> str:
 
 
 def judged_steps(rule: Rule, target: Target, judgement: Judgement) -> list[Step]:
-    """Return the judged steps of the explained episode or window, at most half a minute around the verdict."""
+    """Return the judged steps of the explained episode or window, at most 30 s before and after the explained interval."""
     row, span = target.verdict_row, target.span
     if span is None:
         return []
@@ -70,7 +70,7 @@ def judged_steps(rule: Rule, target: Target, judgement: Judgement) -> list[Step]
 def requirement_parts(
     rule: Rule, target: Target, sandbox: Sandbox, params: Mapping[str, object], t_ns: int | None
 ) -> list[Part]:
-    """Return the parts of the requirement at one time, as the rule defines them; empty: not defined, or they do not add up."""
+    """Return the summands of the requirement at one time; [] if the rule defines none, or their sum is not the requirement."""
     row, found = target.verdict_row, read_parts(rule)
     if found is None or row["required"] is None or t_ns is None:
         return []
@@ -90,8 +90,8 @@ def rows_read(
 ) -> list[TableRows]:
     """Return the rows of each table that the rule reads, for ego and object, at one time or in the whole drive.
 
-    `missing_signal`: the signal for want of which the rule was not run; then only what is known about that. `condition`: the one that
-    is not known; then also where the ego is and what holds there.
+    `missing_signal`: a signal whose absence prevented the rule from running; then return only the rows about this signal.
+    `condition`: an unknown condition of the rule; then also return the ego's position and conditions.
     """
     if missing_signal is not None:
         sql = "SELECT signal, available, reason FROM capability WHERE ego_id = ? AND signal = ?"
@@ -130,14 +130,14 @@ def _of_table(target: Target, sandbox: Sandbox, table: str, columns: list[str], 
 def _selected(
     sandbox: Sandbox, table: str, columns: list[str], terms: Mapping[str, list[Any]], verdict: Mapping[str, Any]
 ) -> TableRows:
-    """Return the rows of a table for which these terms hold: of the catalogue's own tables and columns, never a word of a user."""
+    """Return the rows of a table that fulfil these terms; table and columns are from our schemas, never from a user."""
     where, values = _where(terms), _values(terms)
     # the rows of the ego and the object come first
     ours = [verdict["ego_id"], verdict["object_id"] or ""] if "actor_id" in columns else []
     first = "actor_id NOT IN (?, ?), COLUMNS(*)" if ours else "ALL"
     everything = sandbox.query(f"SELECT * FROM {table}{where} ORDER BY {first} LIMIT {MAX_ROWS}", [*values, *ours])
     n = sandbox.query(f"SELECT count(*) AS n FROM {table}{where}", values)[0]["n"]
-    # the keys that are the same everywhere are left out
+    # leave out the keys, which are the same in all rows
     plain = [{column: each[column] for column in each if column not in {"drive_id", "ego_id"}} for each in everything]
     return TableRows(table, plain, max(0, n - len(everything)))
 
@@ -151,7 +151,7 @@ def _values(terms: Mapping[str, list[Any]]) -> list[Any]:
 
 
 def _at_time(columns: list[str], t_ns: int) -> dict[str, list[int]]:
-    """Return the term that chooses the rows of one time, with its values."""
+    """Return the SQL term that selects the rows of one time, with its values."""
     for start, end in _SPANS:
         if start in columns and end in columns:
             return {f"{start} <= ? AND coalesce({end}, {start}) >= ?": [t_ns, t_ns]}

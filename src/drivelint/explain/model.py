@@ -9,7 +9,7 @@ Row = dict[str, Any]
 
 
 class Step(NamedTuple):
-    """One judged step: when, what was observed and required, the margin (positive: kept), whether kept (None: unknown)."""
+    """One judged step: time, observed and required value, margin (positive: kept), and whether the rule was kept (None: unknown)."""
 
     t_ns: int
     observed: float | None
@@ -19,9 +19,9 @@ class Step(NamedTuple):
 
 
 class TableRows(NamedTuple):
-    """Rows of one library table that the rule read at the deciding step; `more` were left out.
+    """Rows of one table that the rule read at the deciding step; `more`: the number of rows left out.
 
-    `at_ns`: the time of the rows where the object has none at the deciding step: its last one before, or else its first.
+    `at_ns`: the time of the rows if the object has no row at the deciding step: the last time before it, else the object's first time.
     """
 
     table: str
@@ -31,7 +31,7 @@ class TableRows(NamedTuple):
 
 
 class Part(NamedTuple):
-    """One of the parts that a requirement is the sum of."""
+    """One summand of a requirement."""
 
     name: str
     description: str
@@ -39,7 +39,7 @@ class Part(NamedTuple):
 
 
 class Change(NamedTuple):
-    """The nearest change of one number that changes the verdict; `nearest_value` None: none was found between `low` and `high`."""
+    """The nearest value of one number that changes the verdict; `nearest_value` None: no such value between `low` and `high`."""
 
     name: str
     description: str
@@ -48,17 +48,17 @@ class Change(NamedTuple):
     nearest_value: float | None
     becomes: str | None
     beyond: bool
-    """The verdict stays so further away, too."""
+    """Whether values further away give the same verdict as `nearest_value`."""
     low: float
     high: float
 
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """The number of copies of the drive with random errors that had each verdict.
+    """The number of copies of the drive with random errors, by verdict.
 
-    `certainty`: `sure` or `possible`, as the finding is, whose copies `check` judged with assumed errors; all that is known
-    of their verdicts is how many are `fail`. None: these copies were judged with the errors given here.
+    `certainty`: `sure` or `possible` if the copies are those that `check` judged for the finding; `counts` then contains only `fail`.
+    None: the copies were judged for this explanation.
     """
 
     samples: int
@@ -69,27 +69,27 @@ class Sensitivity:
     counts: dict[str, int]
     from_ns: int | None
     to_ns: int | None
-    """The judged part of the drive; None: all of it."""
+    """Start and end of the judged part of the drive; None: the whole drive."""
     certainty: str | None = None
 
 
 @dataclass(frozen=True)
 class Explanation:
-    """The explanation of one verdict. Verdicts are those of `verdict`; the numbers are of the deciding step."""
+    """The explanation of one verdict; numbers are those of the deciding step."""
 
     rule: Row
     """rule_id, title, clause, hypothesis, kind, severity, legal, status, sense, unit, observes, near_margin."""
     drive: Row
     """drive_id, file_name, t_start_ns."""
     verdict: Row
-    """The row of `verdict`, and `finding_id` with the numbers of the finding where one is explained."""
+    """The row of the table `verdict`; if a finding is explained, with `finding_id` and the finding's numbers."""
     other_verdicts: list[Row]
     """Further verdict rows of this rule in this drive: profile, object_id, t_start_ns, verdict."""
     asks: str | None
-    """What to record or to provide, by the reason."""
+    """What the user can record or provide so that the verdict can be decided; None: nothing."""
     decides_ns: int | None
     parts: list[Part]
-    """The parts of the verdict's `required`; empty: not known."""
+    """The summands of the verdict's `required`; empty: not known."""
     sql: dict[str, str]
     params: list[Row]
     rows: list[TableRows]
@@ -99,4 +99,4 @@ class Explanation:
     source: str
     """The source of the numbers: the kept database, or the log."""
     notes: list[str] = field(default_factory=list)
-    """What could not be shown, and why."""
+    """Changes since the run, and data that are missing from the explanation."""

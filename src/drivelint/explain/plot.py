@@ -1,4 +1,4 @@
-"""A margin over time in characters: columns of eighths above and below the line at which the rule is just kept."""
+"""Plots a margin over time with block characters (eighths) above and below the line at which the rule is just kept."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _UNKNOWN: Final = "?"
 
 
 class _Column(NamedTuple):
-    """The steps that share one column: the least margin, whether one failed, was unknown, and whether any is there."""
+    """The steps in one column: the least margin, whether any step failed or was unknown, and whether there is any step."""
 
     margin: float | None
     failed: bool
@@ -26,9 +26,9 @@ class _Column(NamedTuple):
 
 
 def plot(steps: Sequence[Step], width: int, height: int, start_ns: int, unit: str) -> list[str]:
-    """Return the lines of a plot: margins as bars from the zero line, `?` where it is not known. Steps are in time order.
+    """Return the lines of a plot with margins as bars from the zero line, and `?` for unknown steps. `steps` are in time order.
 
-    A rule that measures nothing has one line: `█` broken, `·` kept, `?` unknown.
+    The plot of a rule that measures nothing is one line: `█` broken, `·` kept, `?` unknown.
     """
     if len(steps) < 2:
         return []
@@ -76,11 +76,11 @@ def _bars(columns: Sequence[_Column], height: int, label: int, unit: str) -> lis
 
 
 def _cell(margin: float | None, row: int, size: float) -> str:
-    """Return a column's part in a row above (1, 2, ...) or below (-1, -2, ...) the line."""
+    """Return the character of a column in a row above (1, 2, ...) or below (-1, -2, ...) the zero line."""
     part = 0.0 if margin is None else ((margin if row > 0 else -margin) - (abs(row) - 1) * size) / size
     if part <= 0:
         return " "
     if row > 0:
         return _EIGHTHS[min(8, max(1, round(part * 8)))]
-    # there are no eighths from above, so half or whole
+    # of blocks at the top of a cell, Unicode has only these
     return "█" if part >= 0.75 else "▀" if part >= 0.25 else "▔"

@@ -1,4 +1,4 @@
-"""A database with copies of one drive, where one rule is judged again and again: other numbers, the same facts."""
+"""A database with copies of one drive, on which one rule is judged repeatedly with different parameters and profiles."""
 
 from __future__ import annotations
 
@@ -33,17 +33,17 @@ _READS_PROFILE: Final = re.compile(r"\b(?:FROM|JOIN)\s+profile\b", re.IGNORECASE
 
 
 class Judgement(NamedTuple):
-    """The verdicts and judged steps of one judgement."""
+    """The verdicts and judged steps of one evaluation of the rule."""
 
     verdicts: list[Row]
     steps: list[Row]
 
 
 class Sandbox:
-    """One rule over some copies of a drive, which share one map, derived once in `con`.
+    """One rule, and copies of a drive with one map, whose tables are derived once in `con`.
 
-    The shipped or user's `profiles` are the rows of the table `profile`. `memory` is the limit of the database in bytes
-    (None: 80 % of the machine's), which is lifted where it does not do.
+    `profiles`: the rows of the table `profile`. `memory`: the limit of the database in bytes (None: 80 % of the machine's memory), which
+    is lifted if it is too low.
     """
 
     def __init__(
@@ -95,9 +95,9 @@ class Sandbox:
         return self._run({self._rule.id: params})[self._rule.id]
 
     def judge_each(self, settings: Sequence[Mapping[str, object]]) -> list[Judgement | None]:
-        """Judge by the rule with each of these parameters; None: they are none, such as a window of less than nothing.
+        """Judge by the rule with each of these settings of parameters; None for an invalid setting, such as a negative window.
 
-        Many at once: to begin and end an evaluation takes as long as to judge by four rules.
+        Several settings are judged in one evaluation, because starting and ending it takes as long as judging four rules.
         """
         valid = [no for no, params in enumerate(settings) if self._is_valid(params)]
         found: dict[str, Judgement] = {}
@@ -118,7 +118,7 @@ class Sandbox:
     def judge_profiles(
         self, params: Mapping[str, object], profile: str, columns_and_values: Sequence[tuple[str, float]]
     ) -> list[Judgement]:
-        """Judge by the rule with a profile of which one number is another, for each (column, value)."""
+        """Judge by the rule with a changed profile for each (column, value): the profile with that value in that column."""
         return [
             judged
             for some in _cut(columns_and_values, self._at_once)
@@ -146,7 +146,7 @@ class Sandbox:
         ]
 
     def _judgements(self, params_by_name: Mapping[str, Mapping[str, object]]) -> dict[str, Judgement]:
-        """Judge by the rule under several names, each with its parameters."""
+        """Judge by the rule with each setting of parameters in `params_by_name`, and return the judgements by name."""
         for table in _RESULT_TABLES:
             self.con.execute(f"DELETE FROM {table}")
         rules = [msgspec.structs.replace(self._rule, id=name) for name in params_by_name]
@@ -161,10 +161,10 @@ class Sandbox:
         return {name: Judgement(verdicts.get(name, []), steps.get(name, [])) for name in params_by_name}
 
     def _derive_from_profiles(self) -> None:
-        """Derive the tables again that read the profiles, directly or through other tables."""
+        """Derive again the tables that read the profiles, directly or through other tables."""
         stale: set[str] = set()
         for derivation in needed_derivations(self._rule.reads):
-            # the profiles are given, not derived: `reads` does not name them
+            # `reads` does not contain the table of profiles, which is not derived
             if derivation.reads & stale or _READS_PROFILE.search(derivation.sql):
                 stale.add(derivation.table)
                 self.con.execute(f"DELETE FROM {derivation.table}")

@@ -21,12 +21,12 @@ _VERDICTS: Final = ("fail", "unknown", "pass", "not_applicable", "error")
 
 
 def for_verdict(errors: MeasurementErrors, verdict: str) -> MeasurementErrors:
-    """Return errors with a number of copies: few for an unknown verdict, which small errors seldom decide."""
+    """Return the errors with a number of copies: 10 for an unknown verdict, which small errors seldom decide, else 100."""
     return errors if errors.samples is not None else replace(errors, samples=10 if verdict == "unknown" else 100)
 
 
 def sensitivity_of_check(finding: Row | None, errors: MeasurementErrors) -> Sensitivity | None:
-    """Return in how many copies the finding of `check` stays; None: it judged none, or other copies are requested."""
+    """Return the sensitivity from the copies that `check` judged; None if it judged none, or if other errors are requested."""
     if finding is None or finding["n_copies"] is None or errors != MeasurementErrors():
         return None
     told = asdict(errors) | {"samples": finding["n_copies"], "counts": {"fail": finding["n_stays"]}}
@@ -34,7 +34,7 @@ def sensitivity_of_check(finding: Row | None, errors: MeasurementErrors) -> Sens
 
 
 def perturbed_copies(drive: Drive, errors: MeasurementErrors) -> Iterator[tuple[list[str], Drive]]:
-    """Yield the ids and the rows of copies of a drive, as many at once as a batch may have states; the same ones for the same seed."""
+    """Yield the ids and tables of copies of a drive, in groups of a batch's size; the same seed gives the same copies."""
     samples = errors.samples or 0
     at_once = max(1, BATCH_STATES // max(1, drive.n_states))
     for start in range(1, samples + 1, at_once):
@@ -44,7 +44,7 @@ def perturbed_copies(drive: Drive, errors: MeasurementErrors) -> Iterator[tuple[
 def verdict_sensitivity(
     context: VerdictContext, drive: Drive, errors: MeasurementErrors, span: tuple[int, int] | None
 ) -> Sensitivity:
-    """Return how often each verdict occurs on copies of a drive, without those that never do. `span`: what of it is in `drive`."""
+    """Return how often each verdict occurs on copies of `drive`. `span`: the interval of `drive` if it is only a part of the log."""
     found: list[str] = []
     for ids, batch in perturbed_copies(drive, errors):
         with context.sandbox([batch]) as sandbox:

@@ -1,4 +1,4 @@
-"""The drive behind a verdict, as it was before anything was derived: from the kept database, else from its log."""
+"""Opens the drive of a verdict without derived tables, from the kept database or from its log."""
 
 from __future__ import annotations
 
@@ -37,10 +37,10 @@ def open_drive(
     map_: Path | None,
     map_sha256: str | None = None,
 ) -> tuple[Drive, str]:
-    """Return the drive that was judged, with one ego, and where it is from.
+    """Return the drive that was judged, with one ego, and its source in words.
 
-    `trace`, `map_`: where log and map are now, if not where they were. `map_sha256`: of the map's content; None: it is not compared.
-    Errors: `UsageError` where neither the database was kept nor the log is where it was, or where the log or the map is another one.
+    `trace`, `map_`: the paths of log and map if they were moved. `map_sha256`: the hash of the map's content; None: not compared.
+    Errors: `UsageError` if there is neither a kept database nor a log at its path, or if the log or the map has another content.
     """
     kept = folder / DATABASE_FILE
     if trace is None and kept.is_file():
@@ -87,7 +87,7 @@ def _read(run_options: RunRequest, path: Path, map_: Path | None, drive_id: str,
         raise UsageError(
             f"{path} is not the log that was judged ({drive_id}) but {read.drive_id}: name the right log with --trace"
         )
-    if read.drive_id != drive_id:  # the same bytes under another name
+    if read.drive_id != drive_id:  # the same content under another name
         read = renamed(read, drive_id)
     return drive_with_map(read, MapLibrary(run_options))
 

@@ -1,4 +1,4 @@
-"""Finds the verdict that a user names: by a finding's id, a rule, or a rule in a drive."""
+"""Finds the verdict that a user names by a finding's id, a rule, or a rule in a drive."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ _WEIGHT = {"error": 0, "fail": 1, "unknown": 2, "pass": 3, "not_applicable": 4}
 
 @dataclass(frozen=True)
 class Target:
-    """The verdict to explain, the finding of it that was named, and the other verdicts of its rule in the drive.
+    """The verdict to explain, the named finding if any, and the other verdicts of the rule in the drive.
 
-    `worst`: the named finding, or else the one with the verdict's worst step; None: the verdict is no fail.
+    `worst`: the named finding, else the finding with the verdict's worst step; None: the verdict is no fail.
     """
 
     verdict: Row
@@ -34,19 +34,19 @@ class Target:
 
     @property
     def verdict_row(self) -> Row:
-        """The verdict with the interval, numbers and reason of the finding, if a finding is meant."""
+        """The verdict; if a finding was named, with the finding's interval, numbers and reason."""
         return self.verdict if self.finding is None else self.verdict | self.finding
 
     @property
     def span(self) -> tuple[int, int] | None:
-        """From when to when it was judged; None: it is about the whole drive."""
+        """Start and end of the judged interval; None if the verdict is about the whole drive."""
         start, end = self.verdict_row["t_start_ns"], self.verdict_row["t_end_ns"]
         return None if start is None or end is None else (start, end)
 
 
 @dataclass(frozen=True)
 class VerdictFilter:
-    """Conditions that choose among several verdicts of one rule; None: the worst."""
+    """Conditions that select among the verdicts of one rule; None: no condition. Of the remaining verdicts, the worst is explained."""
 
     profile: str | None = None
     object_id: str | None = None
@@ -56,9 +56,9 @@ class VerdictFilter:
 
 
 def find_verdict(result: Result, name: str, verdict_filter: VerdictFilter) -> Target:
-    """Return the verdict that `name` means: FINDING_ID or its beginning, or RULE or RULE@DRIVE, each of them or its beginning.
+    """Return the verdict with this name: FINDING_ID, RULE or RULE@DRIVE, where an unambiguous beginning is enough.
 
-    Errors: `UsageError` for what is not there (with the nearest that is), or for what several begin with.
+    Errors: `UsageError` for an unknown name, with the most similar known name, and for an ambiguous beginning.
     """
     findings = result.findings.to_pylist()
     verdicts = result.verdicts.to_pylist()
@@ -79,7 +79,7 @@ def find_verdict(result: Result, name: str, verdict_filter: VerdictFilter) -> Ta
 
 
 def _under(finding: Row, verdicts: Iterable[Row]) -> list[Row]:
-    """Return the verdicts that a finding is part of."""
+    """Return the verdicts to which a finding belongs. Errors: `UsageError` if there is none."""
     same = ("drive_id", "ego_id", "rule_id", "profile", "ref_id")
     rows = [row for row in verdicts if all(row[key] == finding[key] for key in same) and row["verdict"] == "fail"]
     exact = [
@@ -94,7 +94,7 @@ def _under(finding: Row, verdicts: Iterable[Row]) -> list[Row]:
 
 
 def _worst_finding(row: Row, findings: Iterable[Row]) -> Row | None:
-    """Return the finding with the worst step of a verdict."""
+    """Return the finding that contains the worst step of a failed verdict; None for other verdicts."""
     same = ("drive_id", "ego_id", "rule_id", "profile", "ref_id", "object_id", "t_worst_ns")
     return next((f for f in findings if row["verdict"] == "fail" and all(f[key] == row[key] for key in same)), None)
 
@@ -134,7 +134,7 @@ def _covers(row: Row, at_s: float, starts: dict[str, int | None]) -> bool:
 
 
 def _order(row: Row) -> tuple[Any, ...]:
-    """Put the worst first: failed before unknown before kept, by margin, then by name and time."""
+    """Return a sort key that puts the worst verdict first: by kind of verdict, then by margin, name and time."""
     margin = row["margin"]
     return (
         _WEIGHT[row["verdict"]],
@@ -174,7 +174,7 @@ def _rule(name: str, rules: Sequence[str], findings: Sequence[str]) -> str:
 def _complete_name(name: str, names: Sequence[str], kind: str) -> str:
     if name in names:
         return name
-    # a drive is called by its log's name and some of its hash: the whole name goes before a beginning of others
+    # a drive's id is its log's name and a part of its hash: a whole log name takes precedence over beginnings of ids
     matches = [k for k in names if k.rpartition("-")[0] == name] or [k for k in names if k.startswith(name)]
     if not matches:
         near = get_close_matches(name, names, n=1, cutoff=0.3)

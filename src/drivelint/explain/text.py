@@ -1,4 +1,4 @@
-"""An explanation as a person reads it, and as a program does."""
+"""An explanation as text for a terminal, and as JSON."""
 
 from __future__ import annotations
 
@@ -29,17 +29,17 @@ if TYPE_CHECKING:
     from drivelint.explain.model import Explanation, Row
 
 EXPLAIN_SCHEMA: Final = 1
-"""Version of the JSON: raised when a key changes its meaning or goes."""
+"""The version of the JSON, increased when a key changes its meaning or is removed."""
 PLOT_HEIGHT: Final = 8
 _CELLS_INDENT: Final = 4
-"""Spaces before a row of a table."""
+"""The number of spaces before a row of a table."""
 _STYLE: Final = {"pass": "bold green", "fail": "bold red", "unknown": "bold yellow", "error": "bold magenta"}
 _SMALL: Final = 0.1
 _GREAT: Final = 1e6
 _LONG_NUMBER: Final = re.compile(r"(?<![\w.-])-?\d+\.\d{3,}(?= (?:m|s|rad|m/s|m/s2|m/s3|mph|km/h|%)(?![\w/]))")
-"""A number with more than two decimals, and a unit after it."""
+"""A number with more than two decimals that a unit follows."""
 _JSON_NAMES: Final = {"other_verdicts": "others", "description": "what", "nearest_value": "found"}
-"""Field -> its key in the JSON, where that is another."""
+"""The keys in the JSON of fields with another name."""
 _MEANS: Final = {
     "fail": "the rule was broken",
     "pass": "the rule was kept",
@@ -54,7 +54,7 @@ _DOES_NOT_APPLY: Final = {
 
 
 def to_json(explanation: Explanation) -> str:
-    """Return everything as JSON; a step is [t_ns, observed, required, margin, holds]."""
+    """Return the explanation as JSON; a step is [t_ns, observed, required, margin, holds]."""
     plain = {"explain_schema": EXPLAIN_SCHEMA, **_json_names(asdict(explanation))}
     plain["series"] = [list(step) for step in explanation.series]
     plain["rows"] = [rows._asdict() for rows in explanation.rows]
@@ -107,19 +107,19 @@ def _title(explanation: Explanation, width: int) -> list[RenderableType]:
 
 
 def _meaning(row: Mapping[str, Any]) -> str:
-    """Return what a verdict means in words."""
+    """Return the meaning of a verdict in words."""
     if row["verdict"] == "not_applicable" and row["reason_code"].startswith(UNRECORDED_PREFIX):
         return f"the log has none of a signal that the rule needs; `--rules {row['rule_id']}` makes it unknown"
     return _DOES_NOT_APPLY.get(row["reason_code"], _MEANS[row["verdict"]])
 
 
 def _prose(explanation: Explanation, width: int) -> dict[str, list[str]]:
-    """Return the sections of the template by their names, a sentence per line."""
+    """Return the sections of the template by their names, as lists of sentences."""
     row, start_ns = explanation.verdict, explanation.drive["t_start_ns"]
     template = text_template(
         __file__,
         "explanation.txt.j2",
-        # a line break in a value ends no line of the template
+        # a line break in a value must not begin a new sentence
         finalize=lambda told: told.replace("\n", "\v") if isinstance(told, str) else told,
         cells=lambda row, table: [_cut(line, width - _CELLS_INDENT) for line in _cells(explanation, table, row)],
         at_least=_rounded_up,
@@ -151,7 +151,7 @@ def _sql(explanation: Explanation) -> list[str]:
 
 
 def _cells(explanation: Explanation, table: str, row: Row) -> list[str]:
-    """Return the columns of a row that the rule names, and the requested one, each with its value and meaning."""
+    """Return the columns of a row that the rule's SQL or the verdict's condition names, each with value and meaning."""
     condition = None if "finding_id" in explanation.verdict else condition_of(explanation.verdict["reason_code"])
     asked = {"ego_condition": condition, "ego_state": "lanelet_id"}.get(table) if condition else None
     sql = "\n".join(explanation.sql.values())
@@ -167,20 +167,20 @@ def _cells(explanation: Explanation, table: str, row: Row) -> list[str]:
 
 
 def _cut(line: str, width: int) -> str:
-    """Return a row of a table so that a terminal does not wrap it."""
+    """Return a line cut to `width`, so that a terminal does not wrap it."""
     return line if len(line) <= width else f"{line[: width - 3].rstrip()}..."
 
 
 def _cell(column: str, value: Any, start_ns: int) -> str:
-    """Return a value; a time as it is elsewhere, in seconds of the drive."""
+    """Return a value as text; a time in seconds from the drive's start."""
     is_time = column.endswith("_ns") and column[0] == "t" and isinstance(value, int)
     if value is None:
-        return "NULL"  # the comment beside it says what that means
+        return "NULL"  # the comment beside it explains NULL
     return seconds(value, start_ns) if is_time else _value(value)
 
 
 def _comment(text: str, value: Any) -> str:
-    """Return the meaning of a column, shortened: for a value without the meaning of NULL, for NULL only that, if it is stated."""
+    """Return a column's comment, shortened. For NULL: only the part about NULL, if any; for other values: without that part."""
     of_value, null, of_null = text.partition("NULL: ")
     if null:
         text = null + of_null if value is None else of_value.rstrip("; ") or text
@@ -201,7 +201,7 @@ def _series(explanation: Explanation, width: int) -> list[str]:
 
 
 def _folded(lines: list[str], width: int) -> list[str]:
-    """Fold sentences; a line that begins with | stays as it is, without it."""
+    """Return the sentences wrapped and indented; a line that begins with `|` is not wrapped, and loses the `|`."""
     folded: list[str] = []
     for line in lines:
         if line.startswith("|"):
@@ -226,17 +226,17 @@ def _value(value: Any) -> str:
 
 
 def _rounded(value: float) -> str:
-    """Return a number with two decimals; one that is nearly nothing without them, with two digits."""
+    """Return a number with two decimals; a small number with two significant digits."""
     if value == 0 or not math.isfinite(value):
         return f"{value:g}"
     return f"{value:.2g}" if abs(value) < _SMALL else f"{value:.2f}" if abs(value) < _GREAT else f"{value:.6g}"
 
 
 def _rounded_up(value: float) -> float:
-    """Return the least number with two decimals that is not less: a change by so much is enough."""
+    """Return the number rounded up to two decimals, so that a change by it is enough."""
     return math.ceil(round(value * 100, 6)) / 100 if value >= _SMALL else value
 
 
 def _rounded_sentence(text: str) -> str:
-    """Return a sentence with its measured values as they are elsewhere here; JSON has it as it was written."""
+    """Return a sentence with its measured values rounded as in the other texts; the JSON is not rounded."""
     return _LONG_NUMBER.sub(lambda match: _rounded(float(match[0])), text)

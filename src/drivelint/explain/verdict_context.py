@@ -1,4 +1,4 @@
-"""A verdict with everything needed to judge it again: rule, parameters and profiles."""
+"""A verdict with its rule, parameters and profiles, with which the verdict can be judged again."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ if TYPE_CHECKING:
     from drivelint.explain.target import Target
 
 SAME_REFERENCE_NS: Final = 2_000_000_000
-"""A reference point that moved by no more is the same one."""
+"""A reference point that moved by at most this time counts as the same reference point."""
 CROP_MARGINS_NS = (20_000_000_000, 60_000_000_000)
-"""Parts of a drive around the explained step, tried in this order until the verdict is the same."""
+"""The margins around the explained interval with which parts of the drive are tried, in this order."""
 _WORST: Final = ("error", "fail", "unknown", "pass", "not_applicable")
 
 
 @dataclass(frozen=True)
 class VerdictContext:
-    """A verdict to explain."""
+    """A verdict to explain, with the rule, parameters and profiles to judge it again."""
 
     rule: Rule
     target: Target
@@ -43,18 +43,18 @@ class VerdictContext:
 
     @contextmanager
     def sandbox(self, drives: Sequence[Drive]) -> Iterator[Sandbox]:
-        """Open a database with these drives, derived for the rule."""
+        """Open a sandbox: a database with these drives and the derived tables that the rule needs."""
         with store.workspace(self.memory, threads=1 if are_few(drives) else None) as con:
             yield Sandbox(self.rule, drives, self.profiles, con, self.memory)
 
     def judge(self, sandbox: Sandbox, params: Mapping[str, object] | None = None) -> str:
-        """Return the verdict on the one drive in a sandbox, with other parameters if they are given."""
+        """Return the verdict on the single drive in a sandbox. `params`: None for the parameters of the run."""
         return self.verdicts_on(sandbox.judge(self.params if params is None else params), [sandbox.drive_id])[0]
 
     def verdicts_on(self, judgement: Judgement, drives: Sequence[str]) -> list[str]:
-        """Return the verdict on the target's interval, profile and object in each of these drives, in their order."""
+        """Return the verdict on the target's interval, profile and object in each of these drives, in the same order."""
         wanted, about = self.target.verdict_row, ["ego_id", "profile"]
-        if self.target.span is not None and self.rule.combine == "each":  # else the object is only the one that decided
+        if self.target.span is not None and self.rule.combine == "each":  # else it is just the deciding object
             about.append("object_id")
         verdicts, steps = (
             group_rows(
@@ -66,7 +66,7 @@ class VerdictContext:
 
 
 def lacks_signal(row: Row) -> bool:
-    """Whether a verdict is unknown because a required signal is missing. The rule did not run, so no number changes that."""
+    """Return whether a verdict is unknown because a required signal is missing; the rule then did not run."""
     code: str = row["reason_code"]
     return row["verdict"] == "unknown" and code.startswith("missing_") and code != "missing_step"
 
@@ -74,9 +74,9 @@ def lacks_signal(row: Row) -> bool:
 def sufficient_part(
     context: VerdictContext, drive: Drive, sandbox: Sandbox, verdict: str, exit_stack: ExitStack
 ) -> tuple[Drive, tuple[int, int] | None, Sandbox]:
-    """Return the shortest tried part of a drive with the same verdict, its interval (None for the whole drive) and a sandbox with it.
+    """Return the shortest tried part of a drive with the same verdict, its interval (None: the whole drive), and a sandbox with it.
 
-    `sandbox` has the whole drive. `exit_stack` closes one of a part.
+    `sandbox` contains the whole drive. `exit_stack` closes the sandbox of a part.
     """
     span = context.target.span
     if span is None or verdict == "not_applicable":
@@ -99,7 +99,7 @@ def sufficient_part(
 
 
 def _same_numbers(context: VerdictContext, series: list[Step]) -> bool:
-    """Return whether the deciding step has the same numbers in a part of the drive as in all of it."""
+    """Return whether the deciding step has the same margin in a part of the drive as in the whole drive."""
     row = context.target.verdict_row
     if context.rule.sense == "holds" or row["margin"] is None:
         return True
@@ -126,7 +126,7 @@ def _outcome(rule: Rule, target: Target, verdicts: list[Row], steps: list[Row]) 
 
 
 def _at_reference(target: Target, verdicts: list[Row]) -> list[Row]:
-    """Return the verdicts at the reference point nearest to the target's."""
+    """Return the verdicts at the reference point nearest to the target's; [] if it is more than `SAME_REFERENCE_NS` away."""
     t_ref = target.verdict_row["t_ref_ns"]
     if t_ref is None:
         return verdicts

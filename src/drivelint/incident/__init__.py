@@ -1,4 +1,4 @@
-"""The incident sheet: two A4 pages about one finding that a claims handler can file, and the clip of the log around it."""
+"""The incident sheet (two A4 pages about one finding, for the files of a claims handler) and the clip of the log around the finding."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from drivelint.result.request import RunRequest
 
 FOLDER: Final = "incidents"
-"""The sheets of a result stand in this folder of it, each called by its finding's id."""
+"""The subfolder of the result folder that contains the sheets; each file has the finding's id as its name."""
 _HERE: Final = Path(__file__).parent
 _REPORT_TEMPLATES: Final = Path(report_page.__file__).parent / "templates"
 _NO_VEHICLES: Final = frozenset({"pedestrian", "animal", "object"})
@@ -45,7 +45,7 @@ _NO_VEHICLES: Final = frozenset({"pedestrian", "animal", "object"})
 
 @dataclass(frozen=True)
 class IncidentRequest:
-    """A request to `report --incident`: a finding, as `explain` takes it, and where log and map are if they were moved."""
+    """A request to `report --incident`: a finding, named as for `explain`, and the paths of log and map if they were moved."""
 
     name: str
     folder: Path
@@ -58,7 +58,7 @@ class IncidentRequest:
 def write_incident(request: IncidentRequest) -> list[Path]:
     """Write the sheet of a finding into the result folder and return the paths of its files.
 
-    Errors: `UsageError` for a finding, log or map that is not there, or where no browser is installed that prints a PDF.
+    Errors: `UsageError` if the finding, log or map does not exist, or if no installed browser can print a PDF.
     """
     browser = pdf.find_browser() if request.pdf else None
     case = open_case(request)
@@ -71,7 +71,7 @@ def write_incident(request: IncidentRequest) -> list[Path]:
 
 
 def other_drives(request: IncidentRequest) -> list[str]:
-    """Return the other drives with a finding that the name may mean: a rule without a drive means its worst finding of all drives."""
+    """Return the other drives with findings that match the name; they exist only if the name is a rule, or `contact`, without a drive."""
     result = load_result(request.folder)
     row = named_finding(result, request.name).row
     if "@" in request.name or row["finding_id"].startswith(request.name):
@@ -90,10 +90,10 @@ def render(case: Case) -> bytes:
 
 
 def open_case(request: IncidentRequest, run_options: RunRequest | None = None) -> Case:
-    """Find the finding and judge both parties again; if the other party was an ego of the result, the result is used.
+    """Find the finding and judge both parties again; for another party that was an ego of the run, the run's result is used.
 
-    `run_options`: the run with the paths at which its files are now; None: they are where `run.json` says.
-    Errors: `UsageError` for a finding, log or map that is not there.
+    `run_options`: the run's options with the current paths of its files; None: the paths are those of `run.json`.
+    Errors: `UsageError` if the finding, log or map does not exist.
     """
     result = load_result(request.folder)
     finding = named_finding(result, request.name)
@@ -118,7 +118,7 @@ def open_case(request: IncidentRequest, run_options: RunRequest | None = None) -
 def _other_party(
     request: IncidentRequest, run_options: RunRequest, result: Result, finding: NamedFinding, judge: Judge
 ) -> EgoRows | str | None:
-    """Return the judged result of the other party as ego, or why it was not judged."""
+    """Return the result for the other party as ego, or a sentence why it was not judged; None if there is no other party."""
     other, drive_id = finding.row["object_id"], finding.row["drive_id"]
     if other is None:
         return None
@@ -128,7 +128,7 @@ def _other_party(
             for table in (result.verdicts, result.findings)
         ]
         return EgoRows(rows[0], rows[1], result.verdicts.slice(0, 0))
-    # what the options say of the ego is not said of another vehicle, whose object the ego is
+    # the option --ego-size is about the ego of the run: with this option, read the log with that ego
     read_as = other if run_options.ego_size is None else finding.row["ego_id"]
     drive, _ = open_drive(
         request.folder, run_options, drive_id, read_as, trace=_log(request, run_options, finding), map_=request.map
@@ -142,7 +142,7 @@ def _other_party(
 
 
 def _log(request: IncidentRequest, run_options: RunRequest, finding: NamedFinding) -> Path | None:
-    """Return where the log is, so that it is read again even if the database was kept; None: it is not where it was."""
+    """Return the log's path, from which the log is read even if a database was kept; None if there is no log at that path."""
     if request.trace is not None:
         return request.trace
     known = run_options.traces.get(finding.row["drive_id"])
@@ -160,7 +160,7 @@ def _environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    # the plan view is drawn as in the report
+    # the plan view has the same style as in the report
     files = (_REPORT_TEMPLATES / "charts.css", _HERE / "sheet.css")
     style = "\n".join(file.read_text(encoding="utf-8").strip() for file in files)
     pictures = (_REPORT_TEMPLATES / PICTURE_STYLE).read_text(encoding="utf-8").strip()

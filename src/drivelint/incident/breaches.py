@@ -1,4 +1,4 @@
-"""One line of the sheet for each rule: how it was broken, or the measured value if it was kept."""
+"""The sheet's line for each rule: how the rule was broken, or the measured value if it was kept."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ if TYPE_CHECKING:
     from drivelint.result.text import Row
 
 ADVICE: Final = ("begin", "choose", "correct", "give", "make", "provide", "record", "see", "set", "use")
-"""First words of the advice of a reason."""
+"""The words with which the advice at the end of a reason begins."""
 _ADVICE: Final = re.compile(rf": (?:{'|'.join(ADVICE)}) .*$")
 _MOST_STRETCHES: Final = 2
 LOWER_BOUND: Final = "lower_bound"
-"""The cause of a verdict whose measure is limited only by the end of the data."""
+"""The cause code of a verdict whose measured value is a lower bound, because the data end."""
 
 
 def quoted(rule: Row) -> str:
-    """Return the title of a rule in quotes: it is a demand, no statement of the sheet."""
+    """Return the title of a rule in quotation marks, because it states a demand, not a fact."""
     return f"\u201c{rule['title']}\u201d"
 
 
 def broken_line(rule: Row, rows: Sequence[Row], start_ns: int) -> str:
-    """Return the worst finding of a rule in words, of each profile if there are several, and how many there are, how sure."""
+    """Return the line of a broken rule: its worst finding (of each profile, if several), with number and certainty of the findings."""
     ordered = sorted(rows, key=lambda r: (r["margin"] is None, r["margin"] or 0.0, r["t_worst_ns"] or 0))
     row = ordered[0]
     per_profile = list({each["profile"]: each for each in reversed(ordered)}.values())
@@ -47,9 +47,9 @@ def broken_line(rule: Row, rows: Sequence[Row], start_ns: int) -> str:
 
 
 def kept_line(rule: Row, rows: Sequence[Row], span: tuple[int, int], start_ns: int) -> str:
-    """Return the worst measured value of a rule that was kept in all of these verdicts, and when it was judged, if not in all of the span.
+    """Return the line of a rule that all `rows` kept: its worst measured value, and when it was judged if not in all of `span`.
 
-    A rule without a measure is quoted. So is one that may excuse what was done: what it measures leaves that out.
+    The title replaces the value if the rule measures nothing, or may excuse a breach, because the value does not show the excuse.
     """
     row = min(rows, key=lambda r: (r["margin"] is None, r["margin"] or 0.0, r["t_worst_ns"] or 0))
     said, about = quoted(rule), [_stretches(rows, span, start_ns)]
@@ -65,7 +65,7 @@ def kept_line(rule: Row, rows: Sequence[Row], span: tuple[int, int], start_ns: i
 
 
 def without_advice(reason: str) -> str:
-    """Return a reason without its advice: the sheet is about a recording that is over."""
+    """Return a reason without its advice, which is useless for a finished recording."""
     return _ADVICE.sub("", reason).removesuffix(".")
 
 
@@ -75,7 +75,7 @@ def short_clause(clause: str) -> str:
 
 
 def _measured_by_profile(rule: Row, rows: Sequence[Row]) -> str:
-    """Return the measured value and the requirement of each profile, the mildest first; '' for one profile, or other measures."""
+    """Return measured and required values of each profile, the greatest margin first; '' for one profile or without values."""
     if len(rows) < 2 or any(row["observed"] is None or row["required"] is None for row in rows):
         return ""
     ordered = sorted(rows, key=lambda row: (-row["margin"], row["profile"]))
@@ -97,7 +97,7 @@ def _when(row: Row, rule: Row, start_ns: int) -> str:
 
 
 def _certainties(rows: Sequence[Row]) -> str:
-    """Return how sure findings are; empty for a verdict that is no finding."""
+    """Return in words how sure findings are; '' for verdicts without findings."""
     found = [row for row in rows if "finding_id" in row]
     if not found:
         return ""
@@ -108,7 +108,7 @@ def _certainties(rows: Sequence[Row]) -> str:
 
 
 def _stretches(rows: Sequence[Row], span: tuple[int, int], start_ns: int) -> str:
-    """Return when a rule was judged, in words; '' for all of the span."""
+    """Return in words when a rule was judged; '' if it was judged in all of the span."""
     found = sorted({(row["t_start_ns"], row["t_end_ns"]) for row in rows if row["t_start_ns"] is not None})
     if not found or any(start <= span[0] and end >= span[1] for start, end in found):
         return ""

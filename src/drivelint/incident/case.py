@@ -13,14 +13,15 @@ if TYPE_CHECKING:
     from drivelint.result.request import RunRequest
 
 LETTERS: Final = ("A", "B")
-"""What the sheet calls the parties."""
+"""The names of the parties on the sheet."""
 
 
 @dataclass(frozen=True)
 class Case:
-    """A finding, its run, and the results that the sheet judged again.
+    """A finding, its run, and the results of judging the parties again.
 
-    `other_party`: what was judged of the second party, or in a sentence why it was not; None: there is none.
+    `again`: the result for the ego; `other_party`: the result for the second party, or a sentence why it was not judged; None: there is
+    no second party.
     """
 
     result: Result

@@ -1,4 +1,4 @@
-"""Cuts the log around a finding, long enough that the clip alone gives the same finding, and converts it."""
+"""Cuts a clip out of the log around a finding, long enough that the clip alone gives the same finding, and converts it."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ SPANS_S: Final = ((15, 7), (30, 15), (60, 60))
 """Seconds before the first and after the last failing step, tried in this order; then the whole log."""
 _S: Final = 1_000_000_000
 _IN_THE_LOG: Final = ("map", "map_dir", "map_offset", "mapping", "topic", "ego_size")
-"""Options that a converted log makes needless."""
+"""Options whose effects a converted log already contains."""
 
 
 def write_clip(request: ConvertRequest, name: str, folder: Path, memory: int | None) -> ConvertedTrace:
-    """Convert the part of a log around a finding of a result; what the request does not say is as that result's run had it.
+    """Convert the part of a log around a finding of a result, with the options of the result's run unless the request sets them.
 
-    Errors: `UsageError` for a finding that is not there, for another log, or if not even the whole log gives the finding again;
-    else as `convert`.
+    Errors: `UsageError` if the finding does not exist, the log is another log, or even the whole log does not give the finding again;
+    the errors of `convert`.
     """
     result = load_result(folder)
     finding = named_finding(result, name)
@@ -64,20 +64,20 @@ def write_clip(request: ConvertRequest, name: str, folder: Path, memory: int | N
 
 
 def _with_run_options(request: ConvertRequest, run_options: RunRequest, finding: NamedFinding) -> ConvertRequest:
-    """Return the request with the ego of the finding, and with the run's options where it has none. Errors: `UsageError`."""
+    """Return the request with the finding's ego, and with the run's options that the request does not set. Errors: `UsageError`."""
     paths = expand_traces([request.trace])
     if len(paths) == 1 and identify(paths[0]).sha256 != finding.drive["sha256"]:
         raise UsageError(f"{paths[0]} is not the log of the finding, {finding.drive['file_name']}: its content differs")
     unset = {field.name: field.default for field in fields(DriveInput)}
     set_options = {name for name, default in unset.items() if getattr(request, name) != default}
-    # one given map replaces the other way to find it
+    # if the request sets map or map_dir, the run's other option of the two does not apply
     set_options |= {"map", "map_dir"} if set_options & {"map", "map_dir"} else set()
     options = {name: getattr(run_options, name) for name in unset if name not in set_options}
     return replace(request, **{**options, "ego": finding.row["ego_id"] or None})
 
 
 def _clips(finding: NamedFinding) -> Iterator[tuple[float | None, float | None, Clip]]:
-    """Yield the spans to try, from the first to the last failing step with more and more around it; None: to the log's end."""
+    """Yield the clips to try, each longer than the one before, with the seconds before and after the finding; None: the whole log."""
     name = f"{Path(finding.drive['file_name']).stem}-clip-{finding.row['finding_id'][:8]}"
     start, end = finding.row["t_start_ns"], finding.row["t_end_ns"]
     first = finding.start_ns
@@ -91,14 +91,14 @@ def _clips(finding: NamedFinding) -> Iterator[tuple[float | None, float | None, 
 
 
 def _gives_finding(path: Path, run_options: RunRequest, finding: NamedFinding, judge: Judge) -> bool:
-    """Whether a clip gives the finding: of the same rule, profile and object, worst at the same step, by the same margin."""
+    """Return whether a clip gives the finding: same rule, profile, object, worst step and margin."""
     defaults: dict[str, Any] = {field.name: field.default for field in fields(DriveInput) if field.name in _IN_THE_LOG}
     options = replace(run_options, **{**defaults, "ego": finding.row["ego_id"] or None})
     try:
         drive = drive_with_map(read_trace(path, options.ingest_options()), MapLibrary(options))
         judged = judge.judge(drive, finding.row["ego_id"], finding.row["object_id"])
     except DriveLintError:
-        return False  # a longer clip may do
+        return False  # a longer clip may succeed
     return same_finding(judged.findings, finding.row) is not None
 
 

@@ -1,4 +1,4 @@
-"""The commands that reproduce a finding and its sheet from the log and the map."""
+"""Writes the commands that reproduce a finding and its sheet from the log and the map."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def commands(run_options: RunRequest, finding: NamedFinding, rule_ids: Sequence[str]) -> list[str]:
-    """Return the check of the one log by the rules of the run, and the report. Files are named without their folders."""
+    """Return two commands: the check of the finding's log by the rules of the run, and the report. Files are named without folders."""
     row, drive = finding.row, finding.drive
     words = ["drivelint", "check", drive["file_name"]]
     if run_options.map is not None:
@@ -33,7 +33,7 @@ def commands(run_options: RunRequest, finding: NamedFinding, rule_ids: Sequence[
 
 
 def of_rules(run_options: RunRequest, rule_ids: Sequence[str]) -> list[str]:
-    """Return the options of a run that say by which rules, profiles and parameters it judged. Of a path, only the last name is given."""
+    """Return the options that select the rules, profiles and parameters of a run. Folders are given without their parent folders."""
     words = _rules(run_options, rule_ids)
     for profile in run_options.profiles if tuple(run_options.profiles) != tuple(DEFAULT_PROFILES) else ():
         words += ["--profile", profile]
@@ -61,7 +61,7 @@ def _rules(run_options: RunRequest, rule_ids: Sequence[str]) -> list[str]:
 
 
 def _options(run_options: RunRequest) -> list[str]:
-    """Return the options about the log and its map that are not as they are by default."""
+    """Return the options about the log and its map that differ from their defaults."""
     words: list[str] = []
     if run_options.mapping is not None:
         words += [

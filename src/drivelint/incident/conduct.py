@@ -1,4 +1,4 @@
-"""The conduct of one party around the moment, by its verdicts: rules broken, kept, not decided, and never applicable."""
+"""The conduct of one party around the moment, from its verdicts: rules broken, kept, undecided, and never applicable."""
 
 from __future__ import annotations
 
@@ -30,18 +30,18 @@ def conduct(
     *,
     touched: bool = False,
 ) -> dict[str, Any]:
-    """Return the verdicts and findings of one ego in a span of the drive.
+    """Return the conduct of one ego in a span of the drive, as lists of texts and numbers of rules.
 
-    A rule counts once, by its worst verdict there: broken, not decided (or in error), kept, or never asked; `elsewhere`: broken, but
-    only outside the span. `beside`: what rules of contacts measured that found none where another did: none of them counts as kept
-    (`touched`: the sheet is about a contact). A verdict without a time is about the
-    whole drive. `excused`: not broken by a rule that may excuse what its title forbids. `only_hit`: nothing but a contact was found.
+    A rule counts once, by its worst verdict in the span: broken, undecided (or in error), kept, or never applicable. A verdict without
+    a time is about the whole drive. `elsewhere`: rules broken only outside the span. `excused`: kept rules that may excuse what their
+    titles forbid. `beside`: rules about contacts that found none although another rule did; these rules do not count as kept.
+    `only_hit`: only rules about contacts were broken. `touched`: the sheet is about a contact.
     """
     told = {name: [row for row in rows if _within(row, span)] for name, rows in (("v", verdicts), ("f", findings))}
     by_rule = group_rows(told["v"], lambda row: row["rule_id"])
     found = group_rows(told["f"], lambda row: row["rule_id"])
     failures = {rule: [row for row in rows if row["verdict"] == "fail"] for rule, rows in by_rule.items()}
-    # a verdict is about a judged interval, which may be longer than the span: its findings say when the rule was broken
+    # a verdict's interval may be longer than the span: the times of its findings decide
     failed = {rule for rule, rows in failures.items() if any(not row["finding_ids"] for row in rows)}
     elsewhere = {rule for rule, rows in failures.items() if rows} - failed - found.keys()
     broken = sorted(found.keys() | failed, key=lambda rule: (SEVERITIES.index(rules[rule]["severity"]), rule))
@@ -79,7 +79,7 @@ def conduct(
 
 
 def name_party(conduct_lists: Mapping[str, Any], name: str) -> dict[str, Any]:
-    """Return a text about a party with its name where rules say "the ego"; titles, in quotes, stay as they are."""
+    """Return the texts about a party with `name` instead of "the ego"; titles in quotation marks are not changed."""
     named_lists = dict(conduct_lists)
     for part in ("broken", "kept", "excused", "beside"):
         if part in conduct_lists:
@@ -101,13 +101,13 @@ def _within(row: Row, span: tuple[int, int]) -> bool:
 
 
 def _reasons(undecided: Mapping[str, Sequence[Row]], rules: Mapping[str, Row]) -> list[Reason]:
-    """Return why rules are not decided: those about contacts first, which a sheet is mostly about, then the reason of most rules."""
+    """Return the reasons why rules are undecided: reasons of rules about contacts first, then the most frequent reasons."""
     unknown = [row for rows in undecided.values() for row in rows if row["verdict"] in _UNDECIDED]
     of_rules: dict[str, set[str]] = {}
     for rows in group_rows(unknown, lambda row: verdict_reason(row).kind).values():
         given = (verdict_reason(row) for row in rows)
         why = summarise_reasons(reason._replace(text=without_advice(reason.text)) for reason in given)
-        of_rules.setdefault(why, set()).update(row["rule_id"] for row in rows)  # they may differ in their advice only
+        of_rules.setdefault(why, set()).update(row["rule_id"] for row in rows)  # reasons may differ only in advice
     told = [Reason(why, tuple(quoted(rules[rule]) for rule in sorted(found))) for why, found in of_rules.items()]
     contacts = {quoted(rule) for rule in rules.values() if CONTACT in rule["tags"]}
     return sorted(told, key=lambda reason: (contacts.isdisjoint(reason.titles), -len(reason.titles), reason))

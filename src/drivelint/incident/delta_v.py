@@ -1,4 +1,4 @@
-"""The change of velocity (delta-v) of a party over a contact: how far apart its velocity vectors before and after are."""
+"""The change of velocity (delta-v) of a party in a contact: the length of the difference of its velocity vectors before and after."""
 
 from __future__ import annotations
 
@@ -14,16 +14,19 @@ if TYPE_CHECKING:
     from drivelint.incident.motion import Motion
 
 WINDOW_S: Final = 0.3
-"""Crash recorders take the greatest change of velocity in the first 0.3 s of an impact (49 CFR 563.7): an impact is over by then."""
+"""The time after the beginning of an impact in which crash recorders record the greatest change of velocity (49 CFR 563.7)."""
 _LEAST_DEGREES: Final = 5.0
 _LEAST_MPS: Final = 0.5
-"""The direction of a smaller velocity, or of a smaller change, means nothing."""
+"""The direction of a smaller velocity, or of a smaller change of velocity, is not meaningful."""
 _MOST_STEPS: Final = 2.5
-"""Samples further apart, in usual steps, are not continuous: as the rules have it (`max_gap`)."""
+"""If samples are farther apart than this many usual steps, there is a gap, as in the rules (`max_gap`)."""
 
 
 class DeltaV(NamedTuple):
-    """The greatest change of velocity in m/s, when it is reached in seconds from the moment, and whether the recording ends too early."""
+    """The greatest change of velocity in m/s, and its time in seconds from the moment.
+
+    `is_least`: the recording ends within the window, so the change may have been greater.
+    """
 
     mps: float
     at_s: float
@@ -33,7 +36,7 @@ class DeltaV(NamedTuple):
 def delta_v(motion: Motion, party: int, before: int) -> DeltaV | None:
     """Return the greatest change of a party's velocity vector since the step `before`, up to 0.3 s after the moment.
 
-    The step after `before` counts in any case, however long it is. None: a velocity in that time is not known, or nothing is recorded.
+    The step after `before` counts even if it is later than that. None: a velocity in that time is not known or not recorded.
     """
     t, v = motion.t, motion.velocity[party]
     window = np.flatnonzero((t <= WINDOW_S + 1e-9) & (np.arange(len(t)) > before))
@@ -47,7 +50,7 @@ def delta_v(motion: Motion, party: int, before: int) -> DeltaV | None:
 
 
 def told_delta_v(motion: Motion, party: int, before: int | None, trace: Trace, actor_id: str) -> str:
-    """Return the change of velocity over a contact with its interval, in words, or why it is not known; '' where there is no contact."""
+    """Return the change of velocity in a contact with its interval in words, or why it is not known; '' if there is no contact."""
     if before is None:
         return ""
     rows = trace.tables["quality"].to_pylist()
@@ -64,7 +67,10 @@ def told_delta_v(motion: Motion, party: int, before: int | None, trace: Trace, a
 
 
 def _turned(motion: Motion, party: int, before: int, velocity_change: DeltaV) -> str:
-    """Return speeds and angle in words where the direction changed, which may be steering if it changed more than the speed; else ''."""
+    """Return speeds and change of direction in words; '' if the direction did not change.
+
+    The text mentions steering if direction changed more than speed.
+    """
     v = motion.velocity[party][:, [before, int(np.abs(motion.t - velocity_change.at_s).argmin())]]
     first, last = np.hypot(*v).tolist()
     if velocity_change.mps < _LEAST_MPS or min(first, last) < _LEAST_MPS:

@@ -1,4 +1,4 @@
-"""Finds the finding that a user names, with its drive and rule."""
+"""Looks up the finding that a user names, with its drive and rule."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ class NamedFinding:
 
     @property
     def is_contact(self) -> bool:
-        """Whether it is a contact."""
+        """Whether the finding is a contact."""
         return CONTACT in self.rule["tags"]
 
     @property
     def moment_ns(self) -> int:
-        """The time that the sheet counts from: a contact's first step, else the worst step."""
+        """The moment of the finding, from which the sheet counts time: the first step of a contact, else the worst step."""
         return int(self.row["t_start_ns" if self.is_contact else "t_worst_ns"])
 
     @property
@@ -48,9 +48,9 @@ class NamedFinding:
 
 
 def named_finding(result: Result, name: str) -> NamedFinding:
-    """Return the finding that `name` means, as `explain` takes it; of a rule, the worst. `contact` or `contact@DRIVE`: the worst contact.
+    """Return the finding with a name that `explain` accepts; a rule means its worst finding, `contact[@DRIVE]` the worst contact.
 
-    Errors: `UsageError` where nothing is called so, or where the verdict is no finding.
+    Errors: `UsageError` if nothing has this name, or if the verdict is no finding.
     """
     drives = {drive["drive_id"]: drive for drive in result.drives.to_pylist()}
     rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
@@ -69,14 +69,14 @@ def named_finding(result: Result, name: str) -> NamedFinding:
 
 
 def contacts(result: Result) -> list[Row]:
-    """Return the findings that are contacts, the worst first, sure ones before those that are only possible."""
+    """Return the findings that are contacts, the worst first, sure findings before findings that are only possible."""
     rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
     found: list[Row] = worst_first(result.findings, rules).to_pylist()
     return [row for row in found if is_contact(row, rules)]
 
 
 def _worst_of(verdict: Row, result: Result) -> dict[str, Any]:
-    """Return the worst finding of a verdict. Errors: `UsageError`."""
+    """Return the worst finding of a verdict. Errors: `UsageError` if it has none."""
     rows = [row for row in result.findings.to_pylist() if all(row[key] == verdict[key] for key in _SAME)]
     about = [row for row in rows if row["object_id"] == verdict["object_id"]] or rows
     if verdict["verdict"] != "fail" or not about:

@@ -1,4 +1,4 @@
-"""Fits the content into two pages: a reason loses the titles of its rules before any reason is left out."""
+"""Fits the content into two pages. To save space, reasons lose the titles of their rules first; then whole reasons are left out."""
 
 from __future__ import annotations
 
@@ -11,37 +11,36 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 _ROOM: Final = {"broken": 1500, "kept": 300, "excused": 80, "reasons": 350}
-"""The fewest characters of each part on the page; the number of left-out texts is printed."""
+"""The characters reserved for each part; if texts are left out, their number is printed."""
 _FIRST: Final = ("broken", "reasons")
-"""Parts that are printed whole before any other, in this order."""
+"""Parts that get free space first, in this order."""
 _MAY_GO: Final = frozenset({"kept", "excused"})
-"""Parts whose number stands in the party's first line."""
+"""Parts that may be left out completely, because the party's first line contains their number."""
 _WASTE: Final = {"broken": 30}
-"""Characters that the end of a text's last line leaves empty, where each text begins a line."""
+"""The empty characters at the end of a text's last line, in parts in which each text begins a new line."""
 _ALL_ROOM: Final = 3300
-"""Characters of all parts of both parties: the others may use the room that one leaves."""
+"""The characters that all parts of both parties may take together; a part may use the space that others leave."""
 _SECOND_ROOM: Final = 110
-"""Characters that fit where the table second by second has a row less than its most."""
+"""The characters that fit into the space of one row of the table of seconds."""
 _JOIN: Final = 2
-"""Characters between two texts."""
+"""The number of characters between two texts."""
 SHARED_HEAD: Final = 100
-"""Characters of the head of the reasons that both parties share, with the end of the line before it."""
+"""The characters of the heading of the reasons that both parties share, with the empty end of the line before."""
 _TITLES_NOTE_CHARACTERS: Final = 80
-"""Characters of the sentence that says where the titles are that were left out."""
+"""The characters of the sentence that refers to the titles that were left out."""
 _WIDE, _CELL, _FACT, _CHECK = 92, 43, 41, 98
-"""Characters of a line in the widest font that may print the sheet: across page 1, in a column of the parties or the facts, in a row of
-the hashes."""
+"""The characters of a line in the widest possible font: across page 1, in a column of the parties or the facts, and beside a hash."""
 _LINE_PX, _TEXT_PX = 13.7, 15.7
-"""Heights of a line in the tables of page 1, and of its first sentences."""
+"""The height of a line in the tables of page 1, and in its first sentences."""
 _FIRST_PX: Final = 465
-"""Greatest height of the finding and the parties on page 1 with which the lists of missing records still fit below them."""
+"""The greatest height of the finding and the parties on page 1 that leaves enough space for the lists of missing records."""
 _CHECK_LINE: Final = 125
-"""Characters of the columns of page 2 that a line of the hashes takes."""
+"""The characters in the columns of page 2 that need as much space as one line of the hashes."""
 _CELLS: Final = ("delta_v", "fastest", "lane", "lights")
 
 
 _Part: TypeAlias = "tuple[dict[str, Any], str, int]"
-"""The texts of a party by part, the name of one part, and the characters that this part may take."""
+"""The texts of a party by part, the name of one of the parts, and the characters that it may take."""
 
 
 class Reason(NamedTuple):
@@ -52,7 +51,7 @@ class Reason(NamedTuple):
 
     @property
     def full(self) -> str:
-        """The reason with the titles of its rules."""
+        """The reason, after the titles of its rules."""
         return f"{', '.join(self.titles)}: {self.why}"
 
     @property
@@ -62,7 +61,7 @@ class Reason(NamedTuple):
 
 
 class Fitting(NamedTuple):
-    """The first of some texts, how many more there are, and whether some of those shown are short forms."""
+    """The texts that are printed, the number of texts that are left out, and whether a printed text is a short form."""
 
     texts: list[str]
     more: int
@@ -70,7 +69,7 @@ class Fitting(NamedTuple):
 
 
 def is_crowded(page: dict[str, Any]) -> bool:
-    """Whether page 1, with the finding and the parties in `content`, has no room left for the missing records."""
+    """Return whether page 1 has no space for the lists of missing records. `page`: the values of `sheet.content`."""
     sure, rests, drive = page["sure"], page["rests"], page["drive"]
     facts = [
         8
@@ -92,7 +91,7 @@ def is_crowded(page: dict[str, Any]) -> bool:
 
 
 def check_room(texts: Sequence[str]) -> int:
-    """Return the characters that the lines of the hashes take, from the columns, beyond one line each."""
+    """Return the characters that the columns of page 2 lose because the lines with hashes (`texts`) wrap."""
     return _CHECK_LINE * sum(_lines(text, _CHECK) - 1 for text in texts)
 
 
@@ -101,7 +100,7 @@ def _lines(text: str, width: int) -> int:
 
 
 def shared_reasons(parties: Sequence[dict[str, Any]]) -> dict[str, Any]:
-    """Take the reasons that all parties share, with the same rules, out of each; return them as a part of their own."""
+    """Remove the reasons that all parties share, with the same rules, from each party, and return these reasons."""
     given = [told["reasons"] for told in parties if "reasons" in told]
     shared = [reason for reason in given[0] if all(reason in others for others in given[1:])] if len(given) > 1 else []
     for told in parties:
@@ -111,11 +110,11 @@ def shared_reasons(parties: Sequence[dict[str, Any]]) -> dict[str, Any]:
 
 
 def fit(parties: Sequence[dict[str, Any]], seconds_left: int, used_characters: int) -> None:
-    """Cut the lists about both parties so that they fit into two columns that share their room.
+    """Cut the lists about both parties so that they fit into two columns with a common limit of characters.
 
-    Room that the lists leave goes first to the broken rules, then to the reasons, until all are printed. If other lines take more room,
-    each list loses its share, the list of broken rules last.
-    `seconds_left`: rows that the table second by second does not fill; `used_characters`: characters of other lines.
+    Free space goes first to the broken rules, then to the reasons, until all are printed. If other lines need space, the lists are
+    shortened, the list of broken rules last.
+    `seconds_left`: the unused rows of the table of seconds; `used_characters`: the characters of other lines.
     """
     parts = [
         (told, name, min(_least(told[name], name), room))
@@ -140,7 +139,7 @@ def fit(parties: Sequence[dict[str, Any]], seconds_left: int, used_characters: i
 
 
 def _shrunk(parts: Sequence[_Part], by: int) -> list[_Part]:
-    """Take so many characters from the parts, in the order in which they give way; one reason of a party is printed in any case."""
+    """Reduce the space of the parts by `by` characters, less important parts first; at least one reason per party remains."""
     rooms = [room for *_, room in parts]
     for giving in ("excused", "kept", "reasons", "broken"):
         spared = {
@@ -157,7 +156,7 @@ def _shrunk(parts: Sequence[_Part], by: int) -> list[_Part]:
 
 
 def first_fitting(texts: Sequence[str], room: int) -> Fitting:
-    """Return as many of some texts as fit into so many characters, at least one."""
+    """Return the first texts that fit into `room` characters together, at least one."""
     return _fitting(texts, "", room)
 
 
@@ -166,19 +165,19 @@ def _shortest(reasons: Sequence[Reason]) -> list[str]:
 
 
 def _least(texts: Sequence[Any], part: str) -> int:
-    """Return the least room that all texts of a part take, in characters."""
+    """Return the characters that all texts of a part take, in their shortest forms."""
     if part != "reasons":
         return _length(texts, part)
     return min(_length([each.full for each in texts], part), _length(_shortest(texts), part) + _TITLES_NOTE_CHARACTERS)
 
 
 def _length(texts: Sequence[str], part: str) -> int:
-    """Return the room that texts of a part take, in characters."""
+    """Return the characters that texts of a part take."""
     return sum(len(text) + _WASTE.get(part, _JOIN) for text in texts)
 
 
 def _fitting(texts: Sequence[str], part: str, room: int) -> Fitting:
-    """Return as many of the texts as fit; at least one, except in parts of which only the number may be printed."""
+    """Return the first texts that fit; at least one, except for parts in `_MAY_GO`."""
     shown = list(texts[:1])
     if part in _MAY_GO and texts and room < len(texts[0]) // 2:
         return Fitting([], len(texts))
@@ -190,7 +189,7 @@ def _fitting(texts: Sequence[str], part: str, room: int) -> Fitting:
 
 
 def _fitting_reasons(reasons: Sequence[Reason], part: str, room: int) -> Fitting:
-    """Return the reasons in full, or the longest lists of titles as numbers, until all fit; then as many as fit."""
+    """Return the reasons that fit. Until all fit, the longest lists of titles are replaced by numbers, then reasons are left out."""
     shown, shortest = [reason.full for reason in reasons], _shortest(reasons)
     if _length(shown, part) <= room:
         return Fitting(shown, 0)

@@ -1,4 +1,4 @@
-"""Judges one drive again with one ego, by the rules of a result, and takes that ego's steps."""
+"""Judges one drive again with one ego, by the rules of a result, and collects the ego's steps."""
 
 from __future__ import annotations
 
@@ -49,7 +49,10 @@ class Judge:
 
     @classmethod
     def of_run(cls, run_options: RunRequest, rules_of_run: pa.Table, memory: int | None) -> Judge:
-        """Return the judge of a run, by these rows of its table of rules. Errors: `UsageError` for a rule that is gone."""
+        """Return a judge with the rules in `rules_of_run`, rows of the run's table `rule`.
+
+        Errors: `UsageError` for a rule that is not in the catalogue.
+        """
         known = catalogue.load_rules(run_options.rules_dirs)
         named = {row["rule_id"]: row["is_named"] for row in rules_of_run.to_pylist()}
         if gone := sorted(named.keys() - known.keys()):
@@ -62,7 +65,7 @@ class Judge:
     def judge(
         self, drive: Drive, ego_id: str, object_id: str | None, errors: MeasurementErrors | None = None
     ) -> EgoRows:
-        """Judge a drive of one ego. `errors`: of the copies that show how sure findings are; None: no copies are judged."""
+        """Judge a drive with one ego. `errors`: the assumed errors of the copies that show how sure findings are; None: no copies."""
         steps: list[pa.Table] = []
 
         def look(con: duckdb.DuckDBPyConnection, _drives: Sequence[Drive], /, **_part: bool) -> None:
@@ -81,7 +84,7 @@ class Judge:
 
 
 def same_finding(findings: Sequence[Row], finding: Row, *, tolerance: float = 1e-6) -> Row | None:
-    """Return the finding that has the rule, profile, object, worst step and margin of `finding`; None: there is none."""
+    """Return the finding with the same ego, rule, profile, object, worst step and margin as `finding`; None if there is none."""
     same = ("ego_id", "rule_id", "profile", "object_id", "t_worst_ns")
     for row in findings:
         if all(row[key] == finding[key] for key in same) and _close(row["margin"], finding["margin"], tolerance):

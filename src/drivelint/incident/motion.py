@@ -1,4 +1,4 @@
-"""The relative motion of two parties: gap, closing speed, braking, and a table second by second."""
+"""The relative motion of two parties: gap, closing speed, braking, and a table with a row per second."""
 
 from __future__ import annotations
 
@@ -20,26 +20,26 @@ BEFORE_S: Final = 15
 AFTER_S: Final = 2
 """The table runs from 15 s before the moment to 2 s after it."""
 MOST_ROWS: Final = BEFORE_S + AFTER_S + 2
-"""Rows of the table at most: its seconds, the moment, and the last step before a contact."""
+"""The greatest number of rows of the table: its seconds, the moment, and the last step before a contact."""
 SLOWING_MPS2: Final = 1.0
-"""Who slows by less, as a mean of half a second, may coast."""
+"""A vehicle whose mean deceleration over half a second is less may be coasting."""
 _TYRES_MPS2, _LEAST_LOSS_MPS = 12.0, 1.0
-"""Tyres cannot brake a vehicle this hard: such a loss of speed between two steps is an impact."""
+"""Tyres cannot brake a vehicle this hard: a loss of speed of this rate and size between two steps is an impact."""
 _STANDING_MPS: Final = 0.5
-"""As the rules have it (`standing_mps`)."""
+"""The same value as in the rules (`standing_mps`)."""
 _MEAN_S: Final = 0.5
 _MERGE_S: Final = 0.5
-"""Two stretches of slowing with a shorter break between them are one."""
+"""Two periods of slowing with a shorter break between them are merged."""
 
 
 @dataclass(frozen=True)
 class Motion:
-    """The steps of a drive as arrays; the first row of each pair is the ego's, the second the other party's. NaN: not known.
+    """The steps of a drive as arrays; in each pair the ego's comes first, then the other party's. NaN: not known.
 
-    `t`: seconds from the moment; `velocity`: along x and y (2, n) in m/s; `backwards`: whether it moves against its heading; `gap`: box to
-    box in m, negative: depth of overlap; `closing`: speed at which the line between the box centres shortens; `relative`: speed of the
-    one as seen from the other; `turn`: angle between the headings; `lane_offset`: left of the middle of the ego's lane, as the ego
-    drives; `out_since`: when the ego left its lane, in seconds from the moment; NaN: it is in it, or this was not examined.
+    `t`: seconds from the moment; `velocity`: along x and y, shape (2, n), in m/s; `backwards`: moves against its heading;
+    `lane_offset`: from the centre of the ego's lane, left positive. `gap`: distance of the boxes in m, negative: depth of overlap;
+    `closing`: speed at which the distance of the box centres decreases; `relative`: relative speed; `turn`: angle between the headings.
+    `out_since`: when the ego left its lane, in seconds from the moment; NaN: the ego is in its lane, or this was not examined.
     """
 
     t: Floats
@@ -55,7 +55,7 @@ class Motion:
 
     @classmethod
     def of_steps(cls, steps: pa.Table, moment_ns: int) -> Motion:
-        """Return the motion in rows of `queries/incident/step.sql`."""
+        """Return the motion from rows of `queries/incident/step.sql`."""
         c = {
             name: floats(steps[name])
             for name in steps.column_names
@@ -85,33 +85,36 @@ class Motion:
 
     @property
     def step_s(self) -> float:
-        """The usual time from one step to the next."""
+        """The median time between two steps in seconds."""
         return float(np.median(np.diff(self.t))) if len(self.t) > 1 else 0.0
 
     def at(self, t: float) -> int | None:
-        """Return the step nearest to a time; None: none is within half a usual step, or half a second."""
+        """Return the step nearest to a time; None if it is more than half a usual step, or half a second, away."""
         i = int(np.abs(self.t - t).argmin())
         return i if abs(self.t[i] - t) <= min(self.step_s / 2, 0.5) + 1e-6 else None
 
     def last_before(self, t: float) -> int | None:
-        """Return the last step before a time; None: there is none."""
+        """Return the last step before a time; None if there is none."""
         i = int(np.searchsorted(self.t, t - 1e-9)) - 1
         return i if i >= 0 else None
 
     def last_apart_before(self, t: float) -> int | None:
-        """Return the last step before a time at which the boxes are not known to overlap; the last before it, if they always do."""
+        """Return the last step before a time at which the boxes do not overlap, or their gap is not known.
+
+        Return the last step before the time if the boxes always overlap.
+        """
         last = self.last_before(t)
         apart = np.flatnonzero(~(self.gap[: (last or 0) + 1] <= 0)).tolist()
         return last if last is None or not apart else int(apart[-1])
 
     def signed_speed(self, party: int) -> Floats:
-        """Return the speed of a party in m/s, below 0 where it moves backwards."""
+        """Return the speed of a party in m/s, negative while the party moves backwards."""
         return np.where(self.backwards[party], -self.speed[party], self.speed[party])
 
     def acceleration(self, party: int, i: int, over_s: float, v: Floats | None = None) -> float:
-        """Return the mean change, in m/s2, of `v` over the time before a step; NaN: not known over all of it.
+        """Return the mean rate of change of `v` in m/s2 over `over_s` before a step; NaN if `v` is not known over all of that time.
 
-        `v`: speeds in m/s at the steps; None: those of the party, without sign.
+        `v`: speeds in m/s at the steps; None: the party's speed without sign.
         """
         t, v = self.t, self.speed[party] if v is None else v
         start = t[i] - over_s
@@ -121,25 +124,25 @@ class Motion:
         return float((v[i] - np.interp(start, t, v)) / over_s)
 
     def hardest_braking(self, party: int, i: int) -> float:
-        """Return the hardest deceleration, as a mean of half a second, that ends in the second before a step; 0: none; NaN: not known."""
+        """Return the greatest deceleration (mean of half a second) that ends in the second before a step; 0: none; NaN: not known."""
         ends = np.flatnonzero((self.t > self.t[i] - 1.0 + 1e-9) & (self.t <= self.t[i] + 1e-9)).tolist()
         means = [self.acceleration(party, end, _MEAN_S) for end in ends if not self.is_sudden(party, end, _MEAN_S)]
         return float(np.maximum(0.0, -np.min(means))) if means else math.nan
 
     def sudden(self, party: int) -> Mask:
-        """Return at which steps a party has lost speed, since the step before, faster than tyres can brake."""
+        """Return a mask of the steps at which a party has lost speed since the previous step faster than tyres can brake."""
         lost = -np.diff(self.speed[party], prepend=self.speed[party][:1])
         found: Mask = (lost >= _LEAST_LOSS_MPS) & (lost >= _TYRES_MPS2 * np.diff(self.t, prepend=-np.inf))
         return found
 
     def is_sudden(self, party: int, i: int, over_s: float) -> bool:
-        """Whether a party lost speed so in the time before a step."""
+        """Return whether a party lost speed faster than tyres can brake in the `over_s` before a step."""
         within = (self.t > self.t[i] - over_s + 1e-9) & (self.t <= self.t[i])
         return bool(self.sudden(party)[within].any())
 
 
 def _is_backwards(columns: dict[str, Floats], of: str) -> Mask:
-    """Return at which steps one moves against its heading, faster than a vehicle that stands may seem to."""
+    """Return a mask of the steps at which a party moves against its heading, faster than a standing vehicle may seem to move."""
     yaw = columns[f"{of}yaw_rad"]
     along: Floats = columns[f"{of}vx_mps"] * np.cos(yaw) + columns[f"{of}vy_mps"] * np.sin(yaw)
     found: Mask = along < -_STANDING_MPS
@@ -147,7 +150,7 @@ def _is_backwards(columns: dict[str, Floats], of: str) -> Mask:
 
 
 def slowing_known(motion: Motion, party: int, until_s: float) -> bool:
-    """Whether every half second of the 15 s before `until_s`, as far as recorded, shows whether a party slowed."""
+    """Return whether a party's deceleration is known at all recorded steps of the 15 s before `until_s`."""
     t = motion.t
     begin = max(float(t[0]), until_s - BEFORE_S)
     steps = np.flatnonzero((t >= begin + _MEAN_S - 1e-9) & (t <= until_s + 1e-9)).tolist()
@@ -155,9 +158,9 @@ def slowing_known(motion: Motion, party: int, until_s: float) -> bool:
 
 
 class Slowing(NamedTuple):
-    """A stretch in which a party slows: its times, the speeds at both, and the hardest deceleration (mean of half a second).
+    """A period in which a party slows: start, end, the speeds at both, and the hardest deceleration (mean of half a second).
 
-    `sudden`: faster than tyres can brake, as in an impact.
+    `sudden`: the party loses speed faster than tyres can brake, as in an impact.
     """
 
     start_s: float
@@ -174,7 +177,7 @@ class Slowing(NamedTuple):
 
 
 def slowings(motion: Motion, party: int, until_s: float) -> list[Slowing]:
-    """Return the stretches in which a party slows by `SLOWING_MPS2` or more, in the 15 s before `until_s`, in time order."""
+    """Return the periods in which a party slows by `SLOWING_MPS2` or more, in the 15 s before `until_s`, in time order."""
     t, v = motion.t, motion.speed[party]
     steps = np.flatnonzero((t >= until_s - BEFORE_S) & (t <= until_s + 1e-9))
     mean = {int(i): motion.acceleration(party, int(i), _MEAN_S) for i in steps}
@@ -192,7 +195,7 @@ def slowings(motion: Motion, party: int, until_s: float) -> list[Slowing]:
         else:
             runs.append([i])
     for run in runs:
-        # the mean of the half second before says that it has begun by then: where the speed was highest
+        # the deceleration is a mean of the half second before a step: slowing began at the highest speed in it
         within = np.flatnonzero((t >= t[run[0]] - _MEAN_S - 1e-9) & (t <= t[run[0]]))
         first = int(within[::-1][np.argmax(v[within[::-1]])])
         found.append(
@@ -202,7 +205,7 @@ def slowings(motion: Motion, party: int, until_s: float) -> list[Slowing]:
 
 
 def second_by_second(motion: Motion, before_s: float | None) -> list[dict[str, Any]]:
-    """Return a row per full second from 15 s before to 2 s after the moment, and that of the last step before a contact."""
+    """Return a row per full second from 15 s before to 2 s after the moment, and a row of the last step before a contact."""
     return [_row(motion, i, t, before_s) for i, t in _table_steps(motion, before_s)]
 
 
@@ -231,7 +234,7 @@ def _row(motion: Motion, i: int, t: float, last_before_s: float | None) -> dict[
 
 
 def _apart(c: dict[str, Floats]) -> Floats:
-    """Return the distance from box to box in m; 0 where they overlap."""
+    """Return the distance of the two boxes at each step in m; 0 where they overlap."""
     a, b = (_boxes(c, prefix) for prefix in ("", "object_"))
     known: Mask = np.isfinite(np.concatenate([a, b], axis=1)).all(axis=(1, 2))
     found = np.full(len(a), np.nan)
@@ -240,7 +243,7 @@ def _apart(c: dict[str, Floats]) -> Floats:
 
 
 def _boxes(c: dict[str, Floats], prefix: str) -> Floats:
-    """Return the corners of the boxes, shape (n, 4, 2)."""
+    """Return the corners of the boxes in map metres, shape (n, 4, 2)."""
     x, y, yaw, length, width = (c[f"{prefix}{name}"] for name in ("x_m", "y_m", "yaw_rad", "length_m", "width_m"))
     corners = [(1, 1), (-1, 1), (-1, -1), (1, -1)]
     ahead = np.stack([length / 2 * u for u, _ in corners], axis=1)

@@ -32,7 +32,10 @@ _SIDES: Final = {True: "centre in a lane of its direction", False: "centre in th
 def party(
     case: Case, motion: Motion, number: int, at: int | None, before_s: float | None, *, slowed: Sequence[Slowing]
 ) -> dict[str, Any]:
-    """Return one party: its kind, its speed, and whether it slowed."""
+    """Return the values of one party: kind, size, lane, speeds, delta-v, braking and brake lights.
+
+    `number`: 0 for A, 1 for B; `at`: the step that the sheet describes; `before_s`: the time of the last step before a contact.
+    """
     actor_id = case.finding.parties[number]
     tables = case.drive.trace.tables
     about: Row = next((row for row in tables["actor"].to_pylist() if row["actor_id"] == actor_id), {})
@@ -59,13 +62,13 @@ def party(
 
 
 def kinds(case: Case) -> list[str | None]:
-    """Return the class of each party, in words; None: not recorded."""
+    """Return the class of each party in words; None if it is not recorded."""
     classes = {row["actor_id"]: row["actor_class"] for row in case.drive.trace.tables["actor"].to_pylist()}
     return [(classes.get(who) or "").replace("_", " ") or None for who in case.finding.parties]
 
 
 def _slowed(slowings: Sequence[Slowing], before_s: float | None) -> list[str]:
-    """Return the last stretches of slowing in words, and how many there were before them."""
+    """Return the last two periods of slowing in words, and the number of earlier periods."""
     texts = [f"{len(slowings) - 2} earlier"] if len(slowings) > 2 else []
     for each in slowings[-2:]:
         until = "the last step before contact" if each.end_s == before_s else f"{each.end_s:+.2f} s"
@@ -82,7 +85,7 @@ def _slowed(slowings: Sequence[Slowing], before_s: float | None) -> list[str]:
 
 
 def _brake_lights(case: Case, actor_id: str) -> str:
-    """Return when the brake lights were on in the 15 s before the moment, in words."""
+    """Return in words when the brake lights were on in the 15 s before the moment."""
     moment = case.finding.moment_ns
     states = [
         (t_ns, light)
@@ -105,7 +108,7 @@ def _brake_lights(case: Case, actor_id: str) -> str:
 
 
 def _lane(case: Case, number: int, at: int | None) -> str:
-    """Return in words in which lane a party is at a step of the first one."""
+    """Return in words in which lane a party is at step `at` of the first party."""
     judged = (case.again, case.other_party)[number]
     if at is None or not isinstance(judged, EgoRows) or not judged.steps.num_rows:
         return "not examined"
@@ -122,7 +125,7 @@ def _lane(case: Case, number: int, at: int | None) -> str:
 
 
 def overtaking(case: Case, at: int | None) -> str:
-    """Return in words which vehicle the first party was overtaking at a step, and in which lane; '' for none, or if not examined."""
+    """Return in words which vehicles A was overtaking at step `at`, and whether A was in the oncoming lane; '' for no vehicle."""
     if at is None:
         return ""
     t_ns, row = case.again.steps["t_ns"][at].as_py(), case.finding.row
@@ -139,7 +142,7 @@ def overtaking(case: Case, at: int | None) -> str:
 
 
 def title(case: Case, motion: Motion, at: int | None, *, possible: bool) -> str:
-    """Return the title of the sheet: the event."""
+    """Return the title of the sheet: a collision of A and B, or the broken rule."""
     finding, row = case.finding, case.finding.row
     when = seconds(finding.moment_ns, finding.start_ns)
     if not finding.is_contact or len(finding.parties) < 2:
@@ -149,7 +152,7 @@ def title(case: Case, motion: Motion, at: int | None, *, possible: bool) -> str:
 
 
 def others_drawn(plan: Mapping[str, Any], scene: Row) -> list[str]:
-    """Return in words the other actors in the plan view: kind, size, speed, and distance from the first party."""
+    """Return in words the other actors in the plan view: kind, size, speed, and distance from A."""
     actors = {actor["actor_id"]: actor for actor in scene["actors"]}
     ego = shapely.polygons(corners(plan["ego"]))
     told = []
@@ -166,7 +169,7 @@ def others_drawn(plan: Mapping[str, Any], scene: Row) -> list[str]:
 
 
 def against_each_other(relative_mps: float, closing_mps: float | None) -> str:
-    """Return the relative speed of both, and how fast the box centres near where that is not the same, in words."""
+    """Return the relative speed of both parties in words, and the closing speed of the box centres if it differs."""
     if math.isnan(relative_mps):
         return "relative speed not known"
     said = f"relative speed {speed(relative_mps)}"

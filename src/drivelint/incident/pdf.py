@@ -1,4 +1,4 @@
-"""Prints a page to PDF with an installed Chromium: no library on PyPI draws this page without libraries of the system."""
+"""Prints a page to PDF with an installed Chromium. No library on PyPI can draw this page without system libraries."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ _DATE: Final = re.compile(rb"(/(?:CreationDate|ModDate) \(D:)\d{14}")
 
 
 class PdfError(DriveLintError):
-    """The browser did not print the page."""
+    """Error: the browser did not print the page."""
 
     exit_code = ExitCode.TEMPFAIL
 
 
 def find_browser() -> str:
-    """Return the path of a browser that prints. Errors: `UsageError` that says what to install."""
+    """Return the path of an installed browser that can print a PDF. Errors: `UsageError` if there is none."""
     found = next((path for name in _BROWSERS if (path := shutil.which(name))), None)
     if found is None:
         raise UsageError(
@@ -37,12 +37,12 @@ def find_browser() -> str:
 
 
 def print_page(html: bytes, browser: str) -> bytes:
-    """Return a page as PDF, the same bytes for the same page and browser. Errors: `PdfError`."""
+    """Return a page as PDF; the same page and browser give the same bytes. Errors: `PdfError`."""
     with TemporaryDirectory(prefix="drivelint-") as folder:
         page, out = Path(folder, "page.html"), Path(folder, "page.pdf")
         page.write_bytes(html)
         flags = ["--headless=new", "--disable-gpu", "--no-first-run", f"--user-data-dir={folder}/profile"]
-        # its sandbox refuses to run as the superuser, as in a container; the page is ours and loads nothing
+        # Chromium's sandbox refuses to run as root, as in containers; our page loads nothing
         flags += ["--no-sandbox"] if getattr(os, "geteuid", lambda: 1)() == 0 else []
         command = [browser, *flags, "--no-pdf-header-footer", f"--print-to-pdf={out}", page.as_uri()]
         try:

@@ -1,4 +1,4 @@
-"""Says where the finding was: in which coordinates, and how the side of the road that is driven on is known."""
+"""Describes the place of the finding: its position and coordinates, and the source of the side of the road that is driven on."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ _INFERRED: Final = {
     "traces": "inferred from how the log's traffic drives",
     "default": "assumed: neither map nor user says it",
 }
-"""Source of the side that is driven on, if the user did not set it, in words."""
+"""The source of the side of the road that is driven on, in words, if neither map nor user states that side."""
 
 
 class Place(NamedTuple):
-    """Where the middle of A's box is at a time: degrees (WGS 84), the drive's coordinates, and the lanelet. None: not known, or none."""
+    """The centre of A's box at a time: degrees (WGS 84), the drive's coordinates, and the lanelet. None: not known, or no lanelet."""
 
     t_ns: int
     lat: float | None
@@ -39,7 +39,7 @@ class Place(NamedTuple):
 
 
 def place(case: Case) -> Place:
-    """Return where A was at the moment, or at the worst step where its place at the moment is not known."""
+    """Return A's place at the moment of the finding; if that is not known, its place at the worst step."""
     row, moment_ns = case.finding.row, case.finding.moment_ns
     steps = case.again.steps.select(["t_ns", "x_m", "y_m", "lanelet_id"]).to_pylist()
     at = next((step for step in steps if step["t_ns"] == moment_ns), None)
@@ -53,13 +53,13 @@ def place(case: Case) -> Place:
 
 
 def geo_source(case: Case) -> str:
-    """Return the source of the geo reference: map or log."""
+    """Return the source of the geographic reference: `map` or `log`."""
     environment = case.drive.environment
     return "map" if environment is not None and frame_of_map(environment) is not None else "log"
 
 
 def surroundings(drive: Row) -> str:
-    """Return the known weather and light, in words."""
+    """Return weather and light in words, also which of them is not known."""
     known = {each["condition"]: each["value"] for each in drive["conditions"]}
     told = [f"{name} {known[name]}" for name in _SURROUNDINGS if name in known]
     lost = [name for name in _SURROUNDINGS if name not in known]
@@ -68,11 +68,11 @@ def surroundings(drive: Row) -> str:
 
 
 def coordinates(case: Case) -> str:
-    """Return in words whose coordinates x and y are: the log's, turned if its frame was, and how the map's differ from them."""
+    """Return in words whether x and y are coordinates of the log or of a clip, and any change of y's sign or offset of the map."""
     checks = {check["check_id"] for check in case.finding.drive["quality"]}
     said = "the recording's coordinates"
     if CLIP in checks:
-        said = "the clip's coordinates"  # a clip is written as it was judged
+        said = "the clip's coordinates"  # a clip contains the coordinates that were judged
     elif TURNED_FRAME in checks:
         said += " with the sign of y turned, as its frame is left-handed"
     dx, dy = _map_offset(case)
@@ -80,14 +80,14 @@ def coordinates(case: Case) -> str:
 
 
 def inferred_side(drive: Row) -> str:
-    """Return the side of the road that is driven on, and how it was inferred; '' where map or user gave it, or there is no map."""
+    """Return in words the side of the road that is driven on, and how it was inferred; '' if it was not inferred."""
     side = {"lht": "Left", "rht": "Right"}.get(drive["handedness"])
     how = _INFERRED.get(drive["handedness_source"])
     return f"{side}-hand traffic: {how}." if side and how else ""
 
 
 def road_of(case: Case, lanelet: str | None) -> str | None:
-    """Return the map's road of a lanelet; None: there is none, or it is called as the lanelet."""
+    """Return the id of the road of a lanelet; None if the lanelet, its road or the map is not known."""
     environment = case.drive.environment
     if lanelet is None or environment is None:
         return None
@@ -97,7 +97,7 @@ def road_of(case: Case, lanelet: str | None) -> str | None:
 
 
 def _map_offset(case: Case) -> tuple[float, float]:
-    """Return by how many metres the map was moved onto the log, along x and y."""
+    """Return the offset in metres along x and y by which the map was moved to fit the log."""
     if case.drive.environment is None:
         return 0.0, 0.0
     (row,) = case.drive.environment.tables["environment"].select(["offset_x_m", "offset_y_m"]).to_pylist()

@@ -1,4 +1,4 @@
-"""Compares a log with two lists of elements that a vehicle should record: `elements.toml`."""
+"""Compares a log with the two lists in `elements.toml` of elements that an automated vehicle should record."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class _Elements(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class HeldElements(NamedTuple):
-    """The elements of one list: those that the log holds, those that are derived from others, and those that are absent."""
+    """The elements of one list: elements that the log contains, elements that are computed from others, and absent elements."""
 
     title: str
     present: list[str]
@@ -47,9 +47,9 @@ def _elements() -> _Elements:
 
 
 def held_elements(tables: Mapping[str, pa.Table], log: Mapping[str, Any], actor_id: str) -> list[HeldElements]:
-    """Return, for each list, which of its elements a drive holds.
+    """Return, for each list, which of its elements a drive contains.
 
-    `tables`: those of `schemas/model.sql`; `log`: what is known of the log, by columns of `data_log`; `actor_id`: the first party.
+    `tables`: the tables of `schemas/model.sql`; `log`: the drive's row, with columns of `data_log`; `actor_id`: the first party.
     """
     checks = set(tables["quality"]["check_id"].to_pylist())
     found = []

@@ -15,13 +15,13 @@ if TYPE_CHECKING:
 
 
 _NEAR_NS: Final = 500_000_000
-"""An actor is drawn only if a sample of it is at most so far away in time."""
+"""An actor is drawn only if one of its samples is at most this far away in time."""
 
 
 def scene_at(scene: Row, states: pa.Table, t_ns: int) -> Row:
-    """Return a row of `scene` with its actors at their places at `t_ns`; actors that are not recorded around then are left out.
+    """Return a row of `scene` with its actors at their positions at `t_ns`, without actors that are not recorded around that time.
 
-    `states`: the drive's rows of `actor_state`. Between two samples, a place is that of the straight way between them.
+    `states`: the drive's rows of `actor_state`. Positions between two samples are interpolated linearly.
     """
     if scene["t_ns"] == t_ns:
         return scene

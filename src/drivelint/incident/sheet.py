@@ -53,22 +53,22 @@ SPAN_S: Final = (15, 7)
 """The conduct of each party is reported from this long before the moment to this long after it."""
 _NO_NUMBER: Final = "-"
 _CLIP: Final = re.compile(r"^(.+)-clip-[0-9a-f]{8}$")
-"""Name of a clip that `convert --clip` cut, see `clip.py`."""
+"""The name of a clip from `convert --clip`, see `clip.py`."""
 _CLIP_NOTE: Final = "; numbers that depend on what is before or after it may differ from the log's"
 _SPACES: Final = "danger_space"
 _LONGEST: Final = 330
 _LINE_ROOM: Final = 370
-"""Characters of the columns that warnings on the log take, or the source of a clip."""
+"""The characters that warnings about the log, or the source of a clip, take in the columns of page 2."""
 _WARNING_ROOM: Final = 300
 _LABEL_SHARE: Final = 0.1
-"""Size of the plan view's labels, of its height: at its least height on the page (`sheet.css`) they are 6 pt or more."""
+"""Size of the plan view's labels as a share of its height; at the least height (`sheet.css`) they are 6 pt or more."""
 _RECORDS_ROOM: Final = 1300
-"""Characters of the columns that the lists of missing records take, if page 1 has no room for them."""
+"""The characters that the lists of missing records take in the columns of page 2, if page 1 has no space for them."""
 _MOST_CONTACTS: Final = 2
 
 
 def content(case: Case) -> dict[str, Any]:
-    """Return everything that the template shows."""
+    """Return all values of the template."""
     finding, row = case.finding, case.finding.row
     motion = Motion.of_steps(case.again.steps, finding.moment_ns)
     before = motion.last_apart_before(0.0) if finding.is_contact else None
@@ -156,7 +156,7 @@ def content(case: Case) -> dict[str, Any]:
 
 
 def figure(value: float | None, digits: int = 2) -> str:
-    """Return a number of the table, or a dash where it is not known."""
+    """Return a number for the table; a dash if it is not known."""
     if value is None or math.isnan(value):
         return _NO_NUMBER
     text = f"{value:.{digits}f}"
@@ -183,7 +183,7 @@ def _names(finding: NamedFinding) -> list[str]:
 
 
 def _clip_of(file_name: str) -> str | None:
-    """Return the name of the log that a clip was cut from, by the clip's name; None: it is no clip."""
+    """Return the name of the log that a clip was cut from, taken from the clip's name; None if the file is no clip."""
     named = _CLIP.match(file_name.partition(".")[0])
     return named[1] if named else None
 
@@ -197,7 +197,7 @@ def _metres(value: float) -> str:
 
 
 def _least_gap(motion: Motion, finding: NamedFinding) -> str | None:
-    """Return the least gap of the two in the whole drive, in words; None: not known."""
+    """Return the least gap between the two parties in the whole drive, in words; None if no gap is known."""
     known = [i for i, gap in enumerate(motion.gap) if not math.isnan(gap)]
     if not known:
         return None
@@ -208,7 +208,7 @@ def _least_gap(motion: Motion, finding: NamedFinding) -> str | None:
 
 
 def _contacts(case: Case) -> list[Row]:
-    """Return the other contacts of A in this drive, in time order."""
+    """Return the contacts of A in this drive, except the sheet's finding, in time order."""
     mine = case.finding.row
     tagged = {rule["rule_id"] for rule in case.result.rules.to_pylist() if CONTACT in rule["tags"]}
     found = [
@@ -224,12 +224,12 @@ def _contacts(case: Case) -> list[Row]:
 
 
 def _is_of_both(case: Case, row: Row) -> bool:
-    """Whether a contact is one of the two parties."""
+    """Return whether a contact is between the two parties."""
     return {row["ego_id"], row["object_id"]} == set(case.finding.parties)
 
 
 def _told_contacts(case: Case) -> list[str]:
-    """Return in words the contacts of the two that other rules found, one for each rule and time, and those of A with others."""
+    """Return in words the contacts of the two parties that other rules found, and the contacts of A with other actors."""
     titles = {rule["rule_id"]: rule["title"] for rule in case.result.rules.to_pylist()}
     told = []
     for row in _contacts(case):
@@ -248,7 +248,7 @@ def _warnings(case: Case) -> list[str]:
 
 
 def _told_warnings(case: Case) -> Fitting:
-    """Return the first warnings on the log, and how many more there are; a long one is cut, and says where it stands in full."""
+    """Return the first warnings about the log and the number of further warnings; a long warning is cut and refers to the full text."""
     rest = " ... (in full in report.html)"
     return first_fitting([shorten(told, _WARNING_ROOM, placeholder=rest) for told in _warnings(case)], _WARNING_ROOM)
 
@@ -258,24 +258,24 @@ def _cut_from(case: Case) -> list[str]:
 
 
 def _recording(finding: NamedFinding) -> dict[str, str]:
-    """Return when the recording begins and ends, in seconds from the moment and of the drive."""
+    """Return the recording's length, and its start and end in seconds from the moment."""
     end_ns = finding.start_ns + round((finding.drive["duration_s"] or 0.0) * 1e9)
     from_s, to_s = ((t_ns - finding.moment_ns) / 1e9 for t_ns in (finding.start_ns, end_ns))
     return {"length": seconds(end_ns, finding.start_ns), "from": _signed(from_s), "to": _signed(to_s)}
 
 
 def _span(finding: NamedFinding) -> tuple[int, int]:
-    """Return the span in which the conduct of each party is reported, within the recording."""
+    """Return start and end of the time in which the conduct of each party is reported, within the recording."""
     end_ns = finding.start_ns + round((finding.drive["duration_s"] or 0.0) * 1e9)
     first, last = (finding.moment_ns + sign * s * 10**9 for sign, s in zip((-1, 1), SPAN_S, strict=True))
     return max(first, finding.start_ns), min(last, end_ns)
 
 
 def _conduct(case: Case, span: tuple[int, int], seconds_left: int, used_characters: int) -> dict[str, Any]:
-    """Return the conduct of each party by its verdicts as ego, and the reasons of rules that are undecided for both."""
+    """Return the conduct of each party from its verdicts as ego, and the reasons why rules are undecided for both parties."""
     finding = case.finding
     rules = {rule["rule_id"]: rule for rule in case.result.rules.to_pylist()}
-    # the first party's findings were judged anew without copies
+    # the first party was judged again without copies: take their numbers from the result
     copies = {
         row["finding_id"]: {name: row[name] for name in ("n_copies", "n_stays")}
         for row in case.result.findings.to_pylist()
@@ -304,9 +304,9 @@ def _conduct(case: Case, span: tuple[int, int], seconds_left: int, used_characte
 
 
 def _surest(case: Case) -> dict[str, Any]:
-    """Return how sure the finding is (`word`, `n`, `stays`), and of a contact the title's word: the surest of the same two at that time.
+    """Return how sure the finding is (`word`, `n`: copies, `stays`: copies in which it stays).
 
-    `by`: the rule by which another finding of the same contact is sure, in words.
+    `title`: for a contact, the certainty of the surest finding of the same contact, else `word`; `by`: that finding's rule, in words.
     """
     row, rules = case.finding.row, {rule["rule_id"]: rule for rule in case.result.rules.to_pylist()}
     told = {"word": certainty(row), "n": row["n_copies"], "stays": row["n_stays"], "title": certainty(row), "by": ""}
@@ -324,12 +324,12 @@ def _surest(case: Case) -> dict[str, Any]:
 
 
 def _rests_on(case: Case, motion: Motion) -> str:
-    """Return the measure that shows the contact, in words, if overlapping boxes do not; '' for all other findings."""
+    """Return in words how a contact is known if no boxes overlap: from a sudden change of speed; '' for other findings."""
     row = case.finding.row
     if not case.finding.is_contact or row["unit"] == "m":
         return ""
     since_s, until_s = ((row[key] - case.finding.moment_ns) / 1e9 for key in ("t_start_ns", "t_end_ns"))
-    beside_s = 1.5 * motion.step_s  # the step before it and the one after it, too
+    beside_s = 1.5 * motion.step_s  # include one step before and one step after
     near = (motion.t >= since_s - beside_s) & (motion.t <= until_s + beside_s)
     gaps, times = motion.gap[near], motion.t[near]
     known = gaps[~np.isnan(gaps)]
@@ -348,7 +348,7 @@ def _rests_on(case: Case, motion: Motion) -> str:
 
 
 def _plan(case: Case) -> dict[str, Any]:
-    """Return the plan view of the moment, with the lanes and shapes in it; None and nothing: no scene of the worst step was kept."""
+    """Return the plan view of the moment, with its lanes and shapes; `plan` is None if the result has no scene of the worst step."""
     finding = case.finding
     at = (finding.row["drive_id"], finding.row["ego_id"], finding.row["t_worst_ns"])
     scene, *_ = [*_at(case.result.scenes, at), None]
@@ -368,14 +368,14 @@ def _plan(case: Case) -> dict[str, Any]:
 
 
 def _at(table: pa.Table, at: tuple[str, str, int]) -> list[dict[str, Any]]:
-    """Return the rows of a table of evidence at a moment of an ego."""
+    """Return the rows of a table at one moment of an ego; `at`: drive, ego and time."""
     return [row for row in table.to_pylist() if (row["drive_id"], row["ego_id"], row["t_ns"]) == at]
 
 
 def _courses(case: Case) -> tuple[list[dict[str, Any]], dict[str, Any] | None]:
-    """Return the distances that rules required of the two, over time, and the finding's own measure if it is something else.
+    """Return the distances that rules required between the two parties over time, and the finding's own measured values.
 
-    A measure of a contact in metres is the gap, which is drawn anyway.
+    The measured values are None if the rule requires a distance or measures a contact in metres: the gap is always drawn.
     """
     rules = {rule["rule_id"]: rule for rule in case.result.rules.to_pylist()}
     units = {row["finding_id"]: row["unit"] for row in case.result.findings.to_pylist()}
@@ -394,6 +394,6 @@ def _courses(case: Case) -> tuple[list[dict[str, Any]], dict[str, Any] | None]:
 
 
 def _rules_hash(result: Result) -> str:
-    """Return the hash of the ids and versions of all rules, a line each, in the order of the ids."""
+    """Return the SHA-256 of the lines `ID VERSION` of all rules, in the order of the ids."""
     rows = sorted((rule["rule_id"], rule["rule_version"]) for rule in result.rules.to_pylist())
     return hashlib.sha256("".join(f"{rule} {version}\n" for rule, version in rows).encode()).hexdigest()

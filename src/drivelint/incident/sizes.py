@@ -1,4 +1,4 @@
-"""Says where the sizes of the parties come from, if it is not the log."""
+"""Describes the source of a party's size if it is not the log."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def size_source(trace: Trace, actor_id: str) -> str:
-    """Return in words the source of an actor's size; '' for the log. A clip has the source of its log."""
+    """Return in words the source of an actor's size; '' if it is the log. A clip keeps the source from its log."""
     rows = trace.tables["quality"].to_pylist()
     mine = [row for row in rows if row["check_id"] == ASSUMED_SIZE and row["actor_id"] in {None, actor_id}]
     return "; ".join(row["message"] for row in mine)

@@ -1,4 +1,4 @@
-"""Charts under the plan view, on one time axis: speeds, gap, and the observed and the required values of the rule."""
+"""Charts below the plan view on one time axis: speeds, gap, and the rule's observed and required values."""
 
 from __future__ import annotations
 
@@ -17,31 +17,31 @@ if TYPE_CHECKING:
 WIDTH: Final = 700
 _LEFT, _RIGHT = 46.0, WIDTH - 8.0
 _TOP, _BOTTOM = 8.0, 97.0
-"""Places from the top in percent of a chart's height: the page gives each chart what it has left."""
+"""Top and bottom of the drawn area in percent of a chart's height; that height depends on the free space on the page."""
 _FROM_S, _TO_S = -15.0, 7.0
 _HOLE_STEPS: Final = 3
 _MOST_REQUIRED: Final = 3
 
 
 class _Line(NamedTuple):
-    """One line of a chart: its times in seconds from the moment, and its values, NaN where one is not known."""
+    """One line of a chart: its times in seconds from the moment, and its values, NaN if not known."""
 
     kind: str
     name: str
     t: list[float]
     values: list[float]
     title: str = ""
-    """What several lines have in common, for one legend; '': nothing."""
+    """The text of a legend entry that several lines share; '': `name` is the entry."""
     label: str = ""
 
 
 def strips(
     motion: Motion, parties: Sequence[str], gaps: Sequence[Row], finding_course: Row | None, moment_ns: int
 ) -> list[dict[str, Any]]:
-    """Return the charts of the span from 15 s before to 7 s after the moment, as far as the drive goes.
+    """Return the charts from 15 s before to 7 s after the moment, within the drive.
 
-    `gaps`: rows of the table `course` that require a distance between the two, each with its `title`; `finding_course`: the course of what
-    the finding measures, if it is something else.
+    `gaps`: rows of the table `course` of rules that require a distance between the two parties, each with its `title`;
+    `finding_course`: the finding's own row of `course` if it measures another quantity.
     """
     shown = [i for i, t in enumerate(motion.t) if _FROM_S - 1e-9 <= t <= _TO_S + 1e-9]
     t = [float(motion.t[i]) for i in shown]
@@ -68,7 +68,7 @@ def strips(
 
 
 def _course_line(row: Row, column: str, name: str, moment_ns: int, t: Sequence[float]) -> _Line:
-    """Return a column of a course within the span of the steps `t`."""
+    """Return a column of a row of `course` as a line, within the time range of `t`."""
     at = [(t_ns - moment_ns) / 1e9 for t_ns in row["t_ns"]]
     inside = [i for i, s in enumerate(at) if t[0] <= s <= t[-1]]
     values = [math.nan if row[column][i] is None else float(row[column][i]) for i in inside]
@@ -104,20 +104,20 @@ def _chart(title: str, lines: Sequence[_Line], x: Axis, *, from_zero: bool = Fal
 
 
 def _dots(line: _Line, x: Axis, y: Axis) -> list[tuple[str, str]]:
-    """Return the points of a measure with so few steps that a line would not show."""
+    """Return the points of a line that has too few steps to be visible; [] for other lines."""
     points = [(num(x.at(at)), num(y.at(v))) for at, v in zip(line.t, line.values, strict=True) if math.isfinite(v)]
     return points if len(points) < _HOLE_STEPS else []
 
 
 def _labels(line: _Line, x: Axis, y: Axis, i: int) -> list[tuple[str, str, bool]]:
-    """Return where the name of a line stands, beside its last point: on the left of every other line, as they may be close."""
+    """Return the positions of a line's label, beside its last point: left of it for odd `i`, because lines may be close together."""
     points = [(at, v) for at, v in zip(line.t, line.values, strict=True) if math.isfinite(v)][-1:] if line.label else []
     left = bool(i % 2)
     return [(num(x.at(at) + (-6 if left else 6)), num(y.at(v)), left) for at, v in points]
 
 
 def _path(line: _Line, x: Axis, y: Axis) -> str:
-    """Return the path through the values, broken where one is not known or steps are missing."""
+    """Return the SVG path through the values, interrupted where a value is not known or steps are missing."""
     steps = sorted(b - a for a, b in pairwise(line.t))
     hole = _HOLE_STEPS * steps[len(steps) // 2] if steps else math.inf
     parts, last = [], None

@@ -1,4 +1,4 @@
-"""Sentences of the sheet for readers who know neither the rules nor the tool."""
+"""Texts of the sheet, for readers who know neither the rules nor drivelint."""
 
 from __future__ import annotations
 
@@ -22,43 +22,43 @@ _HEAD_ON_RAD, _ALONG_RAD = 5 * math.pi / 6, math.pi / 6
 
 
 def speed(mps: float) -> str:
-    """Return a speed in m/s, km/h and mph."""
+    """Return a speed as text in m/s, km/h and mph; `not known` for NaN."""
     if math.isnan(mps):
         return "not known"
     return f"{mps:.1f} m/s ({mps * _KMH:.0f} km/h, {mps * _MPH:.0f} mph)"
 
 
 def closing(mps: float | None) -> str | None:
-    """Return a closing speed in words; None: not known."""
+    """Return a closing speed in words; None if it is not known."""
     if mps is None:
         return None
     return f"none, as they draw apart at {speed(-mps)}" if mps < 0 else speed(mps)
 
 
 def told_unit(unit: str | None) -> str:
-    """Return a unit as typeset."""
+    """Return a unit with m/s2 as m/s²; '' for None."""
     return (unit or "").replace("m/s2", "m/s\u00b2")
 
 
 def amount(value: float | None, unit: str | None) -> str:
-    """Return a measured value with its unit as typeset."""
+    """Return a measured value with its unit, with m/s2 as m/s²."""
     return number(value, told_unit(unit) or None)
 
 
 def nearly_same(relative_mps: float, closing_mps: float | None) -> bool:
-    """Whether the box centres near at the relative speed, or it is not known."""
+    """Return whether closing speed and relative speed are nearly equal, or the relative speed is not known."""
     if math.isnan(relative_mps):
         return True
     return closing_mps is not None and math.isclose(closing_mps, relative_mps, rel_tol=0.05, abs_tol=0.2)
 
 
 def minus(text: str) -> str:
-    """Return a text with the sign of negative numbers as typeset."""
+    """Return a text in which negative numbers have a minus sign (U+2212) instead of a hyphen."""
     return text.replace(" -", " \u2212") if not text.startswith("-") else "\u2212" + minus(text[1:])
 
 
 def measured_text(row: Row, rule: Row) -> str:
-    """Return the observed and the required value; '' if the rule measures nothing."""
+    """Return the observed and the required value in words; '' if the rule measures nothing."""
     if row["observed"] is None and row["required"] is None:
         return ""
     if CONTACT in rule["tags"] and row["unit"] == "m" and (row["observed"] or 0.0) < 0:
@@ -72,26 +72,26 @@ def measured_text(row: Row, rule: Row) -> str:
 
 
 def required(row: Row, rule: Row) -> str:
-    """Return the required value, and for a limit the part that is tolerance."""
+    """Return the required value as text, and the tolerance that it includes, if any."""
     said, given = amount(row["required"], row["unit"]), tolerance(row, rule)
     return said if given is None else f"{said}, {amount(given, row['unit'])} of it tolerance"
 
 
 def profile(name: str | None) -> str:
-    """Return, after a space, the profile by which an overtake was judged; '' for a rule without profiles."""
+    """Return the profile of an overtake in words, with a leading space; '' for a rule without profiles."""
     if name is None:
         return ""
     return " (overtake as driven)" if name == "observed" else f" (planned as {name})"
 
 
 def how_sure(row: Row) -> str:
-    """Return whether a finding is sure, and of how many copies; '' where none were judged."""
+    """Return whether a finding is sure, and in how many of its judged copies it stays; '' if no copies were judged."""
     word = certainty(row)
     return "" if word is None else f"{word}, {row['n_stays']} of {row['n_copies']}"
 
 
 def contact(row: Row, rule: Row) -> str:
-    """Return the overlap of the boxes in the recording and its copies, in words; '' for another finding."""
+    """Return the overlap of the boxes in the recording and its copies in words; '' if the finding is not about overlapping boxes."""
     if CONTACT not in rule["tags"] or row["unit"] != "m" or row["observed"] is None or row["observed"] >= 0:
         return ""
     said = f"the boxes overlap by {amount(-row['observed'], 'm')} in the recording"
@@ -110,10 +110,10 @@ def story(
     closing_mps: float | None,
     offset_s: float,
 ) -> str:
-    """Return in one sentence the events up to the step `at`; '' for one party, or if that step is not known.
+    """Return in one sentence the events up to the step `at`; '' if there is only one party or `at` is None.
 
-    `slowed`: of each party, see `slowings`; `kinds`: the class of each, None: not recorded; `did`: what the first was doing;
-    `closing_mps`: of the finding; `offset_s`: the moment in seconds of the drive.
+    `slowed`: the result of `slowings` for each party; `kinds`: the class of each party, None: not recorded; `did`: the first party's
+    manoeuvre; `closing_mps`: the finding's closing speed; `offset_s`: the moment in seconds from the drive's start.
     """
     if at is None or len(slowed) < 2:
         return ""
@@ -156,9 +156,9 @@ def story(
 def collision_title(
     motion: Motion, at: int | None, *, when: str, closing_mps: float | None, oncoming: bool, possible: bool
 ) -> str:
-    """Return a contact of A and B as a title: their directions, time, place, and closing speed.
+    """Return a title for a contact of A and B: their directions, the time, A's lane, and the closing speed.
 
-    It does not state who is at fault. `at`: the last step before; `oncoming`: A was in the oncoming lane then.
+    The title does not state who is at fault. `at`: the last step before the contact; `oncoming`: A was in the oncoming lane at `at`.
     """
     turn = math.nan if at is None else float(motion.turn[at])
     how = "" if math.isnan(turn) else f" {_angle(turn)}"
@@ -170,7 +170,7 @@ def collision_title(
 
 
 def _party_with_speed(letter: str, kind: str | None, mps: float) -> str:
-    """Return a party with its class and speed, as far as they are known; '' where neither is."""
+    """Return a party's letter with its class and speed, if known; '' if neither is known."""
     article = "an" if kind and kind[0] in "aeiou" else "a"
     named = [letter, f"{article} {kind}"] if kind else [letter]
     known = [] if math.isnan(mps) else [f"at {mps:.1f} m/s"]
@@ -179,14 +179,14 @@ def _party_with_speed(letter: str, kind: str | None, mps: float) -> str:
 
 
 def _angle(turn_rad: float) -> str:
-    """Return in words how two headings stand to each other."""
+    """Return the angle between two headings in words."""
     if turn_rad >= _HEAD_ON_RAD:
         return "head-on"
     return "in the same direction" if turn_rad <= _ALONG_RAD else f"at {math.degrees(turn_rad):.0f}\u00b0 to each other"
 
 
 def _left_lane(motion: Motion, at: int, offset_s: float) -> str:
-    """Return when A left the lane that it was out of at a step, and the distance of B; '' if it was not, or if not examined."""
+    """Return in words when A left its lane, and the gap to B then; '' if A is in its lane at step `at`, or this was not examined."""
     since = float(motion.out_since[at])
     if math.isnan(since):
         return ""

@@ -1,7 +1,7 @@
 """The catalogue as one Markdown page: a table per pack, for the Highway Code a table by clause, and the words of logs and maps.
 
-`queries/README.md` is this page for the shipped packs; a test checks that it is current. A pack that has a `clauses.toml` beside its
-rules gets the table by clause: the rules that cover each clause, the drafts, and the clauses that cannot be decided, with the reason.
+`queries/README.md` is this page for the shipped packs; a test checks that it is up to date. A pack with a `clauses.toml` beside its
+rules gets a table by clause: the rules and drafts that cover each clause, and the reasons why some clauses cannot be decided.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
     from drivelint.catalogue import Rule
 
-_MAX_LISTED_RULES = 8  # rules; more are counted
+_MAX_LISTED_RULES = 8  # if more rules match, only their number is printed
 _COMMENT = re.compile(r"--.*")
 _TAG = re.compile(r"<(?=[A-Za-z/!?])(?!br>)")
 _CITED = re.compile(r"\b(?:R|H)\d+")
@@ -37,7 +37,7 @@ _NUMBER = re.compile(r"(H?)(\d+)(?:-(\d+))?")
 
 
 class Clause(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """An entry of `clauses.toml`: a clause or range of clauses, its subject, and why rules do not decide all of it."""
+    """An entry of `clauses.toml`: a clause or range of clauses, its subject, and why rules do not decide the whole clause."""
 
     of: str
     about: str
@@ -45,7 +45,7 @@ class Clause(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     @property
     def names(self) -> set[str]:
-        """The clauses as rules cite them: H1, R103, R89 to R94. Errors: `RuleError` for an `of` that is not one."""
+        """The names by which rules cite the clauses, such as H1 or R103. Errors: `RuleError` if `of` is no clause or range."""
         match = _NUMBER.fullmatch(self.of)
         if match is None:
             raise RuleError(f"clauses.toml: of = {self.of!r}: write H1, 103 or 89-94")
@@ -62,13 +62,13 @@ class ClauseCoverage(NamedTuple):
 
 
 def cited_clauses(rule: Rule) -> set[str]:
-    """Return the Highway Code's clauses that a rule names at the head of its `clause` (up to the colon): R126, H2."""
+    """Return the clauses of the Highway Code in a rule's `clause` before the colon, such as R126 and H2."""
     head = rule.clause.split(":", 1)[0]
     return set(_CITED.findall(head)) if head.startswith("UKHC") else set()
 
 
 def read_clauses(folder: Path) -> list[Clause]:
-    """Read `clauses.toml` of a pack's folder; none: []. Errors: `RuleError` where it is not understood."""
+    """Read `clauses.toml` in a pack's folder; return [] if there is no such file. Errors: `RuleError` if the file is not valid."""
     file = folder / "clauses.toml"
     if not file.is_file():
         return []
@@ -81,8 +81,7 @@ def read_clauses(folder: Path) -> list[Clause]:
 def clause_coverage(rules: Iterable[Rule], table: Sequence[Clause]) -> list[ClauseCoverage]:
     """Return each clause with the rules that cover it.
 
-    Errors: `RuleError` for a rule that cites a clause of which the table knows nothing, and for a clause without rules
-    that does not say why.
+    Errors: `RuleError` for a rule that cites a clause without an entry in the table, and for a clause that has neither rules nor a reason.
     """
     citing: dict[str, list[Rule]] = {}
     for rule in rules:
@@ -104,7 +103,7 @@ def clause_coverage(rules: Iterable[Rule], table: Sequence[Clause]) -> list[Clau
 
 
 def page(rules: Iterable[Rule], folder: Path) -> str:
-    """Return the page for rules whose packs lie in `folder` (for its clauses.toml files)."""
+    """Return the page for these rules; `folder` contains their packs, with their `clauses.toml` files."""
     rules = sorted(rules, key=lambda rule: rule.id)
     packs = group_rows(rules, lambda rule: rule.pack)
     known = {pack: read_clauses(folder / pack) for pack in packs}
@@ -130,27 +129,28 @@ def page(rules: Iterable[Rule], folder: Path) -> str:
 
 
 def _inert_cell(value: Any) -> Any:
-    """Return what may stand in a cell: no HTML but a break, no link or picture of a stranger's rule."""
+    """Return a value for a table cell, without links, pictures and HTML (except line breaks), because rules may be untrusted."""
     if not isinstance(value, str):
         return value
     return cell(escape_invisible(_TAG.sub("&lt;", value).replace("](", "]\\(")))
 
 
 def map_features() -> dict[str, Any]:
-    """Return what stands in `map_features.toml`: `name_parts` of signals, and each `feature`."""
+    """Return the content of `map_features.toml`: `name_parts` of signals, and each `feature`."""
     return toml_beside(__file__, "map_features.toml")
 
 
 def _sign(kind: str, name_part: str) -> str:
-    """Return how a signal of this kind is recognised."""
+    """Return in Markdown how a signal of this kind is recognised."""
     codes = "; ".join(f"{country} {', '.join(numbers)}" for country, numbers in codes_of(kind).items())
     return f"`signal` {codes}; or {name_part} in its name"
 
 
 def _asking(rules: Iterable[Rule], requirements: Sequence[str], reads: Sequence[str]) -> str:
-    """Return the ids of the rules, or how many there are, that require or are restricted by one of `requirements`.
+    """Return the ids of the rules that use one of `requirements`, or their number if there are many.
 
-    Or that name one in their SQL: of these only rules that read one of the tables `reads`, if any are given.
+    A rule uses a requirement if it requires it, is restricted by it, or names it in its SQL. If `reads` is not empty, a name in the SQL
+    counts only if the rule reads one of these tables.
     """
     named = re.compile("|".join(rf"(?<!\w){re.escape(word)}(?!\w)" for word in requirements))
     ids = [

@@ -1,4 +1,4 @@
-"""The inputs of a run in one line: whether the map fits, whether logs are complete and none is there twice, what was not judged."""
+"""The inputs of a run in one line: whether the map fits, whether logs are complete, and what was not judged."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ if TYPE_CHECKING:
     from drivelint.result.text import Row
 
 LAW: Final = "law"
-"""Label of the note that the terminal has in its first line."""
+"""The label of the note on the law, which the terminal prints in its first line instead."""
 _ASSUMED_INFO: Final = (ASSUMED_SIZE, TURNED_FRAME)
 _WITHOUT_END: Final = (".csv", ".osi", ".tsv", ".txt")
-"""Kinds of files that do not say where they end: one that was cut off between two messages or lines looks whole."""
+"""Formats without an end marker: a file that was cut off between two messages or lines looks complete."""
 _MAX_NAMES: Final = 2
 _NEVER_MOVES: Final = "ego_never_moves"
 _NO_MAP: Final = "missing_map"
@@ -33,7 +33,7 @@ _EGO: Final = ["drive_id", "ego_id"]
 
 
 class InputNote(NamedTuple):
-    """A part of the line: `label: words`; `is_warning`: a verdict may be wrong or absent because of it."""
+    """A note on the inputs, printed as `label: words`; `is_warning`: a verdict may be wrong or missing because of this input."""
 
     label: str
     words: str
@@ -41,7 +41,7 @@ class InputNote(NamedTuple):
 
 
 def input_notes(result: Result) -> list[InputNote]:
-    """Return the parts of the line: the law if it is one nation's, map, log, missing signals, not judged."""
+    """Return the notes on the inputs: law (if a rule implements a nation's law), map, log, missing signals, parked egos, not judged."""
     drives = [drive for drive in result.drives.to_pylist() if drive["status"] == "judged"]
     law = [InputNote(LAW, words, is_warning=False)] if (words := law_words(result)) else []
     return [
@@ -55,7 +55,7 @@ def input_notes(result: Result) -> list[InputNote]:
 
 
 def _map(drives: Sequence[Row]) -> InputNote:
-    """Return which maps the drives were judged on, and how many drives and egos they fit."""
+    """Return the note on the maps on which the drives were judged, and on how many drives and egos they fit."""
     on_map = [drive for drive in drives if drive["map_name"] is not None]
     if not on_map:
         return InputNote("map", "none", is_warning=bool(drives))
@@ -84,7 +84,7 @@ def _egos_off_the_map(drive: Row) -> int:
 
 
 def _log(drives: Sequence[Row]) -> InputNote:
-    """Return whether the logs are complete: losses, assumptions, the number of warnings, and copies."""
+    """Return the note on whether the logs are complete: losses, assumptions, the number of warnings, and copies."""
     lossy = [drive["drive_id"] for drive in drives if drive["lossy"]]
     checks = [check for drive in drives for check in drive["quality"] if check["check_id"] != ASIDE_OF_LANE]
     assumed = sorted({check["message"].partition(";")[0] for check in checks if check["check_id"] == ASSUMED_MOTION})
@@ -109,14 +109,14 @@ def _log(drives: Sequence[Row]) -> InputNote:
 
 
 def _whole(drives: Sequence[Row]) -> str:
-    """State that nothing is missing, as far as the files show."""
+    """Return in words that the logs are complete, as far as their formats show it."""
     names = [drive["file_name"].lower() for drive in drives]
     without = [end for end in _WITHOUT_END if any(name.endswith(end) for name in names)]
     return f"complete as far as {listed(without)} tells" if without else "complete"
 
 
 def _copies(drives: Sequence[Row]) -> list[str]:
-    """Return which logs have the content of another one under another name, in words: their findings are counted once more."""
+    """Return in words which logs are copies of another log under another name; the findings of copies are counted too."""
     same = counts.group_rows(drives, lambda drive: drive["sha256"]).values()
     copied = [(name["drive_id"], first["drive_id"]) for first, *others in same for name in others]
     if not copied:
@@ -126,7 +126,7 @@ def _copies(drives: Sequence[Row]) -> list[str]:
 
 
 def _unrecorded(result: Result) -> list[InputNote]:
-    """Return the rules that ask nothing of these logs, as they have nothing of a signal that few logs have."""
+    """Return the note on signals that few logs contain and these logs lack, with the number of rules that need them."""
     rows = counts.unrecorded(result.verdicts).select(["reason_code", "rule_id", *_EGO]).to_pylist()
     needed = [
         f"{name} (needed by {plural(n, 'rule')}{', ' if where else ''}{where})"
@@ -136,7 +136,7 @@ def _unrecorded(result: Result) -> list[InputNote]:
 
 
 def _parked(result: Result) -> list[InputNote]:
-    """Return how many egos never move: of two thirds of the vehicles of a perception log, moving rules ask nothing."""
+    """Return the note on egos that never move (two thirds in perception logs); only rules about standing apply to them."""
     parked = result.verdicts.filter(pc.equal(result.verdicts["reason_code"], _NEVER_MOVES))
     n, of = (len(counts.distinct_rows(verdicts, _EGO)) for verdicts in (parked, result.verdicts))
     words = f"{n} of {plural(of, 'ego')} never move{'s' if n == 1 else ''}: rules about standing alone hold"
@@ -144,7 +144,7 @@ def _parked(result: Result) -> list[InputNote]:
 
 
 def _by_signal(result: Result, rows: Sequence[Row]) -> list[tuple[str, int, str]]:
-    """Return the signals that verdicts lack, the one of most rules first: its name, the number of rules, and for which egos."""
+    """Return the signals that verdicts lack, the signal that most rules need first: name, number of rules, and for which egos."""
     missing = counts.group_rows(rows, lambda row: signal_name(row["reason_code"]))
     order = sorted(missing.items(), key=lambda item: (-_n_rules(item[1]), -len(item[1]), item[0]))
     egos = {(row["drive_id"], row["ego_id"]) for row in counts.distinct_rows(result.verdicts, _EGO)}
@@ -152,7 +152,7 @@ def _by_signal(result: Result, rows: Sequence[Row]) -> list[tuple[str, int, str]
 
 
 def _not_judged(result: Result, drives: int) -> InputNote:
-    """Return the parts that were not judged: drives, rules by the missing signal, and the number of the other verdicts."""
+    """Return the note on what was not judged: drives, rules by the missing signal, and the number of other undecided verdicts."""
     tables = [counts.undecided(result.verdicts), gating_unrecorded(result)]
     rows = pa.concat_tables(tables).select(["reason_code", "rule_id", *_EGO]).to_pylist()
     signals = [row for row in rows if row["reason_code"].startswith((MISSING_PREFIX, UNRECORDED_PREFIX))]
@@ -169,14 +169,14 @@ def _not_judged(result: Result, drives: int) -> InputNote:
 
 
 def _for_egos(rows: Iterable[Row], egos: AbstractSet[tuple[str, str]]) -> str:
-    """Return for how many of the egos these verdicts are, or of the drives where each has one; '' where they are for all."""
+    """Return in words how many egos these verdicts are about, or how many drives if each has one ego; '' if they are about all."""
     n = len({(row["drive_id"], row["ego_id"]) for row in rows})
     noun = "ego" if len(egos) > len({drive_id for drive_id, _ in egos}) else "drive"
     return "" if n == len(egos) else f"for {n} of {plural(len(egos), noun)}"
 
 
 def rules_without_map(result: Result) -> int:
-    """Return how many rules are unknown somewhere because there is no map at all."""
+    """Return the number of rules with an unknown verdict because no map was given; 0 if any drive has a map."""
     on_map = pc.is_valid(result.drives["map_name"])
     if pc.any(on_map).as_py():
         return 0

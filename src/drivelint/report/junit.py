@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from drivelint.result.text import Row
 
 MAX_LINES: Final = 50
-"""Findings or reasons listed per test case; the tables hold them all."""
+"""A test case lists this many findings or reasons; the tables contain all."""
 
 CaseKey = tuple[str, str, str | None]
 """drive_id, rule_id, profile."""
@@ -41,7 +41,7 @@ _key = itemgetter("drive_id", "rule_id", "profile")
 
 
 class Case(NamedTuple):
-    """A test case; `outcome` is the name of its element (failure, error, skipped), None: passed. `notes`: its system-out."""
+    """A test case. `outcome`: its element's name (failure, error, skipped), None: passed; `notes`: the lines of its system-out."""
 
     name: str
     outcome: str | None
@@ -51,13 +51,12 @@ class Case(NamedTuple):
 
 
 def render(result: Result) -> bytes:
-    """Return the report as UTF-8 XML.
+    """Return the report as UTF-8 XML; failures and errors are consistent with the exit code.
 
-    It counts what the exit code counts. A failure is a case of a drive, rule and profile with something that makes exit code 1; an
-    error is what makes exit code 2, 3 or 4: a rule in error, an unknown verdict that may not be, a drive that was not judged, one
-    that the map does not fit, a lossy log, a finding of the baseline that is gone but not fixed, a run that decided nothing or
-    too little. Whatever else is unknown, not
-    applicable, or found and does not gate, is skipped with its reasons, or in the system-out of a case that is none of that.
+    A failure is a drive, rule and profile with a finding that causes exit code 1. An error is anything that causes exit code 2, 3 or 4:
+    a rule in error, a forbidden unknown verdict, a drive that was not judged, a map that does not fit, or a lossy log. A finding of
+    the baseline that is gone but not fixed, and a run with too few decisions, are errors too. A case is skipped if it is not
+    applicable, has other unknown verdicts, or has only findings that do not gate. Other cases list these in their system-out.
     """
     root = etree.Element("testsuites", name="drivelint")
     cases = _cases(result)
@@ -79,7 +78,7 @@ def render(result: Result) -> bytes:
 
 
 def _of_drive(drive: Row) -> Iterator[Case]:
-    """Yield the problems of a drive as a whole."""
+    """Yield test cases for the problems of a drive as a whole."""
     if drive["status"] == "not_judged":
         yield Case("the drive can be judged", "error", "not_judged", [drive["status_reason"] or ""])
     elif drive["lossy"]:
@@ -89,7 +88,7 @@ def _of_drive(drive: Row) -> Iterator[Case]:
 
 
 def _unfixed_case(entry: ComparedFinding) -> Case:
-    """Return the test case of a finding of the baseline that is gone and not known to be fixed."""
+    """Return the test case of a baseline finding that this result does not have, but that is not known to be fixed."""
     name = rule_name({"rule_id": entry.rule_id, "profile": entry.profile})
     return Case(
         f"{name} of {entry.drive_id}", "error", entry.standing, [f"gone, not fixed: {descriptions.finding_line(entry)}"]
@@ -97,7 +96,7 @@ def _unfixed_case(entry: ComparedFinding) -> Case:
 
 
 class _Lines(NamedTuple):
-    """The content of a test case, one line each."""
+    """The lines of a test case, by kind."""
 
     erred: list[str]
     stopping: list[str]
@@ -108,7 +107,7 @@ class _Lines(NamedTuple):
 
 
 def _cases(result: Result) -> dict[str, list[Case]]:
-    """Return drive_id -> its test cases, in the order of the verdict table."""
+    """Return the test cases of each drive by `drive_id`, in the order of the verdict table."""
     told: dict[CaseKey, _Lines] = defaultdict(lambda: _Lines([], [], [], [], [], []))
     rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
 
@@ -123,7 +122,7 @@ def _cases(result: Result) -> dict[str, list[Case]]:
     starts = result.start_times
     of_verdict = {"error": "erred", "unknown": "unknown", "not_applicable": "not_applicable", "pass": "passed"}
     for row in _reasons(result.verdicts):
-        lines = told[_key(row)]  # a case of each, in the order of the verdicts
+        lines = told[_key(row)]  # creates the case, in the order of the verdicts
         if row["verdict"] in of_verdict:
             getattr(lines, of_verdict[row["verdict"]]).append(with_count(row["reason"], row["count_all"]))
     for row in result.findings.to_pylist():
@@ -138,7 +137,7 @@ def _cases(result: Result) -> dict[str, list[Case]]:
 
 
 def _reasons(verdicts: pa.Table) -> Sequence[Row]:
-    """Return each distinct verdict and reason of a drive, rule and profile with its count; passes need no reason."""
+    """Return each distinct verdict and reason of a drive, rule and profile with its count; the reason of a pass is ''."""
     reason = pc.if_else(pc.equal(verdicts["verdict"], "pass"), "", verdicts["reason"])
     columns = ["drive_id", "rule_id", "profile", "severity", "verdict"]
     return counts.distinct_rows(verdicts.select(columns).append_column("reason", reason), [*columns, "reason"])
@@ -184,7 +183,7 @@ def _suite(root: etree._Element, drive_id: str, cases: list[Case]) -> dict[str, 
 
 
 def _first(lines: Sequence[str]) -> list[str]:
-    """Return the lines that are shown, and how many more there are."""
+    """Return the lines that are shown, and a line with the number of further lines."""
     more = len(lines) - MAX_LINES
     return [
         *lines[:MAX_LINES],

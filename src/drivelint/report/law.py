@@ -1,4 +1,4 @@
-"""Says in words which nation's law was applied, and where it was taken for granted."""
+"""Describes in words which nation's law was applied, and in which drives it was assumed."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ _SOURCES: Final = {"env": "--env", "trace": "the log", "map": "the map"}
 
 
 def law_words(result: Result) -> str:
-    """Return the law of the rules that are one nation's, as in: that of gb assumed; '' where no rule is one nation's."""
+    """Return in words which nations' laws the rules implement, and whether these were applied; '' if no rule implements a law."""
     laws = sorted({tuple(rule["law"]) for rule in result.rules.select(["law"]).to_pylist() if rule["law"]})
     drives = [drive for drive in result.drives.to_pylist() if drive["status"] == "judged"]
     return "; ".join([*(_law(law, drives) for law in laws), *_left_out(laws, drives)]) if drives and laws else ""
 
 
 def _left_out(laws: list[tuple[str, ...]], drives: list[Row]) -> Iterator[str]:
-    """Yield which packs have the law of a drive's nation, where no rule of the run has it."""
+    """Yield in words the packs that implement the law of a drive's nation, if no rule of the run implements it."""
     nations = {said["value"] for drive in drives for said in drive["conditions"] if said["condition"] == "nation"}
     lacking = sorted(nation for nation in nations if not any(nation in all_values(law) for law in laws))
     for nation in lacking:
@@ -37,7 +37,7 @@ def _left_out(laws: list[tuple[str, ...]], drives: list[Row]) -> Iterator[str]:
 
 
 def _law(law: tuple[str, ...], drives: list[Row]) -> str:
-    """Return whether this law was applied in the drives, and the source."""
+    """Return in words whether this law was applied in the drives, and the source of each drive's nation."""
     applied = all_values(law)
     counted: Counter[str] = Counter()
     for drive in drives:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class LogNote(NamedTuple):
-    """A note on a log. `once`: for all logs with this text, only the first is named."""
+    """A note on a log. `once`: if several logs have a note with this text, only the first log's note is shown."""
 
     path: Path
     text: str
@@ -21,7 +21,7 @@ class LogNote(NamedTuple):
 
     @property
     def full_text(self) -> str:
-        """The note as a person reads it."""
+        """The text that is shown; with `once` it begins with the log's name."""
         return f"{self.path.name}: {self.text}" if self.once else self.text
 
 
@@ -35,7 +35,7 @@ class LogNotes:
         self._said: set[str] = set()
 
     def add(self, note: LogNote) -> None:
-        """Keep a note, and show it unless it was shown of an earlier log: not a thousand times for a thousand logs."""
+        """Keep a note, and show it, unless it has `once` and was shown for an earlier log."""
         self.notes.append(note)
         if not (note.once and note.text in self._said):
             self._progress.note(note.full_text)
@@ -43,18 +43,18 @@ class LogNotes:
             self._said.add(note.text)
 
     def add_refused(self, refused_logs: Iterable[RefusedLog]) -> None:
-        """Add why logs are not judged; that of a single one is the error of the whole run."""
+        """Add a note on each refused log; if the run has a single log, its refusal is the error of the run instead."""
         for each in refused_logs if self._n_logs > 1 else ():
             self.add(LogNote(each.path, f"not judged: {each.error}"))
 
 
 def same_log(path: Path, drive_id: str) -> LogNote:
-    """Return the note on a log that is there twice."""
+    """Return the note on a log with the same content as an earlier log."""
     return LogNote(path, f"{path}: the same log as one before ({drive_id}), judged once")
 
 
 def told_once(notes: Iterable[LogNote]) -> Iterator[LogNote]:
-    """Yield the notes; of those with `once`, the first."""
+    """Yield the notes, but of several notes with `once` and the same text only the first."""
     told: set[str] = set()
     for note in notes:
         if not (note.once and note.text in told):

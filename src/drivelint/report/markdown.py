@@ -29,21 +29,21 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
 
 MAX_ROWS: Final = 40
-"""Rows per table."""
+"""The greatest number of rows in a table."""
 MAX_CHARS: Final = 60_000
-"""A comment on GitHub has at most 65,536 characters."""
+"""The greatest length of a report, below GitHub's limit of 65,536 characters for a comment."""
 MAX_REASON_CHARS: Final = 160
-"""Characters of one reason."""
+"""The greatest number of characters of a reason."""
 
 _END_PART: Final = "\f"
 
 
 def render(result: Result, base_url: str | None = None) -> bytes:
-    """Return the summary as UTF-8 Markdown; `base_url`: where the result folder can be opened; None: nothing is linked.
+    """Return the summary as UTF-8 Markdown.
 
-    A relative link would lead a reader of a comment into the repository.
+    `base_url`: the address of the result folder; None: no links, because a relative link in a comment leads into the repository.
 
-    What gates comes first, then what a baseline or a waiver lets through, then what could not be judged.
+    Findings that gate come first, then findings that a baseline or a waiver lets through, then verdicts that could not be judged.
     """
     end, gate = exit_status(result), result.gate
     rules = {row["rule_id"]: row for row in result.rules.to_pylist()}
@@ -51,7 +51,7 @@ def render(result: Result, base_url: str | None = None) -> bytes:
         (row, descriptions.excuse(result, row, rules.get(row["rule_id"]))) for row in result.findings.to_pylist()
     ]
     findings.sort(key=lambda item: counts.SEVERITIES.index(item[0]["severity"]))
-    target = base_url and quote(f"{base_url.rstrip('/')}/report.html", safe="/:?&=%+,;@~.-_!$")  # it cannot end early
+    target = base_url and quote(f"{base_url.rstrip('/')}/report.html", safe="/:?&=%+,;@~.-_!$")  # encodes ( and )
     parts = _parts(
         "report.md.j2",
         outcome=end,
@@ -84,13 +84,13 @@ def render(result: Result, base_url: str | None = None) -> bytes:
 
 
 def difference(diff: Difference, failing: Sequence[ComparedFinding], fail_on: str, gate: Gate | None = None) -> str:
-    """Return two results' difference as Markdown."""
+    """Return the difference of two results as Markdown."""
     summary, titles = descriptions.exit_summary(diff, failing, fail_on), descriptions.DIFF_STATUS_TITLES
     return "\n\n".join(_parts("difference.md.j2", diff=diff, summary=summary, titles=titles, gate=gate, target=None))
 
 
 def _parts(template: str, **values: Any) -> list[str]:
-    """Return the parts of a report as a template makes them."""
+    """Render a template and return its parts."""
     filters: dict[str, Any] = {
         "code": code,
         "doubt": doubt,
@@ -117,9 +117,9 @@ def _parts(template: str, **values: Any) -> list[str]:
 
 
 def escaped(words_: str) -> str:
-    """Return words so that Markdown shows them unchanged: no markup, no HTML, no link, no mention.
+    """Return a text escaped so that Markdown shows it unchanged, without markup, HTML, links or mentions.
 
-    A word joiner, which no reader sees, keeps GitHub from seeing addresses, mentions and numbers of issues.
+    An invisible word joiner prevents GitHub from linking addresses, mentions and numbers of issues.
     """
     line = escape_invisible(" ".join(words_.split()))
     apart = re.sub(r"(@|#)(?=\w)|:(?=//)|(?<=www)(?=\.)", "\\g<0>\u2060", line)
@@ -128,7 +128,10 @@ def escaped(words_: str) -> str:
 
 
 def code(words_: str) -> str:
-    """Return an id or a command as code, in a table too; more backticks enclose it than stand in it."""
+    """Return an id or a command as Markdown code, also valid in a table.
+
+    The enclosing run of backticks is longer than each run in the text.
+    """
     plain = inert_line(" ".join(words_.split())).replace("|", "\\|")
     fence = "`" * (1 + max(map(len, re.findall("`+", plain)), default=0))
     space = " " if plain[:1] == "`" or plain[-1:] == "`" else ""
@@ -136,7 +139,7 @@ def code(words_: str) -> str:
 
 
 def _undecided(result: Result) -> list[dict[str, Any]]:
-    """Return the reasons for which verdicts are unknown or errors, with the rules and the number of verdicts, most first."""
+    """Return the reasons of unknown verdicts and errors, with their rules and numbers of verdicts, the most frequent first."""
     rows = counts.distinct_rows(counts.undecided(result.verdicts), ["verdict", "reason", "rule_id"])
     found = [
         {

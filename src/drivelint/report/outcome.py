@@ -1,4 +1,4 @@
-"""The word and the sentence that a run's result comes to, the same in every report that a person reads."""
+"""The outcome of a run as a word and a sentence, the same in all reports."""
 
 from __future__ import annotations
 
@@ -37,18 +37,18 @@ _NOT_APPLICABLE: Final = "NOT APPLICABLE"
 _FINDINGS: Final = "FINDINGS"
 _KINDS: Final = {LABELS[ExitCode.OK]: "pass", _NOT_APPLICABLE: "not_applicable", _FINDINGS: "near"}
 LET_THROUGH: Final = {"known": "known", "waived": "waived", "possible": "only possible"}
-"""Standing of a finding that a gate lets through (`Gate.standing`) -> words."""
+"""The standings (`Gate.standing`) of findings that a gate lets through, in words."""
 _NO_MAP: Final = {
     OWN_MAP_UNUSABLE: "the log's own map cannot be used",
     NOT_IN_FOLDER: "no map in the folder is of the place",
 }
-"""Check that leaves a drive without a map -> words."""
+"""Data-quality checks because of which a drive has no map, in words."""
 _COUNTED_LABEL: Final = "counted"
-"""Findings that do not fail the run because of the requested confidence."""
+"""The word for gating findings if the gate has neither a baseline nor waivers, only a confidence."""
 
 
 class Part(NamedTuple):
-    """A part of the sentence; `kind`: contact, possible contact, warning, or ''."""
+    """A part of the outcome's sentence; `kind`: contact, possible contact, warning, or ''."""
 
     words: str
     kind: str = ""
@@ -57,7 +57,7 @@ class Part(NamedTuple):
 class Headline(NamedTuple):
     """The outcome of a run. `label`: the word; `kind`: fail, near, unknown, not_applicable or pass; `parts`: the sentence.
 
-    near: there are findings, and a gate lets all of them through.
+    The kind `near` means that a gate lets all findings through.
     """
 
     label: str
@@ -71,7 +71,10 @@ class Headline(NamedTuple):
 
 
 class _OpenRules(NamedTuple):
-    """How many rules are undecided (`n`) of those that may apply (`of`), counted for each drive and ego (`several`: there are many)."""
+    """The number of undecided rules (`n`) among the rules that may apply (`of`), counted per drive and ego.
+
+    `several`: there is more than one ego.
+    """
 
     n: int
     of: int
@@ -79,20 +82,22 @@ class _OpenRules(NamedTuple):
 
     @property
     def are_most(self) -> bool:
-        """Whether more are undecided than decided."""
+        """Whether more rules are undecided than decided."""
         return 2 * self.n > self.of
 
     @property
     def words(self) -> str:
-        """Words for the sentence."""
+        """The part of the outcome's sentence about undecided rules."""
         which = "the rule that came up" if self.of == 1 else f"{self.n} of the {self.of} rules that came up"
         return f"{which} could not be judged{', counted for each drive and ego' if self.several else ''}"
 
 
 class RuleCounts(NamedTuple):
-    """How many rules were judged somewhere, and of these not everywhere. The others by their verdicts: all of them unknown or errors
-    (`never`), all not applicable (`idle`), or both (`open`). `unrecorded`: all not applicable, some because the log has nothing of a signal
-    that the rule needs; they are not among the idle.
+    """The numbers of rules by how they were judged.
+
+    `judged_somewhere`: with a pass or failure; `partly`: among these, rules that also have unknown verdicts or errors.
+    Rules without a pass or failure: all verdicts unknown or errors (`never`), all not applicable (`idle`), or both (`open`).
+    `unrecorded`: all verdicts not applicable, some because the log lacks a signal that the rule needs; not counted as `idle`.
     """
 
     judged_somewhere: int
@@ -104,7 +109,7 @@ class RuleCounts(NamedTuple):
 
 
 def headline(result: Result) -> Headline:
-    """Return the outcome of a run. A finding is counted once: as new, or by the reason why it does not gate."""
+    """Return the outcome of a run. Each finding is counted once: as new, or by the reason why it does not gate."""
     rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
     rows = one_per_event(result.gate, result.findings.to_pylist())
     left = [row for row in rows if standing(result.gate, row["finding_id"]) not in LET_THROUGH]
@@ -138,19 +143,19 @@ def headline(result: Result) -> Headline:
 
 
 def one_per_event(gate: Gate | None, rows: Sequence[Row]) -> list[Row]:
-    """Return one finding of each event; of one whose findings stand differently, as new and as known, one of each standing."""
+    """Return one finding of each event; if the findings of an event differ in standing (new, known), one of each standing."""
     of_standing = counts.group_rows(rows, lambda row: standing(gate, row["finding_id"]))
     kept = {id(row) for mine in of_standing.values() for row in counts.one_per_event(mine)}
     return [row for row in rows if id(row) in kept]
 
 
 def standing(gate: Gate | None, finding_id: str) -> str:
-    """Return how a finding stands: see `Gate.standing`; '' without a gate."""
+    """Return the standing of a finding, see `Gate.standing`; '' without a gate."""
     return "" if gate is None else gate.standing(finding_id)
 
 
 def rule_counts(result: Result) -> RuleCounts:
-    """Return how many rules were judged."""
+    """Return the numbers of rules by how they were judged."""
     by_rule = counts.verdicts_by(result.verdicts, "rule_id")
     rules = [by_rule[rule_id] for rule_id in result.rules["rule_id"].to_pylist()]
     judged = [n for n in rules if n["pass"] + n["fail"]]
@@ -166,9 +171,9 @@ def rule_counts(result: Result) -> RuleCounts:
 
 
 def _label(result: Result, has_findings: bool) -> str:
-    """Return the word.
+    """Return the outcome of a run as a word.
 
-    Findings that do not gate, known and waived ones too, are no pass, nor is a run that decided nothing, or less than it left open.
+    The word is not PASS if there are findings, even if none gates, nor if fewer rules were decided than left undecided.
     """
     code, told = exit_status(result).code, counts.total(result.verdicts)
     if code != ExitCode.OK and not (code == ExitCode.NOT_JUDGED and is_undecided(result)):
@@ -182,7 +187,7 @@ def _label(result: Result, has_findings: bool) -> str:
 
 
 def _open_rules(result: Result) -> _OpenRules:
-    """Return how many rules are undecided of those that may apply, counted for each drive and ego."""
+    """Count the undecided rules, and the rules that may apply, per drive and ego."""
     rows = counts.distinct_rows(result.verdicts, ["drive_id", "ego_id", "rule_id", "verdict"])
     where = counts.group_rows(rows, lambda row: (row["drive_id"], row["ego_id"], row["rule_id"]))
     said = [{row["verdict"] for row in mine} for mine in where.values()]
@@ -209,7 +214,7 @@ def _without_findings(result: Result, verdict_counts: Mapping[str, int], label: 
 
 
 def _findings(result: Result, rows: Sequence[Row]) -> str:
-    """Return how many findings there are, and, with a gate, how they stand."""
+    """Return the number of findings in words; with a gate, by standing."""
     where = f" in {len({row['drive_id'] for row in rows})} of {plural(result.drives.num_rows, 'drive')}"
     gate = result.gate
     if gate is None:
@@ -233,14 +238,14 @@ def _findings(result: Result, rows: Sequence[Row]) -> str:
 
 
 def _worse(gate: Gate | None) -> list[Part]:
-    """Return how many known findings have a worse margin than in the baseline."""
+    """Return the sentence's part about known findings with a worse margin than in the baseline; [] if there are none."""
     entries = gate.baseline.entries if gate is not None and gate.baseline is not None else ()
     n = n_findings(e for e in entries if gate and e.worse and gate.standing(e.finding_id) == "known")
     return [Part("1 known finding is worse" if n == 1 else f"{n} known findings are worse", "warning")] if n else []
 
 
 def _contacts(result: Result, rows: Sequence[Row], rules: Mapping[str, Row]) -> list[Part]:
-    """Return in how many drives the ego touched something, or may have; a known (baseline) contact counts too."""
+    """Return the sentence's parts about drives with a contact or a possible contact; contacts known from the baseline count too."""
     contacts = [row for row in rows if is_contact(row, rules)]
     touched = {row["drive_id"] for row in contacts if not doubt(row)}
     sure = [row for row in contacts if row["drive_id"] in touched]
@@ -254,7 +259,7 @@ def _contacts(result: Result, rows: Sequence[Row], rules: Mapping[str, Row]) -> 
 
 
 def _let_through(gate: Gate | None, contacts: Sequence[Row]) -> str:
-    """Return, in brackets, in how many of the drives a contact is new, or why it is let through; '' where it is new in all."""
+    """Return in brackets how many drives have a new contact, or, if none, why the gate lets them through; '' if all drives have one."""
     if gate is None:
         return ""
     new = {row["drive_id"] for row in contacts if gate.standing(row["finding_id"]) not in LET_THROUGH}

@@ -1,4 +1,4 @@
-"""The files of a finished run, written together into one folder, and the formats of `drivelint report`."""
+"""Writes the files of a finished run together into one folder; lists the formats of `drivelint report`."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def _renderer(format_: str) -> Callable[[Result], bytes]:
-    """Return the renderer of a report, which loads its module when called: most runs write no report."""
+    """Return the renderer of a report, which imports the report's module only when called: most runs write no report."""
 
     def render(result: Result) -> bytes:
         rendered: bytes = import_module(f"drivelint.report.{format_}").render(result)
@@ -33,16 +33,17 @@ def _renderer(format_: str) -> Callable[[Result], bytes]:
 REPORT_FORMATS: Final[Mapping[str, tuple[str, Callable[[Result], bytes]]]] = {
     name: (file, _renderer(name)) for name, file in REPORT_FILES.items()
 }
-"""Name -> file in the result folder, and its renderer: the same result gives the same bytes."""
+"""The file of each format in the result folder, and its renderer, which writes the same bytes for the same result."""
 
 
 @contextmanager
 def working_folder(out: Path | None, *, overwrite: bool = False) -> Iterator[Path | None]:
-    """Prepare the folder `out` for a result and yield one within for the files that grow during a run; None: nothing is written.
+    """Prepare the folder `out` for a result, and yield a folder in it for files that grow during a run. If `out` is None, yield None.
 
-    Reports of an earlier result go now; if the run ends without a result, the rest of that one moves to `earlier/`.
+    Reports of an earlier result are removed at once. If the run ends without a result, the earlier result's other files move to
+    `earlier/`.
 
-    Errors: `UsageError` where it has files of such names that drivelint did not write, and may not overwrite them; `OutputError`.
+    Errors: `UsageError` if `out` has result files that drivelint did not write, unless `overwrite`; `OutputError`.
     """
     if out is None:
         yield None
@@ -53,18 +54,18 @@ def working_folder(out: Path | None, *, overwrite: bool = False) -> Iterator[Pat
 
 
 def write(result: Result, out: Path, work: Path | None = None, *, overwrite: bool = False) -> tuple[str, ...]:
-    """Write every result file of `check` into the folder `out`, in place of an earlier result.
+    """Write every result file of `check` into the folder `out`, and replace an earlier result.
 
-    `work`: what `working_folder` gave, whose files are taken over. `summary.json` appears last, when the others are there.
-    Same tables, same bytes. Return the names of the files that grew during the run.
-    Errors: `OutputError` when the folder cannot be written.
+    `work`: the folder that `working_folder` yielded; its files become part of the result. `summary.json` is written last.
+    The same tables give the same bytes. Return the names of the files that grew during the run.
+    Errors: `OutputError` if the folder cannot be written.
     """
     from drivelint.report import html, junit, summary
 
     contents = {f"{name}.parquet": parquet_bytes(getattr(result, name), table) for name, table in TABLE_OF_FILE.items()}
     for name, table in PICTURES.items() if result.pictures.num_rows else ():
         contents[f"{name}.parquet"] = parquet_bytes(getattr(result, name), table)
-    # what lies beside the page is what this run made, not what an earlier one left
+    # the page links to files in the folder of this run, not to files of an earlier run
     contents[REPORT_FILES["html"]] = html.render(replace(result, folder=work or out))
     contents[REPORT_FILES["junit"]] = junit.render(result)
     if result.gate is not None:
@@ -80,8 +81,8 @@ def write(result: Result, out: Path, work: Path | None = None, *, overwrite: boo
 
 
 def _grown(work: Path, result: Result) -> dict[str, Path]:
-    """Return name -> file, of those that grew during a run and are of its result."""
+    """Return the files in `work` that belong to the result, by name."""
     judged = set(result.drives.filter(pc.equal(result.drives["status"], "judged"))["drive_id"].to_pylist())
     files = [path for path in sorted(work.rglob("*")) if path.is_file() and not path.name.startswith(".")]
-    # a drive may be annotated before it turns out that it cannot be judged to its end
+    # without annotated logs of drives that could not be judged completely
     return {path.relative_to(work).as_posix(): path for path in files if path.suffix != ".mcap" or path.stem in judged}

@@ -1,4 +1,4 @@
-"""The interface through which the pipeline reports progress and notes to a person."""
+"""The interface through which the pipeline reports progress and notes to the user."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ TELL_EVERY_S: Final = 60.0
 _LOOK_S: Final = 1.0
 _LEAST_SHARE: Final = 0.1
 _AT_ONCE_S: Final = 0.5
-"""Units that are reported so soon after the beginning of a stage were done before."""
+"""Units that are reported within this time after the beginning of a stage were done by an earlier run."""
 
 
 class Progress:
-    """Listener of the pipeline: progress and diagnostics, never results. This one ignores all messages."""
+    """Receives progress and notes from the pipeline, but no results. This base class ignores all messages."""
 
     def stage(self, name: str, total: int | None = None) -> None:
         """Begin a stage of `total` units of work (None: not known)."""
@@ -33,21 +33,21 @@ class Progress:
         """Report `n` more units of the current stage done."""
 
     def doing(self, activity: str, part: float = 0.0) -> None:
-        """Say what is done within the stage. `part`: so many units are done of those in hand, which are not yet reported as done."""
+        """Report the current activity within the stage. `part`: the units done since the last call of `advance`."""
 
     def note(self, text: str) -> None:
-        """Print a line for a person who waits."""
+        """Print a line for the user."""
 
     def leave(self) -> None:
-        """Leave the terminal as it was, before another program takes over."""
+        """Restore the terminal before another program uses it."""
 
 
 class Silent(Progress):
-    """A `Progress` without a listener."""
+    """A `Progress` that ignores all messages."""
 
 
 class NotePrinter(Silent):
-    """A `Progress` for a stderr that is no terminal: notes for a person, and every minute the progress, one line each."""
+    """A `Progress` for a stderr that is no terminal: prints each note, and the progress every minute, as one line."""
 
     def __init__(self) -> None:
         self._name, self._activity, self._done, self._part = "", "", 0, 0.0
@@ -56,30 +56,30 @@ class NotePrinter(Silent):
         self._total: int | None = None
 
     def stage(self, name: str, total: int | None = None) -> None:
-        """Begin a stage; nothing is printed yet."""
+        """Begin a stage without printing anything."""
         self._name, self._total, self._begun_s = name, total, time.monotonic()
         self._activity, self._done, self._part, self._had = "", 0, 0.0, 0
 
     def advance(self, n: int = 1) -> None:
-        """Count the units, and print how far the stage is, if nothing was printed of it for a while."""
+        """Count the units, and print the progress if the last progress line is at least a minute old."""
         self._done, self._part = self._done + n, 0.0
         if time.monotonic() - self._begun_s < _AT_ONCE_S:
-            self._had = self._done  # an earlier run did them: they say nothing of how long the others take
+            self._had = self._done  # done by an earlier run: not used to estimate the time left
         self.tell_if_due()
 
     def doing(self, activity: str, part: float = 0.0) -> None:
-        """Keep what is done."""
+        """Keep the activity for the next line of progress."""
         self._activity, self._part = activity, part
 
     def tell_if_due(self) -> None:
-        """Print how far the stage is, and how long the rest may take, if nothing was printed of it for a while."""
+        """Print the progress and an estimate of the time left, if the last progress line is at least a minute old."""
         now_s = time.monotonic()
         if self._total is None or now_s - self._told_s < TELL_EVERY_S:
             return
         self._told_s = now_s
         new = self._done + self._part - self._had
         todo = self._total - self._had
-        # the first part of a unit took what is done once for all
+        # no estimate from the first part of the work, which includes initialisation
         left_s = (now_s - self._begun_s) / new * (todo - new) if new >= min(1.0, _LEAST_SHARE * todo) and new else None
         self.note(
             f"{self._name}: {self._done:,} of {self._total:,}"
@@ -88,12 +88,12 @@ class NotePrinter(Silent):
 
     def note(self, text: str) -> None:
         """Print the note."""
-        with suppress(OSError):  # the listener may be gone
+        with suppress(OSError):  # the reader of stderr may have closed it
             print(f"drivelint: {inert_line(text)}", file=sys.stderr, flush=True)
 
 
 def _duration(seconds: float) -> str:
-    """Return about how long something takes, in words."""
+    """Return a rough duration in words."""
     minutes = round(seconds / 60)
     return (
         "less than a minute"
@@ -106,7 +106,7 @@ def _duration(seconds: float) -> str:
 
 @contextmanager
 def notes() -> Iterator[NotePrinter]:
-    """Print notes as lines, and every minute how far it is, also while a single step takes long."""
+    """Yield a `NotePrinter` that also prints the progress every minute while a single step takes long."""
     printer, over = NotePrinter(), Event()
 
     def tell() -> None:
@@ -141,7 +141,7 @@ class Bar(Progress):
         self._progress.update(self._task, completed=self._done)
 
     def doing(self, activity: str, part: float = 0.0) -> None:
-        """Show it beside the bar, which moves on by the part of a unit."""
+        """Show the activity beside the bar, and move the bar by `part`."""
         self._progress.update(self._task, description=activity, completed=self._done + part)
 
     def note(self, text: str) -> None:
@@ -149,13 +149,13 @@ class Bar(Progress):
         self._progress.console.print(inert_line(text), markup=False, highlight=False)
 
     def leave(self) -> None:
-        """Take the bar away."""
+        """Remove the bar."""
         self._progress.stop()
 
 
 @contextmanager
 def bar() -> Iterator[Bar]:
-    """Show a bar on a terminal's stderr, which goes away at the end, or under a notebook's cell."""
+    """Show a bar on a terminal's stderr, or below a notebook's cell, and remove it at the end."""
     from rich import progress as drawn
     from rich.console import Console
 
@@ -168,7 +168,7 @@ def bar() -> Iterator[Bar]:
         drawn.TimeRemainingColumn(),
     )
     console = Console(stderr=True)
-    if console.is_jupyter:  # rich's own way needs ipywidgets, and warns at each step where they are not installed
+    if console.is_jupyter:  # rich's display for notebooks needs ipywidgets, and without them warns at each step
         console = Console(stderr=True, force_jupyter=False, force_terminal=True)
     with drawn.Progress(*columns, console=console, transient=True) as progress:
         yield Bar(progress)

@@ -1,4 +1,4 @@
-"""Reports by how many rules a batch was judged. This is a module of its own, so that printing an earlier result loads no database."""
+"""Limits of rules that report progress. This is a separate module so that printing an earlier result does not import the database."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class ToldLimits(RuleLimits):
-    """Limits of rules that also report by how many rules a batch was judged, so that a person sees the progress."""
+    """Limits of rules that also report to the user how many rules a batch has been judged by."""
 
     def __init__(self, progress: Progress, n_rules: int, *args: Any, **options: Any) -> None:
         super().__init__(*args, **options)
@@ -26,14 +26,14 @@ class ToldLimits(RuleLimits):
         self._begun: set[str] = set()
 
     def begin(self, n_drives: int) -> None:
-        """Report that a batch of so many drives is judged; at first, tables are derived."""
+        """Report that judging a batch of `n_drives` drives begins, with the derivation of tables."""
         self._n_drives = n_drives
         self._begun.clear()
         self._progress.doing(f"judging {plural(n_drives, 'drive')}: deriving tables")
 
     @contextmanager
     def hold(self, con: duckdb.DuckDBPyConnection, rule_id: str, *, alone: bool) -> Iterator[RunningRule]:
-        """See `RuleLimits.hold`."""
+        """Report the rule, then do as `RuleLimits.hold`."""
         self._begun.add(rule_id)
         n = len(self._begun)
         what = f"judging {plural(self._n_drives, 'drive')}: rule {n} of {self._n_rules}"

@@ -1,4 +1,4 @@
-"""The catalogue for a person (`rules list`, `rules show`) and for a program (`rules list --format json`)."""
+"""The catalogue as text for users (`rules list`, `rules show`) and as JSON for programs (`rules list --format json`)."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ if TYPE_CHECKING:
     from drivelint.catalogue.header import Conditions
 
 _MERGE_GAP_S: Final = 1.0
-"""What the header has where it does not say it."""
+"""The default of `merge_gap_s` in a rule's header."""
 
 
 def listing_json(rules: Iterable[Rule]) -> str:
-    """Return a JSON list: id, pack, kind, subtype, severity, status, clause, requires of every rule."""
+    """Return a JSON list with id, pack, kind, subtype, severity, status, clause and requirements of each rule."""
     keys = ("id", "pack", "kind", "subtype", "severity", "status", "clause")
     rows = [{key: getattr(rule, key) for key in keys} | {"requires": sorted(rule.requires)} for rule in rules]
     return json.dumps(rows, indent=2, ensure_ascii=False)
 
 
 def listing(rules: Iterable[Rule], width: int = 120) -> Table:
-    """Return the same as a table for a terminal of `width` columns, with the rules' titles; narrow: without their kinds."""
+    """Return a table of the rules for a terminal of `width` columns: id, kind, severity, status and title; if narrow, without kind."""
     table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False)
     wide = width >= NARROW_WIDTH
     for name in ("rule", *(("kind",) if wide else ()), "severity", "status"):
@@ -46,7 +46,7 @@ def listing(rules: Iterable[Rule], width: int = 120) -> Table:
 
 
 def rule_details(rule: Rule) -> Group:
-    """Return everything about one rule: its demand, its source, the settings of its header, its parameters."""
+    """Return all facts about one rule: its title, its source, the settings of its header, its parameters and its reasons."""
     facts = Table(box=None, show_header=False, pad_edge=False)
     facts.add_column(style="bold", no_wrap=True)
     facts.add_column(overflow="fold")
@@ -88,19 +88,19 @@ def rule_details(rule: Rule) -> Group:
 
 
 def source(rule: Rule) -> Text:
-    """Return the rule's file and its SQL, to be printed as it stands: both are there to be copied."""
+    """Return the path of the rule's file and its SQL, unformatted, so that both can be copied."""
     return Text("\n".join([str(rule.path), *(f"\n-- @{name}\n{sql}" for name, sql in rule.sections.items())]))
 
 
 def _restrictions(conditions: Conditions) -> str:
-    """Return the conditions under which a rule holds, such as `road_type rural or town, limit_min_mps 13.4`; '' for none."""
+    """Return the conditions under which a rule applies, such as `road_type rural or town, limit_min_mps 13.4`; '' for none."""
     said = [f"{name} {' or '.join(words)}" for name, words in conditions.restricting.items()]
     limits = {"limit_min_mps": conditions.limit_min_mps, "limit_max_mps": conditions.limit_max_mps}
     return ", ".join([*said, *(f"{name} {value:g}" for name, value in limits.items() if value is not None)])
 
 
 def _seconds(rule: Rule, key: str) -> str:
-    """Return a duration of the header, with the parameter that holds it if one does."""
+    """Return a duration from the rule's header, and the parameter that sets it, if there is one."""
     value = getattr(rule, key)
     return f"{rule.params[value].default:g} s ({value})" if isinstance(value, str) else f"{value:g} s"
 

@@ -1,4 +1,4 @@
-"""The findings about one contact: it is as sure as the surest of them."""
+"""Groups the findings about one contact; the contact is as sure as the surest of its findings."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ if TYPE_CHECKING:
     from drivelint.result.text import Row
 
 SAME_NS: Final = 1_000_000_000
-"""Findings of two rules whose failing stretches are no farther apart are about the same contact."""
+"""Findings of two rules are about the same contact if the times in which they fail are at most this far apart."""
 
 
 def same_contact(rows: Iterable[Row], rules: Mapping[str, Row]) -> dict[str, list[Row]]:
-    """Return the id of each finding that is a contact -> the findings of other rules about the same contact."""
+    """Return, by the id of each finding that is a contact, the findings of other rules about the same contact."""
     contacts = [row for row in rows if is_contact(row, rules)]
     met = group_rows(contacts, lambda row: (row["drive_id"], frozenset((row["ego_id"], row["object_id"]))))
     return {
@@ -35,7 +35,7 @@ def same_contact(rows: Iterable[Row], rules: Mapping[str, Row]) -> dict[str, lis
 
 
 def as_others_say(finding: Row, other_findings: Iterable[Row]) -> str:
-    """Return in words how sure the other findings of the same contact are, if they are not as sure as this one; '' if they are."""
+    """Return in words the certainty of another finding of the same contact, if it differs from this finding's; else ''."""
     own_certainty = certainty(finding)
     for other in other_findings:
         of = f"by {other['rule_id']}, in {other['n_stays']} of {other['n_copies']} copies"

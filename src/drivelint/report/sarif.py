@@ -1,8 +1,8 @@
 """`report.sarif`: findings as SARIF 2.1.0 (OASIS), for code scanning and for viewers of static analysis.
 
-Only findings are results. What could not be judged is a notification: servers that show results, GitHub's code scanning among
-them, take a result of any kind for an alert, so one that says "open" would cry wolf. Counts of every verdict stand in the
-properties of the run and of each rule, so that a pass is not read where nothing was judged.
+Only findings are results. Drives and rules that could not be judged are notifications, not results of the kind "open", because servers
+such as GitHub's code scanning show results of any kind as alerts. The properties of the run and of each rule contain the counts of
+all verdicts, so that the absence of results is not mistaken for a pass.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ if TYPE_CHECKING:
 
 SCHEMA: Final = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 LEVELS: Final = {"critical": "error", "major": "warning", "minor": "note"}
-"""Severity -> level. Findings of drafts, and those that baseline, waivers or confidence let through, are notes: they do not gate."""
+"""The level of each severity. Findings that do not gate (of drafts, or let through by the gate) have the level note."""
 
 ROOT: Final = "%SRCROOT%"
-"""Base of the paths of logs: the folder in which the check ran, which for code scanning is that of the repository."""
+"""The base of the logs' paths: the folder in which the check ran; for code scanning, this is the root of the repository."""
 _STATES: Final = {"new": "new", "changed": "updated", "unchanged": "unchanged"}
 _ROOT_SAID: Final = {"description": {"text": "The folder in which drivelint check ran."}}
 _NOTICES: Final = {
@@ -51,7 +51,7 @@ def render(result: Result) -> bytes:
 
 
 class _Run:
-    """One result, with the places of its rules and logs in the lists of the run."""
+    """One result, with the indices of its rules and logs in the lists of the SARIF run."""
 
     def __init__(self, result: Result) -> None:
         self._result = result
@@ -133,22 +133,22 @@ class _Run:
                 justification = f"{waiver.reason} ({waiver.owner}, until {waiver.expires})"
                 found["suppressions"] = [{"kind": "external", "status": "accepted", "justification": justification}]
             elif gate.waivers:
-                found["suppressions"] = []  # SARIF: where some results are suppressed, the others say that they are not
+                found["suppressions"] = []  # SARIF: if some results are suppressed, the others have an empty list
         return found
 
     def _uri(self, drive: Row) -> dict[str, str]:
-        """Return the place of a log: its path from the folder of the check, or its name alone where that is not known."""
+        """Return the URI of a log: its path relative to the folder of the check, or its name if that path is not known."""
         if path := self._paths.get(drive["drive_id"]):
             return {"uri": _quoted(path), "uriBaseId": ROOT}
         return {"uri": _quoted(drive["file_name"])}
 
     def _location(self, drive: Row, row: Row | None = None) -> dict[str, Any]:
-        """Return a log as a place, and within it, if a finding is given, its actors and its place."""
+        """Return the SARIF location of a log; if `row`, a finding, is given, also its actors, time and position."""
         drive_id = drive["drive_id"]
         artifact = {**self._uri(drive), "index": self._artifact_index[drive_id]}
         place: dict[str, Any] = {"physicalLocation": {"artifactLocation": artifact}}
         if row is not None:
-            # a log has no lines; code scanning of GitHub shows no result without one
+            # a log has no lines, but GitHub's code scanning does not show results without a line
             place["physicalLocation"]["region"] = {"startLine": 1}
             inside = {"ego": row["ego_id"], "object": row["object_id"], "lanelet": row["lanelet_id"]}
             place["logicalLocations"] = [
@@ -166,7 +166,7 @@ class _Run:
         return place
 
     def _notifications(self) -> Iterator[dict[str, Any]]:
-        """Yield the parts that could not be judged, with the reason: drives, rules by drive, profile and reason; data quality; waivers."""
+        """Yield notifications: drives and rules that could not be judged, with the reasons; data quality; waivers."""
         for drive in self._logs:
             if drive["status"] == "not_judged":
                 yield _notice("not-judged", "error", drive["status_reason"] or "no reason given", self._location(drive))
@@ -186,7 +186,7 @@ class _Run:
 
 
 def _logs_as_named(result: Result) -> Mapping[str, str]:
-    """Return drive_id -> path of its log from the folder in which the check ran; none where that is not known."""
+    """Return the logs' paths relative to the folder in which the check ran, by `drive_id`; unknown paths are left out."""
     if result.run_options is not None:
         return result.run_options.relative_paths
     if result.folder is None or not (result.folder / RUN_FILE).is_file():
@@ -241,5 +241,5 @@ def _since(t_ns: int | None, start_ns: int | None) -> float | None:
 
 
 def _quoted(path: str) -> str:
-    """Return a file's path as a relative URI; a colon in it must not be read as a scheme's."""
+    """Return a file's path as a relative URI; a colon is encoded, so that it does not mark a URI scheme."""
     return quote(path, safe="/", errors="surrogateescape")

@@ -1,4 +1,4 @@
-"""`summary.json`: all counts, the inputs, the exit code and why; no clock, so the same run writes the same bytes."""
+"""`summary.json`: all counts, the inputs, and the exit code with its reason. The same run gives the same bytes."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def render(result: Result) -> bytes:
 
 
 def content(result: Result) -> dict[str, Any]:
-    """Return the summary as plain data; verdict counts hold every verdict, zeros included."""
+    """Return the summary as plain data; counts of verdicts include kinds that did not occur, with 0."""
     end = exit_status(result)
     near = result.verdicts.filter(result.verdicts["near_miss"])
     return {
@@ -61,7 +61,7 @@ def content(result: Result) -> dict[str, Any]:
 
 
 def _with_counts(result: Result, rows: pa.Table, near: pa.Table) -> list[dict[str, Any]]:
-    """Return rows, of which the first column is the id, with the numbers of their verdicts, near misses and findings."""
+    """Return the rows with the numbers of their verdicts, near misses and findings; the first column is the id."""
     key = rows.column_names[0]
     verdicts = counts.verdicts_by(result.verdicts, key)
     near_misses, findings = (Counter(table[key].to_pylist()) for table in (near, result.findings))

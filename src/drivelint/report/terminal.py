@@ -1,4 +1,4 @@
-"""The summary that a person reads in a terminal; plain text where the output is not one."""
+"""The summary of a run for a terminal; plain text if the output is not a terminal."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
 
 MAX_RULES: Final = 10
-"""Rules shown per reason."""
+"""A reason shows this many rules."""
 MAX_ROWS: Final = 20
-"""Rows shown per section; the files hold them all."""
+"""A section shows this many rows; the files contain all."""
 
 _STYLE: Final = {
     "pass": "green",
@@ -46,8 +46,8 @@ _SEVERITY: Final = {"critical": "bold red", "major": "red", "minor": "yellow", "
 def render(result: Result, out: str | None = None, width: int = 120, *, verbose: bool = False) -> Group:
     """Return the summary of a run as one rich renderable for a terminal of `width` columns.
 
-    It takes one screen. With `verbose` the tables come before it: drives, rules, findings, near misses, what could not be judged,
-    data quality.
+    The summary fits one screen. With `verbose`, these tables precede it: drives, rules, findings, near misses, drives and verdicts that
+    could not be judged, and data quality.
     """
     if not verbose:
         return terminal_summary.render(result, out, width)
@@ -96,14 +96,14 @@ def _rules(result: Result, *, wide: bool) -> Table:
         table.add_row(name, *severity, *_count_cells(told[row["rule_id"]]))
     table.add_section()
     packs = counts.verdicts_by_pack(result.rules, result.verdicts)
-    for pack, sums in packs.items():  # packs are never one verdict
+    for pack, sums in packs.items():  # verdicts of several packs are not added up
         what = "all" if len(packs) == 1 else f"all of {pack}"
         table.add_row(Text(what, style="bold"), *([""] if wide else []), *_count_cells(sums))
     return table
 
 
 def _findings(result: Result, *, wide: bool) -> list[Table | None]:
-    """Return the findings; where a gate lets some through, those that it stops come first."""
+    """Return the table of findings; with a gate, two tables: first the findings that fail the gate, then the other findings."""
     gate, rows = result.gate, result.findings
     if gate is None:
         return [_measurement_table(result, "Findings", rows, "red", wide=wide)]
@@ -118,9 +118,9 @@ def _findings(result: Result, *, wide: bool) -> list[Table | None]:
 
 
 def _measurement_table(result: Result, title: str, rows: pa.Table, style: str, *, wide: bool = True) -> Table | None:
-    """Return findings or near misses with their measures; None for none. The drive is named where it changes.
+    """Return a table of findings or near misses with their measured values; None if `rows` is empty.
 
-    In a narrow terminal what was measured stands below the rule, so that no number and no name is torn apart.
+    The drive's name precedes its rows. In a narrow terminal the measured values are below the rule, so that no number or name is split.
     """
     if not rows.num_rows:
         return None
@@ -157,7 +157,7 @@ def _measurement_table(result: Result, title: str, rows: pa.Table, style: str, *
 
 
 def _open(result: Result) -> Table | None:
-    """Return the parts that could not be judged, with the reason: drives, then unknown and erred verdicts by reason."""
+    """Return a table of what could not be judged, with the reasons: drives, then verdicts that are unknown or errors."""
     lost = result.drives.filter(pc.equal(result.drives["status"], "not_judged")).to_pylist()
     rows = counts.distinct_rows(counts.undecided(result.verdicts), ["verdict", "reason", "rule_id"])
     why = counts.group_rows(rows, lambda row: (row["verdict"], row["reason"]))
@@ -180,14 +180,14 @@ def _open(result: Result) -> Table | None:
 
 
 def _first_rules(rules: list[tuple[str, int]]) -> list[str]:
-    """Return the first rules with their counts, and how many more there are of which packs."""
+    """Return the first rules with their counts, and a line with the number and packs of the other rules."""
     packs = sorted({rule_id.partition(".")[0] for rule_id, _ in rules[MAX_RULES:]})
     more = [f"and {len(rules) - MAX_RULES} more of {', '.join(packs)}"] if packs else []
     return [with_count(*rule) for rule in rules[:MAX_RULES]] + more
 
 
 def _quality(result: Result) -> Table | None:
-    """Return the data-quality findings of logs and maps that are more than information, one row each."""
+    """Return a table of the warnings and errors about the data quality of logs and maps."""
     checks = [(drive["drive_id"], check) for drive in result.drives.to_pylist() for check in drive["quality"]]
     worse = [(drive_id, check) for drive_id, check in checks if check["severity"] != "info"]
     seen = counts.group_rows(worse, lambda told: tuple(told[1][name] for name in ("severity", "check_id", "message")))
@@ -210,7 +210,7 @@ def _assumptions(result: Result) -> Text | None:
 
 
 def _table(title: str, style: str, columns: Mapping[str, int] | None = None) -> Table:
-    """Return a table with these columns, whose text is folded, and the shares of the width that they take."""
+    """Return a table with wrapped text; `columns`: the name of each column and its share of the width."""
     table = Table(title=Text(title, style=style), title_justify="left", box=box.SIMPLE_HEAD)
     table.show_edge = table.pad_edge = False
     for name, ratio in (columns or {}).items():
@@ -228,7 +228,7 @@ def _number_columns(table: Table, names: Iterable[str]) -> None:
 
 
 def _count_cells(verdict_counts: dict[str, Any]) -> list[Text]:
-    """Return one cell per verdict; zeros are a quiet dot, so that what happened stands out."""
+    """Return one cell per kind of verdict; a zero is a dim dot, so that other numbers stand out."""
     return [
         Text(str(verdict_counts[verdict]), style=_STYLE[verdict]) if verdict_counts[verdict] else Text("·", style="dim")
         for verdict in counts.VERDICTS

@@ -1,4 +1,4 @@
-"""The summary of a run in one screen of a terminal, whatever the catalogue's size: the worst first, the rest counted."""
+"""The summary of a run on one screen of a terminal, for a catalogue of any size: the worst drives and rules; others are counted."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ PROFILES: Final = {
     "aggressive": "planned with little room",
     "observed": "as it was driven",
 }
-"""Profile that drivelint ships -> how an overtake was judged by it."""
+"""The profiles that drivelint ships, each with the overtake that it assumes, in words."""
 _STYLE_OF: Final = {
     "PASS": "bold green",
     "FAIL": "bold red",
@@ -56,9 +56,9 @@ _STYLE_OF_PART: Final = {"contact": "bold red", "possible contact": "red", "warn
 
 
 def render(result: Result, out: str | None, width: int = 120) -> Group:
-    """Return the head, the worst of each drive, the broken rules, the unknown ones, map and data, the exit code and the next steps.
+    """Return the head, each drive's worst finding, broken and unknown rules, map and logs, the exit code and the next steps.
 
-    Findings that a gate lets through are counted, not listed; of a drive that has no others the worst of them is shown.
+    Findings that a gate lets through are only counted, but if a drive has no other findings, the worst is shown.
     """
     rules = _rules(result)
     every = one_per_event(result.gate, worst_first(result.findings, rules).to_pylist())
@@ -83,7 +83,7 @@ def _head(result: Result) -> Text:
 
 
 def worst_gating(result: Result) -> list[Row]:
-    """Return the findings that no gate lets through, the worst first."""
+    """Return the findings that gate, the worst first; without a gate, all findings."""
     gate, rows = result.gate, result.findings
     if gate is not None:
         rows = rows.filter(pa.array([gate.is_gating(name) for name in rows["finding_id"].to_pylist()], pa.bool_()))
@@ -92,7 +92,7 @@ def worst_gating(result: Result) -> list[Row]:
 
 
 def verdict_line(result: Result) -> str:
-    """Return the run's verdict, as it stands under the head, as plain text with single spaces."""
+    """Return the run's outcome, the line below the head, as plain text with single spaces."""
     return " ".join(_verdict(result).plain.split())
 
 
@@ -101,7 +101,7 @@ def _rules(result: Result) -> dict[str, Any]:
 
 
 def _verdict(result: Result) -> Text:
-    """Return the run's word and its sentence; also why nothing was judged, as there are no findings then, but not because all is well."""
+    """Return the run's outcome as word and sentence; if nothing was judged, also the reason."""
     told, ended = headline(result), exit_status(result)
     text = Text(f"{told.label}  ", _STYLE_OF.get(told.label, _CAREFUL))
     for n, part in enumerate(told.parts):
@@ -112,7 +112,7 @@ def _verdict(result: Result) -> Text:
 
 
 def _table(names: Iterable[str], max_widths: Mapping[str, int]) -> Table:
-    """Return a table; `max_widths`: the columns of words and their greatest widths."""
+    """Return a table; `max_widths`: the columns with text and their greatest widths; the other columns contain numbers."""
     table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, header_style="dim")
     for name in names:
         justify: JustifyMethod = "left" if name in max_widths else "right"
@@ -123,9 +123,9 @@ def _table(names: Iterable[str], max_widths: Mapping[str, int]) -> Table:
 def _drives(
     result: Result, gating_findings: list[Row], all_findings: list[Row], rules: dict[str, Any], width: int
 ) -> Table:
-    """Return one row a drive, the worst first: its worst finding, and its findings by severity.
+    """Return a table with a row per drive, the worst first: its worst finding, and its findings by severity.
 
-    `all_findings`: with those that a gate lets through; of a drive that has no others the worst of them is named.
+    `all_findings`: also findings that a gate lets through; if a drive has no other findings, the worst is named.
     """
     of_drive = counts.group_rows(gating_findings, lambda row: row["drive_id"])
     let_through = counts.group_rows(all_findings, lambda row: row["drive_id"])
@@ -178,10 +178,10 @@ def _without_finding(drive: Row, verdicts: Mapping[str, int], *, lacks_signals: 
 def _finding_let_through(
     result: Result, row: Row, rules: dict[str, Any], start_ns: int | None, *, several_egos: bool
 ) -> Text:
-    """Return a finding that a gate lets through, and why."""
+    """Return a finding that a gate lets through, and the reason."""
     how = standing(result.gate, row["finding_id"])
     text = _worst(row, rules, start_ns, several_egos=several_egos)
-    # one that is only possible says so itself
+    # the text of a possible finding contains that word already
     return text if how == "possible" and doubt(row) else Text.assemble((f"{LET_THROUGH[how]}: ", "yellow"), text)
 
 
@@ -190,9 +190,9 @@ def _cell(n: int, style: str) -> Text:
 
 
 def _worst(row: Row, rules: dict[str, Any], start_ns: int | None, *, several_egos: bool) -> Text:
-    """Return the time, the measure and the rule: numbers first, because a narrow column cuts the end.
+    """Return time, measured value and rule of a finding, numbers first, because a narrow column cuts off the end.
 
-    For a contact, the other actor and the closing speed just before it are printed.
+    For a contact, return the other actor and the closing speed just before the contact instead of the rule.
     """
     contact = is_contact(row, rules)
     who = [] if row["object_id"] is None else [f"object {row['object_id']}"]
@@ -221,15 +221,15 @@ def _worst(row: Row, rules: dict[str, Any], start_ns: int | None, *, several_ego
 
 
 def _let_through(result: Result, every: list[Row]) -> str:
-    """Return how many findings a gate lets through, by why it does; '' for none."""
+    """Return in words how many findings a gate lets through, by the reason; '' for none."""
     counted = Counter(standing(result.gate, row["finding_id"]) for row in every)
     return ", ".join(f"{counted[name]} {words}" for name, words in LET_THROUGH.items() if counted[name])
 
 
 def _broken(findings: list[Row], without: str) -> Table:
-    """Return one row a broken rule, the worst first; with how many findings are only possible, where some are.
+    """Return a table with a row per broken rule, the worst first; a column counts the findings that are only possible, if any.
 
-    `without`: the findings that are not among them.
+    `without`: the findings that the table leaves out, in words.
     """
     some_possible = any(doubt(row) for row in findings)
     first = f"broken rule (without {without})" if without else "broken rule"
@@ -250,7 +250,7 @@ def _broken(findings: list[Row], without: str) -> Table:
 
 
 def _lines(result: Result) -> list[Text]:
-    """Return how many rules were judged, the unknown ones by the missing signal, and the state of map and logs."""
+    """Return the lines on the number of rules judged, profiles, unknown verdicts by reason, map and logs."""
     n = rule_counts(result)
     said = [f"{n.judged_somewhere} judged", f"{n.never} never judgeable" if n.never else ""]
     said += [f"{n.unrecorded} lack a signal in the log" if n.unrecorded else ""]
@@ -265,14 +265,14 @@ def _lines(result: Result) -> list[Text]:
 
 
 def _profiles(result: Result) -> list[Text]:
-    """Return the meaning of the profiles in brackets after the numbers of the findings."""
+    """Return the meaning of the profiles whose names are in brackets after the numbers of findings."""
     names = sorted(set(result.findings["profile"].to_pylist()) & PROFILES.keys())
     said = "; ".join(f"{name}: {PROFILES[name]}" for name in names)
     return [Text(f"profiles of overtaking (one overtake counts once): {said}", "dim")] if names else []
 
 
 def _unknown(result: Result) -> list[Text]:
-    """Return unknown verdicts that do not want for a signal, by their reasons, the most frequent first."""
+    """Return the reasons of unknown verdicts other than missing signals, the most frequent first."""
     rows = (
         counts.undecided(result.verdicts)
         .select(["verdict", "reason_code", "cause_code", "rule_id", "reason"])
@@ -296,7 +296,7 @@ def _unknown(result: Result) -> list[Text]:
 
 
 def _inputs(result: Result) -> list[Text]:
-    """Return which map the drives were judged on, how many it fits, whether the logs are whole, and what was not judged: a line each."""
+    """Return a line for each note on the inputs (map, logs, what was not judged) except the law."""
     return [
         Text.assemble(f"{note.label}: ", (note.words, "yellow" if note.is_warning else "default"))
         for note in input_notes(result)
@@ -324,6 +324,6 @@ def _end(result: Result, findings: list[Row], out: str | None) -> list[Text]:
     if findings:
         worst = findings[0]
         name = f"{worst['rule_id']}@{worst['drive_id']}"
-        name = name if inert_line(name) == name else worst["finding_id"]  # what is shown must be what a shell takes
+        name = name if inert_line(name) == name else worst["finding_id"]  # the printed command must work in a shell
         lines.append(Text(f"explain  drivelint explain {shlex.quote(name)} --in {out}"))
     return lines

@@ -1,4 +1,4 @@
-"""The order in which reports show findings: severity, contacts first, sure before possible, the least margin, then the time."""
+"""The order of findings in reports: by severity, contacts first, sure before possible, then by margin and time."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _ORDER: Final = (
 
 
 def worst_first(rows: pa.Table, rules: Mapping[str, Row]) -> pa.Table:
-    """Return findings, or verdicts, in this order. `rules`: rule_id -> row of the table `rule`."""
+    """Return findings or verdicts in the order of reports. `rules`: the rows of the table `rule` by `rule_id`."""
     contacts = pa.array([rule_id for rule_id, rule in rules.items() if CONTACT in rule["tags"]], pa.string())
     keys = {
         "severity_no": pc.index_in(rows["severity"], value_set=pa.array(SEVERITIES)),
@@ -39,7 +39,7 @@ def worst_first(rows: pa.Table, rules: Mapping[str, Row]) -> pa.Table:
 
 
 def sureness(row: Row) -> int:
-    """Return 0 for a sure finding, 1 where no copies were judged (as of every verdict), 2 for one that is only possible."""
+    """Return 0 for a sure finding, 2 for a finding that is only possible, and 1 for a verdict or if no copies were judged."""
     said = None if row.get("n_copies") is None else certainty(row)
     return {SURE: 0, None: 1, POSSIBLE: 2}[said]
 
@@ -50,31 +50,31 @@ def _copies(rows: pa.Table) -> list[Row]:
 
 
 def moment_ns(row: Row, rules: Mapping[str, Row]) -> int | None:
-    """Return the time that is printed for a finding: for a contact its beginning, else its worst step."""
+    """Return the time that reports print for a finding: the beginning of a contact, else the worst step."""
     moment: int | None = row["t_start_ns"] if _began_before(row, rules) else row["t_worst_ns"]
     return moment
 
 
 def when(row: Row, rules: Mapping[str, Row], start_ns: int | None) -> str:
-    """Return in words when a finding was; of a contact when it began, and when it was worst, if that was later."""
+    """Return the time of a finding in words; for a contact, its beginning, and its worst time if that was later."""
     later = worst_later(row, rules, start_ns)
     return f"{seconds(moment_ns(row, rules), start_ns)}{f' ({later})' if later else ''}"
 
 
 def worst_later(row: Row, rules: Mapping[str, Row], start_ns: int | None) -> str:
-    """Return in words when a contact was deepest, if that was after it began; '' for any other finding."""
+    """Return in words when a contact was worst, if that was after it began; '' for other findings."""
     if not _began_before(row, rules):
         return ""
     return f"{'deepest' if row['unit'] == 'm' else 'worst'} at {seconds(row['t_worst_ns'], start_ns)}"
 
 
 def _began_before(row: Row, rules: Mapping[str, Row]) -> bool:
-    """Whether this is a finding of a contact that began before its worst step; a verdict's stretch is no contact."""
+    """Return whether this is a finding of a contact that began before its worst step; False for a verdict."""
     if "finding_id" not in row or row["rule_id"] not in rules or not is_contact(row, rules):
         return False
     return row["t_start_ns"] is not None and row["t_start_ns"] != row["t_worst_ns"]
 
 
 def is_contact(row: Row, rules: Mapping[str, Row]) -> bool:
-    """Whether a finding of this rule says that the ego touched something."""
+    """Return whether the finding's rule detects that the ego touched something."""
     return CONTACT in rules[row["rule_id"]]["tags"]

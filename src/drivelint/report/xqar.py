@@ -1,7 +1,7 @@
-"""`report.xqar`: ASAM's quality checker results (2025-08), a bundle per drive, a checker per rule.
+"""`report.xqar`: ASAM's quality checker results (2025-08), with a bundle per drive and a checker per rule.
 
-In that format a completed checker without issues reads as a pass. So a rule that judged nothing is `skipped`, with how often
-it was unknown or not applicable and why, and where it judged in part, each unknown is an issue of the level information.
+In that format a completed checker without issues means a pass. So a rule without a pass or a failure is `skipped`, with the reasons
+of its verdicts and their numbers. If a rule is judged only in part, each unknown verdict is an issue of the level information.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ if TYPE_CHECKING:
     from drivelint.result.text import Row
 
 LEVELS: Final = {"critical": "1", "major": "2", "minor": "3"}
-"""Severity -> error, warning, information. Drafts and waived findings are information: they do not gate."""
+"""The levels error, warning and information of each severity. Findings of drafts and waived findings are information."""
 INFORMATION: Final = "3"
 
 
 def render(result: Result) -> bytes:
-    """Return the results as UTF-8 XML; the same result gives the same bytes, so no build date is given."""
+    """Return the results as UTF-8 XML, without a build date, so that the same result gives the same bytes."""
     root = etree.Element("CheckerResults", version="1.0.0")
     reasons = counts.distinct_rows(result.verdicts, ["drive_id", "rule_id", "verdict", "reason"])
     place = itemgetter("drive_id", "rule_id")
@@ -41,7 +41,7 @@ def render(result: Result) -> bytes:
     rules = result.rules.to_pylist()
     for drive in result.drives.to_pylist():
         about = f"Rules of the road, checked on the drive {drive['drive_id']}"
-        name = f"drivelint {drive['drive_id']}"  # ASAM's reader takes bundles of one name for one
+        name = f"drivelint {drive['drive_id']}"  # ASAM's reader merges bundles of the same name
         bundle = add(root, "CheckerBundle", build_date="", name=name, version=__version__, description=about)
         add(bundle, "Param", name="InputFile", value=drive["file_name"])
         add(bundle, "Param", name="Sha256", value=drive["sha256"] or "unknown")
@@ -53,13 +53,13 @@ def render(result: Result) -> bytes:
         judged = drive["status"] == "judged"
         summary = _counts_text(total) if judged else f"not judged: {drive['status_reason'] or 'no reason given'}"
         bundle.set("summary", replace_non_xml(summary))
-    for number, issue in enumerate(root.iter("Issue")):  # through the whole file, as ASAM's reader wants it
+    for number, issue in enumerate(root.iter("Issue")):  # ASAM's reader needs numbers that are unique in the file
         issue.set("issueId", str(number))
     return document(root)
 
 
 def rule_uid(rule_id: str, pack: str) -> str:
-    """Return a rule's id as ASAM writes one: entity, standard, version, name; of letters, digits, dots and underscores."""
+    """Return a rule's id in ASAM's notation: entity, standard, version and name, of letters, digits, dots and underscores."""
     name = rule_id.removeprefix(f"{pack}.")
     parts = (re.sub(r"[^a-z0-9_]", "_", part.lower()) for part in name.split("."))
     dotted = ".".join(part if part[:1].isalpha() else f"r{part}" for part in parts)
@@ -76,7 +76,7 @@ def _checker(
     *,
     gate: Gate | None,
 ) -> Counter[str]:
-    """Write one rule in one drive: parameters, issues, the rule, counts. Return its verdicts."""
+    """Write the checker of one rule in one drive: parameters, issues, rule id and counts. Return the counts of its verdicts."""
     verdict_counts: Counter[str] = Counter()
     for row in verdict_rows:
         verdict_counts[row["verdict"]] += row["count_all"]

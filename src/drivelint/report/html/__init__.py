@@ -1,8 +1,8 @@
-"""`report.html`: one self-contained page that opens offline. Nothing is fetched, everything from a log is escaped.
+"""`report.html`: one self-contained page that opens offline. It loads nothing from the network; all text from a log is escaped.
 
-Charts are our own SVG, made here: they print, work without the script, follow the page's colours in light and dark, and take
-2 kB and half a millisecond each. Libraries were tried: Altair with vl-convert makes 13 kB and 64 ms a chart in fixed colours and
-brings 100 MB; plotly's script alone is 4 MB; uPlot draws on a canvas, which neither prints sharply nor works without a script.
+This folder draws the charts as SVG. They print, work without the script, and follow the page's light and dark colours.
+A chart takes 2 kB and half a millisecond. Altair with vl-convert needs 13 kB and 64 ms per chart, has fixed colours, and
+installs 100 MB. Plotly's script has 4 MB. uPlot draws on a canvas, which does not print sharply and needs a script.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 
 
 def render(result: Result) -> bytes:
-    """Return the page as UTF-8; the same result gives the same bytes."""
+    """Return the page, encoded in UTF-8; the same result gives the same bytes."""
     text = _environment().get_template("report.html.j2").render(page.content(result))
-    return text.encode("utf-8", "replace")  # a file's name may not be text
+    return text.encode("utf-8", "replace")  # the name of a file may contain bytes that are not UTF-8
 
 
 @cache

@@ -1,5 +1,7 @@
-"""Anchors of findings, drives, rules, incidents and overtakes in the HTML report. Ids of drives and rules come from file names:
-anything may be in them."""
+"""Anchors of findings, drives, rules, incidents and overtakes in the HTML report.
+
+Ids of drives and rules come from file names, so they may contain any character.
+"""
 
 from __future__ import annotations
 
@@ -11,9 +13,9 @@ _PLAIN: Final = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,79}")
 
 
 def anchor(kind: str, *key: str | int) -> str:
-    """Return the anchor of a finding, drive or rule by its id, or of a moment, overtake or timeline by several keys.
+    """Return an anchor: `key` is the id of a finding, drive or rule, or the several keys of a moment, overtake or timeline.
 
-    An id stands in it as it is if it is plain, else as a hash; so do several keys.
+    The anchor contains an id of letters, digits, dots, `_` and `-` unchanged; any other id, and several keys, as a hash.
     """
     if len(key) > 1:
         return f"{kind}-{hashlib.sha256(repr(key).encode()).hexdigest()[:12]}"

@@ -12,15 +12,15 @@ if TYPE_CHECKING:
     from drivelint.result.gate import Gate
 
 MAX_LISTED: Final = 40
-"""Findings of the earlier result that are listed of each kind."""
+"""The page lists this many findings of the earlier result per status."""
 _FOLDED_STATUSES: Final = ("changed", *NOT_FIXED, "fixed")
 _STATES: Final = {"expired": "expired", "unmatched": "no such finding", "active": "in force"}
-"""State of a waiver -> words; states that need action come first."""
+"""The states of a waiver in words; states that need action come first."""
 _LABELS: Final = {"new": "new", "open": "not waived", "known": "known", "waived": "waived", "possible": "only possible"}
 
 
 class BaselineStatus(NamedTuple):
-    """The status of a finding (new, known, waived, only possible; open without a baseline) and the reason for it."""
+    """The status of a finding (new, known, waived, only possible; open without a baseline) and the reason of the status."""
 
     kind: str
     label: str
@@ -28,12 +28,12 @@ class BaselineStatus(NamedTuple):
 
     @property
     def is_gating(self) -> bool:
-        """Whether nothing lets it through: no waiver, no baseline, no want of confidence."""
+        """Whether the finding fails the gate: it is not waived, not known from the baseline, and not only possible."""
         return self.kind in {"new", "open"}
 
     @property
     def filter_key(self) -> str:
-        """The key by which the page filters findings; no pack has this name."""
+        """The key by which the page filters findings; it differs from the names of all packs."""
         return f"gate-{self.kind}"
 
 
@@ -62,8 +62,8 @@ def _label(gate: Gate, kind: str) -> str:
 def gate_summary(gate: Gate | None, finding_ids: list[str]) -> dict[str, Any] | None:
     """Return the part of the page about the gate; None without a gate.
 
-    `since`: the earlier result's name; `counts`: kind, label and number of findings; `waivers`: each with its state in words and
-    what it is about; `gone`: the baseline's findings by standing, their number and the first of them as text.
+    `since`: the earlier result's name; `counts`: kind, label and number of findings; `waivers`: each with its state and scope in
+    words; `gone`: the baseline's findings that differ in this result, by status: the number, and the first ones as text.
     """
     if gate is None:
         return None

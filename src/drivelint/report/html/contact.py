@@ -1,4 +1,4 @@
-"""The speeds of two road users just before they touched: at the contact itself they may have stopped each other already."""
+"""The speeds of two road users just before they touched; the speeds at the contact may already be lower because of it."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ if TYPE_CHECKING:
     from drivelint.result.text import Row
 
 MOST_BEFORE_NS: Final = 1_000_000_000
-"""Speeds longer before the contact do not show the speed at the contact."""
+"""Speeds measured earlier than this before the contact are not used."""
 
 
 def before_contact(scene: Row, contact: Row, start_ns: int) -> dict[str, Any] | None:
-    """Return the speeds at the last recorded point of both ways before the first step of a contact; None: there is none.
+    """Return the speeds at the last time before a contact at which `scene` has both actors; None if it has no such time.
 
-    `contact`: a finding, whose own closing speed is used.
+    `contact`: the finding; the closing speed is taken from it.
     """
     ways = {actor["actor_id"]: actor["path"] or [] for actor in scene["actors"]}
     if contact["object_id"] not in ways:
@@ -30,7 +30,7 @@ def before_contact(scene: Row, contact: Row, start_ns: int) -> dict[str, Any] | 
     last = times[-1]
     speeds = [(who, way[last]["speed_mps"]) for who, way in ((contact["ego_id"], ego), (contact["object_id"], met))]
     said = ", ".join(f"{who} at {v:.1f} m/s" for who, v in speeds if v is not None)
-    # a scene has not every step: the closing speed may be that of a later one
+    # a scene does not contain every step: the closing speed may be from a later step than `last`
     nearing = "" if contact["closing_mps"] is None else f"{closing(contact['closing_mps'])} just before the contact"
     told = [nearing, f"at {seconds(last, start_ns)}: {said}" if said else ""]
     return {

@@ -1,4 +1,4 @@
-"""The templates of the pages, with the style and the script, which a page's policy names by their hashes."""
+"""The templates of the pages, with their style and script. A page's content security policy names both by their hashes."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ if TYPE_CHECKING:
 TEMPLATES: Final = Path(__file__).parent / "templates"
 _MPS2: Final = re.compile(r"(?:(?<=\d[ \u00a0])|(?<= in )|^)m/s2\b")
 PICTURE_STYLE: Final = "pictures.css"
-"""The style of pictures from cameras, which only a page with some has."""
+"""The style of pictures from cameras; only pages with such pictures contain it."""
 _STYLES: Final = ("report.css", "charts.css", "narrow.css", "first.css")
 
 
 def page_environment(
     scripts: Sequence[str], folder: Path | None = None, styles: Sequence[str] = (), *, base: Sequence[str] = _STYLES
 ) -> Environment:
-    """Return the templates of the report, and before them those of `folder`, whose `styles` come after the report's.
+    """Return the template environment of a page: the report's templates, and the templates in `folder`, which take precedence.
 
-    `scripts`: files of the report's templates. `base`: the styles of the report that the page needs.
+    `scripts`: scripts from the report's templates. `base`: the report's styles for the page; the `styles` of `folder` follow them.
     """
     environment = Environment(
         finalize=visible,
@@ -74,11 +74,11 @@ def _policy(styles: str, script: str) -> str:
 
 
 def visible(value: Any) -> Any:
-    """Return a value for a template with all characters visible: none reverses the reading order.
+    """Return a template's value; in a text, invisible characters, such as those that reverse the reading order, are escaped.
 
-    The unit of an acceleration, alone or after a number, is typeset.
+    The unit m/s2, alone or after a number, becomes m/s².
     """
-    return _MPS2.sub("m/s\u00b2", escape_invisible(value)) if type(value) is str else value  # Markup is ours
+    return _MPS2.sub("m/s\u00b2", escape_invisible(value)) if type(value) is str else value  # Markup is safe
 
 
 def _concatenated_texts(files: Iterable[Path]) -> str:

@@ -1,4 +1,4 @@
-"""Explanations on the page: technical words, and published logs for which the verdicts differ from those of their authors."""
+"""Explanations on the page: of technical words, and of published logs whose authors came to other verdicts."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ if TYPE_CHECKING:
 
 
 def glossary_entries(texts: Iterable[str]) -> list[tuple[str, str]]:
-    """Return the words of `glossary.toml` that occur in any of the texts, each with its meaning."""
+    """Return the words of `glossary.toml` that occur in at least one of the texts, each with its meaning."""
     said = " ".join(texts).lower()
     entries = toml_beside(__file__, "glossary.toml")["word"]
     return [(entry["word"], entry["means"]) for entry in entries if entry["sign"] in said]
 
 
 def notes_on_logs(drives: Sequence[Row]) -> list[dict[str, Any]]:
-    """Return the notes on the published logs that are among the drives.
+    """Return the notes on those published logs that are among the drives.
 
-    Each file of `known_logs/` is about some logs, which it knows by the sha256 of their bytes: what it says is true of no other log.
-    `title`, and per `row` the subject (`what`), the authors' value (`theirs`), the value here (`ours`) and the reason (`why`).
+    Each file of `known_logs/` lists the sha256 of the logs that its note is about. A note has a `title` and, in each `row`,
+    the subject (`what`), the value of the log's authors (`theirs`), drivelint's value (`ours`) and the reason of the difference (`why`).
     """
     notes = [
         toml_beside(str(file), file.name) for file in sorted((Path(__file__).parent / "known_logs").glob("*.toml"))

@@ -1,4 +1,4 @@
-"""Incidents: findings and near misses at one time of one ego, with the plan view, the measured values, and the actors."""
+"""Incidents: the findings and near misses of one ego at one time, with plan view, measured values and actors."""
 
 from __future__ import annotations
 
@@ -31,15 +31,15 @@ if TYPE_CHECKING:
 
 _SENSE: Final = {">": "more than", ">=": "at least", "<": "less than", "<=": "at most"}
 _SPACES: Final = "danger_space"
-"""Tag of the rules whose plan views show danger spaces."""
+"""The tag of rules whose plan views show danger spaces."""
 MAX_INCIDENTS_IN_SUMMARY: Final = 6
-"""Moments of a drive that the printed report shows with their plan views."""
+"""The printed report shows the plan views of this many moments of a drive."""
 
 
 class FindingLine(NamedTuple):
     """One finding (`fail`) or near miss (`near`) as the page shows it, in the table and in its incident.
 
-    `time`: of its picture, when it was worst; `when`: the time that is printed, see `worst_first.when`.
+    `time`: the worst time, at which the plan view is drawn; `when`: the time that is printed, see `worst_first.when`.
     """
 
     row: Row
@@ -72,7 +72,7 @@ def finding_line(
 ) -> FindingLine:
     """Return a finding or near miss as the page shows it.
 
-    `linked`: its drive has a section in the page; `steps`: its row of `course`; `same`: other findings of the same contact.
+    `linked`: its drive has a section in the page; `steps`: its row of the table `course`; `same`: other findings of the same contact.
     """
     unit, long = row["unit"], row["t_end_ns"] is not None and row["t_end_ns"] != row["t_start_ns"]
     sense = _SENSE.get(rule["sense"])
@@ -105,16 +105,16 @@ def finding_line(
 
 
 def _measurement_sentence(row: Row, rule: Row, required: str) -> str:
-    """Return in a sentence the observed value, the required value, and the rule's own reason."""
+    """Return a sentence with the observed value, the required value, and the reason that the rule gives."""
     quantity = f"{rule['observes']} " if rule["observes"] else ""
     sentence = f"{quantity}{measure(row['observed'], row['unit'])}, must be {required}"
     return sentence if row["reason_measures"] else f"{sentence} ({row['reason']})"
 
 
 def how_sure(finding: Row, same: Sequence[Row] = ()) -> dict[str, str]:
-    """Return whether a finding is sure or possible (`kind`, '' if no copies of it were judged), of how many copies, and why.
+    """Return whether a finding is sure or possible (`kind`, '' if no copies were judged), and in how many copies it stays.
 
-    `same`: other findings of the same contact.
+    Copies are copies of the drive with assumed recording errors. `same`: other findings of the same contact.
     """
     said = certainty(finding)
     if said is None:
@@ -133,7 +133,10 @@ def incident_key(row: Row) -> Key:
 
 
 def _in_summary(lines: Iterable[FindingLine]) -> dict[Key, int]:
-    """Return the incidents of one drive that its summary shows: the worst of each rule, the most severe rules first; 0 is the worst."""
+    """Return the incidents of one drive that its summary shows, with their ranks from 0, the worst.
+
+    The summary shows the worst incident of each rule, the most severe rules first.
+    """
     first: dict[str, tuple[int, float, Key]] = {}
     for row in (line.row for line in lines if line.kind == "fail"):
         ratio = 0.0 if not row["required"] or row["margin"] is None else row["margin"] / abs(row["required"])
@@ -144,12 +147,12 @@ def _in_summary(lines: Iterable[FindingLine]) -> dict[Key, int]:
 
 
 def incidents(lines: Sequence[FindingLine], pictures: Mapping[Key, dict[str, Any]], drive: Row) -> list[dict[str, Any]]:
-    """Return the incidents of one drive, in time order, from its findings and near misses.
+    """Return the incidents of one drive in time order: the findings and near misses of one ego at one time.
 
-    Each has the findings and near misses of one ego at one time, `cards` by rule, and their plan view, if there is one. `t`: hundredths
-    of a second since the drive's start; `leading`: it is among the findings of the story, `rank` (0: the worst) of these;
-    `on_earth`: a finding whose longitude and latitude are known, None for none; `t_utc`: the time in UTC, None: the log does not say.
-    `drive`: its row. `cameras`, `pictured`: no pictures from cameras yet, see `add_pictures`.
+    `cards`: the findings and near misses by rule; `plan`: the plan view, or None; `t`: hundredths of a second since the drive's start.
+    `leading`: whether the drive's summary shows the incident, `rank`: its rank there, from 0, the worst.
+    `on_earth`: a finding with known longitude and latitude, or None; `t_utc`: the time in UTC, None if the log does not give it.
+    `cameras`, `pictured`: empty; `add_pictures` fills them in. `drive`: a row of the result's drives.
     """
     groups, leading = group_rows(lines, lambda line: incident_key(line.row)), _in_summary(lines)
     return [
@@ -169,7 +172,7 @@ def plan_views(
     *,
     max_views: int,
 ) -> dict[Key, dict[str, Any]]:
-    """Return the plan views of the first `max_views` incidents of `lines`. `before`: of a contact the speeds before it, in words."""
+    """Return the plan views of the first `max_views` incidents of `lines`. `before`: the speeds before a contact, in words."""
     lines_by_incident = group_rows(lines, lambda line: incident_key(line.row))
     views: dict[Key, dict[str, Any]] = {}
     for at, found in [(at, found) for at, found in lines_by_incident.items() if at in scenes][:max_views]:
@@ -213,7 +216,7 @@ def _weight(item: tuple[str, Sequence[FindingLine]]) -> tuple[bool, int, str]:
 
 
 def _gauge(observed: float | None, required: float | None) -> dict[str, str] | None:
-    """Return the bar from zero to the observed value, and the place of the required value, as percentages of its width."""
+    """Return a bar from zero to the observed value, and the position of the required value, in percent of the drawing's width."""
     if observed is None or required is None or not max(abs(observed), abs(required)) < float("inf"):
         return None
     low, high = min(0.0, observed, required), max(0.0, observed, required)
@@ -232,7 +235,7 @@ def _gauge(observed: float | None, required: float | None) -> dict[str, str] | N
 def involved_actors(lines: Sequence[FindingLine], scenes: Mapping[Key, Row]) -> list[dict[str, Any]]:
     """Return the egos and objects of one drive's findings and near misses, in words, from their scenes; egos first.
 
-    `n`: findings that are about it.
+    `n`: the number of findings about the actor.
     """
     findings: Counter[tuple[bool, str]] = Counter()
     seen: dict[str, list[Row]] = defaultdict(list)

@@ -19,13 +19,13 @@ HEIGHT: Final = 132
 _LEFT, _RIGHT, _TOP, _BOTTOM = 42.0, WIDTH - 8.0, 8.0, HEIGHT - 20.0
 _ROWS: Final = 9
 _LEAST: Final = 3
-"""Fewer steps are not worth a chart."""
+"""The least number of steps for which a chart is drawn."""
 
 
 def margin_series(row: Row, worst_ns: int, unit: str | None, start_ns: int) -> dict[str, Any]:
-    """Return the margin series of a finding from its row of the table `course`.
+    """Return the margin of a finding over time from its row of the table `course`, in `unit`.
 
-    The chart (None: too few steps, or nothing is measured), and the steps around the worst one; numbers in `unit`.
+    `chart`: None if there are too few steps or no measured values; `steps`: the steps around the worst step.
     """
     t: list[int] = row["t_ns"]
     worst = min(range(len(t)), key=lambda i: abs(t[i] - worst_ns))
@@ -48,7 +48,10 @@ def margin_series(row: Row, worst_ns: int, unit: str | None, start_ns: int) -> d
 
 
 def _chart(row: Row, worst: int, unit: str | None, start_ns: int) -> dict[str, Any]:
-    """Return lines in a frame of 420 by 132; `t0`, `t1`: hundredths of a second at its ends; `cut`: how far values go that it cuts off."""
+    """Return the chart's lines in a frame of 420 by 132.
+
+    `t0`, `t1`: the time at its left and right end in hundredths of a second; `cut`: the extreme values that the frame cuts off.
+    """
     t = [(t_ns - start_ns) / 1e9 for t_ns in row["t_ns"]]
     x = Axis(t[0], t[-1], _LEFT, _RIGHT)
     values = [v for name in ("observed", "required") for v in row[name] if v is not None]
@@ -72,7 +75,7 @@ def _chart(row: Row, worst: int, unit: str | None, start_ns: int) -> dict[str, A
 
 
 def _line(t: Sequence[float], values: Sequence[float | None], x: Axis, y: Axis) -> str:
-    """Return the path through the values, broken where there is none or where steps are missing."""
+    """Return the SVG path through the values, interrupted where a value is None or steps are missing."""
     gap = 3 * _typical(t)
     parts, last = [], None
     for at, value in zip(t, values, strict=True):
@@ -90,7 +93,7 @@ def _typical(t: Sequence[float]) -> float:
 
 
 def _spans(t: Sequence[float], holds: Sequence[bool | None], x: Axis) -> list[dict[str, str]]:
-    """Return the stretches that are not kept or not known, each as far as halfway to its neighbours."""
+    """Return the periods in which the rule is not kept or unknown; each extends by half a step on both sides."""
     half, gap = _typical(t) / 2, 3 * _typical(t)
     runs: list[tuple[str, float, float]] = []
     for at, kept in zip(t, holds, strict=True):

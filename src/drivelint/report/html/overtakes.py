@@ -1,6 +1,6 @@
-"""The report's section on overtakes: safe distances ahead, danger-space assertions per stage, and zones; and on opportunities.
+"""The report's section on overtakes (safe distances ahead, danger-space assertions per stage, zones) and on opportunities.
 
-Opportunities to overtake, taken and not taken, are shown by the distance ahead that there was.
+Opportunities to overtake, taken and not taken, are shown by the distance ahead that was available.
 """
 
 from __future__ import annotations
@@ -18,18 +18,18 @@ if TYPE_CHECKING:
     from drivelint.result.text import Row
 
 MAX_OVERTAKES: Final = 60
-"""Overtakes in the page: those with the least to spare against any profile first."""
+"""The page shows this many overtakes: those with the least spare distance in any profile."""
 ASSERTION_TITLES: Final = (
     "Vehicle being passed outside the ego's danger space",
     "Oncoming vehicle outside the ego's danger space",
     "Ego outside the oncoming vehicle's danger space",
     "The two danger spaces apart",
 )
-"""The runtime assertions in the order of `overtake_record.stretches`: what must hold."""
+"""The conditions that the runtime assertions require, in the order of `overtake_record.stretches`."""
 _STAGES: Final = ("pulling_out", "passing", "cutting_in")
 _VERDICT: Final = {"nobody": "not_applicable"}
-_APART: Final = 20.0  # percent: so much room a label needs on a phone
-_THIN: Final = 0.6  # percent: a band is at least as wide
+_APART: Final = 20.0  # percent: the width of a label on a phone
+_THIN: Final = 0.6  # percent: the least width of a band
 _WORST: Final = ("fail", "unknown", "pass", "nobody")
 _ZONES_S: Final = (0.0, 0.5, 2.5)  # the spare time at which zones B, C and D begin
 _SHAPES: Final = ("circle", "square", "diamond", "triangle", "cross")
@@ -38,7 +38,7 @@ _LABELS: Final = 10
 _NOT_COMPUTED: Final = {"zone": None, "sda_m": None, "spare_m": None, "reason": "not computed"}
 _TIMES: Final = ("t0_ns", "t1_ns", "t2_ns", "t3_ns")
 FAR_M: Final = 2000.0
-"""A safe distance ahead beyond this means only that the ego was hardly faster than the vehicle that it passed."""
+"""A longer safe distance ahead only shows that the ego was hardly faster than the vehicle being passed."""
 _BARS_W, _BARS_H = 560, 230
 _BINS: Final = 12
 _PREFERRED: Final = "nominal"
@@ -47,9 +47,9 @@ _PREFERRED: Final = "nominal"
 def overtake_views(
     records: Sequence[Row], starts: Mapping[str, int], judged_profiles: Collection[str]
 ) -> dict[str, Any] | None:
-    """Return the table of overtakes and the zone plot from the rows of `overtake_record`; None: there are none.
+    """Return the table of overtakes and the zone plot from rows of `overtake_record`; None if there are no overtakes.
 
-    `judged_profiles`: the profiles that verdicts are about; any other is a what-if.
+    `judged_profiles`: the profiles with verdicts; any other profile is a what-if.
     """
     records = [row for row in records if row["profiles"] or row["stretches"]]
     if not records:
@@ -92,12 +92,12 @@ def _overtake(row: Row, profiles: Sequence[str], start_ns: int) -> dict[str, Any
 
 
 def _cell(p: Row) -> Row:
-    """Return the requirement of a profile, `is_far` if it is too far to be printed."""
+    """Return a profile's row with `is_far`: whether its safe distance ahead exceeds `FAR_M`, so that the page does not print it."""
     return {**p, "is_far": p["sda_m"] is not None and p["sda_m"] > FAR_M}
 
 
 def _marks(times: Sequence[tuple[float, str]]) -> list[tuple[str, str]]:
-    """Return places and labels on the axis; those that would lie on each other stand together at the first one's place."""
+    """Return positions and labels on the axis; labels that would overlap are joined at the position of the first."""
     kept: list[tuple[float, str]] = []
     for at, label in times:
         if kept and at - kept[-1][0] < _APART:
@@ -108,7 +108,7 @@ def _marks(times: Sequence[tuple[float, str]]) -> list[tuple[str, str]]:
 
 
 def _bounds(stretches: Sequence[Row], clock: Axis) -> list[tuple[str, str, str]]:
-    """Return the stages as name, place and width."""
+    """Return the stages, each as name, position and width."""
     drawn = []
     for stage in _STAGES:
         mine = [s for s in stretches if s["stage"] == stage]
@@ -119,7 +119,7 @@ def _bounds(stretches: Sequence[Row], clock: Axis) -> list[tuple[str, str, str]]
 
 
 def _assertion(n: int, stretches: Sequence[Row], stages: Sequence[str], clock: Axis) -> dict[str, Any]:
-    """Return one of the assertions: its verdict and worst depth per stage, and its stretches over time as percentages."""
+    """Return assertion `n`: its verdict and greatest depth per stage, and its verdicts over time as bands in percent."""
     cells = []
     for stage in stages:
         mine = [(s["said"][n], s["worst_m"][n]) for s in stretches if s["stage"] == stage]
@@ -142,7 +142,7 @@ def _assertion(n: int, stretches: Sequence[Row], stages: Sequence[str], clock: A
 
 
 def _zones(records: Sequence[Row], profiles: Sequence[str], starts: Mapping[str, int]) -> dict[str, Any] | None:
-    """Return the areas of the zones, axes, a dot per overtake and profile, names, and the speed that the areas are drawn for."""
+    """Return the zone plot: areas, axes, one dot per overtake and profile, names, and the closing speed assumed for the areas."""
     known = [
         (row, p)
         for row in records
@@ -182,13 +182,13 @@ def _zones(records: Sequence[Row], profiles: Sequence[str], starts: Mapping[str,
 
 
 def _name(row: Row, x: Axis, y: Axis) -> tuple[str, str, str]:
-    """Return the name of an overtake, above its dots at the right edge."""
+    """Return position and name of an overtake: at the right edge, above the height of its dots."""
     da = next(p["da_m"] for p in row["profiles"] if p["da_m"] is not None and p["sda_m"] is not None)
     return num(x.end - 4), num(y.at(da) - 11), row["drive_id"]
 
 
 def _areas(x: Axis, y: Axis, far: float, v: float) -> list[tuple[str, str, tuple[str, str] | None]]:
-    """Return the zones from the diagonal upwards: name, path, and where its letter stands (None: too thin for one)."""
+    """Return the zones from bottom to top: name, path, and the position of its letter (None if the zone is too thin for it)."""
     floors = [-far, *(v * s for s in _ZONES_S), 2 * far]
     drawn: list[tuple[str, str, tuple[str, str] | None]] = []
     for zone, low, high in zip("ABCD", floors[:-1], floors[1:], strict=True):
@@ -202,9 +202,9 @@ def _areas(x: Axis, y: Axis, far: float, v: float) -> list[tuple[str, str, tuple
 
 
 def overtaking_opportunities(records: Sequence[Row]) -> dict[str, Any] | None:
-    """Return the histogram of the rows of `opportunity_record` for one profile, and per profile how many were taken and not, by zone.
+    """Return a histogram of `opportunity_record` for one profile, and for each profile the numbers taken and not taken by zone.
 
-    None: there are none.
+    Return None if there are no opportunities.
     """
     if not records:
         return None
@@ -225,7 +225,7 @@ def overtaking_opportunities(records: Sequence[Row]) -> dict[str, Any] | None:
 
 
 def _zone_counts(profile: str, records: Sequence[Row]) -> tuple[str, list[tuple[int, int]], tuple[int, int]]:
-    """Return a profile with the numbers taken and not taken in zones A to D, and where the zone is not known."""
+    """Return a profile with the numbers of opportunities taken and not taken in zones A to D, and in an unknown zone."""
     n = Counter((row["zone"], row["taken"]) for row in records if row["profile"] == profile)
     *known, unknown = ((n[zone, True], n[zone, False]) for zone in (*"ABCD", None))
     return profile, known, unknown

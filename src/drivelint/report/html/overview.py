@@ -1,4 +1,4 @@
-"""The first page: the outcome in one sentence, the broken rules, and the verdicts by pack."""
+"""The values of the report's first page: the outcome in one sentence, the broken rules, and the verdicts by pack."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ def page_headline(result: Result) -> tuple[str, str, str]:
 
 
 def contacts(result: Result, lines: Sequence[FindingLine], rules: Mapping[str, Row]) -> dict[str, Any] | None:
-    """Return the contacts and their times, from all findings (`lines`: those of the page); None if no finding is a contact.
+    """Return the contacts of all findings, with their times; None if no finding is a contact. `lines`: the findings of the page.
 
-    `named`: contacts of the boxes, or found from the speeds, in words, each with the link to its surest finding; `n_more`: those that are
-    not named; `sure`: no contact is only possible.
+    `named`: the first contacts in words, each with a link to its surest finding; `n_more`: the number of further contacts;
+    `sure`: False if all contacts are only possible.
     """
     starts = result.start_times
     hrefs = {line.row["finding_id"]: line.href for line in lines}
@@ -46,7 +46,7 @@ def contacts(result: Result, lines: Sequence[FindingLine], rules: Mapping[str, R
     for found in met.values():
         first = min(found, key=sureness)
         who = ego_name(first["ego_id"]) + ("" if first["object_id"] is None else f" and object {first['object_id']}")
-        # a centimetre may be the recorder's error
+        # print the depth of the overlap: one centimetre may be an error of the recorder
         measured = [row for row in found if row["unit"] == "m" and row["observed"] is not None]
         worst = min(measured, key=lambda row: row["observed"], default=None)
         later = "" if worst is None else worst_later(worst, rules, starts[worst["drive_id"]]).removeprefix("deepest")
@@ -69,10 +69,10 @@ def contacts(result: Result, lines: Sequence[FindingLine], rules: Mapping[str, R
 
 
 def rates(result: Result, events: Sequence[Row]) -> dict[str, Any]:
-    """Return the findings by severity: their number, the drives that have them, and how many per 100 km and per hour of driving.
+    """Return, by severity, the number of findings, of drives with findings, and of findings per 100 km and per hour of driving.
 
     `events`: one finding of each event.
-    `per`: whether the drives are long enough together for that (100 km, 1 hour).
+    `per`: whether the drives together are long enough for rates (100 km and 1 hour).
     """
     km, hours = (float(pc.sum(result.drives[name]).as_py() or 0.0) for name in ("km", "duration_s"))
     hours /= 3600
@@ -94,9 +94,9 @@ def rates(result: Result, events: Sequence[Row]) -> dict[str, Any]:
 def broken_rules(
     result: Result, rules: Mapping[str, Row], lines: Sequence[FindingLine], events: Sequence[Row]
 ) -> list[dict[str, Any]]:
-    """Return the rules with findings, the gravest and most frequent first; `worst` None: not among the findings of the page.
+    """Return the rules with findings, the gravest and most frequent first.
 
-    `events`: one finding of each event.
+    `worst`: the rule's worst finding on the page, None if the page shows none of its findings. `events`: one finding of each event.
     """
     verdicts = counts.verdicts_by(result.verdicts, "rule_id")
     shown = counts.group_rows(lines, lambda line: line.row["rule_id"])
@@ -119,7 +119,7 @@ def _margin(line: FindingLine) -> float:
 
 
 def verdicts_by_pack(result: Result) -> list[dict[str, Any]]:
-    """Return how many verdicts of each kind every pack has, and of how many rules."""
+    """Return, for each pack, the number of its rules and of its verdicts of each kind."""
     told = counts.verdicts_by_pack(result.rules, result.verdicts)
     rules = counts.group_rows(result.rules.select(["pack", "pack_title"]).to_pylist(), lambda row: row["pack"])
     return [
@@ -135,7 +135,7 @@ def verdicts_by_pack(result: Result) -> list[dict[str, Any]]:
 
 
 def verdict_shares(verdicts: Mapping[str, int]) -> list[dict[str, Any]]:
-    """Return each verdict with its number and its place and width in a bar, in percent."""
+    """Return each kind of verdict with its number, and its position and width in a bar in percent."""
     total, at, found = sum(verdicts.values()), 0.0, []
     for verdict in ("fail", "error", "unknown", "pass", "not_applicable"):
         width = 100 * verdicts[verdict] / total if total else 0.0
@@ -145,7 +145,7 @@ def verdict_shares(verdicts: Mapping[str, int]) -> list[dict[str, Any]]:
 
 
 def drive_summaries(sections: Sequence[Mapping[str, Any]], n_drives: int) -> list[dict[str, Any]]:
-    """Return the events of each drive, in time order; none if there are too many drives for the first page.
+    """Return the gravest moments of each drive in time order; an empty list if the first page has no room for so many drives.
 
     `who`: the vehicles and people that the findings are about.
     """
@@ -166,7 +166,7 @@ def drive_summaries(sections: Sequence[Mapping[str, Any]], n_drives: int) -> lis
 def first_page_texts(
     rules: Sequence[Mapping[str, Any]], summaries: Sequence[Mapping[str, Any]], lines: Sequence[FindingLine]
 ) -> list[str]:
-    """Return the words of the first page about rules and findings, to be searched for words that need an explanation."""
+    """Return the texts of the first page about rules and findings; words in them may need an explanation."""
     worst = [b["worst"] for b in rules if b["worst"] is not None]
     leading = [
         line for story in summaries for moment in story["moments"] for _, lines_ in moment["cards"] for line in lines_

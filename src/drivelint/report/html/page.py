@@ -1,4 +1,4 @@
-"""The content of the page, as plain values for the template: nothing here knows about markup."""
+"""The content of the page as plain values, without markup, for the template."""
 
 from __future__ import annotations
 
@@ -45,19 +45,19 @@ if TYPE_CHECKING:
     from drivelint.result.text import Row
 
 MAX_FINDINGS: Final = 600
-"""Findings in the page: the worst; the Parquet files hold them all."""
+"""The page shows this many of the worst findings; the Parquet files contain all."""
 MAX_NEAR_MISSES: Final = 150
-"""Near misses in the page."""
+"""The page shows this many of the worst near misses."""
 MAX_PICTURES: Final = 150
 MAX_CHARTS: Final = 150
-"""Findings and near misses with their measure over time and the steps behind it, the worst first."""
+"""The page shows the measured values over time of this many of the worst findings and near misses."""
 MAX_DRIVES: Final = 60
-"""Drives with a section of their own: first those with findings, then those with near misses or something unknown."""
+"""This many drives get a section: drives with findings first, then drives with near misses, then drives with unknown verdicts."""
 MAX_UNFOLDED_DRIVES: Final = 3
-"""Up to so many drives are shown unfolded."""
+"""If the result has at most this many drives, their sections are unfolded."""
 
 MAX_DETAILED_DRIVES: Final = 20
-"""With more drives, rules that were kept throughout are named, not drawn."""
+"""If the result has more drives, the timelines name the rules that were always kept instead of drawing them."""
 
 _NAMES: Final = {
     "fail": "not kept",
@@ -69,7 +69,7 @@ _NAMES: Final = {
 
 
 def content(result: Result) -> dict[str, Any]:
-    """Return everything that the template shows."""
+    """Return all values of the template."""
     rules = {row["rule_id"]: row for row in result.rules.to_pylist()}
     drives = result.drives.to_pylist()
     starts = {row["drive_id"]: row["t_start_ns"] or 0 for row in drives}
@@ -191,7 +191,7 @@ def _lines(
     *,
     linked_drives: set[str],
 ) -> list[FindingLine]:
-    """Return the rows with their words, those of drives in `linked_drives` with links."""
+    """Return the rows with their texts; rows of drives in `linked_drives` get links."""
     same = same_contact((row for kind, row in rows if kind == "fail"), rules)
     return [
         finding_line(
@@ -211,7 +211,10 @@ def _lines(
 def _with_section(
     drives: Sequence[Row], worst: Iterable[str], verdict_counts: Mapping[str, Mapping[str, int]]
 ) -> set[str]:
-    """Return the ids of the drives that get a section: those with the worst findings first, which are in `worst`."""
+    """Return the ids of at most `MAX_DRIVES` drives that get a section.
+
+    Drives in `worst` are preferred, in that order, then drives with unknown verdicts or errors.
+    """
     place = {drive_id: n for n, drive_id in enumerate(dict.fromkeys(worst))}
 
     def weight(row: Row) -> tuple[int, int]:
@@ -230,7 +233,7 @@ def _rows_by_drive(rows: pa.Table, drives: set[str]) -> dict[str, list[Row]]:
 
 
 def _filters(lines: Sequence[FindingLine], rules: Mapping[str, Row]) -> dict[str, list[tuple[str, str]]]:
-    """Return the choices of the filters: value and label."""
+    """Return the choices of each filter of the page as pairs of value and label."""
     severities = {rule["severity"] for rule in rules.values()}
     drives = sorted({line.row["drive_id"] for line in lines})
     return {
@@ -248,7 +251,7 @@ def _filters(lines: Sequence[FindingLine], rules: Mapping[str, Row]) -> dict[str
 def _section(
     row: Row, tracks: Sequence[Timeline], moments: Sequence[Row], involved: Sequence[dict[str, Any]], *, unfolded: bool
 ) -> dict[str, Any]:
-    """Return a drive with the actors involved and its egos: of each ego the timeline and the incidents."""
+    """Return the section of a drive: its row, the actors involved, and the timeline and incidents of each ego."""
     weight = {"error": 0, "warning": 1, "info": 2}
     folded, tracks = separate_shared_rules(tracks)
     without = sorted({m["ego_id"] for m in moments} - {t.ego_id for t in tracks})
@@ -286,7 +289,7 @@ def _rules(result: Result, rules: Mapping[str, Row]) -> list[dict[str, Any]]:
 
 
 def _rule_groups(result: Result, rules: Mapping[str, Row]) -> list[dict[str, Any]]:
-    """Return the rules by pack: those that were judged somewhere, then the others in one fold per reason."""
+    """Return the rules by pack: first the rules that were judged in at least one drive, then the others, folded by reason."""
     why = _first_reason(result.verdicts)
     order = ("not_applicable", "unknown")
     groups = []
@@ -315,14 +318,14 @@ def _rule_groups(result: Result, rules: Mapping[str, Row]) -> list[dict[str, Any
 
 
 def _said_of_idle(verdict_counts: Mapping[str, int]) -> str:
-    """Return the words about a rule that was judged nowhere: for some egos it may not have applied, and be unknown for others."""
+    """Return in words why a rule was judged in no drive; it may be not applicable for some egos and unknown for others."""
     if not verdict_counts["unknown"]:
         return "never applied"
     return "not applicable or not judged" if verdict_counts["not_applicable"] else "not judged"
 
 
 def _first_reason(verdicts: pa.Table) -> dict[str, tuple[str, VerdictReason]]:
-    """Return verdict and reason of the rules that were judged nowhere, for want of an occasion or of something to be provided."""
+    """Return verdict and reason of the rules that were judged in no drive, because they never applied or data are missing."""
     rows = counts.distinct_rows(verdicts, ["rule_id", "verdict", "reason_code", "cause_code", "reason"])
     rows.sort(key=lambda r: (r["rule_id"], r["verdict"] == "not_applicable", -r["count_all"], r["reason"]))
     return {

@@ -1,4 +1,4 @@
-"""Pictures from the cameras of the logs, as the pages show them: by moment and camera, each with its time beside that of the moment."""
+"""Pictures from the logs' cameras for the pages: by moment and camera, each with its time relative to the moment."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ if TYPE_CHECKING:
 Moment = tuple[str, int]
 _MINUS: Final = "\u2212"
 _SAME_NS: Final = 5_000_000
-"""A frame that is nearer to the moment counts as that of the moment: times are printed in hundredths of a second."""
+"""A frame nearer to the moment than this is labelled "at the moment": times are printed in hundredths of a second."""
 
 
 def pictures_by_moment(pictures: pa.Table) -> dict[Moment, list[dict[str, Any]]]:
-    """Return drive and time -> the cameras, each with its pictures in time order. `pictures`: the table `picture`."""
+    """Return, by drive and time, the cameras, each with its pictures in time order. `pictures`: the table `picture`."""
     rows = pictures.to_pylist()
     shown: dict[Moment, list[dict[str, Any]]] = {}
     for (drive_id, t_ns, _, camera), mine in group_rows(
@@ -34,7 +34,10 @@ def pictures_by_moment(pictures: pa.Table) -> dict[Moment, list[dict[str, Any]]]
 def add_pictures(
     worst: dict[str, Any] | None, sections: Sequence[dict[str, Any]], cameras: Mapping[Moment, list[dict[str, Any]]]
 ) -> None:
-    """Give each moment of a page its pictures, the worst moment first, and each picture once; later moments link to it."""
+    """Add the pictures to the moments of a page, each picture only once; other moments at the same time link to it.
+
+    The worst moment gets its pictures first.
+    """
     anchors: dict[Moment, str] = {}
     if worst is not None:
         row = worst["line"].row
@@ -62,7 +65,7 @@ def _shot(row: dict[str, Any]) -> dict[str, Any]:
 
 
 def _offset_text(off_ns: int) -> str:
-    """Return in words when a frame was taken, seen from the moment."""
+    """Return in words when a frame was taken, relative to the moment."""
     if abs(off_ns) < _SAME_NS:
         return "at the moment"
     return f"{'+' if off_ns > 0 else _MINUS}{abs(off_ns) / 1e9:.2f} s"

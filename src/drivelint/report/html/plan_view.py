@@ -1,7 +1,7 @@
 """The plan view of an incident: lanes, boxes, paths, danger spaces and the least distance, as numbers for an SVG.
 
-The road runs to the right as the ego drives it. What lies on the map is drawn in the map's units (see `road`) under one matrix, so
-that a script can move it; names and distances are in viewBox units, y down.
+The ego's direction on the road points to the right. Lanes, boxes, paths and danger spaces have the drawn units of `road` and share
+one matrix, so that a script can move them. Names and distances have viewBox units, y down.
 """
 
 from __future__ import annotations
@@ -27,16 +27,20 @@ WIDTH: Final = 600
 _HEIGHT: Final = (190.0, 330.0)
 _LEAST_M: Final = (44.0, 16.0)  # the view shows at least this much of the road, along and across
 _PAD_M: Final = (7.0, 3.5)
-_DOT_M: Final = 0.8  # drawn size of an actor whose size is not known
+_DOT_M: Final = 0.8  # the drawn size of an actor whose size is unknown
 _MOST_LONG_LABELS: Final = 5
 _BARS_M: Final = (1, 2, 5, 10, 20, 50, 100)
-_BESIDE: Final = 0.5  # who is up to half a view away may come into it when the scene is replayed
-_TOUCH_M: Final = 0.005  # boxes nearer than this are not apart
+_BESIDE: Final = 0.5  # actors up to half a view outside may enter the view when the scene is replayed
+_TOUCH_M: Final = 0.005  # boxes nearer than this touch
 
 
 @dataclass(frozen=True)
 class _View:
-    """From map metres to the view: centre of the ego and heading of the road, middle of the view (ahead, left) and units per metre."""
+    """The transformation from map metres to the view.
+
+    `x`, `y`: the ego's centre; `cos`, `sin`: of the road's heading; `ahead`, `left`: the middle of the view relative to the ego;
+    `scale`: viewBox units per metre.
+    """
 
     x: float
     y: float
@@ -57,21 +61,21 @@ class _View:
         return WIDTH / 2 + self.scale * u, self.height / 2 - self.scale * v
 
     def matrix(self, lanes: Lanes) -> str:
-        """Return the transformation of drawn units of the map."""
+        """Return the SVG transformation from the map's drawn units to the view."""
         k = self.scale / UNITS_PER_M
         e, f = self(np.array([lanes.origin]))[0]
         turn = f"{k * self.cos:.5f},{k * self.sin:.5f},{k * self.sin:.5f},{-k * self.cos:.5f}"
         return f"matrix({turn},{num(e)},{num(f)})"
 
     def holds(self, actor: Row, room: float = 0.0) -> bool:
-        """Whether the middle of an actor is in the view, or no more than `room` of its width beside it."""
+        """Return whether an actor's centre is in the view, or outside it by at most `room` times the view's width."""
         x, y = self._at(actor["x_m"], actor["y_m"])
         beside = room * WIDTH
         return bool(-beside < x < WIDTH + beside and -beside < y < self.height + beside)
 
 
 def plan_view(scene: Row, road: Road, concerned: Collection[str], spaces: Sequence[Row]) -> dict[str, Any]:
-    """Return the plan view of a row of the table `scene` as the template draws it, in drawing order, and describes it in words.
+    """Return the plan view of a row of the table `scene` for the template: its shapes in drawing order, and a description.
 
     `concerned`: the objects that the findings are about; `spaces`: rows of `danger_space` at the moment, to be shown.
     """
@@ -94,7 +98,7 @@ def plan_view(scene: Row, road: Road, concerned: Collection[str], spaces: Sequen
         "spaces": [(_kind(who, ego, concerned), polygon(np.rint(lanes.to_units(ring)))) for who, ring in rings],
         "bodies": [
             _body(a, _kind(a["actor_id"], ego, concerned), lanes, scene["t_ns"])
-            for a in sorted((*others, ego), key=_area, reverse=True)  # an actor under a larger one is still seen
+            for a in sorted((*others, ego), key=_area, reverse=True)  # small actors are drawn over large actors
             if a is ego or a in met or view.holds(a, _BESIDE)
         ],
         "gaps": gaps,
@@ -109,7 +113,7 @@ def plan_view(scene: Row, road: Road, concerned: Collection[str], spaces: Sequen
 
 
 def _fit(ego: Row, yaw: float, points: Points) -> _View:
-    """Return the view, this heading to the right, that shows these map points with some road around them."""
+    """Return the view that shows these map points and some road around them, with heading `yaw` pointing to the right."""
     raw = _View(ego["x_m"], ego["y_m"], math.cos(yaw), math.sin(yaw), 0.0, 0.0, 1.0, 0.0)
     flat = raw(points)
     u, v = flat[:, 0] - WIDTH / 2, -flat[:, 1]
@@ -149,7 +153,7 @@ def _kind(actor_id: str, ego: Row, concerned: Collection[str]) -> str:
 
 
 def actor_shapes(scenes: Iterable[Row]) -> list[dict[str, str]]:
-    """Return the shapes of all actors of these scenes, each once: a box and the chevron on it, in its own frame."""
+    """Return each different shape of an actor in these scenes once: a box with a chevron, in the box's own frame."""
     actors = {_shape_name(actor): actor for scene in scenes for actor in scene["actors"]}
     return [_shape(name, actor) for name, actor in sorted(actors.items())]
 
@@ -174,7 +178,7 @@ def _shape_name(actor: Row) -> str:
 
 
 def _body(actor: Row, kind: str, lanes: Lanes, t_ns: int) -> dict[str, str]:
-    """Return an actor's place, its path before and after the moment, and its places at full seconds from it."""
+    """Return an actor's position, its path before and after the moment, and its positions at full seconds from the moment."""
     before, after, seconds = _way(actor["path"] or [], lanes, t_ns) if kind != "other" else ("", "", "")
     x, y = ((actor[axis] - zero) * UNITS_PER_M for axis, zero in zip(("x_m", "y_m"), lanes.origin, strict=True))
     return {
@@ -189,13 +193,13 @@ def _body(actor: Row, kind: str, lanes: Lanes, t_ns: int) -> dict[str, str]:
 
 
 def _way(way: Sequence[Row], lanes: Lanes, t_ns: int) -> tuple[str, str, str]:
-    """Return the paths before and after a moment and the points at full seconds from it; nothing for a standing actor."""
+    """Return the paths before and after a moment, and the points at full seconds from it; empty for a standing actor."""
     xy = lanes.to_units(np.array([(p["x_m"], p["y_m"]) for p in way])) if way else np.empty((0, 2))
     if not len(xy) or np.ptp(xy, axis=0).sum() < UNITS_PER_M:
         return "", "", ""
     t = np.array([p["t_ns"] for p in way])
     xy = np.rint(xy)
-    # the nearest kept point to every full second from the moment
+    # at each full second from the moment, take the first point within 0.1 s
     whole = np.round((t - t_ns) / 1e9).astype(int)
     near = (np.abs(t - t_ns - whole * 1_000_000_000) <= 100_000_000) & (whole != 0)
     picked = {int(whole[i]): i for i in np.flatnonzero(near)[::-1]}
@@ -204,7 +208,7 @@ def _way(way: Sequence[Row], lanes: Lanes, t_ns: int) -> tuple[str, str, str]:
 
 
 def _distances(ego: Row, met: Sequence[Row], view: _View) -> tuple[list[dict[str, str]], list[str], list[str]]:
-    """Return labels, lines and words of the least distances from the ego's box to those concerned."""
+    """Return labels, lines and words of the least distances from the ego's box to the boxes of `met`."""
     texts, lines, told = [], [], []
     for actor in met:
         a, b = corners(ego), corners(actor)
@@ -221,7 +225,7 @@ def _distances(ego: Row, met: Sequence[Row], view: _View) -> tuple[list[dict[str
         lines.append(polyline(np.array([p, q])))
         if np.hypot(*(q - p)) > 60:
             texts.append({"x": num(middle[0]), "y": num(middle[1] - 6), "text": text, "kind": "gap"})
-        else:  # too short for a label on it: lead it out to the free side
+        else:  # the line is too short for a label: place the label outside the boxes, with a leader line
             top = float(min(view(a)[:, 1].min(), view(b)[:, 1].min()))
             y = top - 26 if top > 44 else float(max(view(a)[:, 1].max(), view(b)[:, 1].max())) + 34
             lines.append(polyline(np.array([middle, (middle[0], y + (4 if y < middle[1] else -12))])))
@@ -230,7 +234,7 @@ def _distances(ego: Row, met: Sequence[Row], view: _View) -> tuple[list[dict[str
 
 
 def _labelled(actors: list[Row], ego: Row, met: Sequence[Row]) -> list[Row]:
-    """Return the actors whose names the picture has room for: with long ids, those concerned and the nearest of the others."""
+    """Return the actors whose names the picture shows: all, or if ids are long, `ego`, `met` and the nearest other actors."""
     if all(len(actor["actor_id"]) <= LONGEST_LABEL for actor in actors):
         return actors
     concerned = [actor for actor in actors if actor is ego or actor in met]
@@ -240,7 +244,7 @@ def _labelled(actors: list[Row], ego: Row, met: Sequence[Row]) -> list[Row]:
 
 
 def _label(actor: Row, ego: Row, met: Sequence[Row], view: _View) -> dict[str, str]:
-    """Return an actor's name, on the side of its box that faces away from the other actor."""
+    """Return an actor's name and its position, on the side of its box that faces away from the other actor."""
     box = view(corners(actor))
     middle = box.mean(axis=0)
     partner = met[0] if actor is ego and met else ego

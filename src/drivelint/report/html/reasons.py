@@ -1,4 +1,4 @@
-"""Reasons why something could not be judged, one per line: first what can be provided, then what the logs did not show."""
+"""The reasons why rules could not be judged: first missing data that the user can provide, then what the logs did not show."""
 
 from __future__ import annotations
 
@@ -27,15 +27,15 @@ class VerdictReason(NamedTuple):
 
 
 def verdict_reason(row: Row) -> VerdictReason:
-    """Return the reason of a verdict; a text that a rule writes itself is a kind of its own."""
+    """Return the reason of a verdict; each reason whose text comes from the rule itself is a separate kind."""
     text = row["reason"] if row["cause_code"] == "text" else ""
     return VerdictReason((row["reason_code"], row["cause_code"] or "", text), row["reason"])
 
 
 def summarise_reasons(reasons_given: Iterable[VerdictReason]) -> str:
-    """Return the shortest of the reasons as text, with the number of the others. What stands before it says the verdict.
+    """Return the shortest reason as text, with the number of other reasons; the text does not name the verdict.
 
-    The shortest is the first, and of these the first by letter: the order of the rows does not matter.
+    Among reasons of equal length, the alphabetically first is chosen, so that the order of the rows does not matter.
     """
     first, *others = sorted(set(reasons_given), key=lambda reason: (len(reason.text), reason.text, reason.kind))
     alike = sum(reason.kind == first.kind for reason in others)
@@ -46,12 +46,15 @@ def summarise_reasons(reasons_given: Iterable[VerdictReason]) -> str:
 
 
 def can_be_provided(code: str) -> bool:
-    """Whether a log, a map or an option could provide the missing signal or condition."""
+    """Return whether a log, a map or an option could provide the missing signal or condition."""
     return code not in _OF_THE_MOMENT and (code.startswith("missing_") or code.endswith("_unknown"))
 
 
 def reason_groups(verdicts: pa.Table, titles: Mapping[str, str]) -> list[dict[str, Any]]:
-    """Return why verdicts are unknown or errors, alike reasons as one row: what can be provided first, then the most frequent."""
+    """Return why verdicts are unknown or errors, with one row per kind of reason.
+
+    Reasons that the user can remove by providing data come first, then the most frequent.
+    """
     keys = ["verdict", "reason_code", "cause_code", "reason", "rule_id", "drive_id"]
     rows = counts.distinct_rows(counts.undecided(verdicts), keys)
     groups = counts.group_rows(rows, lambda row: (row["verdict"], verdict_reason(row).kind))

@@ -21,23 +21,23 @@ if TYPE_CHECKING:
     Key = tuple[str, str, int]
 
 MAX_POINTS: Final = 60_000
-"""Places of actors in the page; drives beyond that are shown without replay."""
+"""Positions of actors in the page; further drives are shown without a replay."""
 _TICK_NS: Final = 10_000_000
 _CM: Final = 100
 
 
 def centiseconds(t_ns: int, start_ns: int) -> int:
-    """Return a time as hundredths of a second since the drive's start, as the script counts."""
+    """Return a time in hundredths of a second since the drive's start, the unit of the page's script."""
     return round((t_ns - start_ns) / _TICK_NS)
 
 
 def replays(
     scenes: Iterable[Row], spaces: Mapping[Key, Sequence[Row]], starts: Mapping[str, int], road: Road
 ) -> dict[str, Markup]:
-    """Return the replay of each drive as JSON for the page's script, up to `MAX_POINTS` points in all.
+    """Return the replay of each drive as JSON for the page's script, up to `MAX_POINTS` points in total.
 
-    `a`: actor -> times, x, y (cm from the map's origin), heading (centirad), each as its first value and what is added;
-    `s`: ego -> time -> actor -> path of its danger space in the map's drawn units.
+    `a`: actor -> times, x, y (cm from the map's origin) and heading (centirad), each as its first value and then differences;
+    `s`: ego -> time -> actor -> SVG path of its danger space in the drawn units of `road`.
     """
     told: dict[str, Markup] = {}
     n = 0
@@ -81,6 +81,6 @@ def _columns(
 
 
 def _json(value: object) -> Markup:
-    """Return JSON that may stand in a script element: nothing in it can end that."""
+    """Return JSON without the characters that could end the script element around it."""
     text = json.dumps(value, separators=(",", ":"), ensure_ascii=True)
     return Markup(text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026"))  # noqa: S704 - escaped

@@ -1,6 +1,6 @@
-"""The lanes around scenes, from the table `lane_shape`: each drawn once in the page, in map coordinates, and used by every scene.
+"""The lanes around scenes, from the table `lane_shape`: drawn once in the page, in map coordinates, and shared by all scenes.
 
-Drawn lengths are decimetres from an origin of the map, y up: a scene turns and scales them by one matrix.
+Drawn coordinates are decimetres from an origin of the map, y up. Each scene rotates and scales them by one matrix.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ if TYPE_CHECKING:
 UNITS_PER_M: Final = 10.0
 """Drawn units per metre."""
 _ARROW_EVERY_M: Final = 25.0
-_ON_ROAD_M: Final = 6.0  # a bound nearer than this belongs to the road that the ego is on
-_SLANT_RAD: Final = math.radians(50)  # and it runs along it if the ego does not cross it more steeply
-_TILE_M: Final = 200.0  # lanes that begin in one square are drawn together
+_ON_ROAD_M: Final = 6.0  # a lane bound nearer than this belongs to the road that the ego is on
+_SLANT_RAD: Final = math.radians(50)  # a bound at a greater angle to the ego's heading does not give the road's heading
+_TILE_M: Final = 200.0  # the side of a tile: lanes that begin in the same square are drawn together
 
 
 class Road:
@@ -46,11 +46,11 @@ class Road:
         self._none = Lanes("m", [])
 
     def lanes_of(self, environment_id: str | None) -> Lanes:
-        """Return the lanes of a map; none without a map."""
+        """Return the lanes of a map; for None or an unknown id, a `Lanes` without lanes."""
         return self._maps.get(environment_id or "", self._none)
 
     def tiles(self) -> list[dict[str, Any]]:
-        """Return the tiles of all maps, each of which the page draws once: the lanes of a square as SVG path data."""
+        """Return the tiles of all maps: the lanes of one square as SVG path data. The page draws each tile once."""
         return [tile for lanes in self._maps.values() for tile in lanes.tiles()]
 
 
@@ -67,15 +67,15 @@ class Lanes:
         self._a, self._b = (np.concatenate([e[i] for e in ends]) if ends else none for i in (0, 1))
 
     def to_units(self, xy: Points) -> Points:
-        """Return drawn units of map points in metres."""
+        """Return map points, given in metres, in drawn units."""
         return (xy - self.origin) * UNITS_PER_M
 
     def tile_names(self, lanelets: Sequence[str]) -> list[str]:
-        """Return the names of the tiles that these lanelets are drawn on."""
+        """Return the names of the tiles that contain these lanelets."""
         return sorted({self._tile[lanelet] for lanelet in lanelets if lanelet in self._tile})
 
     def road_heading(self, x_m: float, y_m: float, yaw_rad: float) -> float:
-        """Return the road's heading at a point, in the sense nearer to `yaw_rad`; off the road, `yaw_rad` itself."""
+        """Return the road's heading at a point, of its two directions the one nearer to `yaw_rad`; off the road, `yaw_rad`."""
         near = (np.minimum(self._a, self._b) < (x_m + _ON_ROAD_M, y_m + _ON_ROAD_M)).all(axis=1) & (
             np.maximum(self._a, self._b) > (x_m - _ON_ROAD_M, y_m - _ON_ROAD_M)
         ).all(axis=1)
@@ -86,13 +86,13 @@ class Lanes:
         u = np.clip(((np.array([x_m, y_m]) - a) * step).sum(axis=1) / length**2, 0.0, 1.0)
         away = np.hypot(*(a + u[:, None] * step - (x_m, y_m)).T)
         heading = np.arctan2(step[:, 1], step[:, 0])
-        # half turns do not count: the bounds of oncoming lanes run the other way
+        # ignore half turns: the bounds of oncoming lanes run in the opposite direction
         turn = wrapped(2.0 * (heading - yaw_rad)) / 2.0
         fits = (away < _ON_ROAD_M) & (np.abs(turn) < _SLANT_RAD)
         return yaw_rad + float(turn[np.where(fits, away, np.inf).argmin()]) if fits.any() else yaw_rad
 
     def tiles(self) -> Iterator[dict[str, Any]]:
-        """Yield the drawing of the lanes, tile by tile."""
+        """Yield the drawing of each tile."""
         marks = self._markings()
         for name in sorted(set(self._tile.values())):
             lanes = [lane for lane in self._lanes if self._tile[lane["lanelet_id"]] == name]
@@ -109,14 +109,14 @@ class Lanes:
 
     def _areas(self, lanes: Sequence[Row], *, drivable: bool) -> str:
         rings = [np.concatenate([lane["left"], lane["right"][::-1]]) for lane in lanes if lane["drivable"] is drivable]
-        # all the same way round: where lanes overlap they fill, and do not cut each other out
+        # give all rings the same orientation, so that overlapping lanes are filled, not cut out of each other
         return "".join(polygon(np.rint(self.to_units(ring if _area(ring) > 0 else ring[::-1]))) for ring in rings)
 
     def _markings(self) -> list[tuple[str, str, str]]:
-        """Return each bound once: tile, solid, broken or edge (a kerb or a bound that the map does not describe), path."""
+        """Return each bound once, as tile, kind and path. Kinds: solid, broken, and edge (a kerb, or a bound of unknown kind)."""
         seen: set[frozenset[tuple[float, float]]] = set()
         marks = []
-        # a bound inside a junction only limits where vehicles may drive: nothing is painted there
+        # bounds inside a junction are not painted on the road
         for lane in (lane for lane in self._lanes if not lane["in_junction"]):
             for side in ("left", "right"):
                 line: Points = lane[side]
@@ -128,7 +128,7 @@ class Lanes:
         return marks
 
     def _arrows(self, lane: Row) -> Iterator[str]:
-        """Yield small chevrons in the middle of a lane that is driven on, in the direction of travel."""
+        """Yield small chevrons in the middle of a drivable lane, which point in the direction of travel."""
         if not lane["drivable"] or lane["in_junction"]:
             return
         left, right = (_along(lane[side]) for side in ("left", "right"))
@@ -157,12 +157,12 @@ def _along(line: Points) -> NDArray[np.float64]:
 
 
 def _at(line: Points, along: NDArray[np.float64], share: NDArray[np.float64]) -> Points:
-    """Return the points at shares of a line's length."""
+    """Return the points of a line at the given shares of its length; `along`: see `_along`."""
     return np.column_stack([np.interp(share * along[-1], along, line[:, i]) for i in (0, 1)])
 
 
 def _marking(marking: str | None, *, drivable: bool) -> str | None:
-    """Return how a bound is drawn; None: not at all."""
+    """Return how a bound is drawn (edge, broken, solid); None if it is not drawn."""
     if marking is None or marking in {"curb", "grass"}:
         return "edge"
     if marking == "none":

@@ -1,4 +1,4 @@
-"""Charts under the plan view of the worst moment: the recording around it, on one time axis, one chart per quantity."""
+"""Strips: charts below the plan view of the worst moment, one per recorded quantity, on a common time axis."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ if TYPE_CHECKING:
 
 WIDTH: Final = 600
 LEFT, RIGHT = 46.0, WIDTH - 8.0
-_HEIGHT, _HEAD, _FOOT = 46.0, 17.0, 18.0  # of a strip, of the words over it, of the time axis
+_HEIGHT, _HEAD, _FOOT = 46.0, 17.0, 18.0  # of a strip, of the text above it, of the time axis
 _HOLE_NS: Final = 1_000_000_000
 _LEAST: Final = 3
-"""Fewer values are not worth a strip."""
+"""The least number of values for which a strip is drawn."""
 _CHAR: Final = 6.6
-"""No letter of the words over a strip is wider on average, in any font that the page names."""
+"""The greatest average width of a character above a strip, over all fonts of the page."""
 
 
 class Series(NamedTuple):
-    """One line of a strip; `kind`: ego, met or limit. A value of None breaks it."""
+    """One line of a strip; `kind`: ego, met (the other actor) or limit. At a value of None the line is interrupted."""
 
     kind: str
     name: str
@@ -36,9 +36,10 @@ class Series(NamedTuple):
 
 
 def strips(scene: Row, finding: Row, course: Row | None, observes: str | None, start_ns: int) -> dict[str, Any] | None:
-    """Return the strips of a row of the table `scene` for a finding at its moment; None: the ego's way is not known.
+    """Return the strips for a finding from its row of the table `scene`; None if the scene has too few points of the ego's path.
 
-    `course`: the finding's row of the table `course`; `observes`: what its rule measures. Numbers in the viewBox of a drawing 600 wide.
+    `course`: the finding's row of the table `course`; `observes`: the quantity that the rule measures.
+    Coordinates are units of a viewBox that is 600 wide.
     """
     ego = scene["actors"][0]
     way = ego["path"] or []
@@ -97,7 +98,7 @@ def _series(kind: str, actor: Row, column: str) -> Series:
 
 
 def gap_series(ego: Row, met: Row) -> Series | None:
-    """Return the distance between two boxes at the times that both ways have; None: a size is not known."""
+    """Return the distance between two boxes at the times that both paths contain; None if a box's size is unknown."""
     if any(actor[side] is None for actor in (ego, met) for side in ("length_m", "width_m")):
         return None
     ways = [{point["t_ns"]: actor | point for point in actor["path"]} for actor in (ego, met)]
@@ -109,7 +110,7 @@ def gap_series(ego: Row, met: Row) -> Series | None:
 def _strip(
     n: int, title: str, unit: str, lines: Sequence[Series], worst_ns: int, *, x: Axis, course: Row | None
 ) -> dict[str, Any]:
-    """Return one strip: its frame, the axis of values, the lines, and how far values go that it cuts off."""
+    """Return one strip: its frame, the axis of values, the lines, and the extreme values that the frame cuts off."""
     top = n * (_HEIGHT + _HEAD) + _HEAD
     inside = [v for line in lines for t, v in zip(line.t_ns, line.values, strict=True) if v is not None and _in(x, t)]
     inside = inside or [v for line in lines for v in line.values if v is not None]
@@ -123,7 +124,7 @@ def _strip(
         "unit": unit,
         "top": num(top),
         "label_y": num(top - 5),
-        "value_y": num(top - 5 if beside else top + 11),  # else it would lie over the title
+        "value_y": num(top - 5 if beside else top + 11),  # below the title if the line has no room for both
         "height": num(_HEIGHT),
         "bottom": num(top + _HEIGHT),
         "zero": num(y.at(0.0)) if y.low < 0 < y.high else "",
@@ -141,7 +142,7 @@ def _in(x: Axis, t_ns: int) -> bool:
 
 
 def _deciding(lines: Sequence[Series], course: Row | None, worst_ns: int) -> list[float]:
-    """Return the values that decide whether a rule was kept: those at the worst step, and the required values where it failed."""
+    """Return the values that decide whether a rule was kept: the values at the worst step, and the required values that were not met."""
     if course is None:
         return []
     at = min(range(len(course["t_ns"])), key=lambda i: abs(course["t_ns"][i] - worst_ns))
@@ -150,18 +151,18 @@ def _deciding(lines: Sequence[Series], course: Row | None, worst_ns: int) -> lis
 
 
 def _at_worst(lines: Sequence[Series], worst_ns: int) -> str:
-    """Return the values at the worst step, in words; their unit stands beside the strip's title."""
+    """Return the values at the worst step in words, without the unit, which the strip's title contains."""
     told = []
     for line in lines:
         value = dict(zip(line.t_ns, line.values, strict=True)).get(worst_ns)
         if value is not None:
-            shown = value if lines[0].kind == "limit" else round(value, 2) + 0.0  # -0.00 of a measure may break a rule
+            shown = value if lines[0].kind == "limit" else round(value, 2) + 0.0  # unrounded: -0.001 may break a rule
             told.append(f"{line.name} {number(shown)}")
     return ", ".join(reversed(told))
 
 
 def _failing(course: Row, x: Axis) -> list[tuple[str, str]]:
-    """Return the stretches of steps at which the rule was not kept: place and width."""
+    """Return the periods in which the rule was not kept, each as position and width."""
     runs: list[list[int]] = []
     for t, kept in zip(course["t_ns"], course["holds"], strict=True):
         if kept is False and runs and t - runs[-1][1] <= _HOLE_NS and runs[-1][2]:
@@ -175,7 +176,7 @@ def _failing(course: Row, x: Axis) -> list[tuple[str, str]]:
 
 
 def _path(line: Series, x: Axis, y: Axis) -> str:
-    """Return the path through the values, broken where there is none and where a second is missing."""
+    """Return the SVG path through the values, interrupted where a value is None or more than a second is missing."""
     parts, last = [], None
     for t, value in zip(line.t_ns, line.values, strict=True):
         if value is not None:

@@ -1,4 +1,4 @@
-"""Numbers and paths as SVG writes them, as short as they can be, and axes: round numbers and where they lie."""
+"""Numbers and paths in SVG's notation, as short as possible; axes with round numbers as ticks."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _MOST_AROUND: Final = 6.0
-"""An axis is cut if it is longer than this many times the distance between the values that decide."""
+"""An axis that is longer than this many times the distance between the deciding values is cut."""
 _AROUND: Final = 1.5
-"""A cut axis goes so many times this distance beyond them."""
+"""A cut axis extends beyond the deciding values by this many times the distance between them."""
 _LEAST_CORE: Final = 0.01
 
 
@@ -42,7 +42,7 @@ def percent(value: float) -> str:
 
 
 class Axis(NamedTuple):
-    """Values from `low` to `high` laid from `start` to `end` in drawn units; a value without extent is in the middle."""
+    """An axis: values from `low` to `high`, drawn from `start` to `end`. If `low` equals `high`, values are drawn in the middle."""
 
     low: float
     high: float
@@ -50,13 +50,13 @@ class Axis(NamedTuple):
     end: float
 
     def at(self, value: float) -> float:
-        """Return where a value lies."""
+        """Return the position of a value on the drawn axis."""
         if self.high == self.low:
             return (self.start + self.end) / 2
         return self.start + (value - self.low) / (self.high - self.low) * (self.end - self.start)
 
     def ticks(self, max_ticks: int) -> list[tuple[str, str]]:
-        """Return places and labels of at most about `max_ticks` round values."""
+        """Return positions and labels of about `max_ticks` round values at most."""
         step = round_step((self.high - self.low) / max_ticks) if self.high > self.low else 1.0
         first, last = math.ceil(self.low / step - 1e-9), math.floor(self.high / step + 1e-9)
         digits = max(0, -math.floor(math.log10(step) + 1e-9))
@@ -64,7 +64,7 @@ class Axis(NamedTuple):
 
 
 def axis_around(values: Iterable[float], start: float, end: float, room: float = 0.06) -> Axis:
-    """Return the axis that shows these values with some room on both sides."""
+    """Return an axis that shows all values, with a margin on both sides; `room`: the margin as a share of the values' range."""
     found = list(values)
     low, high = min(found), max(found)
     pad = (high - low) * room or max(abs(high) * 0.1, 0.5)
@@ -74,9 +74,9 @@ def axis_around(values: Iterable[float], start: float, end: float, room: float =
 def axis_that_decides(
     values: Iterable[float], deciding: Iterable[float], start: float, end: float
 ) -> tuple[Axis, list[float]]:
-    """Return an axis on which the distance between the `deciding` values is seen, and the ends of the values that it cuts off.
+    """Return an axis on which the `deciding` values are distinguishable, and the least and greatest value if the axis cuts them off.
 
-    It shows all values, unless they reach so far that the deciding ones would lie on each other.
+    The axis shows all values, unless their range is so wide that the deciding values would be drawn on top of each other.
     """
     found, core = list(values), list(deciding)
     whole = axis_around([*found, *core], start, end)
@@ -90,6 +90,6 @@ def axis_that_decides(
 
 
 def round_step(value: float) -> float:
-    """Return the least 1, 2 or 5 times a power of ten that is not less."""
+    """Return the least number that is 1, 2 or 5 times a power of ten and not less than `value`."""
     power = 10.0 ** math.floor(math.log10(value)) if value > 0 else 1.0
     return next(k * power for k in (1, 2, 5, 10) if k * power >= value * (1 - 1e-9))

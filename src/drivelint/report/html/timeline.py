@@ -1,6 +1,6 @@
 """The timeline of one ego in one drive: a row per rule and profile with the judged times and the findings.
 
-Places along the time axis are percentages, so that the drawing fits any width without losing the shape of its marks.
+Positions on the time axis are percentages, so that the drawing fits any width without distorting its marks.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ if TYPE_CHECKING:
     from drivelint.result.text import Row
 
 _ORDER: Final = ("fail", "error", "unknown", "pass", "not_applicable")
-_LAYERS: Final = ("pass", "unknown", "error", "fail")  # what matters most is drawn last
+_LAYERS: Final = ("pass", "unknown", "error", "fail")  # the most important verdict is drawn last
 _TICKS: Final = (1, 2, 5, 10, 20, 30, 60, 120, 300, 600, 1200, 1800, 3600)
 _MOST_TICKS: Final = 9
-_THIN: Final = 0.35  # percent: a shorter stretch is drawn as a mark
+_THIN: Final = 0.35  # percent: a shorter period is drawn as a mark
 
 
 class TimelineRow(NamedTuple):
     """One row of a timeline: a rule and profile, its worst verdict, and its bars.
 
-    `bands`: judged stretches, or moments (`w` empty); `marks`: findings, with their anchors, and near misses.
+    `bands`: judged periods, or moments (width `w` is empty); `marks`: findings, with their links, and near misses.
     """
 
     rule_id: str
@@ -42,16 +42,16 @@ class TimelineRow(NamedTuple):
 
 
 class FoldedRules(NamedTuple):
-    """Rules without anything to draw that share one reason: not applicable, or something is missing."""
+    """Rules without bars that share one reason: they are not applicable, or data are missing."""
 
     verdict: str
     kind: tuple[str, ...]
     reasons: dict[tuple[str, str], set[VerdictReason]]
-    """The title of a rule and the link to it -> why, as it is given."""
+    """The reasons of each rule, by its title and the link to it."""
 
     @property
     def rules(self) -> list[tuple[str, str]]:
-        """The rules, in the order of their ids."""
+        """The titles and links of the rules, in the order of their links."""
         return sorted(self.reasons, key=lambda rule: rule[1])
 
     @property
@@ -61,7 +61,7 @@ class FoldedRules(NamedTuple):
 
 
 class Timeline(NamedTuple):
-    """All rows of one ego, the axis (name and width of its grid, labels), and the rules of which there is nothing to draw."""
+    """All rows of one ego, the axis (name and width of its grid, labels), and the rules without bars."""
 
     ego_id: str
     grid: str
@@ -79,11 +79,11 @@ class TimeAxis(NamedTuple):
     duration_s: float
 
     def at(self, t_ns: int) -> float:
-        """Return where a time lies, 0 to 100."""
+        """Return the position of a time, from 0 to 100."""
         return min(max((t_ns - self.start_ns) / 1e7 / self.duration_s, 0.0), 100.0)
 
     def tick_step_s(self) -> int:
-        """Return the time from one tick to the next."""
+        """Return the time between two ticks in seconds."""
         return next((s for s in _TICKS if self.duration_s / s <= _MOST_TICKS), _TICKS[-1])
 
     def ticks(self) -> list[tuple[str, str]]:
@@ -95,9 +95,9 @@ class TimeAxis(NamedTuple):
 def timelines(
     drive: Row, verdicts: Iterable[Row], findings: Sequence[Row], rules: Mapping[str, Row], anchors: Mapping[str, str]
 ) -> list[Timeline]:
-    """Return a timeline for every ego of one drive, in the order of the verdicts.
+    """Return a timeline for each ego of one drive, in the order of the verdicts.
 
-    `anchors`: the findings that are on the page, to link to, and what each is found by besides ('' for nothing).
+    `anchors`: the anchors of the findings on the page, each with its key for the page's filter by gate status ('' without a gate).
     """
     clock = TimeAxis(drive["t_start_ns"] or 0, max(drive["duration_s"] or 0.0, 1e-3))
     found = group_rows(findings, lambda row: row["ego_id"])
@@ -151,7 +151,7 @@ def empty_timeline(ego_id: str) -> Timeline:
 
 
 def separate_shared_rules(ego_timelines: Sequence[Timeline]) -> tuple[list[FoldedRules], list[Timeline]]:
-    """Return the folded rules that all egos share, and the ego_timelines without them."""
+    """Return the folded rules that all egos share, and the timelines without these rules."""
     common = {(f.verdict, f.kind): f.reasons for f in ego_timelines[0].folded} if ego_timelines else {}
     for t in ego_timelines[1:]:
         mine = {(f.verdict, f.kind): f.reasons for f in t.folded}
@@ -172,12 +172,12 @@ def separate_shared_rules(ego_timelines: Sequence[Timeline]) -> tuple[list[Folde
 
 
 def _is_missing(row: Row) -> bool:
-    """Whether it is unknown for the whole drive, because a signal is missing."""
+    """Return whether a verdict is unknown for the whole drive because data are missing that could be provided."""
     return bool(row["verdict"] == "unknown" and row["t_start_ns"] is None and can_be_provided(row["reason_code"]))
 
 
 def _bands(stretches: Sequence[Row], clock: TimeAxis) -> list[dict[str, str]]:
-    """Return the judged stretches by verdict; stretches of one verdict that touch are one (many objects, one rule)."""
+    """Return the judged periods as bands by verdict; touching periods of one verdict become one band."""
     bands = []
     for verdict in _LAYERS:
         spans: list[tuple[float, float, set[VerdictReason]]] = []
@@ -194,7 +194,10 @@ def _bands(stretches: Sequence[Row], clock: TimeAxis) -> list[dict[str, str]]:
 
 
 def _span(row: Row, clock: TimeAxis) -> tuple[float, float]:
-    """Return the judged stretch; where the verdict names none, it is about the whole drive."""
+    """Return start and end of the judged period in percent of the drive.
+
+    Without a period, both are the reference time; without that, they are 0 and 100.
+    """
     if row["t_start_ns"] is None:
         return (0.0, 100.0) if row["t_ref_ns"] is None else (clock.at(row["t_ref_ns"]),) * 2
     return clock.at(row["t_start_ns"]), clock.at(row["t_end_ns"])

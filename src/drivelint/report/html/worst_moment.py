@@ -1,4 +1,4 @@
-"""The worst moment of a result, which the page shows first: how bad, how sure, the picture, the strips, and where the evidence is."""
+"""The worst moment of a result, which the page shows first: the finding, its certainty, the plan view, charts and evidence files."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _ALSO: Final = 4
 
 
 class Evidence(NamedTuple):
-    """What was recorded around the findings: scenes and their plan views by moment, courses by finding."""
+    """The recordings around the findings: scenes and their plan views by moment, rows of the table `course` by finding."""
 
     scenes: Mapping[Key, Row]
     pictures: Mapping[Key, Mapping[str, Any]]
@@ -35,10 +35,10 @@ class Evidence(NamedTuple):
 def worst_moment(
     lines: Sequence[FindingLine], evidence: Evidence, drives: Mapping[str, Row], folder: Path | None
 ) -> dict[str, Any] | None:
-    """Return the worst moment with everything that the page shows of it; None: there is none.
+    """Return the worst moment with everything that the page shows about it; None if `lines` is empty.
 
-    `lines`: sorted worst first, findings before near misses. What a baseline or a waiver lets through is only shown if all is let through.
-    `is_new`: others are worse and let through; `let_through`: so is this one.
+    `lines`: sorted worst first, findings before near misses. A finding that the gate accepts (baseline or waiver) is chosen only if
+    the gate accepts all. `is_new`: worse findings exist, but the gate accepts them; `let_through`: the gate accepts this finding too.
     """
     if not lines:
         return None
@@ -73,13 +73,13 @@ def worst_moment(
 
 
 def finding_key(row: Row) -> tuple[Any, ...]:
-    """Return the key of the finding or near miss that a row of the table `course` belongs to."""
+    """Return the key of a finding or near miss; its row of the table `course` has the same key."""
     told = (row[name] for name in ("drive_id", "ego_id", "rule_id", "profile", "object_id", "occurrence"))
     return (row.get("finding_id"), *told)
 
 
 def _name(row: Row) -> str:
-    """Return the name by which `explain` knows a finding or near miss."""
+    """Return the argument that the command `explain` accepts for a finding or near miss."""
     return row.get("finding_id") or f"{row['rule_id']}@{row['drive_id']}"
 
 
@@ -92,7 +92,7 @@ def _commands(row: Row, folder: Path | None) -> list[list[str]]:
 
 
 def _files(row: Row, folder: Path | None) -> list[tuple[str, str]]:
-    """Return the files beside the page about a finding: words and link."""
+    """Return the files beside the page that are about a finding, each as description and link."""
     if folder is None:
         return []
     beside = [("log with the verdicts in it, for a viewer", f"annotated/{row['drive_id']}.mcap")]
