@@ -1,1 +1,1 @@
-"""Doubts motion that no road user makes, and tracks that are not separate bodies."""
+"""Finds motion that is impossible for a road user, and tracks that are not separate bodies, and reports both as doubts."""
