@@ -1,11 +1,11 @@
-"""Finds the times at which a log continues without its ego, adds ego states without values there, and reports their total duration.
+"""Finds the times at which a log continues without its ego, adds ego states without values there, and reports their duration.
 
 The recorder's own ego is the vehicle that carries the recorder. It must have states from the log's first frame to its last. The host of
-OSI, the odometry of ROS, the ego flag of a table, or a mapping names it. An ego that the user chooses with --ego among observed vehicles
-must have states from the begin of its track to its end, as must each ego of `--ego all`.
+OSI, the odometry of ROS, the ego flag of a table, or a mapping names it. An ego that the user chooses with --ego, or each of `--ego all`,
+must have states from the start of its track to its end.
 
-If the ego has no position at a frame, it gets a state without values there: rules are judged at that frame, and are unknown. Times
-without frames get no states: no rule is judged there.
+If the ego has no position at a frame, it gets a state without values: rules are judged there, and are unknown. Times without frames get
+no states: no rule is judged there.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import Recording
 
 EGO_CHOSEN: Final = "ego_chosen"
-"""The id of the check (information only) for an ego that the user chose. A converted log keeps the finding, because its ego flag alone
-looks like that of the recorder's own ego."""
+"""The id of the check (information only) for an ego that the user chose. A converted log keeps the finding, to distinguish this ego from
+the recorder's own."""
 EGOS_CHOSEN: Final = "egos_chosen"
 """The id of the same check for `--ego all`; the finding's actor is the recorder's own ego, if the log has one."""
 LEAST_ABSENCE_NS: Final = 250_000_000
@@ -35,7 +35,7 @@ LEAST_ABSENCE_NS: Final = 250_000_000
 FRAMES_APART_NS: Final = 1_000_000_000
 """Frames further apart than this are not successive frames of one recording."""
 LEAST_STEP_NS: Final = 2_000_000
-"""States that are added between frames are at least this far apart, even if the ego's sampling period is shorter."""
+"""The least time between states that are added between frames."""
 ASSUMED_PERIOD_NS: Final = 100_000_000
 """The sampling period that is assumed for an ego with fewer than two states."""
 
@@ -56,7 +56,7 @@ class Absence(NamedTuple):
 
     @property
     def ends_ns(self) -> tuple[Times, Times]:
-        """Return the begins and ends of the stretches (n), limited to the log or the track."""
+        """Return the starts and ends of the stretches (n), limited to the log or the track."""
         return np.maximum(self.since_ns, self.first_ns), np.minimum(self.until_ns, self.last_ns)
 
     def stretch_of(self, t_ns: Times) -> Indices:
@@ -144,7 +144,7 @@ def frames_without_states(recording: Recording, missed: Sequence[Absence]) -> Ti
 
 
 def with_absent_states(states: States, missed: Sequence[Absence], frames_ns: Times | None) -> States:
-    """Return the states with states without values added for each ego, at the frames during its absence (sorted before and after)."""
+    """Add states without values for each ego, at the frames during its absence. The states are sorted, and so is the result."""
     ids = list(dict.fromkeys([*states.ids, *(each.ego_id for each in missed)]))
     more = [_absent_states(states, ids, each, frames_ns) for each in missed]
     if not any(map(len, more)):

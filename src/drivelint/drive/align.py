@@ -2,7 +2,7 @@
 
 Every rule needs the position of every actor at each step of the ego. Between two samples, positions are interpolated linearly (at 10 Hz
 and 5 m/s2 this is 6 mm off). An object has no state before its first sample, after its last one, or in a hole of its track. There is one
-exception: if its track begins or ends within one sampling period of the log's begin or end, it is extrapolated to there by its velocity.
+exception: if its track starts or ends within one sampling period of the log's start or end, it is extrapolated to there by its velocity.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 LONGEST_PERIOD_NS: Final = 250_000_000
 """Objects with a longer sampling period are not aligned: at 250 ms, interpolating a braking car is already 8 cm off."""
 DIFFERENT_RATE_FACTOR: Final = 1.5
-"""A track has a sampling rate of its own if its period is longer than the ego's by this factor; below it, single samples are missing."""
+"""Above this ratio of a track's sampling period to the ego's, the track has another rate; below it, only single samples are missing."""
 COVERED_SHARE: Final = 0.75
 """A track that has samples at this share of the ego's steps is not interpolated."""
 _PLACE_AND_VELOCITY: Final = (("x_m", "vx_mps"), ("y_m", "vy_mps"))

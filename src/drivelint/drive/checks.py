@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 
 VELOCITY_MISMATCH_MPS = 1.0
 VELOCITY_MISMATCH_SHARE = 0.15
-"""The recorded velocity may differ from the step in position by 1 m/s + 15 %. Rounding to millimetres at 20 Hz causes 0.03 m/s, hard
-braking within a step (10 m/s2, 0.1 s) 0.5 m/s. Reading km/h as m/s, or a flipped axis, causes a difference of half or more."""
+"""Velocity may differ from the step in position by 1 m/s + 15 %. Rounding to millimetres at 20 Hz causes 0.03 m/s, hard braking within a
+step (10 m/s2, 0.1 s) 0.5 m/s. Reading km/h as m/s, or a flipped axis, causes half of the speed or more."""
 YAW_MISMATCH_RAD = np.deg2rad(30.0)
 YAW_CHECK_LEAST_MPS = 3.0
-"""Above 3 m/s, a heading may differ from the direction of motion by 30 degrees; slip angles of a car stay below about 10 degrees. Below
-3 m/s, reversing and rounding make the direction of motion uncertain."""
+"""Above 3 m/s, the heading may differ from the direction of motion by 30 degrees; slip angles of a car are below about 10 degrees. Below
+3 m/s, the direction is not certain enough."""
 REVERSING_MPS = 8.0
 REVERSING_RAD = np.deg2rad(150.0)
 """A vehicle reverses if it is slower than 8 m/s (29 km/h), its heading is off the motion by more than 150 degrees, and it also drives
@@ -214,7 +214,7 @@ def _yaw(states: States, actors: Actors) -> list[QualityFinding]:
     wrong = moving & (off > YAW_MISMATCH_RAD)
     backwards = wrong & (off > REVERSING_RAD) & (speed < REVERSING_MPS)
     forwards = np.bincount(states.actor[moving & ~wrong], minlength=len(states.ids)) > 0
-    # an actor that only drives backwards is accepted if other actors drive forwards, or if no other actor drives backwards only
+    # an actor that only drives backwards is accepted if others drive forwards, or if no other actor only drives backwards
     fast = np.bincount(states.actor[wrong & ~backwards], minlength=len(states.ids)) > 0
     only = (np.bincount(states.actor[backwards], minlength=len(states.ids)) > 0) & ~forwards & ~fast
     reverses = forwards | only if forwards.any() or only.sum() == 1 else forwards

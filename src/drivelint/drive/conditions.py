@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 DRIVE_CONDITION_VALUES: Final = {name: words(name) for name in words("condition")}
-"""Condition of a drive -> its words: the conditions of `CONDITION_VALUES`, and `engaged`: whether the automated driver drives."""
+"""Condition of a drive -> its words; includes `engaged`: whether the automated driver drives."""
 CONDITION_VALUES: Final = {name: known for name, known in DRIVE_CONDITION_VALUES.items() if name != "engaged"}
 """Condition that may restrict a rule -> its words; for `nation`, `value_problem` also accepts other country codes."""
 CONDITION_TEXTS: Final = {name: vocabularies()[name].says for name in DRIVE_CONDITION_VALUES}

@@ -44,15 +44,15 @@ DIRECTION_LEAST_M: Final = 0.4
 DIRECTION_LEAST_SHARE: Final = 0.5
 """A motion has a direction if, within one second around it, the actor moves more than 0.4 m and half the distance at its speed."""
 REVERSING_MPS: Final = 8.0
-"""No vehicle reverses faster than this (29 km/h),"""
+"""The highest speed of reversing (29 km/h) without the evidence that `REVERSE_START_MPS` describes."""
 FAST_REVERSING_MPS: Final = 20.0
 REVERSE_START_MPS: Final = 3.0
-"""unless the log shows that it stops and sets off backwards: slower than 3 m/s at the first or last sample of the stretch. Then the limit
-is 20 m/s (72 km/h)."""
+"""Reversing may reach 20 m/s (72 km/h) if the log also shows forward motion, and the stretch of reversing starts or ends slower than
+3 m/s."""
 BACKWARDS_RAD: Final = np.deg2rad(150.0)
 SIDEWAYS_RAD: Final = np.deg2rad(30.0)
 SIDEWAYS_MPS: Final = 3.0
-"""A heading that is this far off the motion, above this speed, is wrong or that of a slide: slip angles of a car stay below 10 degrees."""
+"""Above this speed, a heading more than 30 degrees off the motion is wrong or a slide; slip angles of a car are below 10 degrees."""
 HEADING_FLIP_RAD: Final = np.deg2rad(90.0)
 SPIN_RAD: Final = np.deg2rad(45.0)
 """No heading changes by more than 90 degrees between two samples. In a slide, the limit is 45 degrees: 450 degrees/s at 10 Hz."""
@@ -63,8 +63,8 @@ STRETCH_S: Final = 0.5
 """The mean velocity over this time, or over two steps if that is longer, is compared with the displacement."""
 STRETCH_MISMATCH_MPS: Final = 0.8
 STRETCH_MISMATCH_SHARE: Final = 0.05
-"""The tolerated difference. The velocity of a turning vehicle's rear axle is 0.7 m/s off that of its centre (1.4 m, 0.5 rad/s), a
-speedometer up to 5 %, a filter with a delay 0.8 m/s."""
+"""The tolerated difference. The velocity of a rear axle is up to 0.7 m/s off that of the centre (1.4 m, 0.5 rad/s), a speedometer 5 %, a
+delayed filter 0.8 m/s."""
 SIGMAS: Final = 4.0
 """The tolerance also includes this many standard deviations of the position noise."""
 SINGLE_STEP_SHARE: Final = 0.75
@@ -146,8 +146,8 @@ def _upon_others(
 def _frozen(states: States, step: Steps) -> Mask:
     """Return the mask of the samples at which positions and velocities contradict each other.
 
-    They do if they differ in both steps beside the sample, or in one step by far. They also do if their displacements over half a second
-    before and after the sample differ, without counting such steps.
+    They do so if they differ in both steps beside the sample, or in one step by far, or (apart from such steps) over half a second before
+    and after it.
     """
     n = len(states)
     usable = known_motion(states, step)
@@ -276,11 +276,11 @@ def _leads(states: States, rows: Mask) -> Mask:
 def _headings(states: States, step: Steps, actors: Actors) -> tuple[Mask, Mask]:
     """Return the mask of samples with a heading opposite to the motion, and the mask of samples with a heading across it.
 
-    A stretch of backward motion is real reversing if it begins and ends at a standstill or at the end of the track, and the heading does
-    not flip there. It must also be slower than `REVERSING_MPS`. The limit is `FAST_REVERSING_MPS` if the vehicle drives forwards with that
-    heading before or after, and the stretch begins or ends slowly on that side.
+    A stretch of backward motion is real reversing if no forward motion adjoins it, the heading does not flip at its ends, and it is slower
+    than `REVERSING_MPS`. The limit is `FAST_REVERSING_MPS` if the vehicle drives forwards with that heading before or after, and the stretch
+    starts or ends slowly on that side.
 
-    A stretch with the heading across the motion is a real slide if forward motion adjoins it and the heading changes no faster than
+    A stretch with the heading across the motion is a real slide if forward motion adjoins it, and the heading changes by at most
     `SPIN_RAD` per sample.
     """
     n, yaw, (vx, vy) = len(states), states.numbers["yaw_rad"], states.velocity
@@ -299,7 +299,7 @@ def _headings(states: States, step: Steps, actors: Actors) -> tuple[Mask, Mask]:
     forwards = moving & ~backwards & ~across
     turned, sideways = nothing, nothing.copy()
     row = np.arange(n)
-    # for each row: the last forward row before it, the first forward row after it, and the number of heading flips until it
+    # for each row: the last forward row before it, the first one after it, and the number of heading flips until it
     went = np.maximum.accumulate(np.where(forwards, row, -1))
     goes = np.minimum.accumulate(np.where(forwards, row, n)[::-1])[::-1]
     turns_until = np.r_[0, np.cumsum(turn > HEADING_FLIP_RAD)]

@@ -21,7 +21,7 @@ EVENTS: Final[dict[str, dict[str, str]]] = {
     **{mode: {"value": "on, off", "says": says} for mode, says in ON_OFF_EVENTS.items()},
     **_FACTS["other"],
 }
-"""Event -> its possible values (`value`) and its meaning (`says`). Events outside this table are kept, but no rule reads them."""
+"""Event -> its possible values (`value`) and meaning (`says`). Other events are kept, but no rule reads them."""
 
 
 def with_headlight_events(events: pa.Table | None, states: States) -> pa.Table | None:

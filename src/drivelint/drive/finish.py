@@ -73,7 +73,7 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
         states, recording.ego_ids if ego_option is None else [ego_option], assumed=assumed
     )
     findings += jumped
-    # velocities that a mapping assumes are kept; if most velocities of a mapped table are wrong, the user must correct its mapping
+    # assumed velocities are kept; if most velocities of a mapped table are wrong, the user must correct its mapping
     most_replaced = 0.0 if assumed else 0.5 if recording.strict_units else 1.0
     findings += complete_velocities(states, step, most_replaced_share=most_replaced)
     derived = any(f.check_id == "velocity_derived" and f.n == len(states) for f in findings)
@@ -212,7 +212,7 @@ def _refuse_no_drive(path: Path, states: States) -> None:
 
 
 def _refuse_wrong_units(path: Path, recording: Recording, findings: list[QualityFinding]) -> None:
-    """Raise `TraceError` if positions, headings and velocities do not have the same units and frame: verdicts would be meaningless."""
+    """Raise `TraceError` if positions, headings and velocities do not have the same units and frame."""
     remedy = (
         "correct the mapping's units or frame"
         if recording.strict_units

@@ -1,7 +1,7 @@
 """Makes states around a position jump unknown; a track that continues elsewhere becomes another actor.
 
-It also leaves out actors that a simulator removed from the scene but still writes: CARLA puts destroyed actors at the origin until the
-log ends. Two bodies are never at the same position, so the track of such an actor ends where it jumps to the others.
+It also ends the tracks of actors that a simulator removed but still writes, all at one position: CARLA leaves destroyed actors at the
+origin. Two bodies are never at the same position.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ OUTLIER_S: Final = 2.0
 LARGEST_CORRECTION_M: Final = 10.0
 LARGEST_SIDE_CORRECTION_M: Final = 1.5
 CORRECTION_SPEED_CHANGE_MPS: Final = 3.0
-"""A jump is a correction of the track if it is no longer than this ahead and to the side (so it does not reach another lane), and the
-velocity changes by no more than this, plus what `JUMP_MPS2` adds over the gap."""
+"""A jump only corrects the track if it is at most 10 m along the motion and 1.5 m to the side (not to another lane), and the velocity
+changes by at most 3 m/s + `JUMP_MPS2` times the gap."""
 MOVING_MPS: Final = 1.0
 """Below this speed the direction of motion is noise, and the heading is used."""
 MOTION_COLUMNS: Final = ("vx_mps", "vy_mps", "ax_mps2", "ay_mps2")
@@ -113,7 +113,7 @@ def jumps(states: States, step: Steps) -> Mask:
 
 
 def _around_jumps(states: States, jump: Mask) -> tuple[Mask, NDArray[np.int32]]:
-    """Return the mask of the samples that are unknown because of jumps, and for each sample the number of its piece of the track."""
+    """Return the mask of the samples that are unknown because of jumps, and each sample's number of its piece of the track."""
     n = len(states)
     unknown, pieces = np.zeros(n, np.bool_), np.zeros(n, np.int32)
     unknown[:-1] |= jump
@@ -136,10 +136,10 @@ def _around_jumps(states: States, jump: Mask) -> tuple[Mask, NDArray[np.int32]]:
 
 
 def _goes_on(states: States, last: int, first: int) -> bool:
-    """Return whether the piece that ends at row `last` and the piece that begins at row `first` can be one track.
+    """Return whether the piece that ends at row `last` and the piece that starts at row `first` can be one track.
 
-    They can if an actor at these velocities could cover the distance. They also can if the position was only corrected, as map matching
-    and filters do, and the velocity is nearly unchanged.
+    They can if an actor at these velocities can cover the distance, or if the position was only corrected, as map matching and filters
+    do, and the velocity is nearly unchanged.
     """
     place, t_s = states.place, states.t_ns * 1e-9
     gap = t_s[first] - t_s[last]

@@ -27,9 +27,9 @@ _BESIDE: Final = 50
 def times_of_lost_rows(t_ns: Times, timed: Mask, lost_rows: Mask, cause: str) -> list[LostTime]:
     """Return the stretches of time in which unusable rows (`lost_rows`, in the order of the file) were recorded.
 
-    A row that has a time (`timed`) gives this time; a row without one gives the stretch between the timed rows beside it. If the times in
-    the file are not ascending, a row without a time gives the whole drive. Stretches with no other row's time between them are merged.
-    `cause`: the text of the finding, to which the number of rows is added.
+    A row with a time (`timed`) gives this time; a row without one gives the stretch between the timed rows beside it, or the whole drive if
+    the times in the file are not ascending. Stretches without another row's time between them are merged. `cause`: the text of the finding,
+    to which the number of rows is added.
     """
     rows, timed_rows = np.flatnonzero(lost_rows), np.flatnonzero(timed)
     if not len(rows):
@@ -77,7 +77,7 @@ def lost_time_findings(lost_times: Sequence[LostTime], frames: FrameTimes | None
 
 
 def _words(since: int | None, until: int | None, start: int) -> str:
-    """Return a text that gives the begin and end of a stretch, in seconds since the start of the log."""
+    """Return the start and end of a stretch as text, in seconds since the start of the log."""
     if since is not None and until is not None and until - since <= 2:
         return f"at {(since + 1 - start) / 1e9:.3f} s"
     begin = "from the beginning" if since is None else f"from {_seconds(since - start)}"

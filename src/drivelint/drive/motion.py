@@ -21,13 +21,13 @@ MISMATCH_SHARE = 0.15
 (see `checks.VELOCITY_MISMATCH_MPS`)."""
 MISMATCH_WINDOW_NS = 1_000_000_000
 END_ZERO_LEAST_MPS = 1.0
-"""A velocity of 0 in the first or last sample of a track is not a measurement if the step of the positions beside it and the velocity
-of the neighbouring sample are faster than this."""
+"""A velocity of 0 in the first or last sample of a track is not real if the neighbouring velocity, and the step of the positions, are
+faster than this."""
 BIAS_SHARE = 0.05
 BIAS_LEAST_M = 50.0
 BIAS_LEAST_MPS = 2.0
-"""Over 50 m, the ratio of integrated velocities to positions is known to about 1 %. A ratio up to 5 % off is accepted: speedometers and
-velocities of an axle in a bend are that inexact."""
+"""Over 50 m, the ratio of velocities to the motion of the positions is known to about 1 %. Up to 5 % is accepted, as speedometers, and
+velocities of an axle in a bend, are that inexact."""
 LEAST_MISMATCHES = 20
 """At least this many one-second windows must mismatch; single steps are too noisy to compare."""
 

@@ -1,8 +1,8 @@
 """Finds single samples off their track, and small steps of a track, that no motion explains.
 
-`jumps` recognises jumps of metres by their length. A step back by half a metre in one sample is also an error, from which a wrong velocity
-would be derived. This module recognises it by the samples around it and by the noise of the positions. It also finds jolts that most
-actors have at the same moment, which are errors of the log.
+`jumps` recognises jumps of metres by their length. A step back by half a metre would also cause a wrong derived velocity. This module
+recognises it by the samples around it and by the noise of the positions. It also finds jolts that most actors have at the same moment,
+which are errors of the log.
 """
 
 from __future__ import annotations
@@ -26,15 +26,14 @@ if TYPE_CHECKING:
 TYRE_MPS2: Final = 12.0
 """No vehicle changes its velocity faster than this and back again (see `ukhc.contact-signature`); an impact does not change it back."""
 SAME_SPEED_SHARE: Final = 0.25
-"""For an error of the positions, the velocities before and after a step differ by at most this share of the apparent velocity change
-during the step."""
+"""At a false step, the velocities before and after it differ by at most this share of the velocity change that the step seems to have."""
 COMMON_LEAST: Final = 4
 """If at least this many moving actors change speed by the same share at one moment, the log's times or positions are wrong."""
 ALIKE_SHARE: Final = 0.8
 COMMON_CHANGE: Final = 0.12
 COMMON_SPREAD: Final = 0.08
-"""A common jolt: the median of the speeds, each relative to the actor's speed `AROUND_NS` before and after, is off 1 by more than
-`COMMON_CHANGE`, and at least `ALIKE_SHARE` of the actors are within `COMMON_SPREAD` of the median."""
+"""A common jolt: the actors' speeds, relative to those `AROUND_NS` before and after, have a median that is off 1 by more than
+`COMMON_CHANGE`, and at least `ALIKE_SHARE` of them are within `COMMON_SPREAD` of it."""
 AROUND_NS: Final = 300_000_000
 COMMON_NS: Final = 500_000_000
 """Values derived from velocities, such as accelerations and jerks, are also wrong within this time before and after a common jolt."""
@@ -50,14 +49,14 @@ LEAST_STEP_RECORDED_VELOCITY_M: Final = 0.4
 PIECE_ROWS = 1 << 18
 """The number of samples that are processed together, to limit memory."""
 _REACH: Final = 8
-"""The number of samples by which such a piece is extended on each side; deciding about a sample needs fewer neighbours."""
+"""The number of samples by which such a piece is extended on each side, more than the neighbours that a decision needs."""
 
 
 def outlier_samples(states: States, step: Steps) -> Mask:
     """Return the mask of the samples (n, in order) that are off their track or at a false step of it.
 
-    A sample is off its track if the two samples before and the two after form a possible motion without it, and it is too far from it.
-    Without a recorded velocity, both ends of a step are outliers if the step differs equally from the motion before and after it.
+    A sample is off its track if the two samples before and the two after form a possible motion without it, and it is too far from that
+    motion. Without a recorded velocity, both ends of a step count that differs equally from the motion before and after it.
     """
     n = len(states)
     no_samples = np.zeros(n, np.bool_)
@@ -101,7 +100,7 @@ def _has_recorded_velocity(states: States, place: Floats) -> Mask:
 def _beside(place: Floats, moves: _Moves, has_velocity: Mask, sigma: Floats, error: Floats) -> Mask:
     """Return the mask of the samples that are off the path of the two samples before and the two after them.
 
-    `sigma`, `error` (n): the position noise in metres, as a limit for the offset and as a tolerance for the motion without the sample.
+    `sigma` (n): the noise (m) that the offset must exceed. `error` (n): the noise (m) that the motion without the sample may have.
     """
     n = place.shape[1]
     outliers = np.zeros(n, np.bool_)
@@ -186,7 +185,7 @@ def common_jolts(states: States, step: Steps) -> Mask:
     shared = np.bincount(moment[alike], minlength=len(times)) >= ALIKE_SHARE * count
     common = (count >= COMMON_LEAST) & (abs(median - 1.0) > COMMON_CHANGE) & shared
     at = middle[common[moment] & alike]
-    # next to a dip, all speeds seem to rise: comparing with the median of a window excludes these samples
+    # beside a dip, all speeds seem to rise: the median of a window excludes these samples
     window = np.median(speed[at[:, None] + np.arange(-width, width + 1)], axis=1)
     at = at[abs(speed[at] / window - 1.0) > COMMON_CHANGE]
     since = states.t_ns - states.t_ns.min()

@@ -64,7 +64,8 @@ TURNED_FRAME = "turned_frame"
 """The id of the check (information only) for a left-handed log, which the mapping converts to a right-handed frame."""
 OWN_MAP_UNUSABLE = "own_map_unusable"
 NOT_IN_FOLDER = "map_not_in_folder"
-"""The id of the check for a map of the log that cannot be used: rules that need a map are then unknown, with this finding as reason."""
+"""Ids of the checks for a log's own map that is unusable, and for a log without a map in the folder. Rules that need a map are then
+unknown, with the finding as reason."""
 ASIDE_OF_LANE = "aside_of_lane"
 """The id of the check for a drive whose ego fits the map, but is far from the middle of its lane."""
 EGO_ABSENT = "ego_absent"
@@ -76,7 +77,7 @@ FOUND_ANEW = frozenset({
     "same_body", "size_implausible", "teleport", "too_fast", "track_gap", "track_parted", "velocity_derived",
     "velocity_end_derived", "velocity_filtered", "velocity_jolt", "velocity_mismatch", "velocity_unknown", "yaw_mismatch",
 })  # fmt: skip
-"""Ids of the checks of the states. A log that is converted `as_recorded` does not need their findings: reading it finds them again."""
+"""Ids of the checks of the states. Logs converted `as_recorded` do not keep their findings: reading finds them again."""
 LOSS_CHECKS = ("dropped_row", "malformed_row")
 """Ids of checks whose findings, whatever their severity, mean that a part of the log could not be read and is not judged.
 
@@ -101,8 +102,7 @@ class IngestOptions:
     in_sight: bool = False
     """Whether actors that are not recorded for a while are assumed to be out of the recorder's line of sight."""
     as_recorded: bool = False
-    """Keep the states as the log has them: no doubtful value is made unknown, and no value is derived. Reading the written file checks
-    them again."""
+    """Keep the states as the log has them: no doubtful value is made unknown, and no value is derived."""
     map: Path | None = None
     """The map that the user gives: a log in degrees needs the map's projection."""
 
@@ -153,8 +153,8 @@ class Trace:
 
     `data_log` has one row, with a NULL `environment_id`. Every table is sorted, `actor_state` by actor_id and t_ns. `embedded_map`: the
     OpenDRIVE text that the log contains. `map_offset` (metres) is added to the map's coordinates. `frame_times` is None for a log with
-    one clock. `geo_reference`: the PROJ string of a projection. `geo_offset`: the shift (x and y in metres) and the rotation before it
-    (radians) that turn the log's coordinates into projected ones. `nobody_ns`: times of frames without actors while the ego is absent.
+    one clock. `geo_reference`: the PROJ string of a projection. `geo_offset` converts the log's coordinates into projected ones: x and y in
+    metres, after a rotation (radians). `nobody_ns`: times of frames without actors while the ego is absent.
     `in_log_order`: the states are those of the log (`IngestOptions.as_recorded`) in its own order, because its clock restarts.
     """
 
@@ -172,7 +172,7 @@ class Trace:
 
 
 class Doubt(NamedTuple):
-    """One row of the table `doubt`, without the drive and the code. The code is the check id of the finding that has the doubt."""
+    """One row of the table `doubt`, without the drive and the code (the check id of the finding that has the doubt)."""
 
     actor_id: str
     quantity: Quantity
@@ -320,7 +320,7 @@ class States:
 
 
 class LostTime(NamedTuple):
-    """A span of log time from which messages may be missing, and the cause. None: from the log's beginning, or until its end."""
+    """A span of log time from which messages may be missing, and the cause. None: from the log's start, or until its end."""
 
     since_ns: int | None
     until_ns: int | None
@@ -332,11 +332,10 @@ class Recording:
     """The output of a reader: rows in the log's own order, neither sorted nor checked.
 
     `actors`: an Arrow table with the columns of `actor`, if the log has a separate actor table. `ego_ids`: the egos that the log or the
-    mapping names. `lost_times`: where data is missing because the log is damaged. `conditions`: those that the log states (condition ->
-    word). `strict_units`: units and frame come from a mapping that the user can correct. `geo_reference` and `geo_offset`: as in `Trace`.
-    `frames_ns`: the times of all frames, also of those without actors; None: the times of the states. `names_indicator`: whether a
-    mapping names the column of the indicators. `ends_apart_ns`: by how much the begins, or the ends, of parallel parts of the log, such
-    as topics, may differ.
+    mapping names. `lost_times`: spans that a damaged log lacks. `conditions`: condition -> word, as the log states them. `strict_units`:
+    units and frame come from a mapping that the user can correct. `geo_reference`, `geo_offset`: as in `Trace`. `frames_ns`: the times of
+    all frames, also of those without actors; None: the times of the states. `names_indicator`: whether a mapping names the column of the
+    indicators. `ends_apart_ns`: by how much the starts, or the ends, of parallel topics may differ.
     """
 
     format: str

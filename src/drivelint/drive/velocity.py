@@ -1,9 +1,9 @@
 """Derives velocities from positions by a filter whose width depends on the position noise and whose error is known.
 
-The velocity at a state is the least-squares slope over the positions within a half width before and after it. The half width is the
-smallest of `HALF_WIDTHS_S` for which three standard errors are at most `LARGEST_ERROR_MPS`. Exact positions (from a simulator) need
-central differences only; noise of 5 cm at 10 Hz needs half a second. If one second is not enough, the velocity is unknown. An actor
-that moves no more than its noise over two seconds stands still: its velocity is zero.
+The velocity at a state is the least-squares slope of the positions within a half width before and after it: the smallest of
+`HALF_WIDTHS_S` for which three standard errors are at most `LARGEST_ERROR_MPS`. Exact positions (from a simulator) need central
+differences only; noise of 5 cm at 10 Hz needs half a second. If one second is not enough, the velocity is unknown. An actor that moves no
+more than its noise over two seconds stands still.
 """
 
 from __future__ import annotations

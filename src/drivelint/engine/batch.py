@@ -35,7 +35,7 @@ LARGE_STATES: Final = 1_000_000
 ONE_CORE_STATES: Final = 100_000
 """Up to this number of states, several cores do not make a statement faster, but cost a fifth more CPU time."""
 PAIRS_PER_PART: Final = 1_500_000
-"""The most pairs (an ego's step and an actor present then) in a part of a drive of many egos: the row count of the largest tables."""
+"""The most pairs (an ego's step and an actor present then) in a part of a drive, which is the row count of the largest tables."""
 READ_AHEAD: Final = 4
 FIRST_BATCH_DRIVES: Final = 16
 FIRST_BATCH_STATES: Final = 100_000
@@ -128,8 +128,8 @@ def _wait_for(path: Path, future: Future[Trace], library: MapLibrary) -> Drive |
 def cut_batches(drives: Iterable[Drive | RefusedLog]) -> Iterator[list[Drive | RefusedLog]]:
     """Yield batches of at most `BATCH_STATES` states or pairs; a longer drive is a batch of its own.
 
-    The first batch is small, and the next ones grow, so that an interrupted run has some results. In a long run this causes two or three
-    additional batches, each of which costs as much as about twenty short drives.
+    The first batch is small, and the next ones grow, so that an interrupted run has some results. This costs a long run two or three more
+    batches, each as much as about twenty short drives.
     """
     batch: list[Drive | RefusedLog] = []
     states, most_drives, most_states = 0, FIRST_BATCH_DRIVES, FIRST_BATCH_STATES

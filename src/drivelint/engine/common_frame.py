@@ -35,9 +35,9 @@ FAR_M: Final = 10_000.0
 def move_into_map_frame(trace: Trace, environment: MapTables) -> Trace:
     """Return the trace in the coordinates of the map, with a finding about it.
 
-    The trace is returned unchanged if a geo reference is missing, or if `--map-offset` or `--map-origin` relates the two frames. Each
-    position is transformed; each heading, velocity and acceleration is turned by the angle between the frames at that position. Heights
-    stay as they are. Errors: `MapError` if the transformation would distort lengths or shapes.
+    The trace is returned unchanged if a geo reference is missing, or if the user gives `--map-offset` or `--map-origin`. Each position is
+    transformed; each heading, velocity and acceleration is turned by the angle between the frames there; heights stay. Errors: `MapError`
+    if the transformation would distort lengths or shapes.
     """
     log_frame, map_frame = frame_of_log(trace)[0], frame_of_map(environment)
     if not log_frame or not map_frame or _is_said_by_the_user(environment):

@@ -27,8 +27,8 @@ def chosen_selectors(
 ) -> tuple[str, ...]:
     """Return the selectors of a run: those of the user, else selectors of the stable rules of the nation's packs.
 
-    The result is empty if only the pack for all nations applies, which `select_rules` selects by default. Errors: `UsageError` for an
-    unknown condition; `RuleError`.
+    Empty: only the pack for all nations applies, which `select_rules` selects by default. Errors: `UsageError` for an unknown condition;
+    `RuleError`.
     """
     packs = () if selectors else packs_of_nation(catalogue.load_rules(rules_dirs), options, library)
     return tuple(f"{pack},status:stable" for pack in packs) if len(packs) > 1 else selectors

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
 
 WORKERS: Final = 2
 ASKED_STATES: Final = 100_000
-"""Up to this number of states, the occasion of a table (see `Derivation`) is queried first: running a statement's first part twice is
-then faster than planning the whole statement."""
+"""Up to this number of states, the occasion of a table (see `Derivation`) is queried first: running a statement's first part twice is then
+faster than planning the whole statement."""
 ONE_WORKER_STATES: Final = 1_000_000
 """From this number of states on there is one worker: a statement uses all cores, and two statements would need twice the memory."""
 
@@ -41,8 +41,8 @@ def derive(
 
     `of_the_map`: fill the tables that depend on the map only, and the geometries of the map's own tables; else the tables of the drives.
     `also`: more tables to fill. `filled_tables`: tables that already have their rows.
-    Two tables are filled at a time, each on its own connection: most are so small that DuckDB uses only one core. Do not call this inside
-    a transaction: the other connections do not see its rows.
+    Two tables are filled at a time, because most are so small that DuckDB uses only one core. Do not call this inside a transaction: the
+    other connections do not see its rows.
     Errors: `DriveLintError` naming the table, if its SELECT fails.
     """
     todo = {

@@ -53,8 +53,8 @@ class Interruption:
     def interruptible(self, con: duckdb.DuckDBPyConnection) -> Iterator[None]:
         """Allow the interruption of statements on `con` inside the block.
 
-        Errors: `InterruptedRunError` if the run was interrupted before the block or inside it, even if the block raises another error or
-        none: an interrupted rule looks like a failed one.
+        Errors: `InterruptedRunError` if the run was interrupted before the end of the block, whatever the block raised: an interrupted rule
+        looks like a failed one.
         """
         with self._lock:
             if self.requested:

@@ -24,7 +24,7 @@ class JudgingOptions(DriveInput):
     require: tuple[str, ...] = ()
     annotate: bool = True
     robustness: bool | None = None
-    """Whether copies are judged to show how robust findings are. None: only for the gravest finding per ego and rule."""
+    """Whether copies are judged to show how robust findings are. None: only for the worst finding per ego and rule."""
     memory: int | None = DEFAULT_MEMORY
     """The bytes of memory that the database uses before it spills to disk; None: 80 % of the machine's memory."""
     rule_timeout: float = DEFAULT_TIMEOUT_S

@@ -25,7 +25,7 @@ LEAST_REVERSED_EACH_WAY: Final = 5
 """A road counts as reversed if at least this many steps are against the lane in each direction: overtaking explains only one direction."""
 BESIDE_M: Final = 8.0  # the most between the centre lines of neighbouring lanes of one road, a median strip included
 FACING_COSINE: Final = 0.9
-AGREEMENT_SHARE: Final = 0.8  # an overtake drives against its lane for a while, a drive does not
+AGREEMENT_SHARE: Final = 0.8  # vehicles drive against their lane only in short overtakes
 
 
 class OneWayLanes(NamedTuple):
@@ -77,9 +77,9 @@ def compare_headings(lanes: OneWayLanes, x_m: Floats, y_m: Floats, yaw_rad: Floa
 
 
 def vote_handedness(handedness: str, headings: LaneHeadings) -> str | None:
-    """Return the side of driving ('lht' or 'rht') that the headings show; None: there are too few, or they disagree.
+    """Return the driving side (lht, rht) that the headings show; None: there are too few, or they disagree.
 
-    `handedness`: the side that the lanes assume.
+    `handedness`: the side for which the lanes' directions were made.
     """
     if len(headings.agree) < LEAST_VOTES:
         return None

@@ -109,8 +109,8 @@ class MapLibrary:
         These coordinates are tried, and the first that fit the map are used:
 
         1. the coordinates transformed by the geo references,
-        2. the coordinates as recorded, which come first if log and map have the same reference and the log has no offset: such a log mostly
-           has the coordinates of the map file, without its `<offset>`,
+        2. the coordinates as recorded (tried first if log and map have the same reference and the log has no offset, because such a log
+           mostly uses the coordinates of the map file, without its `<offset>`),
         3. for a log without a reference, projected coordinates, as SUMO's `--fcd-output.utm` writes them.
         """
         refused = None

@@ -29,8 +29,8 @@ LEAST_MEMORY: Final = 100_000_000
 class Memory:
     """The memory limit of the database `con` (`limit` in bytes, None: 80 % of the machine's memory), and how much is judged at once.
 
-    With a lower limit, parts are smaller from the start, so that fewer parts run out of memory. A part size that was halved, or a limit
-    that was lifted, stays so for the run. `note` receives a message when the limit is lifted.
+    With a lower limit, parts are smaller from the start, so that fewer run out of memory. A halved part size or a lifted limit stays so for
+    the run. `note` receives a message when the limit is lifted.
     """
 
     def __init__(
@@ -72,8 +72,8 @@ class Memory:
     def most_growth(self) -> int | None:
         """Return by how many bytes the process may grow while a rule runs.
 
-        None: the system does not report free memory, or logs are being read at the same time, so growth says nothing about the rule.
-        This limit is needed because the database counts the memory of its tables, but not that of functions on huge values.
+        None: the system does not report free memory, or logs are being read, so growth says nothing about the rule. This limit is needed
+        because the database counts the memory of its tables, but not that of functions on huge values.
         """
         free = free_bytes()
         if free is None or batch.logs_being_read():

@@ -50,11 +50,11 @@ class BatchObserver(Protocol):
 class JudgingSession:
     """Judges batches of drives in one database, which it locks. Between batches, the database contains only results and a few states.
 
-    A drive of many egos is judged in parts of a few egos, so that its tables stay small.
+    A drive of many egos is judged in parts, so that its tables stay small. Call `judge_copies` after the last batch.
     `out`: the folder of `margins_file` and the kept database. `observers`: called after each part, while its tables have their rows.
     `memory`: limits the size of parts and of the database (default: no limit). `interruption`: can abort a batch.
-    `errors`: the errors of the copies that show how robust findings are; None: no copies are judged.
-    `copies_of_all`: copies for all critical and major findings, else for the gravest. Call `judge_copies` after the last batch.
+    `errors`: of the copies that show how robust findings are; None: no copies. `copies_of_all`: copies for all critical and major
+    findings, else for the worst ones.
     `limits`: of each rule on a batch of drives; `limits_of_copies`: on a batch of copies (default: those of `RuleLimits`).
     """
 
@@ -134,8 +134,8 @@ class JudgingSession:
     def judge(self, drives: Sequence[Drive]) -> None:
         """Judge a batch of drives; if it fails, its rows are deleted.
 
-        Errors: `InterruptedRunError`; `duckdb.OutOfMemoryException` if memory is short for several drives, which may fit separately, or
-        for a single drive even with one ego at a time and all memory of the machine.
+        Errors: `InterruptedRunError`; `duckdb.OutOfMemoryException` if memory is short for several drives, or for a single drive even with
+        one ego at a time and all memory of the machine.
         """
         if not drives:
             return
@@ -171,7 +171,7 @@ class JudgingSession:
         return self._robustness.n_waiting if self._robustness else 0
 
     def n_to_copy(self) -> int:
-        """Return the number of findings for which copies are judged in the first place."""
+        """Return the number of findings for which copies are judged first."""
         return self._robustness.n_asked() if self._robustness else 0
 
     def judge_copies(self, advance: Callable[[int], None] | None = None) -> None:
@@ -233,7 +233,7 @@ class JudgingSession:
             limits=self._limits,
             release=release,
         )
-        # if a rule fails on several drives, the caller judges each drive alone, so that only the faulty drive is affected
+        # the caller then judges each drive alone, so that only the faulty drive is affected
         erred = "SELECT rule_id FROM verdict WHERE verdict = 'error' AND list_contains(?, drive_id) ORDER BY rule_id LIMIT 1"
         if len(ids) > 1 and (row := self._con.execute(erred, [list(ids)]).fetchone()):
             raise RuleError(f"{row[0]} failed on a batch of {len(ids)} drives")

@@ -58,7 +58,7 @@ class Evaluation:
     """Whether no rule is judged on another connection at the same time."""
     _n_todo: dict[int, int] = field(default_factory=dict, init=False)
     _outside: set[int] = field(default_factory=set, init=False)
-    """The numbers of the rules whose conditions hold at no step."""
+    """The numbers of the rules whose conditions are met at no step."""
     _n_subjects: int = field(default=0, init=False)
     _has_holes: bool = field(default=False, init=False)
     _check_engagement: bool = field(default=False, init=False)
@@ -135,7 +135,7 @@ class Evaluation:
                 self._take(deque(self._apart(self._pending)))
 
     def _apart(self, bindings: Sequence[Binding]) -> list[Binding]:
-        """Delete the results of these rules, and return the rules, marked to be concluded separately, so that only the faulty one fails."""
+        """Delete the results of these rules, and return the rules to judge them separately, so that only the faulty one fails."""
         again = list(bindings)
         numbers = [binding.no for binding in again]
         for table in temp_tables.OUTCOME_TABLES:
@@ -225,7 +225,7 @@ class Evaluation:
         self._may_be_double |= self._check_engagement or n_judged != steps.n
 
     def _first_pass(self, binding: Binding) -> _StepsToJudge | None:
-        """Settle the groups that can be settled without judging each step; return the remaining steps, or None if there are none."""
+        """Settle groups without judging each step; return the remaining steps, or None if there are none."""
         rule, partial = binding.rule, self._is_partial(binding)
         if rule.per_profile:
             self._execute(rule_statement("profile_set", rule), binding)

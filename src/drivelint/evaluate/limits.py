@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 DEFAULT_TIMEOUT_S: Final = 30.0
 """CPU seconds per rule and batch."""
 MOST_EXCESSES: Final = 3
-"""A rule that exceeded its limits this many times does not run again. Without this, it would run for each drive of a failed batch."""
+"""A rule that exceeded its limits this many times does not run again; else it would run for each drive of a failed batch."""
 _LOOK_S: Final = 0.1
 _MEMORY_GRACE_S: Final = 0.5
 """CPU seconds within which a rule must react to an interrupt because of its memory, unless `_MOST_EXCESS` is reached before."""

@@ -1,7 +1,7 @@
 """Builds the SQL of rules with reference points: executions, preconditions and postconditions.
 
-The first statement finds the reference points; if there are none, the rule ends. The next ones find the points to judge
-(`_reference_step`), and left-join the rows of the condition to them on keys only (`_judged`).
+The first statement finds the reference points; without any, no other statement runs. The next ones find the points to judge
+(`_reference_step`), and left-join the condition's rows to them on keys only (`_judged`).
 """
 
 from __future__ import annotations

@@ -34,7 +34,7 @@ _CREATED_TABLE = re.compile(r"^CREATE OR REPLACE TEMP (TABLE|VIEW) (\w+)", re.MU
 def create_tables(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -> tuple[dict[int, int], set[int]]:
     """Create the temporary tables of an evaluation.
 
-    Return rule number -> number of subjects to judge, and the numbers of the rules whose conditions hold at no step of these subjects.
+    Return rule number -> number of subjects to judge, and the numbers of the rules whose conditions are met at no step of these subjects.
     """
     for name in ("macros", "sentences", "tables"):
         con.execute(statement(f"judging/{name}"))

@@ -50,9 +50,9 @@ class BoundedLane:
     """One lane. Fields that are not explained here are as in the table `lanelet`.
 
     `left`, `right`: bounds (n, 2), (m, 2) in metres, in the direction of travel. `left_against`, `right_against`: the lane on that side has
-    the opposite direction. `marks`: empty if the markings are unknown. `limits`: begin and end (shares of the length) and m/s, None for no
-    limit or an unreadable one; empty if the map states none. `limit_source`: the column `source` of `speed_limit`. `z`: height of each
-    point of `line`, NaN: unknown.
+    the opposite direction. `marks`: empty if the markings are unknown. `limits`: start and end (shares of the length) and m/s (None: no
+    limit, or an unreadable one); empty if the map states none. `limit_source`: the column `source` of `speed_limit`. `z`: the height of
+    each point of `line`, NaN: unknown.
     """
 
     lanelet_id: str

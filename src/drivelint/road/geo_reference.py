@@ -77,10 +77,10 @@ def tangent_plane(latitude: float, longitude: float) -> GeoFrame:
 
 
 def why_unusable(frame: GeoFrame, x_m: float, y_m: float) -> str | None:
-    """Return why the frame gives no positions on the earth, tested at one position of the map or log; None: it does.
+    """Return why the frame gives no positions on the earth, tested at one position of the map or log; None: it is usable.
 
-    A placeholder cannot be recognised by its text alone. With a placeholder, local coordinates near 0,0 would be near the projection's
-    origin on the equator or at a pole: in the Gulf of Guinea or on the ice.
+    A placeholder cannot be recognised by its text. But with it, local coordinates near 0,0 would be near the projection's origin on the
+    equator or at a pole: in the Gulf of Guinea or on the ice.
     """
     ((x, y),) = frame.project(np.array([[x_m, y_m]])).tolist()
     try:

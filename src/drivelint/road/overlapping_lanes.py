@@ -61,7 +61,7 @@ def _apart_m(a: BoundedLane, b: BoundedLane, common: shapely.Geometry) -> float:
 def _angle_rad(a: BoundedLane, b: BoundedLane, common: shapely.Geometry) -> float:
     """Return the angle (rad) at which two lanes cross where they overlap.
 
-    If they have a common begin or end, the angle at their other ends is used if it is larger.
+    If they have a common start or end, the angle at their other ends is used if it is larger.
     """
     first, second = (_at(lane, common, lane.line.tangent) for lane in (a, b))
     across = abs(float(first[0] * second[1] - first[1] * second[0]))

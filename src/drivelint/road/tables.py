@@ -52,13 +52,12 @@ def map_tables(
     The map's id is `<map stem>-<first 8 hex of sha256><offset, if any>@<lht or rht>`, the same on every machine. A question mark follows if
     the side is a guess, and a tilde if `lanes_reversed`.
 
-    `kind`: the format of the map; `side`: the driving side and its source; `geo`: the frame that relates the map's own coordinates to the
-    earth; `lanes_reversed`: the lanes' directions are opposite to those of the driving side, as traces may show; `nation`: the country of
-    the roads, as two letters, None: unknown.
+    `kind`: the map's format; `side`: the driving side and its source; `geo`: the frame of the map's own coordinates; `lanes_reversed`: the
+    lanes' directions are opposite to those of the driving side; `nation`: the country of the roads, as two letters, None: unknown.
     """
     x, y = (float(v) + 0.0 for v in request.offset)
     shift = f"{x:+}{y:+}" if x or y else ""
-    # a side that is only the standard's default is marked, because the traces of another drive may show the real one
+    # a default side is marked, because the traces of another drive may show the real one
     marks = f"{'?' if side[1] == 'default' else ''}{'~' if lanes_reversed else ''}"
     name = f"{PurePath(source.name).stem}-{source.sha256[:8]}{shift}@{side[0]}{marks}"
     tables = {table: owned_table(table, name, rows, kind) for table, rows in content.items()}
@@ -79,6 +78,6 @@ def map_tables(
 
 
 def _geo_trouble(geo: GeoFrame, points: pa.Table, request: MapOptions) -> str | None:
-    """Return why the frame gives no positions on the earth, tested in the middle of the lanes; None: it does."""
+    """Return why the frame gives no positions on the earth, tested in the middle of the lanes; None: it is usable."""
     middle = [sum(pc.min_max(points[axis]).as_py().values()) / 2.0 for axis in ("x_m", "y_m")]
     return why_unusable(geo, middle[0] - request.offset[0], middle[1] - request.offset[1])

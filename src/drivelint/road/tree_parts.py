@@ -38,8 +38,8 @@ def query_in_parts(
 ) -> Iterator[tuple[Indices, Indices]]:
     """Yield the result of `tree.query` in parts: indices of `shapes`, ascending between parts, and indices of the tree's shapes.
 
-    A time limit can interrupt reading between two parts, but not inside a call of the index. Errors: `CrowdedPlaceError`, as soon as a part
-    shows that there are too many pairs.
+    A time limit of reading takes effect between two parts, but not inside a call of the index. Errors: `CrowdedPlaceError` if a part has
+    too many pairs.
     """
     every = np.asarray(shapes, dtype=object)
     begin, n = 0, FIRST_PART

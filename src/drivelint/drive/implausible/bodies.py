@@ -1,8 +1,8 @@
-"""Finds tracks that are not separate bodies: one body in two tracks, tracks with a false begin, and tracks prolonged at their end.
+"""Finds tracks that are not separate bodies: one body in two tracks, tracks with a false start, and tracks prolonged at their end.
 
 A tracker may have two tracks of one long vehicle, and a data set may have both a rider and the bicycle. Two boxes that overlap deeply
 from their first common sample on, at the same velocity, are one body: vehicles that collide were apart before. Two boxes are also one
-body if they drive behind each other closer than any vehicle follows, and then overlap without an impact.
+body if one follows closer than any vehicle does, and they then overlap without an impact.
 """
 
 from __future__ import annotations
@@ -29,17 +29,17 @@ DEEP_SHARE: Final = 0.5
 SAME_MPS: Final = 2.0
 """The median difference of the velocities of two tracks of one body is at most this."""
 COMMON_SHARE: Final = 0.8
-"""Two tracks of one body overlap deeply in at least this share of their common samples,"""
+"""Two tracks of one body overlap deeply in at least this share of their common samples."""
 LEAST_COMMON: Final = 3
-"""and have at least this many common samples."""
+"""Two tracks of one body have at least this many common samples."""
 FARTHEST_REACH_M: Final = 100.0
 """The centres of two overlapping bodies are at most this far apart."""
 FARTHEST_CELL: Final = 10**10
 """Numbers of grid cells are clipped to this, so that the cell number times the number of times fits into 64 bits."""
 PAIRS_PER_PART: Final = 1_000_000
-"""The number of pairs of boxes that are in memory at once, approximately."""
+"""The approximate number of pairs of boxes in memory at once."""
 ENTRY_SAMPLES: Final = 3
-"""A track with a false begin reaches its true position within this many samples."""
+"""A track with a false start reaches its true position within this many samples."""
 ENTRY_LEAST_MPS: Final = 5.0
 """If the first step differs by less than this from the next one, the difference is noise of the first detections."""
 
@@ -49,9 +49,8 @@ COUPLED_ASIDE_M: Final = 1.0
 COUPLED_MPS: Final = 5.0
 COUPLED_LEAST: Final = 10
 SUNK_M: Final = 0.3
-"""Two tracks are coupled, so one body, if in all common samples (at least `COUPLED_LEAST`) the boxes are within `COUPLED_M` behind each
-other and `COUPLED_ASIDE_M` to the side, at `COUPLED_MPS` or faster, and somewhere overlap by `SUNK_M`. No vehicle follows that closely
-for a second."""
+"""Two tracks are coupled (one body) if in all common samples, at least `COUPLED_LEAST`, one box is within `COUPLED_M` behind the other and
+`COUPLED_ASIDE_M` to the side, at a median speed of `COUPLED_MPS`, and they overlap by `SUNK_M` in some sample."""
 
 
 class _Boxes(NamedTuple):
@@ -65,8 +64,8 @@ class _Boxes(NamedTuple):
 
 BEGIN_M: Final = 0.3
 BEGIN_MPS: Final = 2.0
-"""If the boxes of two actors, both at least this fast, overlap by this much in their first common sample, no contact was recorded: their
-positions are doubtful."""
+"""If two boxes, both at least this fast, overlap by this much in their first common sample, no contact was recorded: the positions are
+doubtful."""
 BESIDE_M: Final = 0.3
 """The noise that positions and headings add to a lateral overlap."""
 BESIDE_SHARE: Final = 2 / 3
@@ -76,8 +75,8 @@ HIT_MPS: Final = 1.5
 HELD_NS: Final = 2_000_000_000
 ARRIVAL_NS: Final = 1_000_000_000
 LEAVING_MPS2: Final = 4.0
-"""The highest acceleration of an actor that stands still at the end of its track and then leaves. If another vehicle is at its position
-within `ARRIVAL_NS`, sooner than this acceleration allows, the last `HELD_NS` of the track are repeated positions."""
+"""The highest acceleration of an actor that leaves from a standstill at the end of its track. If another vehicle is at its position sooner
+than that, within `ARRIVAL_NS`, the last `HELD_NS` of the track are repeated positions."""
 
 
 def same_bodies(states: States, actors: Actors, egos: Collection[str]) -> list[QualityFinding]:
@@ -173,17 +172,16 @@ def held_tracks(states: States, actors: Actors) -> list[QualityFinding]:
 
 
 def _begin_upon(states: States, actors: Actors) -> Iterator[tuple[int, int]]:
-    """Yield pairs of tracks of which one begins inside the box of the other, or close before or behind it.
+    """Yield pairs of tracks of which one starts inside the box of the other, or close before or behind it.
 
-    Tracks that are only close behind each other may be coupled. Both must then have at least `COUPLED_LEAST` samples, which excludes
-    many short tracks of a crowd.
+    In the second case, only tracks with at least `COUPLED_LEAST` samples are used, which excludes many short tracks of a crowd.
     """
     starts, half = track_starts(states.actor), _half_sizes(states, actors)
     may_be_coupled = np.bincount(states.actor, minlength=len(states.ids)) >= COUPLED_LEAST
     number = np.full(len(states), -1)
     number[starts] = np.arange(len(starts))
     for first, second in _neighbours(states, actors, starts):
-        # if both tracks begin at this time, the pair is yielded only once
+        # if both tracks start at this time, the pair is yielded only once
         once = (states.actor[first] != states.actor[second]) & ((number[second] < 0) | (number[second] > number[first]))
         first, second = first[once], second[once]  # noqa: PLW2901  only these pairs are used
         mine, theirs = _boxes(states, half, first), _boxes(states, half, second)
@@ -244,7 +242,7 @@ def _deep(first: _Boxes, second: _Boxes) -> Mask:
 
 
 def _in_line(first: _Boxes, second: _Boxes) -> Mask:
-    """Return the mask of the pairs of boxes (n) that are close behind each other, in line, with one heading; False where NaN."""
+    """Return the mask of the pairs of boxes (n) that are close behind each other, in line, with one heading; False for NaN."""
     overlap, reach = _overlap(first, second)
     aside = first.half[1] + reach[1] - overlap[1]
     ahead = first.half[0] + reach[0] - overlap[0]
@@ -275,7 +273,7 @@ def _overlap_at_begin(first: _Boxes, second: _Boxes) -> Mask:
         return np.zeros(len(together), np.bool_)
     until = int(together.sum()) + 1
     hit = [np.hypot(*np.diff(boxes.velocity[:, :until])) > HIT_MPS for boxes in (first, second)]
-    # the position error is as large as the overlap: the positions stay doubtful until the boxes are that far apart
+    # the position error may be as large as the overlap
     near: Mask = np.logical_and.accumulate(depth > -depth[together].max())
     if across[0] <= BESIDE_SHARE * 2 * min(first.half[1][0], second.half[1][0]):
         most = across[together].max() + BESIDE_M

@@ -31,12 +31,12 @@ LEAST_JOLT_MPS: Final = 1.0
 """Smaller changes of velocity are within the accuracy of a tracker."""
 LEAST_STEP_M: Final = 0.5
 STEP_SHARE: Final = 0.15
-"""A single step of the positions is a recording error if it differs from the integrated velocity by more than 0.5 m + 15 % of the step,
-plus half the change of velocity times the time, and by more than `STEP_SIGMAS` standard deviations of the noise."""
+"""A single step of the positions is a recording error if it differs from the velocity by more than 0.5 m + 15 % of the step (+ half the
+change of velocity), and by more than `STEP_SIGMAS` standard deviations of the noise."""
 STEP_SIGMAS: Final = 6.0
 BACK_SHARE: Final = 0.3
 BACK_NS: Final = 3_000_000_000
-"""A later step within this time reverses a step if the two add up to at most this share of the first."""
+"""A step within 3 s reverses an earlier one if their sum is at most 30 % of the earlier one."""
 SPIN_LEAST_RAD: Final = np.deg2rad(12.0)
 SPIN_RADIUS_M: Final = 3.0
 SPIN_WINDOW_S: Final = 1.0

@@ -1,14 +1,13 @@
 """Makes copies of a drive, or of a part of it, with assumed recording errors.
 
-Each copy has constant errors, because such errors drift slowly. They are drawn from normal distributions with mean 0: for each actor, an
-offset of its position in x and in y, and an offset of its clock, which moves it along its velocity. The map has an offset too, which is
-applied to all actors.
+The errors of a copy are constant, because real ones drift slowly. They are normally distributed with mean 0: for each actor, an offset of
+its position in x and in y, and of its clock, which moves it along its velocity; and one offset of the map, applied to all actors.
 
 A draw depends only on the seed, the actor's id and the copy's number. So a part of a drive has the same errors as the whole drive, and
 the same drive in another file, under another name, has the same errors.
 
-Copies come in blocks of 20. Within a block, each error is a Latin hypercube sample: one draw from each of 20 equally probable ranges.
-Small and large errors then occur in the right proportion, so fewer copies are needed.
+In a block of 20 copies, each error is a Latin hypercube sample: one draw from each of 20 equally probable ranges. Small and large errors
+then occur in the right proportion, so fewer copies are needed.
 """
 
 from __future__ import annotations

@@ -8,11 +8,11 @@ The finding of an invariant is a stretch of steps. It stays in a copy if any of 
 because a copy's errors are the same at all steps. If the first window has only a part of the stretch and a copy shows neither, a wider
 window is judged, unless so many copies lose the finding that it is only possible.
 
-If an ego breaks a rule several times, copies are judged for the gravest finding, and for findings whose margins are as small as the errors.
-If the gravest finding is only possible, the other findings of this ego and rule follow. On request, copies are judged for all findings.
+If an ego breaks a rule several times, copies are judged for the worst finding, and for findings whose margins are as small as the errors.
+If the worst finding is only possible, the other findings of this ego and rule follow. On request, copies are judged for all findings.
 
-At most 100 copies are judged. 32 are enough if all of them keep the finding, and 20 if the margins are also far from 0. Judging also ends
-as soon as so many copies lose the finding that it is only possible.
+At most 100 copies are judged. 32 are enough if all of them keep the finding, and 20 if the margins are also far from 0. Judging ends early
+if so many copies lose the finding that it is only possible.
 """
 
 from __future__ import annotations
@@ -47,8 +47,8 @@ if TYPE_CHECKING:
 SAME_REFERENCE_NS: Final = 2_000_000_000
 """Reference points of the drive and of a copy are the same one if they are at most this far apart in time."""
 HASTY_STATES: Final = 10_000
-"""If the additional copies have at most this many states, all copies are judged in one pass: they cost a quarter of the fixed cost of a
-second pass, which most runs then do not need."""
+"""If the additional copies have at most this many states, all copies are judged in one pass. They cost a quarter of the fixed cost of a
+second pass."""
 _DERIVED: Final = ("clock", "step", "ego_state", "pair", "ego_condition")
 """Tables that the evaluation itself reads, without those that it needs only for unknown verdicts."""
 _HANDED_OVER: Final = frozenset({"capability", "registration"})
@@ -103,7 +103,7 @@ class Robustness:
         return len(self._waiting)
 
     def n_asked(self) -> int:
-        """Return the number of findings of the waiting drives for which copies are judged in the first place."""
+        """Return the number of findings of the waiting drives for which copies are judged first."""
         questions = self._questions(self._waiting)
         gravest, near, _ = by_weight(questions)
         return len(questions) if self._of_all else len(gravest) + len(near)

@@ -40,8 +40,7 @@ class Question:
     size: int = 0
     """The size of the current window (see `window.SIZES`)."""
     ends_early: bool = True
-    """Stop judging copies as soon as the finding is only possible. False: the share of all copies is needed, to compare it with a
-    confidence that the user chose."""
+    """Stop judging copies as soon as the finding is only possible. False: the share of all copies is needed for the user's confidence."""
     n_copies: int = 0
     n_stays: int = 0
     """The number of copies that keep the finding."""
@@ -152,7 +151,7 @@ def breach(question: Question) -> tuple[str, ...]:
 
 
 def by_weight(questions: Sequence[Question]) -> tuple[list[Question], list[Question], list[Question]]:
-    """Return three lists: the gravest finding of each drive, ego and rule; other findings near the threshold; all remaining findings."""
+    """Return three lists: the worst finding (by margin) of each drive, ego and rule; others near the threshold; the remaining ones."""
     gravest: dict[tuple[str, ...], Question] = {}
     for question in sorted(questions, key=lambda q: np.nan_to_num(q.finding["margin"] or np.nan, nan=np.inf)):
         gravest.setdefault(breach(question), question)

@@ -37,13 +37,13 @@ class Around(NamedTuple):
 
 
 AT_STEP: Final = Around(1_000_000_000, 600_000_000)
-"""For invariants."""
+"""Around the worst step of an invariant."""
 AT_REFERENCE: Final = Around(2_000_000_000, 2_000_000_000)
-"""For rules with reference points: around the reference point and the worst step."""
+"""Around the reference point and the worst step, for rules with reference points."""
 IN_OVERTAKE: Final = Around(3_000_000_000, 2_000_000_000)
-"""For invariants about overtakes: an overtake is recognised only if the window includes the lane before it."""
+"""Around the worst step of an invariant about overtakes, which are detected by the ego's lane before them."""
 AT_OVERTAKE: Final = Around(3_000_000_000, 6_000_000_000)
-"""For rules with reference points in overtakes."""
+"""As `AT_REFERENCE`, for rules about overtakes."""
 
 
 class FindingWithCopies(Protocol):
@@ -149,8 +149,8 @@ class Window:
 def windows(drives: Mapping[str, Drive], questions: Sequence[FindingWithCopies], goals: Sequence[int]) -> list[Window]:
     """Return the windows to judge next for these findings, those with the lowest copy numbers first.
 
-    Overlapping windows of one ego are merged. So that merged windows need the same copies, the numbers are split after each of the `goals`;
-    each window also has copy 0.
+    Overlapping windows of one ego are merged. The copy numbers are split after each of the `goals`, so that merged windows have the same
+    ones. Each window also has copy 0.
     """
     cut([question for question in questions if question.extent is None])
     found: dict[tuple[Any, ...], Window] = {}
@@ -183,7 +183,7 @@ def _parts(numbers: range, goals: Sequence[int]) -> list[range]:
 
 
 def span(question: FindingWithCopies) -> tuple[int, int]:
-    """Return the begin and end of a finding's window, which depend on the size, the kind of rule and the finding's times."""
+    """Return the start and end (ns) of a finding's window, by its size, the kind of rule, and the finding's times."""
     finding, ref, worst = question.finding, question.finding["t_ref_ns"], question.finding["t_worst_ns"]
     if question.size == 0:
         steps = (worst,) if ref is None else (ref, worst)
