@@ -29,10 +29,7 @@ _PLACE_AND_VELOCITY: Final = (("x_m", "vx_mps"), ("y_m", "vy_mps"))
 
 
 def align_to_ego(states: States, egos: list[str]) -> tuple[States, list[QualityFinding]]:
-    """Interpolate tracks with other sampling times to the steps of the ego; return the states and a finding about it.
-
-    Several egos have no common steps: the states are returned unchanged.
-    """
+    """Interpolate tracks with other sampling times to the steps of the only ego; return the states and a finding about it."""
     if len(egos) != 1 or egos[0] not in states.ids:
         return states, []
     starts = np.searchsorted(states.actor, np.arange(len(states.ids) + 1))
@@ -65,9 +62,9 @@ def align_to_ego(states: States, egos: list[str]) -> tuple[States, list[QualityF
 
 
 def _own_period(t_ns: Times, grid: Times, period_ns: float) -> int | None:
-    """Return the sampling period of a track that has to be aligned, else None.
+    """Return the sampling period of a track that has to be aligned.
 
-    A track is not aligned if its samples are at the ego's steps (but for a few), or fewer than two, or too far apart.
+    None: its samples are at the ego's steps (but for a few), fewer than two, or too far apart.
     """
     n = len(t_ns)
     if n < 2:
@@ -88,7 +85,7 @@ def _own_period(t_ns: Times, grid: Times, period_ns: float) -> int | None:
 def _at_steps(states: States, span: slice, grid: Times, own_ns: int, log_ns: tuple[int, int]) -> States:
     """Return the states of one track at those steps of the ego (`grid`) where they are known.
 
-    `span`: the rows of the track. `own_ns`: its sampling period. `log_ns`: the first and the last time of the log.
+    `own_ns`: the track's sampling period. `log_ns`: the first and the last time of the log.
     """
     t_ns = states.t_ns[span]
     first = log_ns[0] if t_ns[0] - log_ns[0] <= own_ns else t_ns[0]

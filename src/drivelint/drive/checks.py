@@ -30,8 +30,8 @@ YAW_CHECK_LEAST_MPS = 3.0
 3 m/s, the direction is not certain enough."""
 REVERSING_MPS = 8.0
 REVERSING_RAD = np.deg2rad(150.0)
-"""A vehicle reverses if it is slower than 8 m/s (29 km/h), its heading is off the motion by more than 150 degrees, and it also drives
-forwards somewhere in the log."""
+"""A vehicle reverses if it is slower than this (29 km/h), its heading is off the motion by more than 150 degrees, and it drives forwards
+elsewhere in the log."""
 TELEPORT_M = 3.0
 TELEPORT_FACTOR = 2.0
 """A step is a jump if it is longer than 3 m + twice the distance at the higher of both speeds: no acceleration explains that."""
@@ -46,7 +46,7 @@ LONGER_THAN_WIDE_CLASSES = frozenset((*MOTOR_VEHICLES, "trailer", "bicycle"))
 
 
 def run(states: States, step: Steps, actors: Actors, *, derived: bool) -> list[QualityFinding]:
-    """Run every check on states in order. `derived`: velocities are derived from the positions, so the two are not compared."""
+    """Run every check on states in order. `derived`: velocities are derived from the positions, and not compared with them."""
     unplaced = np.isnan(states.numbers["x_m"]) | np.isnan(states.numbers["y_m"])
     findings = []
     for rows, check, text in (

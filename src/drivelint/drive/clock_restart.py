@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 LEAST_RUN_STATES: Final = 10
 """At least this many successive states of an actor are a run of the clock; fewer are late messages."""
 LEAST_INTERLEAVED_STATES: Final = 5
-"""If at least this many states of one run lie in time between states of another run, they are not late messages."""
+"""At least this many states of one run that are in time between states of another are not late messages."""
 HOLE_FACTOR: Final = 1.5
 """A step longer than the median step by this factor is a hole, which late messages may fill."""
 

@@ -80,7 +80,7 @@ def resolve(
 ) -> list[QualityFinding]:
     """Make values unknown that contradict the motion, in place, and return findings (states in order, velocities complete).
 
-    `derived`: velocities are derived from the positions, so the two are not compared. `split_tracks`: the states that `jumps` rejected.
+    `derived`: velocities are derived from the positions, and not compared with them. `split_tracks`: the states that `jumps` rejected.
     """
     if len(states) < 3:
         return []
@@ -249,10 +249,7 @@ def _sliding_max(values: Floats, k: int) -> Floats:
 
 
 def _around(states: States, pieces: NDArray[np.integer], rows: Indices) -> tuple[Indices, Indices]:
-    """Return for each of these rows the first and the last row of the same piece within half a second of it.
-
-    `pieces` (n): the number of the piece per row of the states.
-    """
+    """Return for each of these rows the first and the last row of the same piece (`pieces`, n) within half a second of it."""
     half = int(WINDOW_S * 1e9)
     apart = np.diff(states.t_ns)
     # steps to another piece, backward steps and long steps are set to just over half a second, so that the sum does not overflow
@@ -277,8 +274,8 @@ def _headings(states: States, step: Steps, actors: Actors) -> tuple[Mask, Mask]:
     """Return the mask of samples with a heading opposite to the motion, and the mask of samples with a heading across it.
 
     A stretch of backward motion is real reversing if no forward motion adjoins it, the heading does not flip at its ends, and it is slower
-    than `REVERSING_MPS`. The limit is `FAST_REVERSING_MPS` if the vehicle drives forwards with that heading before or after, and the stretch
-    starts or ends slowly on that side.
+    than `REVERSING_MPS`. The limit is `FAST_REVERSING_MPS` if the vehicle drives forwards with that heading before or after, and the
+    stretch starts or ends slowly on that side.
 
     A stretch with the heading across the motion is a real slide if forward motion adjoins it, and the heading changes by at most
     `SPIN_RAD` per sample.

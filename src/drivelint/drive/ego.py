@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 ALL_EGOS = "all"
 SIZE_DIFFERENCE_M: Final = 0.05
-"""If the user's size and the log's size differ by more than this, a finding reports it."""
+"""A larger difference between the user's and the log's size is reported."""
 
 
 def asks_for_all(ego_option: str | None, ids: Collection[str]) -> bool:

@@ -35,8 +35,8 @@ OUTLIER_S: Final = 2.0
 LARGEST_CORRECTION_M: Final = 10.0
 LARGEST_SIDE_CORRECTION_M: Final = 1.5
 CORRECTION_SPEED_CHANGE_MPS: Final = 3.0
-"""A jump only corrects the track if it is at most 10 m along the motion and 1.5 m to the side (not to another lane), and the velocity
-changes by at most 3 m/s + `JUMP_MPS2` times the gap."""
+"""A jump corrects the track if it is at most 10 m along the motion and 1.5 m to the side (not to another lane), and the velocity changes
+by at most 3 m/s + `JUMP_MPS2` times the gap."""
 MOVING_MPS: Final = 1.0
 """Below this speed the direction of motion is noise, and the heading is used."""
 MOTION_COLUMNS: Final = ("vx_mps", "vy_mps", "ax_mps2", "ay_mps2")
@@ -91,7 +91,7 @@ def set_unknown(states: States, rows: Mask, columns: tuple[str, ...] = STATE_COL
 def jumps(states: States, step: Steps) -> Mask:
     """Return for each step (n - 1) whether it is a jump: it differs from what the steps before and after it predict.
 
-    A step at the end of a track or beside a hole has one neighbour only, which decides.
+    At the end of a track or beside a hole, the only neighbour decides.
     """
     way = np.diff(states.place)
     dt = np.where(step.dt_s > 0.0, step.dt_s, np.nan)

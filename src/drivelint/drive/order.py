@@ -116,7 +116,7 @@ def steps_between(t_ns: Times, actor: NDArray[np.int32], period_ns: int) -> Step
 def time_derivative(values: Floats, step: Steps) -> Floats:
     """Return the time derivative, (n) or (2, n).
 
-    It is a central difference if both steps beside the sample are continuous, a one-sided difference if only one is, else NaN.
+    Central difference if both steps beside the sample are continuous, one-sided if only one is, else NaN.
     """
     rise, span, result = np.zeros_like(values), np.zeros_like(values), np.full_like(values, np.nan)
     with np.errstate(invalid="ignore"):

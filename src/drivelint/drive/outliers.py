@@ -158,10 +158,7 @@ def _least_m(dt_s: Floats) -> Floats:
 
 
 def common_jolts(states: States, step: Steps) -> Mask:
-    """Return the mask of the samples near common jolts, of the actors that take part.
-
-    At a common jolt, the speeds of most moving actors change by the same factor and back.
-    """
+    """Return the mask of the samples near common jolts: most moving actors' speeds change by the same factor and back."""
     n, width = len(states), max(2, round(AROUND_NS / max(step.period_ns, 1)))
     near = np.zeros(n, np.bool_)
     if step.period_ns <= 0 or n <= 2 * width:

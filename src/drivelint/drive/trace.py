@@ -46,10 +46,7 @@ class Identity:
 
 
 class EgoSize(NamedTuple):
-    """The size that the user gives for an ego whose size is not in the log, in metres.
-
-    `forward_m`: how far the centre of the box is ahead of the origin of the odometry's frame.
-    """
+    """The user's size (m) for an ego without a size in the log; `forward_m`: from the odometry's origin ahead to the box centre."""
 
     length_m: float
     width_m: float

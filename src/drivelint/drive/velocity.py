@@ -74,7 +74,7 @@ def _filtered(t_ns: Times, actor: NDArray[np.int32], place: Floats, step: Steps,
 class Tracklets(NamedTuple):
     """For each state, the first and last row of its tracklet (a stretch of one actor without holes) and the time since the first.
 
-    `key` is ascending: the time within the tracklet, plus an offset per tracklet.
+    `key`, ascending: the time within the tracklet plus an offset per tracklet.
     """
 
     first: Indices

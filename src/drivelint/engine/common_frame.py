@@ -29,7 +29,7 @@ LENGTH_TOLERANCE_M: Final = 0.1
 """The most (m) by which the transformation may change a length of `STEP_M`. UTM's scale is 0.9996 to 1.001, a local projection's 1."""
 SAME_M: Final = 0.01
 FAR_M: Final = 10_000.0
-"""If the map's coordinates are shifted by more than this, a drive cannot fit the map both with and without the shift."""
+"""With a larger offset of the map's coordinates, a drive fits the map either with or without it, not both."""
 
 
 def move_into_map_frame(trace: Trace, environment: MapTables) -> Trace:

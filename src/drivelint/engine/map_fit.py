@@ -60,10 +60,9 @@ def one_way_lanes(environment: MapTables) -> OneWayLanes:
 
 
 def compare_headings(lanes: OneWayLanes, x_m: Floats, y_m: Floats, yaw_rad: Floats, max_positions: int) -> LaneHeadings:
-    """Compare headings with the directions of lanes, and return the result.
+    """Compare headings with the directions of lanes.
 
-    `x_m, y_m, yaw_rad`: moving states of any vehicles, shape (n,), in map coordinates. At most `max_positions` of them are used, evenly
-    spread.
+    `x_m, y_m, yaw_rad`: moving states of any vehicles, shape (n,), in map coordinates. At most `max_positions`, evenly spread, are used.
     """
     known = np.flatnonzero(np.isfinite(x_m) & np.isfinite(y_m) & np.isfinite(yaw_rad))
     if len(known) < LEAST_VOTES or not len(lanes.lines):

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 
 
 class BatchObserver(Protocol):
-    """The interface of a function that is called after each batch, while its tables still have their rows."""
+    """A function that is called after each batch, while its tables still have their rows."""
 
     def __call__(self, con: duckdb.DuckDBPyConnection, drives: Sequence[Drive], /, *, first: bool, last: bool) -> None:
         """Process a batch, or the egos of a part of one drive; `first` and `last`: whether it is the first or the last part."""

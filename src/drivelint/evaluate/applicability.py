@@ -1,7 +1,7 @@
 """Builds the SQL that decides whether a rule is in force, by the conditions in its header and the automated driver's engagement.
 
-The table `_watched` has the subjects with a step at which the automated driver does not drive, or may not drive. All other subjects are
-engaged at every step, so a log without declared engagement needs no check.
+The table `_watched` has the subjects with a step at which the automated driver does not drive, or possibly does not. All others are
+engaged at every step, and need no check.
 """
 
 from __future__ import annotations

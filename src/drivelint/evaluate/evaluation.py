@@ -200,10 +200,7 @@ class Evaluation:
             self._occasion(binding)
 
     def _has_no_occasion(self, binding: Binding) -> bool:
-        """Return whether a built-in rule cannot have an outcome, because a table that it needs is empty.
-
-        A user's rule always runs, because only running it shows an error in it.
-        """
+        """Return whether a built-in rule has no outcome because a table is empty; a user's rule always runs, to show its errors."""
         return bool(binding.rule.occasion_needs & self._empty) and _is_shipped(binding)
 
     def _is_quick(self, binding: Binding) -> bool:

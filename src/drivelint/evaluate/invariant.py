@@ -1,7 +1,7 @@
 """Builds the SQL of invariants, which are judged at every step of a grid: one verdict per continuous applicable episode and object.
 
-A group is the steps of one ego (and one object). A first pass settles groups that are complete and pass, by one aggregation without a
-join. Only the other groups are joined with the grid.
+A group is the steps of one ego (and one object). A first pass settles complete groups that pass, by one aggregation; only the others are
+joined with the grid.
 """
 
 from __future__ import annotations

@@ -36,7 +36,7 @@ Excess = Literal["rule_timeout", "out_of_memory"]
 
 
 class RunningRule:
-    """The current run of a rule, and the limit that it exceeded, if any. `over` is set when the rule has ended."""
+    """The current run of a rule, and the limit that it exceeded, if any. `over` is set at its end."""
 
     def __init__(self) -> None:
         self.excess: Excess | None = None

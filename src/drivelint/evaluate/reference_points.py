@@ -19,10 +19,7 @@ if TYPE_CHECKING:
 
 
 def references_sql(rule: Rule, columns: Sequence[str], partial: bool) -> str:
-    """Return the SQL for `reference`: the author's reference points of the subjects to judge, numbered in the order of all columns.
-
-    `columns`: the columns that the author's section returns. `partial`: the rule judges only some of the subjects.
-    """
+    """Return the SQL for `reference`: the author's reference points of the subjects to judge, numbered in the order of all columns."""
     others = [c.replace('"', '""') for c in columns if c not in {"drive_id", "ego_id", "t_ns", "object_id"}]
     rest = [f'"{c}" NULLS LAST' for c in others]
     who = ["object_id NULLS LAST"] if "object_id" in columns else []

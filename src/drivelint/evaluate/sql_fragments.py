@@ -21,15 +21,15 @@ _PROFILES = "JOIN (SELECT drive_id, ego_id, profile FROM _profile_set WHERE rule
 _REFERENCE_STEP = (
     "reference_step AS NOT MATERIALIZED (SELECT * EXCLUDE (rule_no) FROM _reference_step WHERE rule_no = $_no), "
 )
-"""The CTE with the steps of one rule's reference points, which the rule's condition reads. A materialized CTE would not be filtered;
-DuckDB materializes CTEs that are read twice by default."""
+"""The CTE with the steps of a rule's reference points, which its condition reads. DuckDB materializes CTEs that are read twice by default,
+and does not filter them."""
 _ENGINE = {"window_s": "_window_ns", "exempt_after_s": "_exempt_ns", "merge_gap_s": "_merge_ns"}
 
 
 class Binding:
     """A rule in this evaluation: its number and the values that its statements bind.
 
-    `overrides`: the user's values of parameters. Errors: `UsageError` for an unknown parameter or an invalid time.
+    `overrides`: parameter -> the user's value. Errors: `UsageError` for an unknown parameter or an invalid time.
     """
 
     def __init__(self, rule: Rule, no: int, overrides: Mapping[str, object]) -> None:
@@ -83,8 +83,8 @@ def condition_ctes(rule: Rule) -> str:
     signed margin, possibly infinite; 0 for sense = holds), code, reason (the author's, or NULL).
 
     NaN becomes NULL. So does negative infinity, which is no valid measure, if it would satisfy any limit. A limit that is missed by at most
-    the `error` of the value gives unknown. If the value is only a lower bound, it can prove a pass for > and >=, and a violation for <
-    and <=; otherwise the result is unknown.
+    the `error` of the value gives unknown. A value that is only a lower bound can prove a pass for > and >=, and a violation for < and <=;
+    otherwise the result is unknown.
     """
     has = rule.has_column
     measured = rule.sense != "holds"
@@ -149,8 +149,8 @@ def deciding_step(rule: Rule) -> str:
 def step_by_rank(good: int, bad: int, unknown: int, sign: str, object_fields: str) -> str:
     """Return the aggregate that selects a step by these ranks, then by margin, time and `object_fields`.
 
-    `good`, `bad`, `unknown`: the ranks of steps by their result, the lowest first. `sign`: '-' for the largest margin first, else ''.
-    `object_fields`: the struct fields of the object, or ''.
+    `good`, `bad`, `unknown`: the ranks by result, the lowest first. `sign`: '-' for the largest margin first, else ''. `object_fields`: of
+    a struct, or ''.
     """
     return (
         f"min({{'b': CASE WHEN holds THEN {good} WHEN NOT holds THEN {bad} ELSE {unknown} END, "

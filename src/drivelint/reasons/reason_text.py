@@ -74,7 +74,7 @@ def parse_reason(reason: str) -> Reason:
 def sentence(reason: str, start_ns: int = 0, rule_texts: Mapping[str, ReasonText] | None = None) -> str:
     """Return a reason as a sentence, with its advice at the end.
 
-    `start_ns`: the start of the log, from which times are counted; `rule_texts`: code -> text, for the codes of the rule.
+    `start_ns`: the start of the log, from which times count; `rule_texts`: the texts of the rule's codes.
     """
     code, arguments = parse_reason(reason)
     return reason if code == PLAIN_TEXT else _sentence(code, arguments, start_ns, rule_texts)

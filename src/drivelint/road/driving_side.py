@@ -74,7 +74,7 @@ def _pieces(courses: Sequence[Floats]) -> _Pieces:
 def _opposing(pieces: _Pieces, reach_m: float) -> tuple[float, float]:
     """Return the lengths (m) along which the nearest lane on the left, and on the right, has the opposite direction.
 
-    Lanes with a gap of more than `reach_m` do not count. If both sides have an opposite lane, only the nearer counts.
+    Gaps of more than `reach_m` do not count. If both sides have an opposite lane, only the nearer counts.
     """
     n = len(pieces.lane)
     chosen = np.unique(np.linspace(0, n - 1, min(_PROBES, n)).astype(np.intp))

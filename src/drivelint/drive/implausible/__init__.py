@@ -1,1 +1,1 @@
-"""Finds motion that is impossible for a road user, and tracks that are not separate bodies, and reports both as doubts."""
+"""Reports doubts about motion that is impossible for a road user, and about tracks that are not separate bodies."""

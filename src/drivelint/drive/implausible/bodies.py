@@ -75,14 +75,14 @@ HIT_MPS: Final = 1.5
 HELD_NS: Final = 2_000_000_000
 ARRIVAL_NS: Final = 1_000_000_000
 LEAVING_MPS2: Final = 4.0
-"""The highest acceleration of an actor that leaves from a standstill at the end of its track. If another vehicle is at its position sooner
-than that, within `ARRIVAL_NS`, the last `HELD_NS` of the track are repeated positions."""
+"""The highest acceleration of an actor after a standstill at the end of its track. If another vehicle is there sooner, within `ARRIVAL_NS`,
+the last `HELD_NS` of the track are repeated positions."""
 
 
 def same_bodies(states: States, actors: Actors, egos: Collection[str]) -> list[QualityFinding]:
-    """Return findings on tracks that duplicate the body of another track, and on tracks that overlap from the beginning.
+    """Return findings on tracks that are the same body as another, and on tracks that overlap from the start.
 
-    Of two tracks of one body, that of an ego is used, else the longer one.
+    Of two tracks of one body, the ego's is used, else the longer one.
     """
     rows, begun, pairs = np.zeros(len(states), np.bool_), np.zeros(len(states), np.bool_), []
     half = _half_sizes(states, actors)
@@ -130,9 +130,9 @@ def false_entries(states: States, step: Steps) -> list[QualityFinding]:
 
 
 def held_tracks(states: States, actors: Actors) -> list[QualityFinding]:
-    """Return a finding on the ends of tracks that are prolonged by repeated positions.
+    """Return a finding on tracks that end with repeated positions.
 
-    Such a track ends at a standstill, and another vehicle is at the same position sooner than the first one could leave it.
+    They end at a standstill, and another vehicle is at the same position sooner than the first one could leave it.
     """
     starts, order = track_starts(states.actor), np.argsort(states.t_ns, kind="stable")
     t_ns, rows = states.t_ns[order], np.zeros(len(states), np.bool_)
@@ -262,9 +262,9 @@ def _coupled(first: _Boxes, second: _Boxes) -> bool:
 
 
 def _overlap_at_begin(first: _Boxes, second: _Boxes) -> Mask:
-    """Return the mask of the first common samples (n) whose positions are doubtful, because two moving tracks overlap from the start.
+    """Return the mask of the first common samples (n) with doubtful positions, because two moving tracks overlap from the start.
 
-    The mask extends until the boxes are as far apart as they overlapped. It is empty after an impact.
+    It extends until the boxes are as far apart as they overlapped, and is empty after an impact.
     """
     across, depth = _overlap(first, second)[0][1], _overlap(first, second)[0].min(axis=0)
     speeds = np.minimum(np.hypot(*first.velocity), np.hypot(*second.velocity))
@@ -284,7 +284,7 @@ def _overlap_at_begin(first: _Boxes, second: _Boxes) -> Mask:
 def _overlap(first: _Boxes, second: _Boxes) -> tuple[Floats, Floats]:
     """Return the overlaps (2, n) of pairs of boxes along and across the first box, negative if they are apart.
 
-    The second value are the half extents (2, n) of the second box in the same directions.
+    Also return the half extents (2, n) of the second box in these directions.
     """
     apart = second.place - first.place
     cos, sin = (

@@ -31,8 +31,8 @@ LEAST_JOLT_MPS: Final = 1.0
 """Smaller changes of velocity are within the accuracy of a tracker."""
 LEAST_STEP_M: Final = 0.5
 STEP_SHARE: Final = 0.15
-"""A single step of the positions is a recording error if it differs from the velocity by more than 0.5 m + 15 % of the step (+ half the
-change of velocity), and by more than `STEP_SIGMAS` standard deviations of the noise."""
+"""A single step of the positions is a recording error if it is off the velocity by more than 0.5 m + 15 %, and by more than `STEP_SIGMAS`
+standard deviations of the noise."""
 STEP_SIGMAS: Final = 6.0
 BACK_SHARE: Final = 0.3
 BACK_NS: Final = 3_000_000_000
@@ -41,8 +41,8 @@ SPIN_LEAST_RAD: Final = np.deg2rad(12.0)
 SPIN_RADIUS_M: Final = 3.0
 SPIN_WINDOW_S: Final = 1.0
 SPIN_MPS: Final = 1.0
-"""Within a second, the heading of a slow vehicle changes by at most the distance divided by 3 m (no vehicle has a smaller turning
-radius), plus 12 degrees for a detector's noise."""
+"""Within a second, a slow vehicle turns by at most its distance divided by 3 m (the smallest turning radius), plus 12 degrees for a
+detector's noise."""
 FASTEST_MPS: Final = {"pedestrian": 12.5, "animal": 30.0, "bicycle": 30.0}
 """Class -> its highest possible speed: a sprinter's record, a galloping horse, a descent of racers."""
 LEAST_FAST_SAMPLES: Final = 3

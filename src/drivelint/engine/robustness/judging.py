@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from drivelint.evaluate.limits import RuleLimits
 
 SAME_REFERENCE_NS: Final = 2_000_000_000
-"""Reference points of the drive and of a copy are the same one if they are at most this far apart in time."""
+"""Reference points of a drive and of its copy are the same if they are at most this far apart."""
 HASTY_STATES: Final = 10_000
 """If the additional copies have at most this many states, all copies are judged in one pass. They cost a quarter of the fixed cost of a
 second pass."""
@@ -134,7 +134,7 @@ class Robustness:
         self._answer([q for q in questions if q.n_copies and q.is_settled])
 
     def _settle(self, drives: Mapping[str, Drive], questions: Sequence[Question], most_states: int) -> None:
-        """Judge copies until all questions are settled, or no larger window is left, or the run is stopped."""
+        """Judge copies until all questions are settled, no larger window is left, or the run is stopped."""
         open_ = questions
         while open_ and not self._is_stopped():
             chunks = _chunks(_windows(drives, open_), most_states)

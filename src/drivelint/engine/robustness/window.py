@@ -78,7 +78,7 @@ class Extent:
     """Whether an actor is near only if it is close to the ego at the same time; else its distance to the ego's whole path counts."""
 
     def add(self, question: FindingWithCopies) -> None:
-        """Extend the window so that it includes the window of this finding, and set the finding's extent."""
+        """Include the window of this finding, and set the finding's extent."""
         start, end = span(question)
         self.from_ns, self.to_ns = min(self.from_ns, start), max(self.to_ns, end)
         if question.finding["object_id"]:
