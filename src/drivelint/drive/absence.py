@@ -29,7 +29,7 @@ EGO_CHOSEN: Final = "ego_chosen"
 """The id of the check (information only) for an ego that the user chose. A converted log keeps the finding, to distinguish this ego from
 the recorder's own."""
 EGOS_CHOSEN: Final = "egos_chosen"
-"""The id of the same check for `--ego all`; the finding's actor is the recorder's own ego, if the log has one."""
+"""The id of the check (information only) for `--ego all`; the finding's actor is the recorder's own ego, if the log has one."""
 LEAST_ABSENCE_NS: Final = 250_000_000
 """Shorter holes are clock jitter, as odometry at 100 Hz has; this is 2.5 periods of 10 Hz, the usual sampling rate in this field."""
 FRAMES_APART_NS: Final = 1_000_000_000
@@ -82,7 +82,7 @@ def own_egos(recording: Recording) -> list[str]:
 
 
 def absences(recording: Recording, ego_option: str | None) -> list[Absence]:
-    """Return the absences of the recorder's own egos, or of the ego that the user chooses (states as read)."""
+    """Return the absences of the recorder's own egos, or of the ego that the user chooses (states not yet cleaned)."""
     states, own = recording.states, own_egos(recording)
     expected = own if ego_option is None or asks_for_all(ego_option, states.ids) else [ego_option]
     absences_of_egos = []
@@ -136,7 +136,7 @@ def _absence(name: str, t_ns: Times, span: tuple[int, int], ends_apart_ns: int, 
 
 
 def frames_without_states(recording: Recording, missed: Sequence[Absence]) -> Times:
-    """Return the times of frames without any actor during the absence of an ego (states as read)."""
+    """Return the times of frames without any actor during the absence of an ego (states not yet cleaned)."""
     if recording.frames_ns is None or not missed:
         return np.zeros(0, np.int64)
     within = np.any([each.stretch_of(recording.frames_ns) >= 0 for each in missed], axis=0)
@@ -222,7 +222,7 @@ def without_choices(findings: Sequence[QualityFinding]) -> list[QualityFinding]:
 
 
 def chosen_findings(recording: Recording, ego_option: str | None) -> list[QualityFinding]:
-    """Return a finding if the user chooses an ego other than the recorder's own; it states the length of its track (states as read)."""
+    """Return a finding, with the length of the track, if the user chooses another ego than the recorder's (states not yet cleaned)."""
     own, states = own_egos(recording), recording.states
     if ego_option is None or ego_option in own:
         return []

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from drivelint.arrays import Indices, Mask, Times
 
 LEAST_RUN_STATES: Final = 10
-"""At least this many successive states of an actor are a run of the clock; fewer are late messages."""
+"""At least this many successive states of an actor with ascending times are a run of the clock; fewer are late messages."""
 LEAST_INTERLEAVED_STATES: Final = 5
 """At least this many states of one run that are in time between states of another are not late messages."""
 HOLE_FACTOR: Final = 1.5
@@ -64,7 +64,7 @@ def unknown_at_restarts(states: States) -> tuple[States, list[QualityFinding]]:
 
 
 def _spans(states: States, run: Times) -> dict[tuple[int, int], tuple[int, int]]:
-    """Return, for each pair of runs (numbers) that cover the same time of some actor, the first and last time covered twice."""
+    """Return, for each pair of runs of the clock that cover the same time of an actor, the first and last time covered twice."""
     by = np.lexsort((run, states.actor))
     begin = np.flatnonzero(np.r_[True, (np.diff(states.actor[by]) != 0) | (np.diff(run[by]) != 0)])
     end = np.r_[begin[1:], len(by)]
@@ -94,7 +94,7 @@ def _interleaved_count(run_ns: Times, other_run_ns: Times) -> int:
 
 
 def _agreed(states: States, rows: Mask) -> Mask:
-    """Return the mask of those of the given rows whose actor and time occur more than once, with equal values each time."""
+    """Return the mask of given rows whose actor and time occur more than once among them, with equal values each time."""
     agreed = np.zeros(len(rows), np.bool_)
     chosen_rows = np.flatnonzero(rows)
     chosen_rows = chosen_rows[np.lexsort((states.t_ns[chosen_rows], states.actor[chosen_rows]))]

@@ -38,13 +38,13 @@ MISMATCH_SHARE: Final = 0.15
 """Positions contradict velocities if, over one second, their displacements differ by more than 1 m + 15 %. Position noise of 0.3 m and a
 velocity error of 10 % stay below that."""
 STEP_MISMATCH_M: Final = 2.0
-"""A single step that differs by more than this contradicts the velocities, even if the next step does not: about six times that noise."""
+"""A single step contradicts the velocities, whatever the next step does, if it differs by more than this: six times a noise of 0.3 m."""
 WINDOW_S: Final = 0.5
 DIRECTION_LEAST_M: Final = 0.4
 DIRECTION_LEAST_SHARE: Final = 0.5
 """A motion has a direction if, within one second around it, the actor moves more than 0.4 m and half the distance at its speed."""
 REVERSING_MPS: Final = 8.0
-"""The highest speed of reversing (29 km/h) without the evidence that `REVERSE_START_MPS` describes."""
+"""The highest speed of reversing (29 km/h), except in the case of `REVERSE_START_MPS`."""
 FAST_REVERSING_MPS: Final = 20.0
 REVERSE_START_MPS: Final = 3.0
 """Reversing may reach 20 m/s (72 km/h) if the log also shows forward motion, and the stretch of reversing starts or ends slower than
@@ -66,9 +66,9 @@ STRETCH_MISMATCH_SHARE: Final = 0.05
 """The tolerated difference. The velocity of a rear axle is up to 0.7 m/s off that of the centre (1.4 m, 0.5 rad/s), a speedometer 5 %, a
 delayed filter 0.8 m/s."""
 SIGMAS: Final = 4.0
-"""The tolerance also includes this many standard deviations of the position noise."""
+"""The tolerance for a stretch includes this many standard deviations of the position noise."""
 SINGLE_STEP_SHARE: Final = 0.75
-"""If one step causes at least this share of the difference, it is an error of the positions, not of the velocity."""
+"""If one step causes at least this share of the difference, the positions are wrong, not the velocity."""
 WHOLE_TRACK_SHARE: Final = 0.5
 """If more than this share of a track contradicts its velocities, the velocity is wrong as a whole, which `checks` reports."""
 LARGEST_HALF_BOX_M: Final = 6.0
@@ -180,7 +180,7 @@ def _frozen(states: States, step: Steps) -> Mask:
 
 
 def _step_by_step(states: States, step: Steps, usable: Mask) -> tuple[Floats, Floats, Floats]:
-    """Return the displacements of the positions and of the velocities in each step (2, n - 1), and the tolerance of the latter (n - 1)."""
+    """Return the displacements of positions and of velocities in each step (2, n - 1), and the tolerance for their difference (n - 1)."""
     went = np.where(usable, np.diff(states.place), 0.0)
     led = integral_per_step(states.velocity, step, usable)
     # the velocity between two samples is unknown
@@ -259,7 +259,7 @@ def _around(states: States, pieces: NDArray[np.integer], rows: Indices) -> tuple
 
 
 def _leads(states: States, rows: Mask) -> Mask:
-    """Return the marked rows around which the positions advance as the speed states; position jitter on the spot has no direction."""
+    """Return the mask of marked rows around which the positions advance about as far as the speed states: there, motion has a direction."""
     marked_rows = np.flatnonzero(rows)
     first, last = _around(states, states.actor, marked_rows)
     place, speed = states.place, np.hypot(*states.velocity[:, marked_rows])

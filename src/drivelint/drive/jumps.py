@@ -113,7 +113,7 @@ def jumps(states: States, step: Steps) -> Mask:
 
 
 def _around_jumps(states: States, jump: Mask) -> tuple[Mask, NDArray[np.int32]]:
-    """Return the mask of the samples that are unknown because of jumps, and each sample's number of its piece of the track."""
+    """Return the mask of samples that are unknown because of jumps, and for each sample the number of its piece of the track."""
     n = len(states)
     unknown, pieces = np.zeros(n, np.bool_), np.zeros(n, np.int32)
     unknown[:-1] |= jump
@@ -193,7 +193,7 @@ def without_removed_actors(
         return states, []
     jump = np.flatnonzero(jumps(states, step))
     place = states.place
-    # an actor's last jump, and where its track ends
+    # actor -> the row after its last jump
     last = {int(states.actor[row]): int(row) + 1 for row in jump if states.ids[states.actor[row]] not in kept_ids}
     parked = []
     for actor, first in last.items():

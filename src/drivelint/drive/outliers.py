@@ -32,8 +32,8 @@ COMMON_LEAST: Final = 4
 ALIKE_SHARE: Final = 0.8
 COMMON_CHANGE: Final = 0.12
 COMMON_SPREAD: Final = 0.08
-"""A common jolt: the actors' speeds, relative to those `AROUND_NS` before and after, have a median that is off 1 by more than
-`COMMON_CHANGE`, and at least `ALIKE_SHARE` of them are within `COMMON_SPREAD` of it."""
+"""At a common jolt, take each actor's speed relative to its speed `AROUND_NS` before and after. The median is off 1 by more than
+`COMMON_CHANGE`, and at least `ALIKE_SHARE` of the actors are within `COMMON_SPREAD` of the median."""
 AROUND_NS: Final = 300_000_000
 COMMON_NS: Final = 500_000_000
 """Values derived from velocities, such as accelerations and jerks, are also wrong within this time before and after a common jolt."""
@@ -49,14 +49,14 @@ LEAST_STEP_RECORDED_VELOCITY_M: Final = 0.4
 PIECE_ROWS = 1 << 18
 """The number of samples that are processed together, to limit memory."""
 _REACH: Final = 8
-"""The number of samples by which such a piece is extended on each side, more than the neighbours that a decision needs."""
+"""The number of samples by which a piece of `PIECE_ROWS` is extended on each side, more than a decision needs."""
 
 
 def outlier_samples(states: States, step: Steps) -> Mask:
     """Return the mask of the samples (n, in order) that are off their track or at a false step of it.
 
     A sample is off its track if the two samples before and the two after form a possible motion without it, and it is too far from that
-    motion. Without a recorded velocity, both ends of a step count that differs equally from the motion before and after it.
+    motion. Without a recorded velocity, a step is false if it differs equally from the motion before and after it.
     """
     n = len(states)
     no_samples = np.zeros(n, np.bool_)
@@ -125,7 +125,10 @@ def _beside(place: Floats, moves: _Moves, has_velocity: Mask, sigma: Floats, err
 
 
 def _stepped(moves: _Moves, has_velocity: Mask, sigma: Floats, error: Floats, beside: Mask) -> Mask:
-    """Return the mask of both ends of each step that differs equally from the motion before and after it, without recorded velocity."""
+    """Return the mask of samples at false steps, which differ equally from the motion before and after them.
+
+    Samples with a recorded velocity are not examined.
+    """
     n = len(has_velocity)
     outliers = np.zeros(n, np.bool_)
     v, dt = moves

@@ -38,7 +38,7 @@ class OneWayLanes(NamedTuple):
 
 
 class LaneHeadings(NamedTuple):
-    """For moving states on exactly one one-way lane: whether the heading is along the lane, and the index of the lane."""
+    """Moving states on one-way lanes (without states on several lanes): whether the heading is along the lane, and the lane's index."""
 
     agree: Mask
     lane: Indices

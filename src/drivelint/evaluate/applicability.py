@@ -27,8 +27,8 @@ def fragments(rule: Rule, alias: str, time: str, check_engagement: bool) -> dict
     """Return SQL fragments for the rows of the table `alias` at `time` (an SQL expression).
 
     `in_force`: whether the rule is in force: false if any condition is false, else NULL if any is unknown. `doubt`: the reason code of the
-    first unknown condition, or NULL. `condition_joins`: the joins that these fragments need; `ENGAGED` needs them too, made with
-    `check_engagement`.
+    first unknown condition, or NULL. `condition_joins`: the joins that these fragments need, and with `check_engagement` those that
+    `ENGAGED` needs.
     """
     terms = _terms(rule, check_engagement)
     whens = " ".join(f"WHEN ({term}) IS NULL THEN '{name}_unknown'" for name, term in terms.items())

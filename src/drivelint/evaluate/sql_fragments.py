@@ -149,8 +149,8 @@ def deciding_step(rule: Rule) -> str:
 def step_by_rank(good: int, bad: int, unknown: int, sign: str, object_fields: str) -> str:
     """Return the aggregate that selects a step by these ranks, then by margin, time and `object_fields`.
 
-    `good`, `bad`, `unknown`: the ranks by result, the lowest first. `sign`: '-' for the largest margin first, else ''. `object_fields`: of
-    a struct, or ''.
+    `good`, `bad`, `unknown`: the ranks by result, the lowest first. `sign`: '-' for the largest margin first, else ''. `object_fields`: SQL
+    of struct fields about the object, or ''.
     """
     return (
         f"min({{'b': CASE WHEN holds THEN {good} WHEN NOT holds THEN {bad} ELSE {unknown} END, "

@@ -85,7 +85,7 @@ def _opposing(pieces: _Pieces, reach_m: float) -> tuple[float, float]:
 
 
 def _gap_to_opposing(pieces: _Pieces, tree: shapely.STRtree, indices: Indices, side: float, reach_m: float) -> Floats:
-    """Return the gap (m) from these pieces to the nearest lane on one side (1: left, -1: right) if it is opposite, else infinity."""
+    """Return the gap (m) from these pieces to the nearest lane on one side (1: left, -1: right); infinity if it is no opposite lane."""
     x, y, _, half = ((pieces.begin + pieces.end) / 2)[indices].T
     ux, uy = pieces.ux[indices], pieces.uy[indices]
     reach = (half - _OVERLAP_M, half + reach_m + _WIDEST_HALF_M)
@@ -100,9 +100,9 @@ def _gap_to_opposing(pieces: _Pieces, tree: shapely.STRtree, indices: Indices, s
 def _nearest_opposing(
     pieces: _Pieces, indices: Indices, probe: Indices, other_piece: Indices, *, side: float, reach_m: float
 ) -> tuple[Indices, Floats]:
-    """Return the probes that have a lane beside them, and the gap to the nearest; infinity if it has the same direction.
+    """Return the pieces (positions in `indices`) with a lane beside them, and the gap to the nearest; infinity if it is no opposite lane.
 
-    `probe`, `other_piece`: pairs of an index into `indices`, and a piece that the line across this probe meets.
+    `probe`, `other_piece`: pairs of a position in `indices`, and a piece that the line across meets.
     """
     x, y, z, half = ((pieces.begin + pieces.end) / 2)[indices].T
     ux, uy = pieces.ux[indices], pieces.uy[indices]

@@ -50,11 +50,11 @@ class GeoFrame(NamedTuple):
     yaw_rad: float = 0.0
 
     def project(self, xy: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the projected coordinates (n, 2) of coordinates in this frame."""
+        """Convert coordinates (n, 2) in this frame to projected coordinates."""
         return xy @ self._turn().T + (self.x_m, self.y_m)
 
     def unproject(self, xy: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the coordinates (n, 2) in this frame of projected coordinates."""
+        """Convert projected coordinates (n, 2) to coordinates in this frame."""
         return (xy - (self.x_m, self.y_m)) @ self._turn()
 
     def after_shift(self, x_m: float, y_m: float) -> GeoFrame:
@@ -63,7 +63,7 @@ class GeoFrame(NamedTuple):
         return self._replace(x_m=x, y_m=y)
 
     def degrees(self, xy: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the longitude and latitude (n, 2) of coordinates in this frame. Errors: as `transform`."""
+        """Convert coordinates (n, 2) in this frame to longitude and latitude. Errors: as `transform`."""
         return transform(self.project(xy), self.reference, WGS84)
 
     def _turn(self) -> NDArray[np.float64]:
@@ -103,7 +103,7 @@ def why_unusable(frame: GeoFrame, x_m: float, y_m: float) -> str | None:
 
 
 def transform(xy: NDArray[np.float64], source: str, target: str) -> NDArray[np.float64]:
-    """Return coordinates (n, 2) of the reference `source` in the reference `target`; not finite if they do not exist there.
+    """Convert coordinates (n, 2) from the reference `source` to the reference `target`; not finite if they do not exist there.
 
     Errors: `duckdb.Error` if PROJ does not understand a reference.
     """

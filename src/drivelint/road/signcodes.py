@@ -30,7 +30,7 @@ def kind_of(country: str, code: str, name: str) -> str | None:
 
 
 def codes_of(kind: str) -> dict[str, list[str]]:
-    """Return list -> codes of a kind of signal in it (OpenDRIVE, de, gb, us, es); lists without such a code are left out."""
+    """Return name of a list (OpenDRIVE, de, gb, us, es) -> its codes for this kind of signal; lists without such a code are left out."""
     return dict(toml_beside(__file__, "signcodes.toml").get(kind, {}))
 
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import QualityFinding, States
 
 TYRE_MPS2: Final = 12.0
-"""No tyre changes a velocity faster than this. An impact does, but does not change it back (see `ukhc.contact-signature`)."""
+"""No tyre changes a velocity faster than this, and an impact does not change it back (see `ukhc.contact-signature`)."""
 LONGEST_JOLT: Final = 2
 """A jolt of at most this many samples is a recording error: with central differences, one wrong position affects two velocities."""
 LEAST_JOLT_MPS: Final = 1.0
@@ -103,7 +103,10 @@ def _jolts(states: States, step: Steps) -> Mask:
 
 
 def _displaced(states: States, step: Steps) -> Mask:
-    """Return the mask of the samples at single steps of the positions that the velocities do not show, and until they are reversed."""
+    """Return the mask of the samples at both ends of false steps: single steps of the positions that the velocities do not show.
+
+    If a later false step reverses one, the samples between them are included.
+    """
     aside = np.zeros(len(states), np.bool_)
     known = known_motion(states, step)
     off = np.where(known, np.diff(states.place) - integral_per_step(states.velocity, step, known), 0.0)
@@ -139,7 +142,7 @@ def _shifted(off: Floats, size: Floats, by: int) -> Floats:
 
 
 def _spins(states: States, step: Steps, actors: Actors) -> Mask:
-    """Return the mask of the samples within seconds in which a slow vehicle turns further than its distance allows."""
+    """Return the mask of the samples within one-second windows in which a slow vehicle turns further than its distance allows."""
     spin, n = np.zeros(len(states), np.bool_), len(states)
     k = max(1, round(SPIN_WINDOW_S * 1e9 / step.period_ns)) if step.period_ns else n
     if n <= k:

@@ -99,7 +99,7 @@ class Robustness:
 
     @property
     def n_waiting(self) -> int:
-        """The number of waiting drives."""
+        """The number of drives whose copies are not judged yet."""
         return len(self._waiting)
 
     def n_asked(self) -> int:

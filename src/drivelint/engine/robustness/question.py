@@ -28,7 +28,7 @@ LEAST_SHARE: Final = 0.95
 SMALL_MARGIN: Final = {"m": 0.3, "s": 0.1}
 """Unit -> margin up to which a finding is near the threshold: errors of a decimetre may remove it, so all copies are judged."""
 NOT_FAR: Final = 10.0
-"""For margins below this many small margins, 20 copies will probably not suffice."""
+"""For margins below this multiple of `SMALL_MARGIN`, 20 copies will probably not suffice."""
 
 
 @dataclass

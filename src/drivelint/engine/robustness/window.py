@@ -37,13 +37,13 @@ class Around(NamedTuple):
 
 
 AT_STEP: Final = Around(1_000_000_000, 600_000_000)
-"""Around the worst step of an invariant."""
+"""The window around the worst step of an invariant."""
 AT_REFERENCE: Final = Around(2_000_000_000, 2_000_000_000)
-"""Around the reference point and the worst step, for rules with reference points."""
+"""The window around the reference point and the worst step, for rules with reference points."""
 IN_OVERTAKE: Final = Around(3_000_000_000, 2_000_000_000)
-"""Around the worst step of an invariant about overtakes, which are detected by the ego's lane before them."""
+"""The window around the worst step of an invariant about overtakes, which are detected by the ego's lane before them."""
 AT_OVERTAKE: Final = Around(3_000_000_000, 6_000_000_000)
-"""As `AT_REFERENCE`, for rules about overtakes."""
+"""The same as `AT_REFERENCE`, for rules about overtakes."""
 
 
 class FindingWithCopies(Protocol):
@@ -75,7 +75,7 @@ class Extent:
     objects: set[str]
     """The objects of the findings in the window."""
     at_once: bool
-    """Whether an actor is near only if it is close to the ego at the same time; else its distance to the ego's whole path counts."""
+    """Whether an actor is near only if it is close to the ego at the same time. False: if it is close to any part of the ego's path."""
 
     def add(self, question: FindingWithCopies) -> None:
         """Include the window of this finding, and set the finding's extent."""
