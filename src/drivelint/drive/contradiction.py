@@ -35,8 +35,8 @@ if TYPE_CHECKING:
 
 MISMATCH_M: Final = 1.0
 MISMATCH_SHARE: Final = 0.15
-"""Positions contradict velocities if, over one second, their displacements differ by more than 1 m + 15 %. Position noise of 0.3 m and a
-velocity error of 10 % stay below that."""
+"""Positions contradict velocities if, over one second, their displacements differ by more than 1 m + 15 % of the larger one. Noise of
+0.3 m and a velocity error of 10 % stay below that."""
 STEP_MISMATCH_M: Final = 2.0
 """A single step contradicts the velocities, whatever the next step does, if it differs by more than this: six times a noise of 0.3 m."""
 WINDOW_S: Final = 0.5
@@ -259,7 +259,7 @@ def _around(states: States, pieces: NDArray[np.integer], rows: Indices) -> tuple
 
 
 def _leads(states: States, rows: Mask) -> Mask:
-    """Return the mask of marked rows around which the positions advance about as far as the speed states: there, motion has a direction."""
+    """Return the mask of marked rows where the motion has a direction: the positions advance about as far as the speed states."""
     marked_rows = np.flatnonzero(rows)
     first, last = _around(states, states.actor, marked_rows)
     place, speed = states.place, np.hypot(*states.velocity[:, marked_rows])

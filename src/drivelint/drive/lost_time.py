@@ -91,7 +91,7 @@ def _seconds(ns: int) -> str:
 def _in_clock_of_states(lost_time: LostTime, frames: FrameTimes | None) -> tuple[int | None, int | None]:
     """Convert a stretch from the container's clock to the states' clock.
 
-    The delay between them varies: the extremes of the frames nearby give the widest possible stretch.
+    The delay between them varies: its extremes in nearby frames give the widest possible stretch.
     """
     since, until = lost_time.since_ns, lost_time.until_ns
     times = [ns for ns in (since, until) if ns is not None]

@@ -125,10 +125,7 @@ def _beside(place: Floats, moves: _Moves, has_velocity: Mask, sigma: Floats, err
 
 
 def _stepped(moves: _Moves, has_velocity: Mask, sigma: Floats, error: Floats, beside: Mask) -> Mask:
-    """Return the mask of samples at false steps, which differ equally from the motion before and after them.
-
-    Samples with a recorded velocity are not examined.
-    """
+    """Return the mask of samples at false steps without recorded velocity, which differ equally from the motion before and after them."""
     n = len(has_velocity)
     outliers = np.zeros(n, np.bool_)
     v, dt = moves

@@ -46,7 +46,7 @@ class Identity:
 
 
 class EgoSize(NamedTuple):
-    """The user's size (m) for an ego without a size in the log; `forward_m`: from the odometry's origin ahead to the box centre."""
+    """The user's size (m) for an ego without a size in the log; `forward_m`: how far the box centre is ahead of the odometry's origin."""
 
     length_m: float
     width_m: float

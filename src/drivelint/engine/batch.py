@@ -41,7 +41,7 @@ FIRST_BATCH_DRIVES: Final = 16
 FIRST_BATCH_STATES: Final = 100_000
 """The most states of a run's first batch, so that there are results soon."""
 BATCH_GROWTH: Final = 6
-"""A batch is at most this many times larger than all batches before it."""
+"""A batch is at most this many times larger than all batches before it together."""
 
 
 @dataclass(frozen=True)

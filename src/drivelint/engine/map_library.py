@@ -77,7 +77,7 @@ class MapLibrary:
             self._load(self._given, None, None)
 
     def given_nation(self) -> str | None:
-        """Return the nation of the map of `--map`; None: it states none. Errors: `MapError`, `UsageError`."""
+        """Return the nation of the map of `--map`; None: no map, or no nation in it. Errors: `MapError`, `UsageError`."""
         return None if self._given is None else self._load(self._given, None, None).nation
 
     def find(self, trace: Trace) -> tuple[MapTables | None, Trace]:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from drivelint.engine.memory import Memory
 
 ROW_GROUP_ROWS: Final = 1 << 20
-"""The rows of a row group. Memory contains no more at once, because a drive of many egos may have too many."""
+"""The rows of a row group, which is also the most in memory at once: a drive of many egos has too many rows."""
 _ORDER: Final = "drive_id, ego_id, rule_id, profile NULLS FIRST, object_id NULLS FIRST, ref_id NULLS FIRST, t_ns"
 _COLUMNS: Final = (
     "* REPLACE (drive_id::VARCHAR AS drive_id, ego_id::VARCHAR AS ego_id, object_id::VARCHAR AS object_id)"
@@ -48,7 +48,7 @@ class MarginFile:
             self._file.close()
 
     def _write(self) -> None:
-        """Write one block of the waiting rows, or all of them if there are fewer."""
+        """Write one row group of the waiting rows, or all rows if they are fewer."""
         if self._file and self._waiting:
             rows = pa.Table.from_batches(self._waiting)
             # as one chunk: the pages of the file would otherwise depend on the chunks

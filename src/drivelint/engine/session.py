@@ -1,4 +1,4 @@
-"""Judges drives batch by batch: fills the tables, derives more, evaluates the rules, and clears the tables."""
+"""Judges drives batch by batch: fills tables, derives further ones, evaluates the rules, and clears the tables."""
 
 from __future__ import annotations
 
@@ -220,7 +220,7 @@ class JudgingSession:
         return True
 
     def _judge_part(self, ids: Sequence[str], *, may_retry: bool, release: Callable[[], None] | None) -> None:
-        """Judge the egos that are not skipped in this part."""
+        """Judge the egos of the current part."""
         derive(self._con, self._tables, of_the_map=False, also=self._also)
         margins, series = self._margins is not None, bool(self._observers)
         evaluate(

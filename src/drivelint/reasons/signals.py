@@ -50,7 +50,7 @@ def signal_name(reason_code: str) -> str:
 
 
 def problem(signal: str) -> str | None:
-    """Return why this is not the name of a signal, with a hint; None: it is one."""
+    """Return why this is not the name of a signal, with a hint; None: it is valid."""
     if signal in SIGNALS:
         return None
     return f"{signal!r} is no signal; {hint(signal, sorted(SIGNALS))}"
@@ -90,7 +90,7 @@ def remedy(code: str, object_id: str | None, log_format: str, advice: str | None
 
 
 def condition_of(code: str) -> str | None:
-    """Return the column of `ego_condition` that is unknown by this reason code; None: the code is not about a condition."""
+    """Return the column of `ego_condition` that is unknown according to this reason code; None: the code is not about a condition."""
     condition = code.removesuffix("_unknown")
     if condition == code:
         return None

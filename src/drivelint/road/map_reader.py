@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 class MapSource:
     """The input of a map reader: the bytes of a map, from a file or a log."""
 
-    name: str  # the file name, or "embedded" for a map in a log
+    name: str  # the file name; a fixed name for a map in a log
     content: bytes = field(repr=False)
 
     @property

@@ -9,7 +9,7 @@ from drivelint.phrases import escape_invisible, listed
 from drivelint.sql.words import vocabularies
 
 SIGNS_UNMAPPED: Final = "signs_unmapped"
-"""The id of the check for a map that never contains stop and give-way signs, even if they exist on the road."""
+"""The id of the check for a map without stop and give-way signs, even if they exist on the road."""
 _UNKNOWN_WORDS: Final = {
     "lane_type": ("warning", "types of lanes", "vehicles are assumed not to drive there"),
     "road_type": ("info", "types of roads", "treated as not stated"),

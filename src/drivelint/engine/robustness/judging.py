@@ -50,7 +50,7 @@ HASTY_STATES: Final = 10_000
 """If the additional copies have at most this many states, all copies are judged in one pass. They cost a quarter of the fixed cost of a
 second pass."""
 _DERIVED: Final = ("clock", "step", "ego_state", "pair", "ego_condition")
-"""Tables that the evaluation itself reads, without those that it needs only for unknown verdicts."""
+"""Tables that the evaluation itself reads, except those that only unknown verdicts need."""
 _HANDED_OVER: Final = frozenset({"capability", "registration"})
 
 

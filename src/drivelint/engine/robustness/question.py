@@ -40,7 +40,7 @@ class Question:
     size: int = 0
     """The size of the current window (see `window.SIZES`)."""
     ends_early: bool = True
-    """Stop judging copies as soon as the finding is only possible. False: the share of all copies is needed for the user's confidence."""
+    """Stop judging copies as soon as the finding is only possible. False: the user gave a confidence, which needs all copies."""
     n_copies: int = 0
     n_stays: int = 0
     """The number of copies that keep the finding."""
