@@ -40,7 +40,7 @@ class MapQuality:
         return None
 
     def side_by_number(self) -> None:
-        """Count an OpenDRIVE lane section in which `<left>` and `<right>` are swapped, by the numbers of their lanes."""
+        """Count an OpenDRIVE lane section whose lanes are all under `<left>` or all under `<right>`, with numbers of the other side."""
         self._sides_by_number += 1
 
     def known_word(self, vocabulary: str, word: str) -> str | None:
