@@ -63,7 +63,7 @@ STRETCH_S: Final = 0.5
 """The mean velocity over this time, or over two steps if that is longer, is compared with the displacement."""
 STRETCH_MISMATCH_MPS: Final = 0.8
 STRETCH_MISMATCH_SHARE: Final = 0.05
-"""The tolerated difference. The velocity of a rear axle is up to 0.7 m/s off that of the centre (1.4 m, 0.5 rad/s), a speedometer 5 %, a
+"""The tolerated difference: the velocity of a rear axle is up to 0.7 m/s off (1.4 m from the centre, 0.5 rad/s), a speedometer 5 %, a
 delayed filter 0.8 m/s."""
 SIGMAS: Final = 4.0
 """The tolerance for a stretch includes this many standard deviations of the position noise."""

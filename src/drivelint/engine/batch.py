@@ -121,7 +121,7 @@ def logs_being_read() -> bool:
 def _wait_for(path: Path, future: Future[Trace], library: MapLibrary) -> Drive | RefusedLog:
     try:
         return drive_with_map(future.result(), library)
-    except BaseException as error:  # noqa: BLE001 - some readers' libraries raise what is no Exception
+    except BaseException as error:  # noqa: BLE001 - some libraries raise errors that are no `Exception`
         return refusal_of(path, error)
 
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from drivelint.engine.memory import Memory
 
 ROW_GROUP_ROWS: Final = 1 << 20
-"""The rows of a row group, which is also the most in memory at once: a drive of many egos has too many rows."""
+"""The rows of a row group, and the most in memory at once: a drive of many egos has too many."""
 _ORDER: Final = "drive_id, ego_id, rule_id, profile NULLS FIRST, object_id NULLS FIRST, ref_id NULLS FIRST, t_ns"
 _COLUMNS: Final = (
     "* REPLACE (drive_id::VARCHAR AS drive_id, ego_id::VARCHAR AS ego_id, object_id::VARCHAR AS object_id)"

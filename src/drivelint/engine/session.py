@@ -270,7 +270,7 @@ class JudgingSession:
             set_aside(self._con, drive.trace)
 
     def _filled(self, *lifetimes: str) -> list[str]:
-        """Return the tables of these lifetimes that get rows: the tables of a log, and the derived tables that the rules need."""
+        """Return the tables of these lifetimes that get rows: those of a log, and the derived tables that the rules need."""
         unneeded = derived_tables() - {each.table for each in needed_derivations(self._tables, self._also)}
         return [table for table in store.tables_of_lifetime(*lifetimes) if table not in unneeded]
 

@@ -72,7 +72,7 @@ class Evaluation:
     _may_be_double: bool = field(default=False, init=False)
     """Whether there may be several pending steps with the same key."""
     _alone: set[int] = field(default_factory=set, init=False)
-    """The numbers of the rules that are concluded separately, because concluding them with others failed."""
+    """The numbers of the rules whose steps are concluded separately, because `conclude` failed with several rules."""
 
     def judge(self) -> None:
         """Judge by every rule, then write the verdicts, findings and margins of all rules at once."""

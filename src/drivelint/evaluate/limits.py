@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     import duckdb
 
 DEFAULT_TIMEOUT_S: Final = 30.0
-"""CPU seconds per rule and batch."""
+"""The default limit of CPU seconds per rule and batch."""
 MOST_EXCESSES: Final = 3
 """A rule that exceeded its limits this many times does not run again; else it would run for each drive of a failed batch."""
 _LOOK_S: Final = 0.1

@@ -52,7 +52,7 @@ class FindingWithCopies(Protocol):
     finding: dict[str, Any]
     size: int
     extent: Extent | None
-    """The times and actors of its window of this size; None: the window was not cut yet."""
+    """The times and actors of its window; None: the window was not cut yet."""
 
     @property
     def of_overtake(self) -> bool:
