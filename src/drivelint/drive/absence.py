@@ -1,11 +1,11 @@
-"""Finds the time in which a log continues without its ego, adds ego states without values there, and reports how much is lost.
+"""Finds the times at which a log continues without its ego, adds ego states without values there, and reports their duration.
 
-The recorder sits in its own ego, which is there from the log's first frame to its last. Who names it: the host of OSI, the odometry of
-ROS, the ego flag of a table, a mapping. An ego that the user chooses with --ego among observed vehicles comes into view and leaves it: it
-is there from its first state to its last. Of `--ego all` each has the time of its track, holes included.
+The recorder's own ego is the vehicle that carries the recorder. It must have states from the log's first frame to its last. The host of
+OSI, the odometry of ROS, the ego flag of a table, or a mapping names it. An ego that the user chooses with --ego, or each of `--ego all`,
+must have states from the start of its track to its end.
 
-Without a place at a frame nothing is known of the ego there. With such a state, every rule is judged at that frame, and is unknown. Where
-no frame came, there is no state either: rules have a hole.
+If the ego has no position at a frame, it gets a state without values: rules are judged there, and are unknown. Times without frames get
+no states: no rule is judged there.
 """
 
 from __future__ import annotations
@@ -26,23 +26,24 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import Recording
 
 EGO_CHOSEN: Final = "ego_chosen"
-"""The check, information only, of an ego that the user picked. A converted log carries it, for its flags look like a recorder's."""
+"""The id of the check (information only) for an ego that the user chose. A converted log keeps the finding, to distinguish this ego from
+the recorder's own."""
 EGOS_CHOSEN: Final = "egos_chosen"
-"""The same of every motor vehicle in turn; its actor is the recorder's own ego, if the log has one."""
+"""The id of the check (information only) for `--ego all`; the finding's actor is the recorder's own ego, if the log has one."""
 LEAST_ABSENCE_NS: Final = 250_000_000
-"""A shorter hole is a clock that trembles, as that of an odometry at 100 Hz does: 2.5 periods of 10 Hz, the usual step in this field."""
+"""Shorter holes are clock jitter, as odometry at 100 Hz has; this is 2.5 periods of 10 Hz, the usual sampling rate in this field."""
 FRAMES_APART_NS: Final = 1_000_000_000
-"""Frames further apart do not follow one another."""
+"""Frames further apart than this are not successive frames of one recording."""
 LEAST_STEP_NS: Final = 2_000_000
-"""No ego needs steps closer than this, whatever its clock says."""
+"""The least time between states that are added between frames."""
 ASSUMED_PERIOD_NS: Final = 100_000_000
-"""The period of an ego that has no two states."""
+"""The sampling period that is assumed for an ego with fewer than two states."""
 
 
 class Absence(NamedTuple):
-    """When one ego has no place in a log that lasts, or in a track that lasts, from `first_ns` to `last_ns`.
+    """The stretches in which one ego has no position, within a log or its track (`of_track`) from `first_ns` to `last_ns`.
 
-    `since_ns`, `until_ns` (n): times before and behind each stretch without a place, in order, both not within it.
+    `since_ns`, `until_ns` (n): the last time before and the first time after each stretch, both outside it, ascending.
     """
 
     ego_id: str
@@ -55,24 +56,24 @@ class Absence(NamedTuple):
 
     @property
     def ends_ns(self) -> tuple[Times, Times]:
-        """Return the beginnings and ends of the stretches (n) within the log."""
+        """Return the starts and ends of the stretches (n), limited to the log or the track."""
         return np.maximum(self.since_ns, self.first_ns), np.minimum(self.until_ns, self.last_ns)
 
     def stretch_of(self, t_ns: Times) -> Indices:
-        """Return the stretch within which each time (n) lies; -1: none."""
+        """Return for each time (n) the index of the stretch that contains it; -1: no stretch does."""
         of = np.searchsorted(self.since_ns, t_ns, side="left") - 1
         return np.where((of >= 0) & (t_ns < self.until_ns[of]), of, -1)
 
 
 def asked_ego(recording: Recording, ego_option: str | None) -> str | None:
-    """Return the ego that the user chose, now or when the log was converted; None: the ego that the log names."""
+    """Return the `--ego` of this run, or `all` if the log was converted with `--ego all`; None: use the ego that the log names."""
     if ego_option is None and any(finding.check_id == EGOS_CHOSEN for finding in recording.findings):
         return ALL_EGOS
     return ego_option
 
 
 def own_egos(recording: Recording) -> list[str]:
-    """Return the egos that the recorder sits in: those that the log or its mapping names, but for those that a user had picked."""
+    """Return the egos that carry the recorder: those that the log or its mapping names, without those that a user had chosen."""
     picked = {finding.actor_id for finding in recording.findings if finding.check_id == EGO_CHOSEN}
     among_all = [finding.actor_id for finding in recording.findings if finding.check_id == EGOS_CHOSEN]
     if among_all:
@@ -81,7 +82,7 @@ def own_egos(recording: Recording) -> list[str]:
 
 
 def absences(recording: Recording, ego_option: str | None) -> list[Absence]:
-    """Return the absences of the egos that must be there (states as read): the recorder's own, or the one that the user picks."""
+    """Return the absences of the recorder's own egos, or of the ego that the user chooses (states not yet cleaned)."""
     states, own = recording.states, own_egos(recording)
     expected = own if ego_option is None or asks_for_all(ego_option, states.ids) else [ego_option]
     absences_of_egos = []
@@ -96,9 +97,9 @@ def absences(recording: Recording, ego_option: str | None) -> list[Absence]:
 
 
 def _span(recording: Recording) -> tuple[int, int]:
-    """Return the first and the last time of a log: of its states, and of frames that go on before and after these.
+    """Return the first and the last time of a log: of its states, and of the frames before and after them.
 
-    A frame that no other is near to is none: the first message of a log may hold the road alone, at any time.
+    Isolated frames do not count: the first message of a log may contain only the road, with any time.
     """
     t_ns = recording.states.t_ns
     first, last = int(t_ns.min()), int(t_ns.max())
@@ -113,7 +114,7 @@ def _span(recording: Recording) -> tuple[int, int]:
 
 
 def _placed_times(states: States, name: str) -> Times:
-    """Return the times, in order, at which an actor has a place."""
+    """Return the times, ascending, at which an actor has a position."""
     if name not in states.ids or not {"x_m", "y_m"} <= states.numbers.keys():
         return np.zeros(0, np.int64)
     mine = states.actor == states.ids.index(name)
@@ -122,11 +123,11 @@ def _placed_times(states: States, name: str) -> Times:
 
 
 def _absence(name: str, t_ns: Times, span: tuple[int, int], ends_apart_ns: int, *, of_track: bool) -> Absence:
-    """Return when an actor with a place at these times has none within a span, longer than a clock trembles."""
+    """Return the absence of an actor with positions at these times within a span; holes that are clock jitter do not count."""
     first, last = span
     steps = np.diff(t_ns)
     period = max(int(np.median(steps)), 1) if len(steps) else ASSUMED_PERIOD_NS
-    # the log's own ends have no place behind them
+    # 1 ns outside the span, so that a stretch at either end includes the end itself
     edges = np.r_[first - 1, t_ns, last + 1]
     least = np.full(len(edges) - 1, max(MAX_GAP_PERIODS * period, LEAST_ABSENCE_NS))
     least[[0, -1]] = max(least[0], ends_apart_ns) + 1
@@ -135,7 +136,7 @@ def _absence(name: str, t_ns: Times, span: tuple[int, int], ends_apart_ns: int, 
 
 
 def frames_without_states(recording: Recording, missed: Sequence[Absence]) -> Times:
-    """Return the times of frames that came while an ego was absent, and that have no other actor (states as read)."""
+    """Return the times of frames without any actor during the absence of an ego (states not yet cleaned)."""
     if recording.frames_ns is None or not missed:
         return np.zeros(0, np.int64)
     within = np.any([each.stretch_of(recording.frames_ns) >= 0 for each in missed], axis=0)
@@ -143,7 +144,7 @@ def frames_without_states(recording: Recording, missed: Sequence[Absence]) -> Ti
 
 
 def with_absent_states(states: States, missed: Sequence[Absence], frames_ns: Times | None) -> States:
-    """Give each ego states without values at the frames that came while it was absent. States in order, and so returned."""
+    """Add states without values for each ego, at the frames during its absence. The states are sorted, and so is the result."""
     ids = list(dict.fromkeys([*states.ids, *(each.ego_id for each in missed)]))
     more = [_absent_states(states, ids, each, frames_ns) for each in missed]
     if not any(map(len, more)):
@@ -167,9 +168,9 @@ def _absent_states(states: States, ids: list[str], absence: Absence, frames_ns: 
 
 
 def _times_to_fill(absence: Absence, states: States, own_ns: Times, frames_ns: Times | None) -> Times:
-    """Return times within an absence, one a period, beside which the ego has no state (`own_ns`): those of frames, as far as they come.
+    """Return the times of frames within an absence, at most one per period, without those near a state of the ego (`own_ns`).
 
-    Where frames come more rarely than the ego's states did, times between them are among them: rules would have a hole between any two.
+    If frames are rarer than the ego's states, times between the frames are added, because rules would otherwise have a hole there.
     """
     period, half = absence.period_ns, absence.period_ns // 2
     times = np.concatenate([states.t_ns, np.zeros(0, np.int64) if frames_ns is None else frames_ns])
@@ -192,7 +193,7 @@ def _times_to_fill(absence: Absence, states: States, own_ns: Times, frames_ns: T
 
 
 def absence_findings(missed: Sequence[Absence], states: States) -> list[QualityFinding]:
-    """Return a finding, an error, for each absence (states in order, those without values among them)."""
+    """Return a finding of severity error for each absence (states in order, including those without values)."""
     start = int(states.t_ns.min())
     findings = []
     for absence in missed:
@@ -216,12 +217,12 @@ def absence_findings(missed: Sequence[Absence], states: States) -> list[QualityF
 
 
 def without_choices(findings: Sequence[QualityFinding]) -> list[QualityFinding]:
-    """Return findings without those about the ego that the user chose when the log was converted."""
+    """Return the findings without those about the user's choice of the ego when the log was converted."""
     return [finding for finding in findings if finding.check_id not in {EGO_CHOSEN, EGOS_CHOSEN}]
 
 
 def chosen_findings(recording: Recording, ego_option: str | None) -> list[QualityFinding]:
-    """Return that the user picks an ego that is not the recorder's own, and how long that one is in the log (states as read)."""
+    """Return a finding, with the length of the track, if the user chooses another ego than the recorder's (states not yet cleaned)."""
     own, states = own_egos(recording), recording.states
     if ego_option is None or ego_option in own:
         return []

@@ -1,4 +1,4 @@
-"""One row per actor: its class and box, from its states or from the log's own actor table."""
+"""Collects the class and box of each actor, from its states or from the log's own actor table."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import States
 
 LONG_CLASSES: Final = frozenset({"car", "van", "truck", "bus", "vehicle", "trailer"})
-"""Whose boxes are longer than wide. The box of a rider may be that of his body alone."""
+"""Classes whose boxes are longer than wide. Two-wheelers are not among them: the box may be that of the rider's body alone."""
 WIDER_SHARE: Final = 1.1
-"""A detector's box of a small car may be a little wider than long; one by more than a tenth is turned or wrong."""
+"""A detector may make the box of a small car a little wider than long; a box wider by more than a tenth is turned or wrong."""
 DIRECTION_LEAST_MPS: Final = 2.0
-"""From this speed on, the velocity of a box shows its direction of motion."""
+"""Above this speed, the velocity of a box shows its direction of motion."""
 LEAST_MOVING_SAMPLES: Final = 5
 ALONG_RAD: Final = np.deg2rad(30.0)
-"""A box moves along its heading if most of its moving samples are no further off."""
+"""A box moves along its heading if, in most of its moving samples, the angle between the two is smaller than this."""
 LEAST_M: Final = {
     "car": (1.5, 0.8),
     "van": (2.0, 1.0),
@@ -38,12 +38,12 @@ LEAST_M: Final = {
     "bicycle": (0.5, 0.1),
     "vehicle": (0.8, 0.3),
 }
-"""Class -> the least length and width (m) of a vehicle of it: a microcar's, less a detector's error of decimetres. One that is too large
-for its class, such as a lorry that is recorded as a car, is still as large as it is."""
+"""Class -> the least length and width (m) of such a vehicle: those of the smallest models, minus a detector's error of decimetres. There
+is no upper limit per class: a lorry that is recorded as a car has the right size."""
 MOST_M: Final = (60.0, 8.0)
-"""No road user is longer or wider."""
+"""Length and width (m) that no road user exceeds."""
 LARGEST_SIZE_SPREAD_M = 0.05
-"""Sizes that spread by more than this over a track were estimated, not known."""
+"""If the sizes of a track differ by more than this, they are estimates, and a finding reports it."""
 
 
 @dataclass
@@ -56,7 +56,7 @@ class Actors:
 
 
 def from_states(states: States) -> tuple[Actors, list[QualityFinding]]:
-    """Collect each actor's class (the first known) and sizes (the median of those known). `states` in order."""
+    """Return each actor's class (the first known one) and sizes (the median of the known ones), and findings. `states` in order."""
     starts = track_starts(states.actor)
     classes: list[str | None] = [None] * len(states.ids)
     codes = states.codes.get("actor_class")
@@ -71,7 +71,7 @@ def from_states(states: States) -> tuple[Actors, list[QualityFinding]]:
         if values is None or not len(states):
             sizes[name] = np.full(len(states.ids), np.nan)
             continue
-        positive = np.where(values > 0.0, values, np.nan)  # a box of no size is one whose size was not written
+        positive = np.where(values > 0.0, values, np.nan)  # size 0 means that the size was not written
         low, high = np.fmin.reduceat(positive, starts), np.fmax.reduceat(positive, starts)
         ends = np.r_[starts[1:], len(states)]
         for i in np.flatnonzero(high - low > 0.0):
@@ -90,9 +90,9 @@ def from_states(states: States) -> tuple[Actors, list[QualityFinding]]:
 
 
 def from_table(table: pa.Table, states: States, alias: Mapping[str, str]) -> Actors:
-    """Read the log's own actor table (first row of each id); actors that only have states are added as unknown.
+    """Return the actors of the log's own table (first row of each id), and those that only have states, with unknown class and size.
 
-    `alias`: an id that the table does not have -> the one whose row is its own (see `contradiction`).
+    `alias`: new id of a split track -> the id whose row in the table describes it (see `jumps`).
     """
     rows = {str(row["actor_id"]): row for row in reversed(table.to_pylist()) if row["actor_id"] not in {None, ""}}
     rows |= {new: rows[old] for new, old in alias.items() if old in rows}
@@ -109,7 +109,10 @@ def from_table(table: pa.Table, states: States, alias: Mapping[str, str]) -> Act
 
 
 def resolve_sizes(states: States, actors: Actors) -> list[QualityFinding]:
-    """Exchange or drop the sizes of boxes that are wider than long, in place; doubt impossible sizes. `states` in order."""
+    """Swap or drop the sizes of boxes that are wider than long, in place; return findings on these and on impossible sizes.
+
+    `states` in order.
+    """
     length, width = actors.sizes["length_m"], actors.sizes["width_m"]
     long_kind = np.array([kind in LONG_CLASSES for kind in actors.classes], np.bool_)
     wide = long_kind & (width > WIDER_SHARE * length)
@@ -132,7 +135,7 @@ def resolve_sizes(states: States, actors: Actors) -> list[QualityFinding]:
 
 
 def _moving_along(states: States) -> list[str]:
-    """Return the actors that move along their heading, forwards or backwards."""
+    """Return the ids of the actors that move along their heading, forwards or backwards."""
     vx, vy = states.velocity
     moving = np.isfinite(states.numbers["yaw_rad"]) & (np.hypot(vx, vy) > DIRECTION_LEAST_MPS)
     off = np.abs(wrapped(2.0 * (states.numbers["yaw_rad"] - np.arctan2(vy, vx)))) / 2.0

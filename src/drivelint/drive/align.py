@@ -1,8 +1,8 @@
 """Interpolates objects that are sampled at other times than the ego to the ego's steps.
 
-Every rule needs the place of every actor at a step of the ego. Between two samples, an object is on the straight line between them (at
-10 Hz and 5 m/s2 this is 6 mm off). It has no state before its first sample, after its last one, and in a hole of its track. There is one
-exception: if the log itself begins or ends within the time of one sample, the velocity of the object moves it to there.
+Every rule needs the position of every actor at each step of the ego. Between two samples, positions are interpolated linearly (at 10 Hz
+and 5 m/s2 this is 6 mm off). An object has no state before its first sample, after its last one, or in a hole of its track. There is one
+exception: if its track starts or ends within one sampling period of the log's start or end, it is extrapolated to there by its velocity.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ if TYPE_CHECKING:
     from drivelint.arrays import Times
 
 LONGEST_PERIOD_NS: Final = 250_000_000
-"""Objects sampled more rarely are not aligned: with 250 ms between samples, interpolating a braking car is already 8 cm off."""
+"""Objects with a longer sampling period are not aligned: at 250 ms, interpolating a braking car is already 8 cm off."""
 DIFFERENT_RATE_FACTOR: Final = 1.5
-"""A period longer than the ego's by more than this factor is another rate; a smaller difference is a missing sample now and then."""
+"""Above this ratio of a track's sampling period to the ego's, the track has another rate; below it, only single samples are missing."""
 COVERED_SHARE: Final = 0.75
-"""A track that has a sample at so many of the ego's steps needs no others."""
+"""A track that has samples at this share of the ego's steps is not interpolated."""
 _PLACE_AND_VELOCITY: Final = (("x_m", "vx_mps"), ("y_m", "vy_mps"))
 
 
 def align_to_ego(states: States, egos: list[str]) -> tuple[States, list[QualityFinding]]:
-    """Interpolate tracks with another sampling rate to the steps of the only ego; return the states and findings about it."""
+    """Interpolate tracks with other sampling times to the steps of the only ego; return the states and a finding about it."""
     if len(egos) != 1 or egos[0] not in states.ids:
         return states, []
     starts = np.searchsorted(states.actor, np.arange(len(states.ids) + 1))
@@ -45,7 +45,7 @@ def align_to_ego(states: States, egos: list[str]) -> tuple[States, list[QualityF
         track_period = _own_period(states.t_ns[span], grid, period)
         if track_period is None:
             continue
-        # a track with a shorter period keeps its own samples too; every track keeps those before and after the ego's steps
+        # a track with a shorter period also keeps its own samples; every track keeps its samples before and after the ego's steps
         kept_rows[span] = (track_period < period) | (states.t_ns[span] < grid[0]) | (states.t_ns[span] > grid[-1])
         track = _at_steps(states, span, grid, track_period, log_ns)
         aligned_tracks.append(track.take(~np.isin(track.t_ns, states.t_ns[span])) if track_period < period else track)
@@ -62,7 +62,10 @@ def align_to_ego(states: States, egos: list[str]) -> tuple[States, list[QualityF
 
 
 def _own_period(t_ns: Times, grid: Times, period_ns: float) -> int | None:
-    """Return the period of a track that has to be aligned, or None: its samples are the ego's steps, but for a few."""
+    """Return the sampling period of a track that has to be aligned.
+
+    None: its samples are at the ego's steps (but for a few), fewer than two, or too far apart.
+    """
     n = len(t_ns)
     if n < 2:
         return None
@@ -74,13 +77,16 @@ def _own_period(t_ns: Times, grid: Times, period_ns: float) -> int | None:
         return None
     steps = grid[first : np.searchsorted(grid, t_ns[-1], side="right")]
     shared = len(np.intersect1d(steps, t_ns, assume_unique=True))
-    if shared >= COVERED_SHARE * len(steps):  # also true if the ego has no step in that time
+    if shared >= COVERED_SHARE * len(steps):  # also true if the ego has no step during the track
         return None
     return own_period if own_period > DIFFERENT_RATE_FACTOR * period_ns or shared < 0.5 * n else None
 
 
 def _at_steps(states: States, span: slice, grid: Times, own_ns: int, log_ns: tuple[int, int]) -> States:
-    """Return the states of one track at the steps where they are known. `log_ns`: the first and the last time of the log."""
+    """Return the states of one track at those steps of the ego (`grid`) where they are known.
+
+    `own_ns`: the track's sampling period. `log_ns`: the first and the last time of the log.
+    """
     t_ns = states.t_ns[span]
     first = log_ns[0] if t_ns[0] - log_ns[0] <= own_ns else t_ns[0]
     last = log_ns[1] if log_ns[1] - t_ns[-1] <= own_ns else t_ns[-1]

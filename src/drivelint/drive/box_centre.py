@@ -1,4 +1,4 @@
-"""From the point of a vehicle that a log's positions refer to, to the centre of its box: the one place where this is worked out."""
+"""Converts positions and velocities from a vehicle's reference point, as in the log, to the centre of its box."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 
 
 def lever_to_centre(forward: Floats, left: Floats, yaw: Floats) -> Floats:
-    """Return the way from the reference point to the box centre along the axes of the log (2, n), in metres.
+    """Return the vectors (2, n) in metres from the reference point to the box centre, along the axes of the log.
 
-    `forward` and `left` (n): how far the centre lies ahead and to the left of the point, in metres; `yaw` (n): headings in radians. A
-    centre that lies in the point itself needs no heading.
+    `forward` and `left` (n): how far the centre is ahead and to the left of the point, in metres; `yaw` (n): headings in radians. If both
+    distances are 0, the heading may be unknown.
     """
     lever = np.stack(turned(forward, left, yaw))
     lever[:, (forward == 0.0) & (left == 0.0)] = 0.0
@@ -26,9 +26,9 @@ def lever_to_centre(forward: Floats, left: Floats, yaw: Floats) -> Floats:
 
 
 def velocity_of_centre(velocity: Floats, lever: Floats, yaw_rate: Floats) -> Floats:
-    """Return the velocities (2, n) in m/s of the box centre of a vehicle that turns about its reference point by `yaw_rate` (n) rad/s.
+    """Return the velocities (2, n) in m/s of the box centre, given those of the reference point.
 
-    Where the rate is not known, as of a single sample, the velocity is that of the reference point.
+    `lever` (2, n): from the point to the centre, in metres. `yaw_rate` (n): in rad/s; if unknown, as for a single sample, it counts as 0.
     """
     turning = np.where(np.isnan(yaw_rate), 0.0, yaw_rate)
     moved = np.any(lever != 0.0, axis=0)
@@ -36,13 +36,16 @@ def velocity_of_centre(velocity: Floats, lever: Floats, yaw_rate: Floats) -> Flo
 
 
 def yaw_rates(states: States, yaw: Floats) -> Floats:
-    """Differentiate headings (n, radians) along each actor's track, rows in any order; NaN where there is no neighbour."""
+    """Return the time derivative of headings (n, radians) along each actor's track; NaN for samples without a neighbour.
+
+    The rows may be in any order.
+    """
     order = np.lexsort((states.t_ns, states.actor))
     step = steps(states.take(order))
     along = yaw[order]
     with np.errstate(invalid="ignore"):
         turns = wrapped(np.diff(along)) - np.diff(along)
-    # a new track or an unknown heading starts afresh: its sum of turns must not carry over
+    # a step to another track or to an unknown heading must not change the sum of full turns
     unwrapped = along + np.r_[0.0, np.cumsum(np.where(step.same & np.isfinite(turns), turns, 0.0))]
     rates = np.empty(len(states))
     rates[order] = time_derivative(unwrapped, step)

@@ -1,6 +1,6 @@
-"""The data-quality checks that every import runs: values of a log that contradict each other.
+"""The data-quality checks that every import runs: they find missing values, and values that contradict each other.
 
-Each check looks at states in order (by actor and time, no duplicates) and returns findings, one per check and drive.
+Each check needs states in order (by actor and time, no duplicates) and returns findings, one per check and drive.
 """
 
 from __future__ import annotations
@@ -22,29 +22,31 @@ if TYPE_CHECKING:
 
 VELOCITY_MISMATCH_MPS = 1.0
 VELOCITY_MISMATCH_SHARE = 0.15
-"""Velocity may differ from the step in position by 1 m/s + 15 %: millimetre rounding at 20 Hz gives 0.03 m/s, hard
-braking within a step (10 m/s2, 0.1 s) 0.5 m/s, while km/h read as m/s or a flipped axis differ by half or more."""
+"""Velocity may differ from the step in position by 1 m/s + 15 %. Rounding to millimetres at 20 Hz causes 0.03 m/s, hard braking within a
+step (10 m/s2, 0.1 s) 0.5 m/s. Reading km/h as m/s, or a flipped axis, causes half of the speed or more."""
 YAW_MISMATCH_RAD = np.deg2rad(30.0)
 YAW_CHECK_LEAST_MPS = 3.0
-"""Slip angles of a car stay below about 10 degrees; below 3 m/s reversing and rounding blur the direction of motion."""
+"""Above 3 m/s, the heading may differ from the direction of motion by 30 degrees; slip angles of a car are below about 10 degrees. Below
+3 m/s, the direction is not certain enough."""
 REVERSING_MPS = 8.0
 REVERSING_RAD = np.deg2rad(150.0)
-"""No vehicle reverses faster than this (29 km/h), and a reversing vehicle also drives forwards somewhere in the log."""
+"""A vehicle reverses if it is slower than this (29 km/h), its heading is off the motion by more than 150 degrees, and it drives forwards
+elsewhere in the log."""
 TELEPORT_M = 3.0
 TELEPORT_FACTOR = 2.0
-"""A step is a jump if longer than 3 m + twice what the higher of both speeds covers: no acceleration explains that."""
+"""A step is a jump if it is longer than 3 m + twice the distance at the higher of both speeds: no acceleration explains that."""
 WRONG_UNITS_SHARE = 0.5
-"""Where more than half of the moving samples disagree, the units or the frame are wrong, not the sensor."""
+"""If more than this share of the moving samples disagree, the units or the frame are wrong, not the sensor."""
 LEAST_MOVING_SAMPLES = 20
-"""Fewer moving samples than this are too few to blame units or frame."""
+"""With fewer moving samples, a disagreement is not attributed to units or frame."""
 FASTEST_MPS = 150.0
 """No road user is faster than this (540 km/h)."""
 LONGER_THAN_WIDE_CLASSES = frozenset((*MOTOR_VEHICLES, "trailer", "bicycle"))
-"""Actors whose box is longer than wide."""
+"""Classes of actors whose box is longer than wide."""
 
 
 def run(states: States, step: Steps, actors: Actors, *, derived: bool) -> list[QualityFinding]:
-    """Run every check on states in order. `derived`: velocities come from the positions, comparing says nothing."""
+    """Run every check on states in order. `derived`: velocities are derived from the positions, and not compared with them."""
     unplaced = np.isnan(states.numbers["x_m"]) | np.isnan(states.numbers["y_m"])
     findings = []
     for rows, check, text in (
@@ -89,7 +91,7 @@ def _sizes(actors: Actors) -> list[QualityFinding]:
 
 
 def _gaps(states: States, step: Steps) -> list[QualityFinding]:
-    """Report holes of the whole log, and holes of single tracks during which the log continues."""
+    """Return findings on gaps of the whole log, and on holes of single tracks during which the log continues."""
     if step.period_ns <= 0:
         return []
     times = np.unique(states.t_ns)
@@ -114,7 +116,7 @@ def _gaps(states: States, step: Steps) -> list[QualityFinding]:
 
 def _jumps(states: States, step: Steps) -> Mask:
     speed = np.hypot(*states.velocity)
-    # where neither speed is known, none says that it is a jump
+    # if both speeds are unknown, `reach` is NaN, and the step is no jump
     reach = TELEPORT_M + TELEPORT_FACTOR * np.fmax(speed[1:], speed[:-1]) * step.dt_s
     jump = np.zeros(len(states), np.bool_)
     jump[1:] = step.continuous & (np.hypot(*np.diff(states.place)) > reach)
@@ -122,7 +124,7 @@ def _jumps(states: States, step: Steps) -> Mask:
 
 
 def _too_fast(states: States) -> list[QualityFinding]:
-    """Report a log in which most moving actors are faster than any road user: its units are wrong."""
+    """Return a finding if most moving samples are faster than any road user: then the units are wrong."""
     speed = np.hypot(*states.velocity)
     rows = speed > FASTEST_MPS
     n, n_moving = int(rows.sum()), int((speed > YAW_CHECK_LEAST_MPS).sum())
@@ -136,9 +138,9 @@ def _too_fast(states: States) -> list[QualityFinding]:
 
 
 def _velocity(states: States, step: Steps, jump: Mask) -> list[QualityFinding]:
-    """Compare each step in position with the mean of the velocities at its ends.
+    """Return a finding if steps in position disagree with the mean of the velocities at their ends.
 
-    Whether units or frame are wrong is asked over a second, where noise in the positions is small against the way.
+    Whether units or frame are wrong is decided over one second, where position noise is small against the distance.
     """
     wrong = np.zeros(len(states), np.bool_)
     wrong[1:] = _disagree(*_against_positions(states, step, jump, 1))
@@ -163,14 +165,15 @@ def _velocity(states: States, step: Steps, jump: Mask) -> list[QualityFinding]:
 
 
 def _disagree(error: Floats, speed: Floats, step_speed: Floats, usable: Mask) -> Mask:
-    """Say which of the steps that `_against_positions` compared are further apart than the two ways of measuring explain."""
+    """Return the mask of the steps, as returned by `_against_positions`, whose error exceeds the tolerance."""
     return usable & (error > VELOCITY_MISMATCH_MPS + VELOCITY_MISMATCH_SHARE * np.maximum(step_speed, speed))
 
 
 def _against_positions(states: States, step: Steps, jump: Mask, n_steps: int) -> tuple[Floats, Floats, Floats, Mask]:
-    """Compare the mean velocity from positions over every `n_steps` steps with the mean of the velocities, in m/s.
+    """Compare the mean velocity from positions over every `n_steps` steps with the mean of the recorded velocities, in m/s.
 
-    By first row (n - n_steps): how far the two are apart, the mean speed, the speed from positions, and where no jump or hole lies between.
+    Returns, indexed by first row (n - n_steps): the difference, the mean speed, the speed from positions, and the mask of the intervals
+    without a jump or hole.
     """
     known = known_motion(states, step) & ~jump[1:]
     went, led, usable, span_s = displacements(states, step, known, n_steps)
@@ -182,7 +185,7 @@ def _against_positions(states: States, step: Steps, jump: Mask, n_steps: int) ->
 
 
 def _cause(ratio: float) -> str:
-    """Guess the cause of a wrong ratio of speed to motion."""
+    """Return the most likely cause of a wrong ratio of recorded speed to the speed from positions."""
     for factor, cause in (
         (3.6, "speeds in km/h read as m/s"),
         (2.237, "speeds in mph read as m/s"),
@@ -199,7 +202,7 @@ def _cause(ratio: float) -> str:
 
 
 def _yaw(states: States, actors: Actors) -> list[QualityFinding]:
-    """Compare the heading of vehicles with their direction of motion."""
+    """Return a finding if headings of vehicles disagree with their direction of motion."""
     (vx, vy), yaw = states.velocity, states.numbers["yaw_rad"]
     place = {name: i for i, name in enumerate(actors.ids)}
     long_kind = np.array(
@@ -211,7 +214,7 @@ def _yaw(states: States, actors: Actors) -> list[QualityFinding]:
     wrong = moving & (off > YAW_MISMATCH_RAD)
     backwards = wrong & (off > REVERSING_RAD) & (speed < REVERSING_MPS)
     forwards = np.bincount(states.actor[moving & ~wrong], minlength=len(states.ids)) > 0
-    # an actor that drives backwards only is believed if others drive forwards, or if it is the only one that does
+    # an actor that only drives backwards is accepted if others drive forwards, or if no other actor only drives backwards
     fast = np.bincount(states.actor[wrong & ~backwards], minlength=len(states.ids)) > 0
     only = (np.bincount(states.actor[backwards], minlength=len(states.ids)) > 0) & ~forwards & ~fast
     reverses = forwards | only if forwards.any() or only.sum() == 1 else forwards

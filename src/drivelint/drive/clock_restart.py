@@ -15,15 +15,15 @@ if TYPE_CHECKING:
     from drivelint.arrays import Indices, Mask, Times
 
 LEAST_RUN_STATES: Final = 10
-"""So many states of an actor in a row are a run of the clock; less is a message that came late."""
+"""At least this many successive states of an actor with ascending times are a run of the clock; fewer are late messages."""
 LEAST_INTERLEAVED_STATES: Final = 5
-"""So many states of one run between those of another are no late messages."""
+"""At least this many states of one run that are in time between states of another are not late messages."""
 HOLE_FACTOR: Final = 1.5
-"""A step of more than so many usual ones is a hole, which late messages may fill."""
+"""A step longer than the median step by this factor is a hole, which late messages may fill."""
 
 
 def backward_steps(t_ns: Times, topic: str | None = None) -> list[QualityFinding]:
-    """Return a finding where the times of messages, in the order of the file, go back; `topic`: whose clock it is."""
+    """Return a finding if the times of messages, in the order of the file, go back; `topic`: the topic of the messages."""
     back = np.diff(t_ns) < 0
     if not back.any():
         return []
@@ -38,8 +38,8 @@ def backward_steps(t_ns: Times, topic: str | None = None) -> list[QualityFinding
 def unknown_at_restarts(states: States) -> tuple[States, list[QualityFinding]]:
     """Make the states of all actors unknown where the clock covers the same time twice (states in the log's own order).
 
-    Late messages are no restart: sorted by their times, they are one recording. If two recordings cover the same time, it is not known
-    which actors of the one met those of the other. Rows that are equal in both are no contradiction, and stay.
+    Late messages are not a restart: sorted by time, they belong to one recording. If two recordings cover the same time, it is unknown
+    which actors were there together. Rows that are equal in both recordings stay.
     """
     back = np.diff(states.t_ns) < 0
     if not back.any():
@@ -64,7 +64,7 @@ def unknown_at_restarts(states: States) -> tuple[States, list[QualityFinding]]:
 
 
 def _spans(states: States, run: Times) -> dict[tuple[int, int], tuple[int, int]]:
-    """Return, for each pair of runs (numbers) that cover the same time of some actor, the first and last time covered twice."""
+    """Return, for each pair of runs of the clock that cover the same time of an actor, the first and last time covered twice."""
     by = np.lexsort((run, states.actor))
     begin = np.flatnonzero(np.r_[True, (np.diff(states.actor[by]) != 0) | (np.diff(run[by]) != 0)])
     end = np.r_[begin[1:], len(by)]
@@ -84,7 +84,7 @@ def _spans(states: States, run: Times) -> dict[tuple[int, int], tuple[int, int]]
 
 
 def _interleaved_count(run_ns: Times, other_run_ns: Times) -> int:
-    """Count the times of one run of the clock that lie between those of another, outside its holes (both ascend)."""
+    """Count the times of `other_run_ns` that lie between times of `run_ns`, but not in its holes (both ascending)."""
     steps = np.diff(run_ns)
     before = np.clip(np.searchsorted(run_ns, other_run_ns), 1, len(run_ns) - 1) - 1
     inside = (
@@ -94,7 +94,7 @@ def _interleaved_count(run_ns: Times, other_run_ns: Times) -> int:
 
 
 def _agreed(states: States, rows: Mask) -> Mask:
-    """Say which of the chosen rows are there more than once for their actor and time, and say the same each time."""
+    """Return the mask of given rows whose actor and time occur more than once among them, with equal values each time."""
     agreed = np.zeros(len(rows), np.bool_)
     chosen_rows = np.flatnonzero(rows)
     chosen_rows = chosen_rows[np.lexsort((states.t_ns[chosen_rows], states.actor[chosen_rows]))]

@@ -1,7 +1,7 @@
-"""Names the conditions that may restrict a rule, the values of each, and which values include which.
+"""The conditions that may restrict a rule, the words (values) of each, and which words include others.
 
-Their words are vocabularies of `schemas/words.toml`, for the rules' `[applies]`, for `--env` and for conditions in a log; the columns are
-those of `ego_condition`.
+The words are vocabularies of `schemas/words.toml`. The `[applies]` table of a rule, `--env` and the conditions in a log use them. Each
+condition is a column of `ego_condition`.
 """
 
 from __future__ import annotations
@@ -18,25 +18,25 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 DRIVE_CONDITION_VALUES: Final = {name: words(name) for name in words("condition")}
-"""Condition -> its words, of a drive: those by which rules are restricted, and whether the automated driver drives."""
+"""Condition of a drive -> its words; includes `engaged`: whether the automated driver drives."""
 CONDITION_VALUES: Final = {name: known for name, known in DRIVE_CONDITION_VALUES.items() if name != "engaged"}
-"""Condition by which rules are restricted -> its words; `nation` also takes any other country's, see `value_problem`."""
+"""Condition that may restrict a rule -> its words; for `nation`, `value_problem` also accepts other country codes."""
 CONDITION_TEXTS: Final = {name: vocabularies()[name].says for name in DRIVE_CONDITION_VALUES}
-"""Condition -> the meaning of its words."""
+"""Condition -> a text on what its words mean."""
 _NARROWER: Final[dict[str, list[str]]] = toml_beside(__file__, "conditions.toml")["narrower"]
 _COUNTRY = re.compile(r"[a-z]{2}")
 _SPELLED = {name.casefold(): name for name in DRIVE_CONDITION_VALUES}
 
 
 def value_problem(condition: str, word: str) -> str | None:
-    """Return the problem of this word for this condition, with the nearest good one; None: there is no problem."""
+    """Return why this word is invalid for this condition, with the nearest valid word; None: it is valid."""
     if condition == "nation" and word.lower() == "uk":
         return "'uk' is no country code: use 'gb', or gb-eng, gb-wls, gb-sct"
     return vocabularies()[condition].problem(word)
 
 
 def canonical_spelling(condition: str, word: str) -> tuple[str, str]:
-    """Return a condition and its word in our spelling, whatever their case; unknown ones stay as they are."""
+    """Return a condition and its word in drivelint's spelling, whatever their case; unknown words stay as they are."""
     condition = _SPELLED.get(condition.casefold(), condition)
     spelled = {known.casefold(): known for known in DRIVE_CONDITION_VALUES.get(condition, ())}
     country = condition == "nation" and _COUNTRY.fullmatch(word.casefold())
@@ -44,25 +44,25 @@ def canonical_spelling(condition: str, word: str) -> tuple[str, str]:
 
 
 def with_narrower_values(values: tuple[str, ...]) -> list[str]:
-    """Return these words and those that they include: gb holds in gb-sct, town in townLocal."""
+    """Return these words and the words that they include: `gb` includes `gb-sct`, `town` includes `townLocal`."""
     return sorted({part for word in values for part in (word, *_NARROWER.get(word, ()))})
 
 
 def broader_values(values: tuple[str, ...]) -> list[str]:
-    """Return the words that leave open whether one of these is meant: gb, where the rule is for gb-sct."""
+    """Return the more general words, which leave open whether one of these words applies: `gb` for `gb-sct`."""
     inside = with_narrower_values(values)
     return sorted(wide for wide, parts in _NARROWER.items() if wide not in inside and set(parts) & set(inside))
 
 
 def all_values(values: tuple[str, ...]) -> set[str]:
-    """Return these words, those that they include, and those that leave it open whether one of them is meant."""
+    """Return these words, the words that they include, and the more general words (see `broader_values`)."""
     return {*with_narrower_values(values), *broader_values(values)}
 
 
 def parse(settings: Iterable[str]) -> tuple[tuple[str, str], ...]:
-    """Read `KEY=VALUE` settings of `--env`, in any case, into (condition, word), in order of the conditions.
+    """Return the `KEY=VALUE` settings of `--env`, in upper or lower case, as (condition, word), sorted by condition.
 
-    Errors: `UsageError` for a setting without '=', an unknown key or word (with the nearest one), or two words for one key.
+    Errors: `UsageError` for a setting without '=', an unknown key or word (with the nearest valid one), or two words for one key.
     """
     words: dict[str, str] = {}
     for setting in settings:
@@ -78,7 +78,7 @@ def parse(settings: Iterable[str]) -> tuple[tuple[str, str], ...]:
 
 
 def condition_problem(condition: str) -> str | None:
-    """Return the problem of this name of a condition, with the nearest good one; None: there is no problem."""
+    """Return why this is not the name of a condition, with the nearest valid name; None: it is valid."""
     if condition in DRIVE_CONDITION_VALUES:
         return None
     return f"{condition!r} is no condition of a drive; {hint(condition, DRIVE_CONDITION_VALUES)}"

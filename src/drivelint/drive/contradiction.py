@@ -1,10 +1,12 @@
 """Makes values of an actor unknown that contradict each other.
 
-Positions decide over velocities and headings as long as they are a track. If a position jumps, or stands still although the velocity is
-not 0, the state is unknown (no position, heading or velocity). If a track continues at another place after a jump, it is another actor's
-from there on. If position and velocity both advance over half a second but differ, the position is used and the velocity is unknown. If a
-heading turns round from one sample to the next while the motion continues, it is turned back; a heading across the motion is unknown. A
-doubted place that lies on another actor is reported, because code that limits how near the two came needs it.
+Plausible positions take precedence over velocities and headings:
+
+* If a position stands still although the velocity is not 0, the whole state is unknown: position, heading and velocity.
+* If positions and velocities both show motion over half a second but differ, the position is used and the velocity is unknown.
+* If the heading turns round between two samples while the motion continues, it is turned back. A heading across the motion is unknown.
+
+It also reports rejected positions that overlap another actor: it is then unknown how near the two came. `jumps` treats jumps.
 """
 
 from __future__ import annotations
@@ -33,49 +35,52 @@ if TYPE_CHECKING:
 
 MISMATCH_M: Final = 1.0
 MISMATCH_SHARE: Final = 0.15
-"""Positions contradict velocities if over a second they lead elsewhere by more than 1 m + 15 % of the way: noise of 0.3 m and
-velocities of 10 % error do not."""
+"""Positions contradict velocities if, over one second, their displacements differ by more than 1 m + 15 % of the larger one. Noise of
+0.3 m and a velocity error of 10 % stay below that."""
 STEP_MISMATCH_M: Final = 2.0
-"""A single step contradicts the velocities, whatever the next one does, from this on: six times the noise above."""
+"""A single step contradicts the velocities, whatever the next step does, if it differs by more than this: six times a noise of 0.3 m."""
 WINDOW_S: Final = 0.5
 DIRECTION_LEAST_M: Final = 0.4
 DIRECTION_LEAST_SHARE: Final = 0.5
-"""A motion has a direction if the actor moves 0.4 m within a second around it, and half as far as its speed says."""
+"""A motion has a direction if, within one second around it, the actor moves more than 0.4 m and half the distance at its speed."""
 REVERSING_MPS: Final = 8.0
-"""No vehicle reverses faster than this (29 km/h),"""
+"""The highest speed of reversing (29 km/h), except in the case of `REVERSE_START_MPS`."""
 FAST_REVERSING_MPS: Final = 20.0
 REVERSE_START_MPS: Final = 3.0
-"""unless it is seen to stop and to set off backwards: at its first moving sample it is no faster than 3 m/s, and never than 72 km/h."""
+"""Reversing may reach 20 m/s (72 km/h) if the log also shows forward motion, and the stretch of reversing starts or ends slower than
+3 m/s."""
 BACKWARDS_RAD: Final = np.deg2rad(150.0)
 SIDEWAYS_RAD: Final = np.deg2rad(30.0)
 SIDEWAYS_MPS: Final = 3.0
-"""A heading this far off the motion is that of a slide, or wrong; slip angles of a car stay below 10 degrees."""
+"""Above this speed, a heading more than 30 degrees off the motion is wrong or a slide; slip angles of a car are below 10 degrees."""
 HEADING_FLIP_RAD: Final = np.deg2rad(90.0)
 SPIN_RAD: Final = np.deg2rad(45.0)
-"""No heading turns round between two samples; and no vehicle spins further than this, which is 450 degrees/s at 10 Hz."""
+"""No heading changes by more than 90 degrees between two samples. In a slide, the limit is 45 degrees: 450 degrees/s at 10 Hz."""
 DIRECTED_CLASSES: Final = frozenset((*MOTOR_VEHICLES, "trailer", "bicycle", None))
-"""Actors whose heading is that of their motion; people and animals face where they like, things have no front."""
+"""Classes of actors whose heading is the direction of their motion (None: unknown class). Pedestrians and animals can face any direction;
+objects have no front."""
 STRETCH_S: Final = 0.5
-"""Over so long a time the mean velocity is compared with the way, over two steps at least."""
+"""The mean velocity over this time, or over two steps if that is longer, is compared with the displacement."""
 STRETCH_MISMATCH_MPS: Final = 0.8
 STRETCH_MISMATCH_SHARE: Final = 0.05
-"""A turning vehicle's rear axle is 0.7 m/s off its middle (1.4 m, 0.5 rad/s), a speedometer 5 %, a filter that is late 0.8 m/s."""
+"""The tolerated difference: the velocity of a rear axle is up to 0.7 m/s off (1.4 m from the centre, 0.5 rad/s), a speedometer 5 %, a
+delayed filter 0.8 m/s."""
 SIGMAS: Final = 4.0
-"""And so many standard deviations of the positions' noise."""
+"""The tolerance for a stretch includes this many standard deviations of the position noise."""
 SINGLE_STEP_SHARE: Final = 0.75
-"""A single step that makes up more of the difference is a step of the positions, of which the velocity knows nothing."""
+"""If one step causes at least this share of the difference, the positions are wrong, not the velocity."""
 WHOLE_TRACK_SHARE: Final = 0.5
-"""If more than this share of a track contradicts its velocities, the recorded velocity is wrong, not a stretch of it (see `checks`)."""
+"""If more than this share of a track contradicts its velocities, the velocity is wrong as a whole, which `checks` reports."""
 LARGEST_HALF_BOX_M: Final = 6.0
-"""No box reaches further than this from its middle, where its size is not known."""
+"""The half diagonal that is assumed for a box of unknown size."""
 
 
 def resolve(
     states: States, step: Steps, actors: Actors, *, derived: bool, split_tracks: SplitTracks = NO_SPLIT
 ) -> list[QualityFinding]:
-    """Make values unknown that contradict the motion, in place (states in order, velocities complete).
+    """Make values unknown that contradict the motion, in place, and return findings (states in order, velocities complete).
 
-    `derived`: velocities come from the positions, and contradict nothing. `split_tracks`: samples that were doubted before.
+    `derived`: velocities are derived from the positions, and not compared with them. `split_tracks`: the states that `jumps` rejected.
     """
     if len(states) < 3:
         return []
@@ -108,7 +113,7 @@ def resolve(
 def _upon_others(
     states: States, step: Steps, actors: Actors, rejected_states: States, alias: Mapping[str, str]
 ) -> list[QualityFinding]:
-    """Report the actors of whose refused places one is so near to another actor's place that their boxes may overlap."""
+    """Return a finding for each actor with a rejected position at which its box may overlap the box of another actor."""
     index = {name: i for i, name in enumerate(actors.ids)}
     half = np.hypot(actors.sizes["length_m"], actors.sizes["width_m"]) / 2
     half = np.where(np.isfinite(half), half, LARGEST_HALF_BOX_M)
@@ -123,7 +128,7 @@ def _upon_others(
     away = np.hypot(*(rejected_states.place[:, place] - states.place[:, other_row]))
     own_names = [rejected_states.ids[i] for i in rejected_states.actor]
     own = half[[index[name] for name in own_names]][place] if len(n) else np.zeros(0)
-    # the track that goes on after the jump is the same actor's in the log
+    # in the log, the track after a jump belongs to the same actor
     in_log = np.array([alias.get(name, name) for name in states.ids], dtype=np.str_)
     own_in_log = np.array([alias.get(name, name) for name in own_names], dtype=np.str_)
     upon = (away <= own + half_of[other_row]) & (in_log[states.actor[other_row]] != own_in_log[place])
@@ -139,10 +144,10 @@ def _upon_others(
 
 
 def _frozen(states: States, step: Steps) -> Mask:
-    """Return the samples at which positions and velocities contradict each other.
+    """Return the mask of the samples at which positions and velocities contradict each other.
 
-    A sample is one if both steps beside it do, or one of them by far, or if half a second before and after it they lead elsewhere
-    without such steps.
+    They do so if they differ in both steps beside the sample, or in one step by far, or (apart from such steps) over half a second before
+    and after it.
     """
     n = len(states)
     usable = known_motion(states, step)
@@ -158,7 +163,7 @@ def _frozen(states: States, step: Steps) -> Mask:
     alone = contradict(went, led, slack)
     if not alone.any() and not _drifts(went - led, step):
         return np.zeros(n, np.bool_)
-    ends = np.ones(n + 1, np.bool_)  # beyond a track's end nothing vouches for its last sample
+    ends = np.ones(n + 1, np.bool_)  # at the end of a track, the one step beside the sample decides
     ends[1:-1] = alone | ~usable
     both = ends[:-1] & ends[1:] & (np.r_[alone, False] | np.r_[False, alone])
     moved = contradict(went, led, slack + STEP_MISMATCH_M - MISMATCH_M)
@@ -175,23 +180,26 @@ def _frozen(states: States, step: Steps) -> Mask:
 
 
 def _step_by_step(states: States, step: Steps, usable: Mask) -> tuple[Floats, Floats, Floats]:
-    """Return how far positions go and velocities lead in each step (2, n - 1), and how far off the velocity's way may be."""
+    """Return the displacements of positions and of velocities in each step (2, n - 1), and the tolerance for their difference (n - 1)."""
     went = np.where(usable, np.diff(states.place), 0.0)
     led = integral_per_step(states.velocity, step, usable)
-    # what the velocity did between two samples is not known
+    # the velocity between two samples is unknown
     slack = np.where(usable, 0.5 * np.abs(np.diff(states.velocity)) * step.dt_s, 0.0)
     return went, led, np.hypot(*slack)
 
 
 def _apart(states: States, step: Steps, usable: Mask) -> tuple[Floats, Floats]:
-    """Return how far positions and velocities lead apart in each step (n - 1), and how far off the velocity's way may be."""
+    """Return by how much the displacements of positions and velocities differ in each step (n - 1), and the tolerance."""
     went, led, slack = _step_by_step(states, step, usable)
     went -= led
     return np.hypot(*went), slack
 
 
 def _drifts(rest: Floats, step: Steps) -> bool:
-    """Examine only every half second: whether the velocities of any actor may lead away from its positions."""
+    """Return whether the velocities of any actor may deviate from its positions: a fast test of one sample per half second.
+
+    `rest` (2, n - 1): the displacement of the positions minus that of the velocities, per step.
+    """
     stride = max(1, round(WINDOW_S * 1e9 / step.period_ns)) if step.period_ns else 1
     way = np.cumsum(rest, axis=1)[:, ::stride]
     # a one-second window spans at most three strides, so one of them has at least a third of its difference
@@ -199,7 +207,7 @@ def _drifts(rest: Floats, step: Steps) -> bool:
 
 
 def _mismatched(states: States, step: Steps) -> Mask:
-    """Return the samples (n, in order, velocities complete) of stretches whose velocities contradict their positions."""
+    """Return the mask of the samples (n, in order, velocities complete) in stretches whose velocities contradict the positions."""
     n = len(states)
     mismatched = np.zeros(n, np.bool_)
     k = max(2, round(STRETCH_S * 1e9 / step.period_ns)) if step.period_ns else n
@@ -212,7 +220,7 @@ def _mismatched(states: States, step: Steps) -> Mask:
     went /= span
     led /= span
     off = np.hypot(*(went - led))
-    # in place: these are the largest arrays of all, for a long drive
+    # in place: for a long drive, these are the largest arrays
     np.maximum(np.abs(went, out=went), np.abs(led, out=led), out=went)
     fastest = np.hypot(*went)
     del went, led
@@ -235,23 +243,23 @@ def _mismatched(states: States, step: Steps) -> Mask:
 
 
 def _sliding_max(values: Floats, k: int) -> Floats:
-    """Return the largest of every k neighbouring values (m - k + 1 of m)."""
+    """Return the largest of every k neighbouring values: m - k + 1 of m values."""
     most: Floats = np.lib.stride_tricks.sliding_window_view(values, k).max(axis=1)
     return most
 
 
 def _around(states: States, pieces: NDArray[np.integer], rows: Indices) -> tuple[Indices, Indices]:
-    """Return for each of these rows the first and the last row of its piece within half a second of it."""
+    """Return for each of these rows the first and the last row of the same piece (`pieces`, n) within half a second of it."""
     half = int(WINDOW_S * 1e9)
     apart = np.diff(states.t_ns)
-    # longer steps and those to another piece are just too long: their sum stays small, whatever the clock said
+    # steps to another piece, backward steps and long steps are set to just over half a second, so that the sum does not overflow
     near = (np.diff(pieces) == 0) & (apart >= 0) & (apart <= half)
     key = np.r_[0, np.cumsum(np.where(near, apart, half + 1))]
     return np.searchsorted(key, key[rows] - half), np.searchsorted(key, key[rows] + half, side="right") - 1
 
 
 def _leads(states: States, rows: Mask) -> Mask:
-    """Keep the rows around which the positions advance as the speed states: an actor that trembles on the spot has no direction."""
+    """Return the mask of marked rows where the motion has a direction: the positions advance about as far as the speed states."""
     marked_rows = np.flatnonzero(rows)
     first, last = _around(states, states.actor, marked_rows)
     place, speed = states.place, np.hypot(*states.velocity[:, marked_rows])
@@ -263,12 +271,14 @@ def _leads(states: States, rows: Mask) -> Mask:
 
 
 def _headings(states: States, step: Steps, actors: Actors) -> tuple[Mask, Mask]:
-    """Return the samples whose heading is turned round against the motion, and those at which it lies across it.
+    """Return the mask of samples with a heading opposite to the motion, and the mask of samples with a heading across it.
 
-    A stretch in which a vehicle moves backwards is reversing if it is entered and left by a standstill or with the log, without a
-    turn of the heading, and is slow throughout, or the vehicle is seen to go forwards with that heading before or after, and to
-    gain speed from the standstill between; a stretch across the motion is a slide if the heading turns into it and out of it
-    as far as a vehicle can.
+    A stretch of backward motion is real reversing if no forward motion adjoins it, the heading does not flip at its ends, and it is slower
+    than `REVERSING_MPS`. The limit is `FAST_REVERSING_MPS` if the vehicle drives forwards with that heading before or after, and the
+    stretch starts or ends slowly on that side.
+
+    A stretch with the heading across the motion is a real slide if forward motion adjoins it, and the heading changes by at most
+    `SPIN_RAD` per sample.
     """
     n, yaw, (vx, vy) = len(states), states.numbers["yaw_rad"], states.velocity
     kinds = dict(zip(actors.ids, actors.classes, strict=True))
@@ -286,7 +296,7 @@ def _headings(states: States, step: Steps, actors: Actors) -> tuple[Mask, Mask]:
     forwards = moving & ~backwards & ~across
     turned, sideways = nothing, nothing.copy()
     row = np.arange(n)
-    # the last row before, and the first one after, at which its vehicle goes forwards; and how often headings have turned until a row
+    # for each row: the last forward row before it, the first one after it, and the number of heading flips until it
     went = np.maximum.accumulate(np.where(forwards, row, -1))
     goes = np.minimum.accumulate(np.where(forwards, row, n)[::-1])[::-1]
     turns_until = np.r_[0, np.cumsum(turn > HEADING_FLIP_RAD)]
@@ -320,7 +330,7 @@ def _headings(states: States, step: Steps, actors: Actors) -> tuple[Mask, Mask]:
 
 
 def _runs(states: States, rows: Mask) -> list[tuple[int, int]]:
-    """Return the first and the last row of each stretch of marked rows of one actor."""
+    """Return the first and the last row of each stretch of successive marked rows of one actor."""
     same = np.r_[False, (states.actor[1:] == states.actor[:-1]) & rows[:-1] & rows[1:]]
     first = np.flatnonzero(rows & ~same)
     last = np.flatnonzero(rows & ~np.r_[same[1:], False])

@@ -1,4 +1,4 @@
-"""Lists the events that an ego may declare, with their values and meanings; recorded headlights become such events."""
+"""Lists the events that an ego may declare, with their values and meanings, and turns recorded headlights into such events."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import States
 
 HEADLIGHTS: Final = "headlights"
-"""Name of the code in `States.codes`, which indexes `HEADLIGHT_STATES`, and of the event."""
+"""The name of the event, and of the entry of `States.codes` whose values index `HEADLIGHT_STATES`."""
 HEADLIGHT_STATES: Final = ("off", "on")
 _FACTS: Final = toml_beside(__file__, "declared_events.toml")
 ON_OFF_EVENTS: Final[dict[str, str]] = _FACTS["on_off"]
-"""Events that stay on until they are declared off -> their meaning."""
+"""Event that stays on until it is declared off -> its meaning."""
 EVENTS: Final[dict[str, dict[str, str]]] = {
     **{mode: {"value": "on, off", "says": says} for mode, says in ON_OFF_EVENTS.items()},
     **_FACTS["other"],
 }
-"""Event -> `value`: its value, `says`: its meaning. Other events are kept, but no rule reads them."""
+"""Event -> its possible values (`value`) and meaning (`says`). Other events are kept, but no rule reads them."""
 
 
 def with_headlight_events(events: pa.Table | None, states: States) -> pa.Table | None:
-    """Return the log's events with one row for each change of an actor's headlights; NULL means unknown from then on.
+    """Return the log's events with one more row for each change of an actor's headlights; NULL means unknown from then on.
 
-    `states` in order of actor and time. An actor that declares its headlights itself is left as it is.
+    `states` are in order of actor and time. Actors that declare headlight events themselves get no rows.
     """
     import numpy as np
     import pyarrow as pa

@@ -1,4 +1,4 @@
-"""Chooses the ego: the actor that the user names, else the one that the log or the mapping names."""
+"""Chooses the ego: the actor that the user names, else the actor that the log or the mapping names."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 
 ALL_EGOS = "all"
 SIZE_DIFFERENCE_M: Final = 0.05
-"""Sizes that differ by more are two sizes."""
+"""A larger difference between the user's and the log's size is reported."""
 
 
 def asks_for_all(ego_option: str | None, ids: Collection[str]) -> bool:
-    """Return whether the user requests every motor vehicle: by `all`, if no actor has this id."""
+    """Return whether the user requests every motor vehicle as ego: the option is `all`, and no actor has the id `all`."""
     return ego_option == ALL_EGOS and ALL_EGOS not in ids
 
 
@@ -31,9 +31,9 @@ def choose(
 ) -> tuple[list[str], list[QualityFinding]]:
     """Return the ids of the egos and the findings about the choice.
 
-    `ego_option` is the user's id or `all` (every motor vehicle, except in a log whose actor is itself called `all`);
-    `named_egos` are the log's or mapping's. If none is named and `ego_required` is false, there is none, and a finding states it.
-    Errors: `TraceError` when there is no ego though needed, or no such actor.
+    `ego_option` is the user's id or `all` (every motor vehicle, except in a log with an actor whose id is `all`); `named_egos` are the
+    ids that the log or the mapping names. If there is no ego and `ego_required` is false, the ids are empty and a finding states it.
+    Errors: `TraceError` if a required ego is missing, or the log has no actor with the user's id.
     """
     ids = set(actors.ids)
     if asks_for_all(ego_option, ids):
@@ -58,7 +58,7 @@ def choose(
 
 
 def fill_sizes(actors: Actors, egos: list[str], size: EgoSize | None) -> list[QualityFinding]:
-    """Give egos without a size the user's size, in place, and keep another size that the log has; findings report both."""
+    """Give egos without a size the user's size, in place, and return findings about it; a size that the log has is kept."""
     if size is None:
         return []
     findings = []

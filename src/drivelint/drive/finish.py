@@ -1,4 +1,4 @@
-"""Turns a reader's recording into the tables of `schemas/model.sql`: sorted, completed, checked, with egos."""
+"""Turns the recording of a reader into the tables of `schemas/model.sql`: sorts, completes and checks it, and chooses the egos."""
 
 from __future__ import annotations
 
@@ -42,17 +42,17 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import Identity, IngestOptions, Recording, States
 
 LONGEST_ID = 1000
-"""Characters of an actor's id; every finding about the actor repeats it."""
+"""The most characters of an actor's id: every finding about the actor repeats it."""
 TRACE_TABLES = (
     "data_log", "actor", "actor_state", "signal_state", "declared_event", "drive_condition", "quality", "doubt",
 )  # fmt: skip
-"""The tables of `schemas/model.sql` that a trace has, in its order."""
+"""The tables of `schemas/model.sql` that a trace has, in the order of that file."""
 
 
 # NaN stands for an unknown value, and arithmetic with NaN gives NaN
 @np.errstate(invalid="ignore", divide="ignore", over="ignore")
 def finish_trace(path: Path, identity: Identity, recording: Recording, options: IngestOptions) -> Trace:
-    """Order, complete and check what a reader found. Errors: `TraceError` when nothing can be judged."""
+    """Sort, complete and check a recording, and return it as a trace. Errors: `TraceError` if nothing can be judged."""
     _refuse_no_drive(path, recording.states)
     pa.default_memory_pool().release_unused()  # Arrow would keep the memory of the reader's tables
     lost_findings = lost_time_findings(recording.lost_times, recording.frame_times, recording.states.t_ns)
@@ -62,7 +62,7 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
     as_read = recording.hand_over_states()
     states, restarts = unknown_at_restarts(as_read)
     states = sorted_states(states)
-    # nothing below changes an array in place; the log's own order shows where its clock begins again
+    # nothing below changes an array in place; only the log's own order shows where its clock restarts
     recorded = None if not options.as_recorded else as_read if restarts else states.copy()
     del as_read
     states, repeated = without_duplicates(states)
@@ -73,7 +73,7 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
         states, recording.ego_ids if ego_option is None else [ego_option], assumed=assumed
     )
     findings += jumped
-    # velocities that a film's mapping assumes stay; if most of a mapped table's are wrong, its mapping is, and must be corrected
+    # assumed velocities are kept; if most velocities of a mapped table are wrong, the user must correct its mapping
     most_replaced = 0.0 if assumed else 0.5 if recording.strict_units else 1.0
     findings += complete_velocities(states, step, most_replaced_share=most_replaced)
     derived = any(f.check_id == "velocity_derived" and f.n == len(states) for f in findings)
@@ -119,7 +119,7 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
 def _tracks(
     states: States, named_egos: list[str], *, assumed: bool
 ) -> tuple[States, Steps, jumps.SplitTracks, list[QualityFinding]]:
-    """Return the states with their tracks parted where they jump, but for the egos that are named, and the steps of these."""
+    """Split the tracks at jumps, except those of named egos; return the states, their steps, the split and findings."""
     step, split, findings = steps(states), jumps.NO_SPLIT, []
     if not assumed:
         states, gone = jumps.without_removed_actors(states, step, kept_ids=named_egos)
@@ -143,10 +143,10 @@ def _tables(
     actors: actor_rows.Actors,
     egos: list[str],
 ) -> dict[str, pa.Table]:
-    """Return the tables of a trace but for `quality` and `doubt`."""
+    """Return the tables of a trace except `quality` and `doubt`."""
     is_ego = _is_ego(states, egos)
     unknown = np.full(len(states), UNKNOWN_CODE)
-    user_conditions = dict(options.conditions)  # what the user gives counts more than what the log says
+    user_conditions = dict(options.conditions)  # conditions of the user override those of the log
     content: dict[str, list[dict[str, Any]] | dict[str, Any]] = {
         "data_log": [_log_row(identity, recording, states, is_ego, options)],
         "actor": {
@@ -183,7 +183,7 @@ def with_quality_finding(trace: Trace, finding: QualityFinding) -> Trace:
 
 
 def with_condition_of_map(trace: Trace, condition: str, word: str | None) -> Trace:
-    """Return the trace with the map's value of this condition, if neither the user nor the log states it."""
+    """Return the trace with the map's word for this condition, if neither the user nor the log states the condition."""
     rows = trace.tables["drive_condition"]
     if word is None or condition in rows["condition"].to_pylist():
         return trace
@@ -195,7 +195,7 @@ def with_condition_of_map(trace: Trace, condition: str, word: str | None) -> Tra
 
 
 def _refuse_no_drive(path: Path, states: States) -> None:
-    """Refuse a log without states, or of which an id or a time shows that it holds something else than a drive."""
+    """Raise `TraceError` if the log has no states, or if an id or a time shows that it is not a drive."""
     if not len(states):
         raise TraceError(f"{path}: no actor states in this log: nothing can be judged")
     longest = max(states.ids, key=len)
@@ -212,7 +212,7 @@ def _refuse_no_drive(path: Path, states: States) -> None:
 
 
 def _refuse_wrong_units(path: Path, recording: Recording, findings: list[QualityFinding]) -> None:
-    """Refuse a log whose motion and headings or velocities are of two units or frames: any verdict on it would be chance."""
+    """Raise `TraceError` if positions, headings and velocities do not have the same units and frame."""
     remedy = (
         "correct the mapping's units or frame"
         if recording.strict_units
@@ -264,7 +264,7 @@ def _log_row(
 
 
 def _distinct(rows: pa.Table | None, *keys: str) -> dict[str, Any]:
-    """Return these columns of a reader's table in the order of the keys, equal rows once."""
+    """Return these columns of a reader's table, without repeated rows, sorted by the columns in the given order."""
     if rows is None:
         return dict.fromkeys(keys, ())
     distinct = rows.select(keys).group_by(list(keys), use_threads=False).aggregate([])
@@ -272,7 +272,7 @@ def _distinct(rows: pa.Table | None, *keys: str) -> dict[str, Any]:
 
 
 def _quality(drive: str, findings: list[QualityFinding], reader: str) -> pa.Table:
-    # a converted log brings findings that may be found again
+    # a converted log contains findings of the first reading, which the checks may find again
     rows = sorted(dict.fromkeys(findings), key=lambda f: (f.check_id, f.actor_id or "", f.t_first_ns or 0, f.message))
     names = [name for name in arrow_schemas()["quality"].names if name != "drive_id"]
     return owned_table("quality", drive, [{name: getattr(row, name) for name in names} for row in rows], reader)

@@ -1,7 +1,7 @@
 """Makes states around a position jump unknown; a track that continues elsewhere becomes another actor.
 
-Actors that a simulator removed from the scene but still writes, all in one place, are left out. CARLA's destroyed actors lie at the
-origin until the log ends. Two bodies are never in one place, so their tracks end where they jump there.
+It also ends the tracks of actors that a simulator removed but still writes, all at one position: CARLA leaves destroyed actors at the
+origin. Two bodies are never at the same position.
 """
 
 from __future__ import annotations
@@ -28,27 +28,29 @@ if TYPE_CHECKING:
 
 JUMP_M: Final = 3.0
 JUMP_MPS2: Final = 10.0
-"""A step is a jump if it is longer than both its neighbours foretell by 3 m + 10 m/s2 dt2: no tyre does that, and a full stop
-within one sample of 0.1 s, as simulators have it, only from more than 30 m/s."""
+"""A step is a jump if it differs by more than 3 m + 10 m/s2 dt2 from what the step before and the step after it predict. No tyre does
+that; a simulated full stop within one sample of 0.1 s does it only from more than 30 m/s."""
 OUTLIER_S: Final = 2.0
-"""A piece of a track between two jumps that is shorter than this is an outlier; a longer one is the track of an actor."""
+"""Pieces of a track between two jumps are outliers if they are shorter than this; longer pieces are tracks of actors."""
 LARGEST_CORRECTION_M: Final = 10.0
 LARGEST_SIDE_CORRECTION_M: Final = 1.5
 CORRECTION_SPEED_CHANGE_MPS: Final = 3.0
-"""A jump within these distances along the lane and to the side (not to another lane), at nearly the same velocity, corrects the track."""
+"""A jump corrects the track if it is at most 10 m along the motion and 1.5 m to the side (not to another lane), and the velocity changes
+by at most 3 m/s + `JUMP_MPS2` times the gap."""
 MOVING_MPS: Final = 1.0
 """Below this speed the direction of motion is noise, and the heading is used."""
 MOTION_COLUMNS: Final = ("vx_mps", "vy_mps", "ax_mps2", "ay_mps2")
 SAME_PLACE_M: Final = 0.01
-"""Centres nearer than this are in one place."""
+"""Centres no further apart than this are at the same position."""
 COUNT_PREFIX: Final = "{n} of {of} states ({ids}): "
 
 
 @dataclass(frozen=True)
 class SplitTracks:
-    """`alias`: new actor id -> the id in the log, where a track goes on elsewhere after a jump.
+    """The result of `split_tracks`.
 
-    `refused`: the states at rejected positions as the log has them, of the actors of the finished drive.
+    `alias`: new actor id -> id in the log, for tracks that continue elsewhere after a jump. `rejected_states`: the states that were made
+    unknown, with their recorded values and the new actor ids.
     """
 
     findings: list[QualityFinding]
@@ -62,7 +64,7 @@ NO_SPLIT: Final = SplitTracks([], {})
 def split_tracks(states: States, step: Steps, *, kept_ids: Collection[str]) -> SplitTracks:
     """Make states at jumps unknown, and give a track that continues elsewhere a new id, in place (states in order).
 
-    `kept_ids`: actors that keep their id (the egos that are named).
+    `kept_ids`: actors that keep their id (the named egos).
     """
     if len(states) < 3 or not {"x_m", "y_m"} <= states.numbers.keys():
         return NO_SPLIT
@@ -80,16 +82,16 @@ def split_tracks(states: States, step: Steps, *, kept_ids: Collection[str]) -> S
 
 
 def set_unknown(states: States, rows: Mask, columns: tuple[str, ...] = STATE_COLUMNS) -> None:
-    """Make these numbers of these rows unknown, in place."""
+    """Set the given columns to NaN in the given rows, in place."""
     if rows.any():
         for name in set(columns) & states.numbers.keys():
             states.numbers[name] = np.where(rows, np.nan, states.numbers[name])
 
 
 def jumps(states: States, step: Steps) -> Mask:
-    """Return for each step (n - 1) whether it is a jump: longer than the steps before and after it predict.
+    """Return for each step (n - 1) whether it is a jump: it differs from what the steps before and after it predict.
 
-    At a track's ends, and beside a hole, the only neighbour decides.
+    At the end of a track or beside a hole, the only neighbour decides.
     """
     way = np.diff(states.place)
     dt = np.where(step.dt_s > 0.0, step.dt_s, np.nan)
@@ -111,7 +113,7 @@ def jumps(states: States, step: Steps) -> Mask:
 
 
 def _around_jumps(states: States, jump: Mask) -> tuple[Mask, NDArray[np.int32]]:
-    """Return which samples jumps make unknown, and the number of each sample's piece of its track."""
+    """Return the mask of samples that are unknown because of jumps, and for each sample the number of its piece of the track."""
     n = len(states)
     unknown, pieces = np.zeros(n, np.bool_), np.zeros(n, np.int32)
     unknown[:-1] |= jump
@@ -134,9 +136,10 @@ def _around_jumps(states: States, jump: Mask) -> tuple[Mask, NDArray[np.int32]]:
 
 
 def _goes_on(states: States, last: int, first: int) -> bool:
-    """Say whether the track that ends at row `last` can be that which begins at row `first`, at the velocities it had there.
+    """Return whether the piece that ends at row `last` and the piece that starts at row `first` can be one track.
 
-    Either it can have got there, or its place is put right along its lane, as maps and filters do, and it moves on as before.
+    They can if an actor at these velocities can cover the distance, or if the position was only corrected, as map matching and filters
+    do, and the velocity is nearly unchanged.
     """
     place, t_s = states.place, states.t_ns * 1e-9
     gap = t_s[first] - t_s[last]
@@ -157,7 +160,7 @@ def _goes_on(states: States, last: int, first: int) -> bool:
 def _renamed(
     states: States, pieces: NDArray[np.int32], kept_ids: Collection[str], findings: list[QualityFinding]
 ) -> dict[str, str]:
-    """Give each later piece of a track that jumped an id of its own, in place; return new id -> old id."""
+    """Give each piece of a track but the first an id of its own, in place; return new id -> old id."""
     alias: dict[str, str] = {}
     if not pieces.any():
         return alias
@@ -182,15 +185,15 @@ def _renamed(
 def without_removed_actors(
     states: States, step: Steps, *, kept_ids: Collection[str]
 ) -> tuple[States, list[QualityFinding]]:
-    """Leave out the states of actors that jump to one place and stand there until their tracks end (states in order).
+    """Leave out the states of actors that jump to a common position and stand there until their tracks end (states in order).
 
-    One that is alone there stays. `kept_ids`: actors that are kept (the egos that are named).
+    An actor that stands at its position alone is kept. `kept_ids`: actors that are kept anyway (the named egos).
     """
     if len(states) < 3 or not {"x_m", "y_m"} <= states.numbers.keys():
         return states, []
     jump = np.flatnonzero(jumps(states, step))
     place = states.place
-    # an actor's last jump, and where its track ends
+    # actor -> the row after its last jump
     last = {int(states.actor[row]): int(row) + 1 for row in jump if states.ids[states.actor[row]] not in kept_ids}
     parked = []
     for actor, first in last.items():
@@ -209,7 +212,7 @@ def without_removed_actors(
 
 
 def _together(states: States, place: Floats, first_stretch: tuple[int, int], second_stretch: tuple[int, int]) -> bool:
-    """Say whether two parked stretches (first row, end row) are at the same place and overlap in time."""
+    """Return whether two stretches at a standstill (first row, end row) are at the same position and overlap in time."""
     (a, a_end), (b, b_end) = first_stretch, second_stretch
     apart = np.hypot(*(place[:, a] - place[:, b]))
     return bool(

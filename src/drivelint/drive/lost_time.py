@@ -1,4 +1,4 @@
-"""Stretches of time of which a damaged log has lost something: nothing is judged across them."""
+"""Finds the stretches of time from which a damaged log may have lost rows: nothing is judged across them."""
 
 from __future__ import annotations
 
@@ -15,20 +15,21 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import FrameTimes
 
 LOST_TIME: Final = "lost_time"
-"""The check of `quality` whose rows are the stretches; the table lost_time follows from them."""
+"""The id of the check whose rows in `quality` are the stretches; the table `lost_time` is derived from these rows."""
 MOST_STRETCHES: Final = 200
-"""More than this many are reported, and judged, as one from the first to the last."""
+"""If there are more stretches than this, they are reported and judged as a single one, from the first to the last."""
 LATEST_NS: Final = 1 << 62
-"""The year 2116: a clock beyond it is broken, and bounds nothing."""
+"""The year 2116: a later time means a broken clock, and is not used as a bound."""
 _BESIDE: Final = 50
-"""This many frames before and after a stretch show how its clock and the log's differ there."""
+"""How many frames before and after a stretch are used to estimate the offset between the two clocks of the log."""
 
 
 def times_of_lost_rows(t_ns: Times, timed: Mask, lost_rows: Mask, cause: str) -> list[LostTime]:
-    """Return when rows were recorded that cannot be used: `lost_rows`, in the order of the file. `cause`: the text without their number.
+    """Return the stretches of time in which unusable rows (`lost_rows`, in the order of the file) were recorded.
 
-    That is the time of the row, where it has one (`timed`), else any between the rows before and after it; without rows in the order of
-    their times, any of the whole drive. Stretches without a whole time between them are one.
+    A row with a time (`timed`) gives this time; a row without one gives the stretch between the timed rows beside it, or the whole drive if
+    the times in the file are not ascending. Stretches without another row's time between them are merged. `cause`: the text of the finding,
+    to which the number of rows is added.
     """
     rows, timed_rows = np.flatnonzero(lost_rows), np.flatnonzero(timed)
     if not len(rows):
@@ -58,7 +59,7 @@ def times_of_lost_rows(t_ns: Times, timed: Mask, lost_rows: Mask, cause: str) ->
 
 
 def lost_time_findings(lost_times: Sequence[LostTime], frames: FrameTimes | None, t_ns: Times) -> list[QualityFinding]:
-    """Return one finding per stretch, its times in the clock of the states (`t_ns`: theirs)."""
+    """Return one finding per stretch, with times in the clock of the states (`t_ns`: the times of the states)."""
     if len(lost_times) > MOST_STRETCHES:
         begins, ends = ([ns for ns in column if ns is not None] for column in list(zip(*lost_times, strict=True))[:2])
         first = min(begins) if len(begins) == len(lost_times) else None
@@ -76,7 +77,7 @@ def lost_time_findings(lost_times: Sequence[LostTime], frames: FrameTimes | None
 
 
 def _words(since: int | None, until: int | None, start: int) -> str:
-    """Return a stretch in seconds of the log."""
+    """Return the start and end of a stretch as text, in seconds since the start of the log."""
     if since is not None and until is not None and until - since <= 2:
         return f"at {(since + 1 - start) / 1e9:.3f} s"
     begin = "from the beginning" if since is None else f"from {_seconds(since - start)}"
@@ -84,11 +85,14 @@ def _words(since: int | None, until: int | None, start: int) -> str:
 
 
 def _seconds(ns: int) -> str:
-    return f"{round(ns / 1e9, 3) + 0.0:.3f} s"  # + 0.0: without the sign of -0.0
+    return f"{round(ns / 1e9, 3) + 0.0:.3f} s"  # + 0.0 turns -0.0 into 0.0
 
 
 def _in_clock_of_states(lost_time: LostTime, frames: FrameTimes | None) -> tuple[int | None, int | None]:
-    """Return a stretch in the states' clock: as wide as the frames beside it, which come more or less late, can make it."""
+    """Convert a stretch from the container's clock to the states' clock.
+
+    The delay between them varies: its extremes in nearby frames give the widest possible stretch.
+    """
     since, until = lost_time.since_ns, lost_time.until_ns
     times = [ns for ns in (since, until) if ns is not None]
     if frames is not None and len(frames.t_ns):

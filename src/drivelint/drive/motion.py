@@ -1,4 +1,4 @@
-"""Derives velocities from positions where the log has none or wrong ones, and reports it."""
+"""Derives velocities from positions where the log has no or wrong velocities, and reports it."""
 
 from __future__ import annotations
 
@@ -17,23 +17,26 @@ if TYPE_CHECKING:
 
 MISMATCH_MPS = 1.0
 MISMATCH_SHARE = 0.15
-"""Velocities mismatch the positions if over a second their displacements differ by more than this (see `checks.VELOCITY_MISMATCH_MPS`)."""
+"""Velocities mismatch the positions if, over one second, the displacements differ by more than 1 m/s + 15 % of the faster
+(see `checks.VELOCITY_MISMATCH_MPS`)."""
 MISMATCH_WINDOW_NS = 1_000_000_000
 END_ZERO_LEAST_MPS = 1.0
-"""A first or last sample with velocity 0 is none if the positions beside it, and the next sample, move faster than that."""
+"""A velocity of 0 in the first or last sample of a track is not real if the neighbouring velocity, and the step of the positions, are
+faster than this."""
 BIAS_SHARE = 0.05
 BIAS_LEAST_M = 50.0
 BIAS_LEAST_MPS = 2.0
-"""Over 50 m of way the ratio of velocities to positions is known to about 1 %; a speedometer, or an axle on a bend, is off by up to 5 %."""
+"""Over 50 m, the ratio of velocities to the motion of the positions is known to about 1 %. Up to 5 % is accepted, as speedometers, and
+velocities of an axle in a bend, are that inexact."""
 LEAST_MISMATCHES = 20
-"""At least so many one-second windows must mismatch; single steps are too noisy to compare."""
+"""At least this many one-second windows must mismatch; single steps are too noisy to compare."""
 
 
 def complete_velocities(states: States, step: Steps, *, most_replaced_share: float = 1.0) -> list[QualityFinding]:
-    """Fill velocities that are absent, zero although the actor moves, or of another motion than its positions'.
+    """Derive velocities that are absent, zero although the actor moves, or in contradiction to the positions; return findings.
 
-    `most_replaced_share`: the share of the motion up to which it may be of another; beyond that all velocities stay. Accelerations that
-    were never measured are dropped. `states` in order, changed in place: every column of `STATE_COLUMNS` exists afterwards.
+    `most_replaced_share`: if velocities contradict the positions in more than this share of all motion, they stay. Accelerations that
+    were not measured become unknown. `states` in order, changed in place: every column of `STATE_COLUMNS` exists afterwards.
     """
     n = len(states)
     for name in STATE_COLUMNS:
@@ -47,7 +50,7 @@ def complete_velocities(states: States, step: Steps, *, most_replaced_share: flo
 
 
 def _end_zeros(states: States, step: Steps, starts: Indices) -> list[QualityFinding]:
-    """Replace a velocity of exactly 0 in the first or last sample of a track that moves there: it means that there is no velocity."""
+    """Replace a velocity of exactly 0 in the first or last sample of a track that moves there: 0 stands for an unknown value."""
     n = len(states)
     if n < 3:
         return []
@@ -107,7 +110,7 @@ def _velocity(states: States, step: Steps, starts: Indices, most_replaced_share:
 
 
 def _filtered(states: States, rows: Mask) -> list[QualityFinding]:
-    """Report each actor whose velocities were filtered because its positions are noisy, and how exactly they are known."""
+    """Return a finding for each actor whose velocities were filtered because its positions are noisy, with their accuracy."""
     text = (
         "the positions of {ids} tremble: its velocity is a mean over up to two seconds, "
         f"known to {LARGEST_ERROR_MPS:g} m/s, its acceleration is not known"
@@ -119,7 +122,7 @@ def _filtered(states: States, rows: Mask) -> list[QualityFinding]:
 
 
 def _astray(states: States, step: Steps, most_replaced_share: float) -> Mask:
-    """Say of each actor whether its velocities lead elsewhere than its positions in most of the seconds in which it moves."""
+    """Return the mask of actors whose velocities contradict their positions in most one-second windows with motion."""
     wrong, n = np.zeros(len(states.ids), np.bool_), len(states)
     k = max(1, round(MISMATCH_WINDOW_NS / step.period_ns)) if step.period_ns else n
     if n <= k or most_replaced_share == 0.0 or not _suspicious(states, k):
@@ -128,7 +131,7 @@ def _astray(states: States, step: Steps, most_replaced_share: float) -> Mask:
     off, moved, told = np.hypot(*(went - led)), np.hypot(*went), np.hypot(*led)
     fastest = np.maximum(moved, told)
     moving = whole & (fastest > MISMATCH_MPS * span)
-    # positions that stand still do not show how an actor moves: see `contradiction`
+    # constant positions do not show how an actor moves: `contradiction` treats them
     bad = moving & (moved > MISMATCH_MPS * span) & (off > MISMATCH_MPS * span + MISMATCH_SHARE * fastest)
     seconds, astray = (np.bincount(states.actor[:-k][rows], minlength=len(states.ids)) for rows in (moving, bad))
     wrong = (astray >= LEAST_MISMATCHES) & (2 * astray > seconds)
@@ -136,9 +139,9 @@ def _astray(states: States, step: Steps, most_replaced_share: float) -> Mask:
 
 
 def _biased(states: States, step: Steps, most_replaced_share: float) -> Mask:
-    """Say of each actor whether its velocities are off the way of its positions by the same share all along.
+    """Return the mask of actors whose velocities differ from the motion of their positions by a constant factor.
 
-    Both halves of the track must say so: a track that is displaced once is another fault.
+    The factor must show in both halves of the track: a single displacement of a track is a different error.
     """
     biased, n = np.zeros(len(states.ids), np.bool_), len(states)
     if n < 3 or most_replaced_share == 0.0:
@@ -148,7 +151,7 @@ def _biased(states: States, step: Steps, most_replaced_share: float) -> Mask:
     speed = np.hypot(*v)
     moving = known & (speed > BIAS_LEAST_MPS)
     led = np.where(moving, speed * step.dt_s, 0.0)
-    # along the velocity, so that noise across the way and at a standstill adds nothing
+    # projected on the velocity, so that lateral noise and noise at a standstill add nothing
     went = np.where(moving, np.sum(np.diff(states.place) * v, axis=0) / np.where(moving, speed, 1.0), 0.0)
     actor, count = states.actor[:-1], len(states.ids)
     ways = np.bincount(actor, went, count)
@@ -167,7 +170,7 @@ def _biased(states: States, step: Steps, most_replaced_share: float) -> Mask:
 
 
 def _suspicious(states: States, k: int) -> bool:
-    """Say by a quick look at every k-th state whether any actor's velocities may mismatch its positions (Simpson's rule)."""
+    """Return whether the velocities of any actor may mismatch its positions: a fast test of every k-th state (Simpson's rule)."""
     first = np.arange(0, len(states) - k, k)
     middle, last = first + k // 2, first + k
     here = (states.actor[first] == states.actor[last]) & (states.t_ns[last] > states.t_ns[first])
@@ -182,7 +185,7 @@ def _suspicious(states: States, k: int) -> bool:
 
 
 def _acceleration(states: States, starts: Indices) -> list[QualityFinding]:
-    """Treat accelerations that are zero for every actor, although velocities change, as not recorded."""
+    """Make accelerations unknown if they are zero in all states although velocities change, and return a finding about it."""
     ax, ay = states.numbers["ax_mps2"], states.numbers["ay_mps2"]
     has_acceleration = ~(np.isnan(ax) & np.isnan(ay))
     if not has_acceleration.any() or (ax[has_acceleration] != 0.0).any() or (ay[has_acceleration] != 0.0).any():

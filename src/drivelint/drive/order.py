@@ -1,4 +1,4 @@
-"""Total order of states, one state per actor and time, and differences along each actor's track."""
+"""Sorts states, removes duplicate states, and computes differences and sums along each actor's track."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import QualityFinding, States
 
 MAX_GAP_PERIODS = 2.5
-"""Samples further apart than this many periods are not continuous (DESIGN.md, Verdicts)."""
+"""Samples further apart than this many periods are not continuous."""
 UNKNOWN_CODE = np.int8(-1)
 
 
 def sorted_states(states: States) -> States:
-    """Return the states by actor id (as text), then time, equal ones in the log's order; unused ids dropped."""
+    """Return the states sorted by actor id (as text), then by time (stable), without ids that have no state."""
     used = np.flatnonzero(np.bincount(states.actor, minlength=len(states.ids)))
     ids = sorted(states.ids[i] for i in used)
     rank = np.zeros(len(states.ids), np.int32)
@@ -31,7 +31,7 @@ def sorted_states(states: States) -> States:
     actor = rank[states.actor]
     rising = np.all(states.t_ns[1:] >= states.t_ns[:-1])
     time_order = np.arange(len(states)) if rising else np.argsort(states.t_ns, kind="stable")
-    # few actors fit 16 bits, for which numpy's stable sort is a radix sort: ten times faster
+    # numpy's stable sort of 16-bit keys is a radix sort, which is ten times faster
     keys = actor[time_order].astype(np.uint16) if len(ids) <= np.iinfo(np.uint16).max else actor[time_order]
     ordered = states.take(time_order[np.argsort(keys, kind="stable")])
     ordered.ids = ids
@@ -40,9 +40,9 @@ def sorted_states(states: States) -> States:
 
 
 def without_duplicates(states: States) -> tuple[States, list[QualityFinding]]:
-    """Keep one of several states of an actor at one time (states in order): values that differ are unknown.
+    """Keep one of several states of an actor at the same time (states in order), and make values that differ unknown.
 
-    An actor that is in two places, or has two headings or velocities, is present and has none.
+    If any column of `STATE_COLUMNS` differs, all of these columns become unknown: the actor is present, but without a position.
     """
     repeated, of = repetitions(states)
     if not repeated.any():
@@ -68,14 +68,14 @@ def without_duplicates(states: States) -> tuple[States, list[QualityFinding]]:
 
 
 def repetitions(states: States) -> tuple[Mask, Indices]:
-    """Return which rows repeat the actor and time of the row before, and the number of each row when these are left out."""
+    """Return the mask of rows that repeat the actor and time of the row before, and each row's index after these rows are removed."""
     repeated = np.zeros(len(states), np.bool_)
     repeated[1:] = (states.actor[1:] == states.actor[:-1]) & (states.t_ns[1:] == states.t_ns[:-1])
     return repeated, np.cumsum(~repeated) - 1
 
 
 def changed_columns(states: States) -> dict[str, Mask]:
-    """Return for each column the rows whose value differ from the row before; unknown counts as a value."""
+    """Return for each column the mask of rows whose value differs from the row before; two unknown values are equal."""
     changes = {}
     columns: dict[str, NDArray[Any]] = {**states.numbers, **states.codes}
     for name, values in columns.items():
@@ -87,10 +87,10 @@ def changed_columns(states: States) -> dict[str, Mask]:
 
 @dataclass(frozen=True)
 class Steps:
-    """From each state to the next of the same actor. Arrays have one row per pair of neighbouring rows (n - 1).
+    """The steps from each row of the states to the next row: arrays of n - 1 values for n rows.
 
-    `same` = both rows are of one actor; `dt_s` seconds between them; `continuous` = same and no further apart than
-    `MAX_GAP_PERIODS` periods; `period_ns` the median step of all actors (0: no actor has two states).
+    `same`: both rows are of one actor. `dt_s`: the seconds between them. `continuous`: `same`, and no further apart than
+    `MAX_GAP_PERIODS` periods. `period_ns`: the median step of all actors (0: no actor has two states).
     """
 
     same: Mask
@@ -107,14 +107,17 @@ def steps(states: States) -> Steps:
 
 
 def steps_between(t_ns: Times, actor: NDArray[np.int32], period_ns: int) -> Steps:
-    """Measure the steps between these samples (n, in order) of a log of that period."""
+    """Measure the steps between these samples (n, in order), given the sampling period."""
     same = actor[1:] == actor[:-1]
     dt = np.diff(t_ns)
     return Steps(same, dt * 1e-9, same & (dt <= MAX_GAP_PERIODS * period_ns), period_ns)
 
 
 def time_derivative(values: Floats, step: Steps) -> Floats:
-    """Return the time derivative, (n) or (2, n): central where both neighbours are continuous, else one-sided, else NaN."""
+    """Return the time derivative, (n) or (2, n).
+
+    Central difference if both steps beside the sample are continuous, one-sided if only one is, else NaN.
+    """
     rise, span, result = np.zeros_like(values), np.zeros_like(values), np.full_like(values, np.nan)
     with np.errstate(invalid="ignore"):
         difference = np.diff(values)
@@ -127,7 +130,7 @@ def time_derivative(values: Floats, step: Steps) -> Floats:
 
 
 def known_motion(states: States, step: Steps) -> Mask:
-    """Say of each step (n - 1) whether place and velocity are known at both of its ends, and no hole lies between."""
+    """Return the mask of the steps (n - 1) that are continuous and whose position and velocity are known at both ends."""
     known = np.ones(len(states), np.bool_)
     for name in ("x_m", "y_m", "vx_mps", "vy_mps"):
         known &= np.isfinite(states.numbers[name])
@@ -135,7 +138,7 @@ def known_motion(states: States, step: Steps) -> Mask:
 
 
 def integral_per_step(rate: Floats, step: Steps, known_steps: Mask) -> Floats:
-    """Return how far a rate, (n) or (2, n), leads within each step, by the mean of its ends; 0 where that is not one of `known_steps`."""
+    """Integrate a rate, (n) or (2, n), over each step by the trapezoidal rule; 0 for steps that are not in `known_steps`."""
     led: Floats = rate[..., 1:] + rate[..., :-1]
     led *= 0.5
     led *= step.dt_s
@@ -144,9 +147,9 @@ def integral_per_step(rate: Floats, step: Steps, known_steps: Mask) -> Floats:
 
 
 def displacements(states: States, step: Steps, known_steps: Mask, k: int) -> tuple[Floats, Floats, Mask, Floats]:
-    """Compare how far positions go and velocities lead over every `k` steps of a track.
+    """Return, for every `k` successive steps, the displacement of the positions and that of the integrated velocities.
 
-    Returns by first row (n - k): both displacements (2, n - k) in metres, whether all steps between are known, and the time in seconds.
+    Returns, indexed by first row: both displacements (2, n - k) in metres, whether all `k` steps are known, and the time in seconds.
     """
     went, led = np.empty((2, 2, max(0, len(states) - k)))
     for axis, (place, rate) in enumerate((("x_m", "vx_mps"), ("y_m", "vy_mps"))):
@@ -157,23 +160,23 @@ def displacements(states: States, step: Steps, known_steps: Mask, k: int) -> tup
 
 
 def sums_over(values: Floats | Mask, k: int) -> Floats:
-    """Return the sum of every k neighbouring values along the last axis (m - k + 1 of m)."""
+    """Return the sum of every k neighbouring values along the last axis: m - k + 1 sums of m values."""
     total = sums_until(values)
     return total[..., k:] - total[..., :-k]
 
 
 def sums_until(values: Floats | Mask) -> Floats:
-    """Return the sums of the first 0, 1, ... m values along the last axis (m + 1)."""
+    """Return the sums of the first 0, 1, ... m values along the last axis: m + 1 sums."""
     total = np.zeros((*values.shape[:-1], values.shape[-1] + 1))
     np.cumsum(values, axis=-1, out=total[..., 1:])
     return total
 
 
 def track_starts(actor: NDArray[np.int32]) -> Indices:
-    """Return the first row of each actor's track (`actor`: which one, in order); none where there are no rows."""
+    """Return the first row of each actor's track (`actor`: the actor's number per row, ascending); empty without rows."""
     return np.flatnonzero(np.r_[True, actor[1:] != actor[:-1]][: len(actor)])
 
 
 def extent(values: Floats, starts: Indices) -> Floats:
-    """Return by how much the known values of each track spread (`starts`: first rows); NaN where none is known."""
+    """Return the largest minus the smallest known value of each track (`starts`: first rows); NaN if no value is known."""
     return np.fmax.reduceat(values, starts, axis=-1) - np.fmin.reduceat(values, starts, axis=-1)

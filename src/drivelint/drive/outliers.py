@@ -1,8 +1,8 @@
-"""Finds single samples beside their track, and small steps of a track, that no motion explains.
+"""Finds single samples off their track, and small steps of a track, that no motion explains.
 
-`contradiction` knows jumps of metres by their length. A back-step of half a metre in one sample is as wrong: from it a velocity of its
-own would be derived. It is recognised by the samples around it, and by the noise of the track's positions. A jolt that most actors have
-at one moment is the log's.
+`jumps` recognises jumps of metres by their length. A step back by half a metre would also cause a wrong derived velocity. This module
+recognises it by the samples around it and by the noise of the positions. It also finds jolts that most actors have at the same moment,
+which are errors of the log.
 """
 
 from __future__ import annotations
@@ -19,42 +19,44 @@ if TYPE_CHECKING:
     from drivelint.drive.order import Steps
     from drivelint.drive.trace import States
 
-    # the mean velocities (2, n - 1) and times (n - 1) between neighbouring samples; not finite where there are none
+    # the mean velocities (2, n - 1) and times (n - 1) between neighbouring samples; NaN across holes and between tracks
     _Moves = tuple[Floats, Floats]
 
 
 TYRE_MPS2: Final = 12.0
-"""No vehicle changes speed and back again by more (see `ukhc.contact-signature`); an impact changes it for good."""
+"""No vehicle changes its velocity faster than this and back again (see `ukhc.contact-signature`); an impact does not change it back."""
 SAME_SPEED_SHARE: Final = 0.25
-"""A step of the positions changes the velocity by at most this share of the apparent velocity change during the step."""
+"""At a false step, the velocities before and after it differ by at most this share of the velocity change that the step seems to have."""
 COMMON_LEAST: Final = 4
-"""If this many moving actors change speed alike at one moment, the recorder's clock or places are wrong, not their driving."""
+"""If at least this many moving actors change speed by the same share at one moment, the log's times or positions are wrong."""
 ALIKE_SHARE: Final = 0.8
 COMMON_CHANGE: Final = 0.12
 COMMON_SPREAD: Final = 0.08
-"""Their speeds change by more than this share of what they are around it, and at most by so much more or less than the median."""
+"""At a common jolt, take each actor's speed relative to its speed `AROUND_NS` before and after. The median is off 1 by more than
+`COMMON_CHANGE`, and at least `ALIKE_SHARE` of the actors are within `COMMON_SPREAD` of the median."""
 AROUND_NS: Final = 300_000_000
 COMMON_NS: Final = 500_000_000
-"""What is derived from the velocities within so long before and after is in error too: accelerations, jerks."""
+"""Values derived from velocities, such as accelerations and jerks, are also wrong within this time before and after a common jolt."""
 LEAST_COMMON_MPS: Final = 1.0
-"""For a slower actor, the share of a change means nothing."""
+"""For slower actors, relative changes of speed are noise."""
 SIGMAS: Final = 6.0
-"""So many standard deviations of its positions' noise a sample is off before it counts."""
+"""A sample is an outlier only if it is off by this many standard deviations of the position noise."""
 LEAST_STEP_DERIVED_VELOCITY_M: Final = (0.05, 0.25)
-"""With derived velocities a step counts if longer than 24 m/s2 dt2, clipped to these bounds: shorter ones cause no jolt of 12 m/s2."""
+"""With derived velocities, a step counts if it is longer than 24 m/s2 dt2, clipped to these bounds (m): shorter steps cause no jolt of
+12 m/s2."""
 LEAST_STEP_RECORDED_VELOCITY_M: Final = 0.4
-"""With recorded velocities a step only moves the position; below this it is within the accuracy of boxes."""
+"""With recorded velocities, a step affects the position only; shorter steps are within the accuracy of boxes."""
 PIECE_ROWS = 1 << 18
-"""Samples that are looked at together."""
+"""The number of samples that are processed together, to limit memory."""
 _REACH: Final = 8
-"""Samples on each side of a piece that are looked at with it: more than decide whether a sample is an outlier."""
+"""The number of samples by which a piece of `PIECE_ROWS` is extended on each side, more than a decision needs."""
 
 
 def outlier_samples(states: States, step: Steps) -> Mask:
-    """Return the samples (n, in order) that lie beside their track or at a step of it.
+    """Return the mask of the samples (n, in order) that are off their track or at a false step of it.
 
-    A sample is beside it if the two before and the two after it go on without it as somebody can drive, and it is further off their
-    way. Where no velocity is recorded, a step that both of its neighbours contradict alike makes its two ends such samples.
+    A sample is off its track if the two samples before and the two after form a possible motion without it, and it is too far from that
+    motion. Without a recorded velocity, a step is false if it differs equally from the motion before and after it.
     """
     n = len(states)
     no_samples = np.zeros(n, np.bool_)
@@ -63,7 +65,7 @@ def outlier_samples(states: States, step: Steps) -> Mask:
     place = states.place
     has_velocity = _has_recorded_velocity(states, place)
     dt_s = np.where(step.continuous & (step.dt_s > 0.0), step.dt_s, np.nan)
-    # noise is costly to estimate: skip it if no sample is off even with zero noise
+    # estimating noise is slow: skip it if there is no outlier even under the assumption of zero noise
     if not _outliers(place, dt_s, has_velocity, np.broadcast_to(0.0, n), np.broadcast_to(np.inf, n)).any():
         return no_samples
     runs = Tracklets.from_samples(states.t_ns, place, step)
@@ -72,7 +74,7 @@ def outlier_samples(states: States, step: Steps) -> Mask:
 
 
 def _outliers(place: Floats, dt_s: Floats, has_velocity: Mask, sigma: Floats, error: Floats) -> Mask:
-    """Return the outliers. Pieces are looked at one by one, because each needs some thirty arrays of its length."""
+    """Return the mask of the outliers, piece by piece, because each piece needs about thirty arrays of its length."""
     n = len(has_velocity)
     outliers = np.zeros(n, np.bool_)
     for first in range(0, n, PIECE_ROWS):
@@ -86,7 +88,7 @@ def _outliers(place: Floats, dt_s: Floats, has_velocity: Mask, sigma: Floats, er
 
 
 def _has_recorded_velocity(states: States, place: Floats) -> Mask:
-    """Say of each sample whether its velocity is recorded; one that is zero throughout although the positions move is not."""
+    """Return the mask of samples with a recorded velocity; a velocity of zero on a whole track that moves is not recorded."""
     v = [states.numbers.get(name, np.full(len(states), np.nan)) for name in ("vx_mps", "vy_mps")]
     starts = track_starts(states.actor)
     still = np.logical_and.reduceat((v[0] == 0.0) & (v[1] == 0.0), starts)
@@ -96,7 +98,10 @@ def _has_recorded_velocity(states: States, place: Floats) -> Mask:
 
 
 def _beside(place: Floats, moves: _Moves, has_velocity: Mask, sigma: Floats, error: Floats) -> Mask:
-    """Return the samples that are off the way of the two before and the two after them, which are known to an `error` (n, metres)."""
+    """Return the mask of the samples that are off the path of the two samples before and the two after them.
+
+    `sigma` (n): the noise (m) that the offset must exceed. `error` (n): the noise (m) that the motion without the sample may have.
+    """
     n = place.shape[1]
     outliers = np.zeros(n, np.bool_)
     v, dt = moves
@@ -109,7 +114,7 @@ def _beside(place: Floats, moves: _Moves, has_velocity: Mask, sigma: Floats, err
     s, e = sigma[2:-2], error[2:-2]
     least = np.where(has_velocity[2:-2], LEAST_STEP_RECORDED_VELOCITY_M, _least_m(dt_to))
     limit = np.maximum(least, np.maximum(TYRE_MPS2 * dt_to * dt_away / 2, SIGMAS * 1.22 * s))
-    # there and back: both neighbours bend the other way
+    # there and back: the path bends towards the sample before it, and back after it
     there = np.sum((to - before) * off, axis=0) * dt_to > size**2 / 2
     back = np.sum((after - away) * off, axis=0) * dt_away > size**2 / 2
     goes_on = _can_change_velocity(before, without, (dt_before + across) / 2, 1.9 * e / dt_to) & _can_change_velocity(
@@ -120,7 +125,7 @@ def _beside(place: Floats, moves: _Moves, has_velocity: Mask, sigma: Floats, err
 
 
 def _stepped(moves: _Moves, has_velocity: Mask, sigma: Floats, error: Floats, beside: Mask) -> Mask:
-    """Return the two samples of each step that differs alike from the motion before and after it, where no velocity is recorded."""
+    """Return the mask of samples at false steps without recorded velocity, which differ equally from the motion before and after them."""
     n = len(has_velocity)
     outliers = np.zeros(n, np.bool_)
     v, dt = moves
@@ -134,7 +139,7 @@ def _stepped(moves: _Moves, has_velocity: Mask, sigma: Floats, error: Floats, be
     same = np.sum(from_before * from_after, axis=0) > near * far / 2
     error_mps = 2.0 * e / np.minimum(dt_before, dt_after)
     goes_on = _can_change_velocity(before, after, (dt_before + dt_after) / 2 + dt_here, error_mps)
-    # an impact changes an actor's speed
+    # the velocity must be nearly the same before and after: an impact would change it
     goes_on &= np.hypot(*(after - before)) <= SAME_SPEED_SHARE * np.minimum(near, far) / dt_here + SIGMAS * error_mps
     rows = np.flatnonzero((np.minimum(near, far) > limit) & same & goes_on & whole) + 1
     outliers[rows] = outliers[rows + 1] = True
@@ -142,7 +147,7 @@ def _stepped(moves: _Moves, has_velocity: Mask, sigma: Floats, error: Floats, be
 
 
 def _can_change_velocity(velocity: Floats, later_velocity: Floats, time_s: Floats, error_mps: Floats) -> Mask:
-    """Return whether an actor can have changed from one velocity to the other in that time."""
+    """Return the mask of the samples at which an actor can change from one velocity to the other in the given time."""
     can: Mask = np.hypot(*(velocity - later_velocity)) <= TYRE_MPS2 * time_s + SIGMAS * error_mps
     return can
 
@@ -153,7 +158,7 @@ def _least_m(dt_s: Floats) -> Floats:
 
 
 def common_jolts(states: States, step: Steps) -> Mask:
-    """Return the samples near a moment at which most moving actors' speeds change by one share and back: of those actors."""
+    """Return the mask of the samples near common jolts: most moving actors' speeds change by the same factor and back."""
     n, width = len(states), max(2, round(AROUND_NS / max(step.period_ns, 1)))
     near = np.zeros(n, np.bool_)
     if step.period_ns <= 0 or n <= 2 * width:
@@ -165,7 +170,7 @@ def common_jolts(states: States, step: Steps) -> Mask:
     around = (before + after) / 2.0
     with np.errstate(invalid="ignore", divide="ignore"):
         share = speed[middle] / around
-        # a speed that changes much around the moment shows nothing
+        # actors whose speed differs much before and after the moment are not used
         usable = (around > LEAST_COMMON_MPS) & (abs(after - before) < around / 2.0) & np.isfinite(share)
     middle, share = (values[usable & (holes[middle - width] == holes[middle + width])] for values in (middle, share))
     times, moment, count = np.unique(states.t_ns[middle], return_inverse=True, return_counts=True)
@@ -177,7 +182,7 @@ def common_jolts(states: States, step: Steps) -> Mask:
     shared = np.bincount(moment[alike], minlength=len(times)) >= ALIKE_SHARE * count
     common = (count >= COMMON_LEAST) & (abs(median - 1.0) > COMMON_CHANGE) & shared
     at = middle[common[moment] & alike]
-    # beside a dip, all actors seem to rise: the median of a window does not see the dip
+    # beside a dip, all speeds seem to rise: the median of a window excludes these samples
     window = np.median(speed[at[:, None] + np.arange(-width, width + 1)], axis=1)
     at = at[abs(speed[at] / window - 1.0) > COMMON_CHANGE]
     since = states.t_ns - states.t_ns.min()

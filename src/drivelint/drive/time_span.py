@@ -1,4 +1,4 @@
-"""Cuts a span out of a trace. A state that still applies at its start, such as the colour of a traffic light, stays in it."""
+"""Cuts a time span out of a trace. A row that still applies at its start, such as the colour of a traffic light, is kept."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import Trace
 
 _HOLDS: Final = {"signal_state": ["signal_id"], "declared_event": ["actor_id", "event"]}
-"""Table -> its keys: a row holds until the next one of the same keys."""
+"""Table -> its keys: a row applies until the next row with the same keys."""
 
 
 def cut_trace(trace: Trace, from_ns: int, to_ns: int) -> Trace:
-    """Return the states of a trace from one time to another, both included, with the actors that have any.
+    """Return a trace with the states from `from_ns` to `to_ns`, both included, and the actors that have states there.
 
-    Errors: `ValueError` if there is no state between them.
+    Errors: `ValueError` if there is no state in the span.
     """
     tables = dict(trace.tables)
     states = _between(tables["actor_state"], from_ns, to_ns)
@@ -42,7 +42,7 @@ def _between(rows: pa.Table, from_ns: int, to_ns: int) -> pa.Table:
 
 
 def _with_what_holds(rows: pa.Table, keys: list[str], from_ns: int, to_ns: int) -> pa.Table:
-    """Return the rows of a span and, of each key, the last one before it."""
+    """Return the rows of the span and, for each key, the last row before it."""
     before = rows.filter(pc.less(rows["t_ns"], from_ns))
     last = before.group_by(keys).aggregate([("t_ns", "max")]).rename_columns([*keys, "t_ns"])
     held = before.join(last, [*keys, "t_ns"], join_type="left semi", use_threads=False).select(rows.column_names)
@@ -51,7 +51,7 @@ def _with_what_holds(rows: pa.Table, keys: list[str], from_ns: int, to_ns: int) 
 
 
 def _log_of(log: pa.Table, states: pa.Table) -> pa.Table:
-    """Return the row of `data_log` for these states."""
+    """Return the row of `data_log` with the times and the number of these states."""
     span = pc.min_max(states["t_ns"]).as_py()
     start, utc = log["t_start_ns"][0].as_py(), log["utc_start_ns"][0].as_py()
     later = None if utc is None or start is None else utc + span["min"] - start

@@ -1,4 +1,4 @@
-"""Defines the types of ingest: options, states, recordings, findings and traces."""
+"""Defines the types that reading a log uses: options, states, recordings, findings and traces."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ if TYPE_CHECKING:
 Severity = Literal["info", "warning", "error"]
 
 STATE_COLUMNS = ("x_m", "y_m", "z_m", "yaw_rad", "vx_mps", "vy_mps", "ax_mps2", "ay_mps2")
-"""The double columns of `actor_state`, in its order."""
+"""The columns of `actor_state` with real numbers, in the order of that table."""
 SIZE_COLUMNS = ("length_m", "width_m", "height_m")
-"""The double columns of `actor`, in its order."""
+"""The columns of `actor` with real numbers, in the order of that table."""
 INDICATORS = words("indicator")
 BRAKE_LIGHTS = words("brake_light")
 ACTOR_CLASSES = words("actor_class")
 MOTOR_VEHICLES = ("car", "van", "truck", "bus", "motorcycle", "vehicle")
-"""The actors that `--ego all` judges: driven by an engine, with a driver of their own."""
+"""The classes of the actors that `--ego all` judges: vehicles with an engine and a driver."""
 LEAST_UTC_NS = 946_684_800_000_000_000
-"""2000-01-01 UTC: a clock beyond it counts from 1970 in UTC, a smaller one from the start of the recording."""
+"""2000-01-01 UTC. Later times count from 1970 in UTC, smaller times from the start of the recording."""
 SIGNAL_STATES = words("light_state")
 
 
@@ -46,7 +46,7 @@ class Identity:
 
 
 class EgoSize(NamedTuple):
-    """The ego's box where the log does not have it, in metres; `forward_m`: its centre ahead of the odometry's frame."""
+    """The user's size (m) for an ego without a size in the log; `forward_m`: how far the box centre is ahead of the odometry's origin."""
 
     length_m: float
     width_m: float
@@ -54,18 +54,19 @@ class EgoSize(NamedTuple):
 
 
 ASSUMED_MOTION = "assumed_motion"
-"""The check of a log whose mapping assumes speeds and lanes."""
+"""The id of the check for a log whose mapping assumes speeds and lanes."""
 ASSUMED_SIZE = "assumed_size"
-"""The check, information only, of a size that the log does not record; a converted log carries it, and so does a clip."""
+"""The id of the check (information only) for a size that the log does not record. Converted logs and clips keep its findings."""
 TURNED_FRAME = "turned_frame"
-"""The check, information only, of a log whose mapping turns it, as its own frame is left-handed."""
+"""The id of the check (information only) for a left-handed log, which the mapping converts to a right-handed frame."""
 OWN_MAP_UNUSABLE = "own_map_unusable"
 NOT_IN_FOLDER = "map_not_in_folder"
-"""The check that found that the log's own map cannot be used: rules that need a map are unknown for its reason."""
+"""Ids of the checks for a log's own map that is unusable, and for a log without a map in the folder. Rules that need a map are then
+unknown, with the finding as reason."""
 ASIDE_OF_LANE = "aside_of_lane"
-"""The check of a drive whose ego fits the map, but far from the middle of its lane."""
+"""The id of the check for a drive whose ego fits the map, but is far from the middle of its lane."""
 EGO_ABSENT = "ego_absent"
-"""The check of a log that goes on while its ego has no place in it."""
+"""The id of the check for a log that continues while its ego has no position."""
 FOUND_ANEW = frozenset({
     "acceleration_not_recorded", "aligned", "begin_overlap", "class_implausible", "clock_restart", "common_jolt",
     "duplicate_state", EGO_ABSENT, "false_entry", "gap", "heading_spin", "heading_turned", "heading_unknown", "held_track",
@@ -73,18 +74,18 @@ FOUND_ANEW = frozenset({
     "same_body", "size_implausible", "teleport", "too_fast", "track_gap", "track_parted", "velocity_derived",
     "velocity_end_derived", "velocity_filtered", "velocity_jolt", "velocity_mismatch", "velocity_unknown", "yaw_mismatch",
 })  # fmt: skip
-"""Checks of the states: a log that was converted as it was recorded has their findings, which are found again when it is read."""
+"""Ids of the checks of the states. Logs converted `as_recorded` do not keep their findings: reading finds them again."""
 LOSS_CHECKS = ("dropped_row", "malformed_row")
-"""Checks for parts of the log that could not be read, whatever their severity: only the rest is judged.
+"""Ids of checks whose findings, whatever their severity, mean that a part of the log could not be read and is not judged.
 
-An error of any other check is a loss too."""
+An error of any other check means the same."""
 
 
 @dataclass(frozen=True)
 class IngestOptions:
-    """Options of the command line about reading; None: the log or the mapping decides.
+    """Options of the command line about reading a log; None: the log or the mapping decides.
 
-    `need_ego`: a log without an ego is an error; else it is read with none, to inspect or convert it.
+    `need_ego`: whether a log without an ego is an error. `inspect` and `convert` also read logs without an ego.
     """
 
     mapping: str | None = None
@@ -96,16 +97,16 @@ class IngestOptions:
     """The conditions of the drive, as (condition, word): see `drivelint.drive.conditions`."""
     ego_size: EgoSize | None = None
     in_sight: bool = False
-    """An actor that is not recorded for a while is assumed not to be in plain view."""
+    """Whether actors that are not recorded for a while are assumed to be out of the recorder's line of sight."""
     as_recorded: bool = False
-    """The states are those of the log: none that is doubted is made unknown, none is derived. They are doubted again when they are read."""
+    """Keep the states as the log has them: no doubtful value is made unknown, and no value is derived."""
     map: Path | None = None
-    """The map that is given: a log in degrees needs its projection."""
+    """The map that the user gives: a log in degrees needs the map's projection."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class DriveInput:
-    """Options, shared by all commands, on how a log is read and on which map it is judged."""
+    """The options, common to all commands, on how a log is read and which map it is judged on."""
 
     map: Path | None = None
     map_dir: Path | None = None
@@ -136,7 +137,7 @@ class DriveInput:
 
 
 class FrameTimes(NamedTuple):
-    """The times of a log's frames in the order of the file: the time in the message and the time in the container."""
+    """The times of a log's frames in the order of the file: `t_ns` from the message, `log_ns` from the container."""
 
     t_ns: Times
     log_ns: NDArray[np.uint64]
@@ -147,11 +148,11 @@ class Trace:
     """One drive as tables of `schemas/model.sql` (data_log, actor, actor_state, signal_state, declared_event,
     drive_condition, quality).
 
-    `data_log` has one row, its `environment_id` NULL. Rows are totally ordered: `actor_state` by actor_id and t_ns. `embedded_map` is
-    OpenDRIVE found in the log; `map_offset` (metres) is added to the map's coordinates. `frame_times`: see `FrameTimes`; None where the
-    log has one clock only. `geo_reference`: the projection of its coordinates, a PROJ string, of which they are after a turn and a shift,
-    `geo_offset`: x and y in metres, the turn in radians. `nobody_ns`: times of frames without actors, in which the ego should be there.
-    `in_log_order`: the states are as the log has them (`IngestOptions.as_recorded`) and in its order, as its clock begins again.
+    `data_log` has one row, with a NULL `environment_id`. Every table is sorted, `actor_state` by actor_id and t_ns. `embedded_map`: the
+    OpenDRIVE text that the log contains. `map_offset` (metres) is added to the map's coordinates. `frame_times` is None for a log with
+    one clock. `geo_reference`: the PROJ string of a projection. `geo_offset` converts the log's coordinates into projected ones: x and y in
+    metres, after a rotation (radians). `nobody_ns`: times of frames without actors while the ego is absent.
+    `in_log_order`: the states are those of the log (`IngestOptions.as_recorded`) in its own order, because its clock restarts.
     """
 
     drive_id: str
@@ -168,7 +169,7 @@ class Trace:
 
 
 class Doubt(NamedTuple):
-    """One row of `doubt`, still without its drive and its code, which is that of the quality finding it belongs to."""
+    """One row of the table `doubt`, without the drive and the code (the check id of the finding that has the doubt)."""
 
     actor_id: str
     quantity: Quantity
@@ -178,7 +179,7 @@ class Doubt(NamedTuple):
 
 @dataclass(frozen=True)
 class QualityFinding:
-    """One row of `quality`, still without its drive, and the values that it makes doubtful."""
+    """One row of the table `quality`, without the drive. `doubts`: the values that the finding makes doubtful."""
 
     check_id: str
     severity: Severity
@@ -196,12 +197,12 @@ class QualityFinding:
 
     @classmethod
     def of_actors(cls, check_id: str, severity: Severity, message: str, ids: Sequence[str]) -> QualityFinding:
-        """Return a finding about these actors, which names the actor where it is one only."""
+        """Return a finding about these actors; its `actor_id` is set if there is only one."""
         return cls(check_id, severity, message, len(ids), actor_id=ids[0] if len(ids) == 1 else None)
 
 
 def single_map(maps: Mapping[bytes, str]) -> tuple[bytes | None, tuple[QualityFinding, ...]]:
-    """Return the log's only OpenDRIVE map, or None with a finding if it has several; `maps`: map text -> topic where it was first seen."""
+    """Return the log's only OpenDRIVE map, or None with a finding if there are several. `maps`: map text -> topic that first had it."""
     if len(maps) > 1:
         message = f"the log has {len(maps)} different OpenDRIVE maps (topics {listed(sorted(maps.values()))}), and none is used: keep one"
         return None, (QualityFinding.unusable_map(message),)
@@ -212,8 +213,8 @@ def single_map(maps: Mapping[bytes, str]) -> tuple[bytes | None, tuple[QualityFi
 class States:
     """Rows of `actor_state` as parallel arrays, SI units, box centres; NaN and code -1 mean unknown.
 
-    `ids` are distinct actor ids, `actor` holds each row's index into them. `numbers` holds some or all of `STATE_COLUMNS` and
-    of `SIZE_COLUMNS`. The codes index `INDICATORS`, `BRAKE_LIGHTS` and `ACTOR_CLASSES`. `not_finite` marks rows in which the log had
+    `ids`: the distinct actor ids. `actor`: for each row, an index into `ids`. `numbers`: some or all of `STATE_COLUMNS` and
+    `SIZE_COLUMNS`. `codes`: indices into `INDICATORS`, `BRAKE_LIGHTS` and `ACTOR_CLASSES`. `not_finite`: the rows in which the log has
     NaN or infinity.
     """
 
@@ -229,7 +230,7 @@ class States:
 
     @property
     def place(self) -> Floats:
-        """The places x and y (2, n) in metres."""
+        """The positions x and y (2, n) in metres."""
         return np.stack([self.numbers["x_m"], self.numbers["y_m"]])
 
     @property
@@ -238,11 +239,11 @@ class States:
         return np.stack([self.numbers["vx_mps"], self.numbers["vy_mps"]])
 
     def copy(self) -> States:
-        """Return the same rows in arrays that are shared until one of the two puts another array in its place."""
+        """Return a shallow copy: it shares the arrays, but replacing an array in one of the two does not change the other."""
         return States(self.ids, self.actor, self.t_ns, dict(self.numbers), dict(self.codes), self.not_finite)
 
     def completed(self) -> States:
-        """Return the rows with every column of `STATE_COLUMNS`, unknown where the log has none."""
+        """Return the rows with every column of `STATE_COLUMNS`; columns that the log lacks are unknown."""
         nothing = {name: np.full(len(self), np.nan) for name in STATE_COLUMNS if name not in self.numbers}
         return States(self.ids, self.actor, self.t_ns, self.numbers | nothing, self.codes, self.not_finite)
 
@@ -281,9 +282,10 @@ class States:
         *,
         quantity: Quantity | None = None,
     ) -> list[QualityFinding]:
-        """Return a finding on the rows of a mask, none where there are none. `text`: its message, with {n}, {of} and {ids}.
+        """Return a list of one finding about the rows of a mask, or an empty list if the mask is empty.
 
-        `quantity`: what the finding makes doubtful at those rows, None: nothing. The rows are then in order.
+        `text`: the message, with {n}, {of} and {ids}. `quantity`: the quantity that is doubtful in those rows, or None; it needs states
+        in order.
         """
         n = int(rows.sum())
         if not n:
@@ -295,9 +297,10 @@ class States:
         return [QualityFinding(check_id, severity, message, n, int(self.t_ns[rows].min()), only, doubts=doubts)]
 
     def doubts(self, rows: Mask, quantity: Quantity) -> tuple[Doubt, ...]:
-        """Return a doubt for each run of rows of a mask (n, in order), which reaches to just before the samples beside the run.
+        """Return a doubt for each run of rows of a mask (n, in order).
 
-        So a state that is interpolated between a sample in doubt and its neighbour is in doubt too.
+        A doubt extends to 1 ns before the samples next to its run. So a state that is interpolated between a doubtful sample and its
+        neighbour is doubtful too.
         """
         change = self.actor[1:] != self.actor[:-1]
         first = np.flatnonzero(rows & np.r_[True, change | ~rows[:-1]])
@@ -314,7 +317,7 @@ class States:
 
 
 class LostTime(NamedTuple):
-    """Messages of log times between the two may be missing (None: from the log's beginning, or until its end), and why."""
+    """A span of log time from which messages may be missing, and the cause. None: from the log's start, or until its end."""
 
     since_ns: int | None
     until_ns: int | None
@@ -323,14 +326,13 @@ class LostTime(NamedTuple):
 
 @dataclass
 class Recording:
-    """The output of a reader: rows in the log's own order, nothing sorted or checked yet.
+    """The output of a reader: rows in the log's own order, neither sorted nor checked.
 
-    `actors` is an Arrow table with the columns of `actor` where the log has one apart from its states. `ego_ids` are
-    the log's or mapping's egos, `lost` what damage took from it, `conditions` what it says of the drive (condition -> word),
-    `strict_units` is set where a mapping the user can correct decided units and frame. `geo_reference` and `geo_offset` are
-    those of `Trace`. `frames_ns`: the times of the log's frames, including those without actors; None: those of the states.
-    `names_indicator`: whether a mapping names the column of the indicators.
-    `ends_apart_ns`: so far apart the parts of a log may begin and end that were recorded beside each other, such as topics.
+    `actors`: an Arrow table with the columns of `actor`, if the log has a separate actor table. `ego_ids`: the egos that the log or the
+    mapping names. `lost_times`: spans that a damaged log lacks. `conditions`: condition -> word, as the log states them. `strict_units`:
+    units and frame come from a mapping that the user can correct. `geo_reference`, `geo_offset`: as in `Trace`. `frames_ns`: the times of
+    all frames, also of those without actors; None: the times of the states. `names_indicator`: whether a mapping names the column of the
+    indicators. `ends_apart_ns`: by how much the starts, or the ends, of parallel topics may differ.
     """
 
     format: str
@@ -356,6 +358,6 @@ class Recording:
     names_indicator: bool | None = None
 
     def hand_over_states(self) -> States:
-        """Return the states and keep none: memory has to hold those of a long drive once, not twice."""
+        """Return the states and drop them here, so that memory contains the states of a long drive only once."""
         states, self.states = self.states, self.states.take(slice(0))
         return states

@@ -1,9 +1,9 @@
-"""Derives velocities from positions by a filter whose width follows the position noise and whose error is known.
+"""Derives velocities from positions by a filter whose width depends on the position noise and whose error is known.
 
-The velocity at a state is the least-squares slope over the positions within some time to both sides: the narrowest of `HALF_WIDTHS_S`
-over which three standard errors are at most `LARGEST_ERROR_MPS`. Exact positions (a simulator's) get central differences; five centimetres
-of noise at 10 Hz get half a second to both sides. What even a second does not show is unknown. An actor that stays within its noise
-over two seconds stands: its velocity is zero.
+The velocity at a state is the least-squares slope of the positions within a half width before and after it: the smallest of
+`HALF_WIDTHS_S` for which three standard errors are at most `LARGEST_ERROR_MPS`. Exact positions (from a simulator) need central
+differences only; noise of 5 cm at 10 Hz needs half a second. If one second is not enough, the velocity is unknown. An actor that moves no
+more than its noise over two seconds stands still.
 """
 
 from __future__ import annotations
@@ -22,39 +22,39 @@ if TYPE_CHECKING:
 
 
 LARGEST_ERROR_MPS: Final = 0.25
-"""Three standard errors of a velocity component that counts as known: half of the speed that counts as standing (`standing_mps`)."""
+"""A velocity component is known if three standard errors are at most this: half of the speed that counts as standing (`standing_mps`)."""
 HALF_WIDTHS_S: Final = (0.25, 0.5, 1.0)
-"""Half widths of the filter, after central differences; a braking of 10 m/s3 of jerk is 0.06, 0.25 and 1 m/s off in its middle."""
+"""Half widths of the filter, tried after central differences. At a jerk of 10 m/s3 they are up to 0.06, 0.25 and 1 m/s off."""
 LONGEST_PERIOD_NS: Final = 210_000_000
-"""With longer periods positions change by motion as much as by noise: central differences are used, as for exact positions."""
+"""With longer sampling periods, motion cannot be separated from noise: central differences are used, as for exact positions."""
 MOVED_M: Final = 1.0
-"""An actor whose positions spread by more moves; below it a parked car's position noise would become a speed."""
+"""An actor moves if its positions spread by more than this; the noise of a parked car's positions stays below it."""
 LEAST_NOISE_SAMPLES: Final = 8
-"""Of fewer samples no noise is estimated."""
+"""Noise is not estimated from fewer samples than this."""
 
 
 class DerivedVelocity(NamedTuple):
-    """Velocities (2, n) in m/s, NaN where not known; `filtered` (n): the filter was used, or noise left the velocity unknown."""
+    """Velocities (2, n) in m/s, NaN if unknown; `filtered` (n): the filter was used, or the velocity is unknown because of noise."""
 
     v_mps: Floats
     filtered: Mask
 
 
 def derive_velocities(t_ns: Times, actor: NDArray[np.int32], place: Floats, step: Steps) -> DerivedVelocity:
-    """Derive velocities from positions (2, n), in order, metres; `actor`: which one, 0.."""
+    """Derive velocities from positions (2, n) in metres, sorted by actor and time; `actor` (n): the actor's number."""
     v = time_derivative(place, step)
     filtered = np.zeros(len(t_ns), np.bool_)
     placed = np.flatnonzero(np.isfinite(place).all(axis=0))
     if not 0 < step.period_ns <= LONGEST_PERIOD_NS or not len(placed):
         return DerivedVelocity(v, filtered)
-    # a filter needs no sample at every step: over a hole of one it goes on
+    # a filter does not need a sample at every step: it continues over a single sample without a position
     of = steps_between(t_ns[placed], actor[placed], step.period_ns)
     v[:, placed], filtered[placed] = _filtered(t_ns[placed], actor[placed], place[:, placed], of, v[:, placed])
     return DerivedVelocity(v, filtered)
 
 
 def _filtered(t_ns: Times, actor: NDArray[np.int32], place: Floats, step: Steps, central: Floats) -> DerivedVelocity:
-    """Return the velocities (2, n) of samples that all have a place; `central`: those by central differences."""
+    """Return the velocities (2, n) of samples that all have a position; `central`: the velocities by central differences."""
     runs = Tracklets.from_samples(t_ns, place, step)
     sigma = sample_noise(place, runs, actor, unknown=0.0)
     has_velocity = 3.0 * sigma * np.sqrt(2.0) / (2.0 * step.period_ns * 1e-9) <= LARGEST_ERROR_MPS
@@ -65,14 +65,17 @@ def _filtered(t_ns: Times, actor: NDArray[np.int32], place: Floats, step: Steps,
         wide, error = runs.slopes(place, width, sigma)
         now = ~has_velocity & (error <= LARGEST_ERROR_MPS)
         v, has_velocity, filtered = np.where(now, wide, v), has_velocity | now, filtered | now
-    # the widest filter decides who stands still; at the ends of a track it is one-sided
+    # the widest filter decides which actors stand still; at the ends of a track it is one-sided
     wide, error = runs.slopes(place, HALF_WIDTHS_S[-1], sigma, both_sides=False)
     stands = (sigma > 0.0) & (error <= LARGEST_ERROR_MPS) & (np.abs(wide) <= error).all(axis=0)
     return DerivedVelocity(np.where(stands, 0.0, v), filtered | (~has_velocity & ~stands))
 
 
 class Tracklets(NamedTuple):
-    """For each state the first and last row of its gapless stretch of one actor, and the time since that first row."""
+    """For each state, the first and last row of its tracklet (a stretch of one actor without holes) and the time since the first.
+
+    `key`, ascending: the time within the tracklet plus an offset per tracklet.
+    """
 
     first: Indices
     last: Indices
@@ -81,7 +84,7 @@ class Tracklets(NamedTuple):
 
     @classmethod
     def from_samples(cls, t_ns: Times, place: Floats, step: Steps) -> Tracklets:
-        """Part the states (n, in order) where there is a hole, or no place (2, n)."""
+        """Split the states (n, in order) at holes and at samples without a position (`place`: 2, n)."""
         usable: Mask = np.logical_and.reduce(np.isfinite(place))
         starts = np.flatnonzero(np.r_[True, ~(step.continuous & usable[1:] & usable[:-1])])
         of = np.repeat(np.arange(len(starts)), np.diff(np.r_[starts, len(t_ns)]))
@@ -92,7 +95,10 @@ class Tracklets(NamedTuple):
         return cls(first, last, key, since.astype(np.float64) * 1e-9)
 
     def slopes(self, place: Floats, width_s: float, sigma: Floats, *, both_sides: bool = True) -> tuple[Floats, Floats]:
-        """Return slopes (2, n) over samples within `width_s` (`both_sides`: as far to one as to the other), and three standard errors."""
+        """Return the slopes (2, n) over the samples within `width_s`, and three standard errors.
+
+        `both_sides`: the window is symmetric, so it becomes narrower at the ends of a tracklet.
+        """
         to_edge = np.minimum(self.t_s - self.t_s[self.first], self.t_s[self.last] - self.t_s)
         half = np.round(np.minimum(width_s, to_edge if both_sides else width_s) * 1e9).astype(np.int64) + 1_000_000
         low = np.maximum(np.searchsorted(self.key, self.key - half, side="left"), self.first)
@@ -103,7 +109,7 @@ class Tracklets(NamedTuple):
             sums = sums_until(values)
             return sums.take(end, axis=-1) - sums.take(low, axis=-1)
 
-        # from the run's own begin, so that the sums keep their digits
+        # relative to the first sample of the tracklet, so that the sums do not lose precision
         t, moved = self.t_s, np.nan_to_num(place - place.take(self.first, axis=1))
         mean_t = over(t) / n
         spread = over(t * t) - n * mean_t * mean_t
@@ -113,17 +119,17 @@ class Tracklets(NamedTuple):
 
 
 def sample_noise(place: Floats, runs: Tracklets, actor: NDArray[np.int32], *, unknown: float = np.inf) -> Floats:
-    """Return the standard deviation of the noise of each sample's place (m); `unknown` where its actor has too few samples."""
+    """Return the standard deviation of each sample's position noise (m); `unknown` is the value for actors with too few samples."""
     sigma = np.maximum(*(position_noise(values, runs, actor) for values in place))
     sigma[np.bincount(actor) < LEAST_NOISE_SAMPLES] = unknown
     return sigma[actor]
 
 
 def position_noise(values: Floats, runs: Tracklets, actor: NDArray[np.int32]) -> Floats:
-    """Return the standard deviation of each actor's position noise (m), by the median; 0 where there are too few samples.
+    """Return the standard deviation of each actor's position noise (m), estimated by a median; 0 for actors with too few samples.
 
-    A sample beside the line between its neighbours is off by noise or by acceleration; the difference of two such on end is free of
-    a steady acceleration, and has five times the variance of the noise.
+    A sample is off the line between its neighbours because of noise or acceleration. A constant acceleration cancels in the difference
+    of two successive offsets; this difference has five times the variance of the noise.
     """
     n_actors = int(actor.max(initial=-1)) + 1
     noise_m = np.zeros(n_actors)
@@ -131,7 +137,7 @@ def position_noise(values: Floats, runs: Tracklets, actor: NDArray[np.int32]) ->
     inner = np.arange(1, len(values) - 1)
     share = (t[inner] - t[inner - 1]) / (t[inner + 1] - t[inner - 1])
     beside = values[inner] - values[inner - 1] - share * (values[inner + 1] - values[inner - 1])
-    twice = np.abs(np.diff(beside))  # `whole` leaves out the values across two tracks
+    twice = np.abs(np.diff(beside))  # `whole` leaves out differences between samples of two tracklets
     whole = (runs.first[inner[:-1] - 1] == runs.first[inner[1:] + 1]) & np.isfinite(twice)
     rows, who = twice[whole], actor[inner[:-1]][whole]
     edges = np.searchsorted(who, np.arange(n_actors + 1))

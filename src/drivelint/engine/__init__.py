@@ -1,1 +1,1 @@
-"""Drives in batches: choose the map, derive the library tables, judge."""
+"""Judges drives in batches: chooses the map, derives the library tables, and evaluates the rules."""

@@ -1,4 +1,4 @@
-"""Keeps a fault to the drive that has it: a drive that cannot be judged is refused, and the others are judged."""
+"""Isolates errors: a drive that cannot be judged is refused, and the other drives of its batch are judged."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 
 
 def judge_apart(session: JudgingSession, drives: Sequence[Drive], refusals: list[RefusedLog]) -> None:
-    """Judge a batch; if it fails, drive by drive, so that one bad drive harms no other. What could not be judged is added to `refusals`.
+    """Judge a batch; if it fails, judge its drives separately, and add those that fail to `refusals`.
 
-    Errors: those whose fault is no drive's, such as a folder that cannot be written (`exit_code` 75).
+    Errors: those that no drive causes, such as a folder that cannot be written (`exit_code` 75).
     """
     try:
         session.judge(drives)
@@ -32,7 +32,7 @@ def judge_apart(session: JudgingSession, drives: Sequence[Drive], refusals: list
         if len(drives) == 1:
             refusals.append(refusal_of(drives[0].trace.path, error))
             return
-        # in the order of a batch's rows: files that grow with the batches have the same rows in the same order however they are cut
+        # sorted like the rows of a batch, so that files that grow with the batches do not depend on the split
         drives = sorted(drives, key=lambda drive: drive.trace.drive_id)
         many = len(drives) // 2 if isinstance(error, duckdb.OutOfMemoryException) else 1
         for at in range(0, len(drives), many):

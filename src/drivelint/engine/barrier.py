@@ -1,4 +1,4 @@
-"""Distinguishes a fault of one drive, which is refused, from a fault of the whole run."""
+"""Distinguishes errors of one log, which is then refused, from errors that end the whole run."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class RefusedLog:
-    """One log that cannot be judged, and why."""
+    """One log that cannot be judged, and the error."""
 
     path: Path
     error: DriveLintError
@@ -25,7 +25,7 @@ class RefusedLog:
 def refusal_of(path: Path, error: BaseException) -> RefusedLog:
     """Return the refusal of a log for an error in reading or judging it.
 
-    Errors: the error itself, where it is no drive's: a wish to stop, or a fault of the run.
+    Errors: the error itself, if it is an interruption or an error of the whole run.
     """
     if isinstance(error, DriveLintError):
         if error.is_of_the_run:
@@ -41,7 +41,7 @@ def refusal_of(path: Path, error: BaseException) -> RefusedLog:
 
 
 def _error_text(error: BaseException) -> str:
-    """Return the text of an unexpected error, and where it was raised."""
+    """Return a message with the type and text of an unexpected error, and where it was raised."""
     frames = traceback.extract_tb(error.__traceback__)
     where = f" ({frames[-1].filename.rpartition('drivelint/')[2]}:{frames[-1].lineno})" if frames else ""
     words = (str(error).splitlines() or [""])[0][:200]

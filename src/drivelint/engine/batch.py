@@ -1,4 +1,4 @@
-"""Reads drives ahead with their maps, cuts them into batches, and cuts a drive of many egos into parts."""
+"""Reads drives with their maps ahead of judging, groups them into batches, and splits a drive of many egos into parts."""
 
 from __future__ import annotations
 
@@ -29,24 +29,24 @@ if TYPE_CHECKING:
     from drivelint.road.geo_reference import GeoFrame
     from drivelint.road.map_reader import MapTables
 
-BATCH_STATES: Final = 400_000  # a batch costs little more than its longest drive, and its tables still fit in a GiB
+BATCH_STATES: Final = 400_000  # the tables of such a batch fit into 1 GiB, and larger batches would save little time
 LARGE_STATES: Final = 1_000_000
-"""Of more states, the drives themselves take much of the memory: the database gives its own back between stages."""
+"""With more states than this, the drives themselves need much memory: the database releases its memory between stages."""
 ONE_CORE_STATES: Final = 100_000
-"""States up to which a statement on several cores takes no less time, and a fifth more of the cores'."""
+"""Up to this number of states, several cores do not make a statement faster, but cost a fifth more CPU time."""
 PAIRS_PER_PART: Final = 1_500_000
-"""A part of a drive of many egos has no more ego steps times the actors that are there then: the largest tables have so many rows."""
+"""The most pairs (an ego's step and an actor present then) in a part of a drive, which is the row count of the largest tables."""
 READ_AHEAD: Final = 4
 FIRST_BATCH_DRIVES: Final = 16
 FIRST_BATCH_STATES: Final = 100_000
-"""So small is a run's first batch, so that something is judged soon."""
+"""The most states of a run's first batch, so that there are results soon."""
 BATCH_GROWTH: Final = 6
-"""A batch is at most this many times larger than all batches before it."""
+"""A batch is at most this many times larger than all batches before it together."""
 
 
 @dataclass(frozen=True)
 class Drive:
-    """One log that was read, its map (None: none was given), and how it lies on the earth (None: nothing says it)."""
+    """One log that was read, its map (None: no map), and the frame that relates it to the earth (None: unknown)."""
 
     trace: Trace
     environment: MapTables | None
@@ -54,12 +54,12 @@ class Drive:
 
     @property
     def n_states(self) -> int:
-        """Rows of `actor_state`."""
+        """The number of rows of `actor_state`."""
         return int(self.trace.tables["actor_state"].num_rows)
 
     @cached_property
     def pairs_by_ego(self) -> dict[str, int]:
-        """Each ego -> its steps times the actors that are there then, by id. Empty: there are not several egos."""
+        """Ego id -> the sum, over its steps, of the actors present at the step. Sorted; empty if there are not several egos."""
         actors, states = self.trace.tables["actor"], self.trace.tables["actor_state"]
         egos = set(actors.filter(actors["is_ego"])["actor_id"].to_pylist())
         if len(egos) < 2:
@@ -86,13 +86,13 @@ class Drive:
 
 
 def sorted_logs(paths: Sequence[Path]) -> list[Path]:
-    """Return the logs in an order that does not depend on how they were named or where they lie: by stem, then by content."""
+    """Return the logs sorted by stem, then by content, so that the order does not depend on folders or the command line."""
     stems = Counter(path.stem for path in paths)
     return sorted(paths, key=lambda p: (p.stem, _digest(p) if stems[p.stem] > 1 else "", str(p)))
 
 
 def read_drives(paths: Sequence[Path], options: IngestOptions, library: MapLibrary) -> Iterator[Drive | RefusedLog]:
-    """Yield every log in the order of `paths`; a few are read ahead while others are judged."""
+    """Yield the drive or the refusal of each log, in the order of `paths`; the next logs are read in threads meanwhile."""
     with ThreadPoolExecutor(max_workers=2) as pool:
         waiting: deque[tuple[Path, Future[Trace]]] = deque()
         todo = iter(paths)
@@ -114,22 +114,22 @@ _reading: WeakSet[Future[Trace]] = WeakSet()
 
 
 def logs_being_read() -> bool:
-    """Whether logs are being read in other threads."""
+    """Return whether logs are being read in other threads."""
     return any(not future.done() for future in list(_reading))
 
 
 def _wait_for(path: Path, future: Future[Trace], library: MapLibrary) -> Drive | RefusedLog:
     try:
         return drive_with_map(future.result(), library)
-    except BaseException as error:  # noqa: BLE001 - some readers' libraries raise what is no Exception
+    except BaseException as error:  # noqa: BLE001 - some libraries raise errors that are no `Exception`
         return refusal_of(path, error)
 
 
 def cut_batches(drives: Iterable[Drive | RefusedLog]) -> Iterator[list[Drive | RefusedLog]]:
-    """Cut into batches of at most `BATCH_STATES` states or pairs, a longer drive being a batch of its own.
+    """Yield batches of at most `BATCH_STATES` states or pairs; a longer drive is a batch of its own.
 
-    The first is small, and the next ones grow: an interrupted run keeps some of what it did, and a long run has two or three batches more
-    than it needs, each of which costs as much as some twenty short drives.
+    The first batch is small, and the next ones grow, so that an interrupted run has some results. This costs a long run two or three more
+    batches, each as much as about twenty short drives.
     """
     batch: list[Drive | RefusedLog] = []
     states, most_drives, most_states = 0, FIRST_BATCH_DRIVES, FIRST_BATCH_STATES
@@ -151,20 +151,20 @@ def cut_batches(drives: Iterable[Drive | RefusedLog]) -> Iterator[list[Drive | R
 
 
 def are_large(drives: Iterable[Drive]) -> bool:
-    """Whether drives take so much memory themselves that the database must do with less of it."""
+    """Return whether the drives themselves need so much memory that the database gets less."""
     return sum(drive.n_states for drive in drives) > LARGE_STATES
 
 
 def are_few(drives: Iterable[Drive]) -> bool:
-    """Whether drives have so few states that a statement on them had best keep to one core."""
+    """Return whether the drives have so few states that one core is best for a statement."""
     return sum(drive.n_states for drive in drives) <= ONE_CORE_STATES
 
 
 def skipped_egos_by_part(drives: Sequence[Drive], pairs_per_part: int | None = None) -> list[list[str]]:
-    """Return, for each part in which a batch is judged, the egos that are not judged in it; a part has at least one ego.
+    """Return, for each part of a batch, the egos that are not judged in it; each part judges at least one ego.
 
-    Only a drive alone is cut, with its egos in the order of their ids, into parts of at most `pairs_per_part` pairs (default:
-    `PAIRS_PER_PART`); what comes out does not depend on where.
+    Only a batch of a single drive is split: its egos, sorted by id, into parts of at most `pairs_per_part` pairs (default:
+    `PAIRS_PER_PART`). The results do not depend on the split.
     """
     pairs = drives[0].pairs_by_ego if len(drives) == 1 else {}
     found: list[list[str]] = []
@@ -179,9 +179,9 @@ def skipped_egos_by_part(drives: Sequence[Drive], pairs_per_part: int | None = N
 
 
 def drive_with_map(trace: Trace, library: MapLibrary) -> Drive:
-    """Return the drive with its map, in the map's coordinates; an embedded map that cannot be used is a finding, and the drive has no map.
+    """Return the drive with its map, in the map's coordinates; if the log's own map is unusable, without a map and with a finding.
 
-    Errors: `MapError` if a map that was given cannot be read, or shows another place or side of the road.
+    Errors: `MapError` if the user's map cannot be read, or does not fit the drive's place or its side of the road.
     """
     try:
         environment, trace = library.find(trace)
@@ -200,7 +200,7 @@ def drive_with_map(trace: Trace, library: MapLibrary) -> Drive:
 
 
 def _digest(path: Path) -> str:
-    """Return the digest of a log; of one that cannot be read, nothing: its reader will say why."""
+    """Return the SHA-256 of a log; '' if it cannot be read, which its reader will report."""
     try:
         if path.is_dir():
             return "".join(_digest(child) for child in sorted(path.iterdir()) if child.is_file())

@@ -1,4 +1,4 @@
-"""Moves a log into the coordinates of its map, where both have geo references and these differ."""
+"""Transforms a log into the coordinates of its map, if both have geo references and these differ."""
 
 from __future__ import annotations
 
@@ -24,20 +24,20 @@ if TYPE_CHECKING:
 
 STEP_M: Final = 100.0
 SHAPE_TOLERANCE_M: Final = 0.01
-"""How much the two sides of a square of STEP_M may differ in length in the other frame, or be out of square (m)."""
+"""The most (m) by which a square with sides of `STEP_M` may be distorted by the transformation."""
 LENGTH_TOLERANCE_M: Final = 0.1
-"""What a step may be longer or shorter there. UTM's metre is 0.9996 to 1.001 of one on the ground, a local projection's 1."""
+"""The most (m) by which the transformation may change a length of `STEP_M`. UTM's scale is 0.9996 to 1.001, a local projection's 1."""
 SAME_M: Final = 0.01
 FAR_M: Final = 10_000.0
-"""An offset of more than this is not that of a driver beside the road."""
+"""With a larger offset of the map's coordinates, a drive fits the map either with or without it, not both."""
 
 
 def move_into_map_frame(trace: Trace, environment: MapTables) -> Trace:
-    """Return the trace in the coordinates of the map, with a finding that says so; as it is where nothing says that they differ.
+    """Return the trace in the coordinates of the map, with a finding about it.
 
-    Each position is moved by itself, each heading, velocity and acceleration turned by the angle between the two norths there.
-    With `--map-offset` or `--map-origin`, the user states how they lie relative to each other. Heights stay as they are.
-    Errors: `MapError` where lengths or shapes would not be kept.
+    The trace is returned unchanged if a geo reference is missing, or if the user gives `--map-offset` or `--map-origin`. Each position is
+    transformed; each heading, velocity and acceleration is turned by the angle between the frames there; heights stay. Errors: `MapError`
+    if the transformation would distort lengths or shapes.
     """
     log_frame, map_frame = frame_of_log(trace)[0], frame_of_map(environment)
     if not log_frame or not map_frame or _is_said_by_the_user(environment):
@@ -50,7 +50,7 @@ def move_into_map_frame(trace: Trace, environment: MapTables) -> Trace:
         return trace
     low, high = xy[placed].min(axis=0), xy[placed].max(axis=0)
     turn, stretch = _similarity(log_frame, map_frame, low, high)
-    # a point a metre beside a place shows by how much a heading turns there
+    # a second point, one metre from each position, shows by which angle headings turn there
     there, beside = np.split(
         _through(log_frame, map_frame, np.concatenate([xy[placed], xy[placed] + np.array([1.0, 0.0])])), 2
     )
@@ -75,7 +75,7 @@ def move_into_map_frame(trace: Trace, environment: MapTables) -> Trace:
 
 
 def is_far_from_projection(environment: MapTables) -> bool:
-    """Say whether the map's coordinates are so far from those of its projection that no drive could be taken for one on the map in both."""
+    """Return whether map coordinates and projected coordinates are so far apart that a drive can fit the map in only one of them."""
     frame = frame_of_map(environment)
     return frame is not None and max(abs(frame.x_m), abs(frame.y_m)) > FAR_M
 
@@ -86,7 +86,7 @@ def _is_said_by_the_user(environment: MapTables) -> bool:
 
 
 def _similarity(log_frame: GeoFrame, map_frame: GeoFrame, low: Floats, high: Floats) -> tuple[float, float]:
-    """Return turn (radians) and stretch in the middle of an area. Errors: `MapError` where lengths or shapes in it are not kept."""
+    """Return the rotation (radians) and scale in the middle of an area. Errors: `MapError` if lengths or shapes in it are distorted."""
     at = np.array([(low + high) / 2, low, high, (low[0], high[1]), (high[0], low[1])])
     ends = np.concatenate([at, at + np.array([STEP_M, 0.0]), at + np.array([0.0, STEP_M])])
     start, along, across = np.split(_through(log_frame, map_frame, ends), 3)

@@ -1,4 +1,4 @@
-"""Fills the library tables that rules need, and those that these read. A table without rows leaves empty those that need it."""
+"""Fills the library tables that rules need, and the tables that these read. If a required table has no rows, the SELECT is skipped."""
 
 from __future__ import annotations
 
@@ -23,9 +23,10 @@ if TYPE_CHECKING:
 
 WORKERS: Final = 2
 ASKED_STATES: Final = 100_000
-"""States up to which a table's occasion is looked for first: to plan the whole statement takes longer than to run its first part twice."""
+"""Up to this number of states, the occasion of a table (see `Derivation`) is queried first: running a statement's first part twice is then
+faster than planning the whole statement."""
 ONE_WORKER_STATES: Final = 1_000_000
-"""States from which on there is one: a statement then uses all cores, and two would need twice the memory."""
+"""From this number of states on there is one worker: a statement uses all cores, and two statements would need twice the memory."""
 
 
 def derive(
@@ -36,11 +37,12 @@ def derive(
     also: Iterable[str] = ALWAYS_NEEDED,
     filled_tables: Collection[str] = (),
 ) -> None:
-    """Fill the library tables behind `tables`: those of the map, whose own tables get their geometries, or those of the drives.
+    """Fill the library tables that `tables` depend on.
 
-    `also`: tables that are wanted whatever the rules read. `filled_tables`: tables that are filled already.
-    Two at a time, each on its own connection: most are so small that DuckDB plans and runs them on one core. Not inside a
-    transaction, whose rows the other connections do not see.
+    `of_the_map`: fill the tables that depend on the map only, and the geometries of the map's own tables; else the tables of the drives.
+    `also`: more tables to fill. `filled_tables`: tables that already have their rows.
+    Two tables are filled at a time, because most are so small that DuckDB uses only one core. Do not call this inside a transaction: the
+    other connections do not see its rows.
     Errors: `DriveLintError` naming the table, if its SELECT fails.
     """
     todo = {
@@ -61,7 +63,7 @@ def derive(
         free = [stack.enter_context(store.cursor(con)) for _ in range(workers)]
         busy: dict[Future[int], tuple[str, duckdb.DuckDBPyConnection]] = {}
         ready: deque[str] = deque()
-        stack.callback(_stop, tuple(free), busy)  # should one fail, or the user not want to wait
+        stack.callback(_stop, tuple(free), busy)  # if a statement fails or the user interrupts
         while graph.is_active():
             ready.extend(sorted(graph.get_ready()))
             filled: list[str] = []
@@ -83,7 +85,7 @@ def derive(
 
 
 def _stop(cursors: Iterable[duckdb.DuckDBPyConnection], running: Iterable[Future[int]]) -> None:
-    """Interrupt until nothing runs: once is not enough, as an interrupt before a statement has begun is lost."""
+    """Interrupt all cursors repeatedly until no statement runs, because an interrupt before a statement begins has no effect."""
     left = set(running)
     while left:
         for cursor in cursors:
@@ -92,13 +94,13 @@ def _stop(cursors: Iterable[duckdb.DuckDBPyConnection], running: Iterable[Future
 
 
 def _fill(con: duckdb.DuckDBPyConnection, step: Derivation) -> int:
-    """Return how many rows the table got."""
+    """Fill one table, and return the number of its rows."""
     try:
         with store.telling_short_memory():
             if step.occasion and con.execute(step.occasion).fetchone() is None:
                 return 0
             return int(con.execute(f"INSERT INTO {step.table} BY NAME {step.sql}").fetchall()[0][0])
     except duckdb.OutOfMemoryException:
-        raise  # no fault of the query: there may be more
+        raise  # not an error of the query: the caller may have more memory
     except duckdb.Error as error:
         raise DriveLintError(f"queries/derive/{step.table}.sql: {str(error).splitlines()[0]}") from error

@@ -1,4 +1,4 @@
-"""Puts drives and their findings on the earth, by the projection of the map, else by that of the log."""
+"""Computes where drives and findings are on the earth, by the projection of the map, else by that of the log."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
 
 def place_on_earth(trace: Trace, environment: MapTables | None) -> tuple[GeoFrame | None, str | None]:
-    """Return how the drive's coordinates become those of a projection (None: not known), and the problem of the log's own reference.
+    """Return the frame of the map, else that of the log (None: unknown), and why the log's geo reference is unusable, if it is.
 
-    What is wrong with the map's is in its `map_quality`.
+    `map_quality` contains the problems of the map's geo reference.
     """
     if environment is not None and (frame := frame_of_map(environment)):
         return frame, None
@@ -29,7 +29,7 @@ def place_on_earth(trace: Trace, environment: MapTables | None) -> tuple[GeoFram
 
 
 def frame_of_log(trace: Trace) -> tuple[GeoFrame | None, str | None]:
-    """Return the frame that the log's own geo reference gives, or None and why that reference is unusable."""
+    """Return the frame of the log's own geo reference, or None and why that reference is unusable (None: there is none)."""
     states = trace.tables["actor_state"]
     ends = [pc.min_max(states[axis]).as_py() for axis in ("x_m", "y_m")]
     if trace.geo_reference is None or any(end["min"] is None for end in ends):
@@ -43,7 +43,7 @@ def frame_of_log(trace: Trace) -> tuple[GeoFrame | None, str | None]:
 
 
 def frame_of_map(environment: MapTables) -> GeoFrame | None:
-    """Return how the coordinates of a drive on the map become those of the map's projection; None: it has no usable one."""
+    """Return the frame that relates a drive's coordinates on the map to the map's projection; None: there is no usable projection."""
     (row,) = environment.tables["environment"].to_pylist()
     if not row["geo_usable"]:
         return None
@@ -52,7 +52,10 @@ def frame_of_map(environment: MapTables) -> GeoFrame | None:
 
 
 def place_rows(con: duckdb.DuckDBPyConnection, ids: Sequence[str], table: str) -> None:
-    """Set longitude and latitude of these drives in `data_log`, or of their findings that have none."""
+    """Set the longitude and latitude of these drives in `data_log`, or of their findings in `finding`.
+
+    `table`: `data_log` or `finding`.
+    """
     key, places = ("drive_id", "places_of_drives") if table == "data_log" else ("rowid", "places_of_findings")
     if ids:
         position = statement("earth/position", table=table, key=key, places=statement(f"earth/{places}"))

@@ -1,4 +1,4 @@
-"""Stops a run from another thread, so that the results so far can be kept."""
+"""Stops a run from another thread, and keeps the results so far."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 
 
 COPIES_S: Final = 20.0
-"""Time after an interruption in which judging of copies may still begin."""
+"""For this time (s) after an interruption, judging of copies may still begin."""
 
 
 class InterruptedRunError(Exception):
-    """A batch was given up because the run was interrupted."""
+    """A batch was aborted because the run was interrupted."""
 
 
 class NothingJudgedError(KeyboardInterrupt):
@@ -28,7 +28,7 @@ class NothingJudgedError(KeyboardInterrupt):
 
 
 class Interruption:
-    """Whether a run was interrupted. It ends the statements of a batch that is being judged, and no other ones."""
+    """Whether a run was interrupted. An interruption ends only statements of the batch that is being judged."""
 
     def __init__(self) -> None:
         self._lock = Lock()
@@ -37,7 +37,7 @@ class Interruption:
         self._requested_s = 0.0
 
     def request(self) -> None:
-        """Interrupt the run; to be called again while it goes on, as an interrupt between two statements is lost."""
+        """Interrupt the run. Call it again while the run continues: an interrupt between two statements has no effect."""
         with self._lock:
             if not self.requested:
                 self._requested_s = time.monotonic()
@@ -46,14 +46,15 @@ class Interruption:
                 store.interrupt(self._con)
 
     def ends_judging_of_copies(self) -> bool:
-        """Whether judging of copies may no longer begin: for complete batches it still may for a while, so that the result has them."""
+        """Return whether judging of copies must not begin: the run was interrupted more than `COPIES_S` ago."""
         return self.requested and time.monotonic() > self._requested_s + COPIES_S
 
     @contextmanager
     def interruptible(self, con: duckdb.DuckDBPyConnection) -> Iterator[None]:
-        """Let statements on `con` be interrupted inside the block.
+        """Allow the interruption of statements on `con` inside the block.
 
-        Errors: `InterruptedRunError` before it, or at its end whatever came of it: a rule that was interrupted looks like one that erred.
+        Errors: `InterruptedRunError` if the run was interrupted before the end of the block, whatever the block raised: an interrupted rule
+        looks like a failed one.
         """
         with self._lock:
             if self.requested:

@@ -1,4 +1,4 @@
-"""The options on how drives are judged, which `check` and `watch` share."""
+"""The options on how drives are judged, common to `check` and `watch`."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ class JudgingOptions(DriveInput):
     require: tuple[str, ...] = ()
     annotate: bool = True
     robustness: bool | None = None
-    """Whether copies show how robust findings are; None: of each rule that an ego breaks, the gravest finding."""
+    """Whether copies are judged to show how robust findings are. None: only for the worst finding per ego and rule."""
     memory: int | None = DEFAULT_MEMORY
-    """Bytes that the database keeps to before it uses the disk; None: 80 % of the machine's."""
+    """The bytes of memory that the database uses before it spills to disk; None: 80 % of the machine's memory."""
     rule_timeout: float = DEFAULT_TIMEOUT_S
-    """Seconds that a rule may compute on a batch of drives."""
+    """The time limit in seconds of a rule on a batch of drives."""

@@ -1,4 +1,4 @@
-"""Compares traces with the map: which side of the road they drive on, and whether they lie on the map."""
+"""Compares traces with a map: on which side of the road the vehicles drive, and whether the positions are on the map."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ if TYPE_CHECKING:
     from drivelint.arrays import Floats, Indices, Mask
     from drivelint.road.map_reader import MapTables
 
-SIDE_CHECK_SAMPLES: Final = 80  # where the side is known, every drive is looked at: it must cost next to nothing
-VOTE_SAMPLES: Final = 400  # moving states looked at, evenly spread: enough to vote, cheap for a long log
+SIDE_CHECK_SAMPLES: Final = 80  # states for checking a known side; every drive is checked, so this must be fast
+VOTE_SAMPLES: Final = 400  # states for finding an unknown side, evenly spread; fast also for a long log
 LEAST_VOTES: Final = 20
-FIRST_POSITIONS, MOST_POSITIONS = 20, 2000  # positions looked at to see whether a drive is on its map
+FIRST_POSITIONS, MOST_POSITIONS = 20, 2000  # positions for checking whether a drive is on its map
 LEAST_REVERSED_EACH_WAY: Final = 5
-"""This many steps against the lane in both directions of a road: overtaking explains only one."""
-BESIDE_M: Final = 8.0  # so near lie the middles of two lanes of one road, with what may be between them
+"""A road counts as reversed if at least this many steps are against the lane in each direction: overtaking explains only one direction."""
+BESIDE_M: Final = 8.0  # the most between the centre lines of neighbouring lanes of one road, a median strip included
 FACING_COSINE: Final = 0.9
-AGREEMENT_SHARE: Final = 0.8  # an overtake drives against its lane for a while, a drive does not
+AGREEMENT_SHARE: Final = 0.8  # vehicles drive against their lane only in short overtakes
 
 
 class OneWayLanes(NamedTuple):
-    """The one-way drivable lanelets of a map: areas (searchable by position), centre lines, roads, directions."""
+    """The one-way drivable lanelets of a map: areas (spatial index), centre lines, road ids, directions along the road (1, -1)."""
 
     areas: shapely.STRtree
     lines: NDArray[np.object_]
@@ -38,14 +38,14 @@ class OneWayLanes(NamedTuple):
 
 
 class LaneHeadings(NamedTuple):
-    """For moving states on exactly one one-way lane: whether each heads along the lane, and the lane."""
+    """Moving states on one-way lanes (without states on several lanes): whether the heading is along the lane, and the lane's index."""
 
     agree: Mask
     lane: Indices
 
 
 def one_way_lanes(environment: MapTables) -> OneWayLanes:
-    """Return the lanes whose direction is compared with the traces'."""
+    """Return the lanes whose direction is compared with the headings of traces."""
     lanelets = environment.tables["lanelet"]
     one_way = lanelets.filter(pc.and_(lanelets["drivable"], pc.invert(lanelets["bidirectional"])))
     one_way = one_way.sort_by("lanelet_id")
@@ -60,9 +60,9 @@ def one_way_lanes(environment: MapTables) -> OneWayLanes:
 
 
 def compare_headings(lanes: OneWayLanes, x_m: Floats, y_m: Floats, yaw_rad: Floats, max_positions: int) -> LaneHeadings:
-    """Compare headings with lanes. `x_m, y_m, yaw_rad`: moving states of any vehicles, shape (n,), in map coordinates.
+    """Compare headings with the directions of lanes.
 
-    Of them `max_positions` are looked at, evenly spread.
+    `x_m, y_m, yaw_rad`: moving states of any vehicles, shape (n,), in map coordinates. At most `max_positions`, evenly spread, are used.
     """
     known = np.flatnonzero(np.isfinite(x_m) & np.isfinite(y_m) & np.isfinite(yaw_rad))
     if len(known) < LEAST_VOTES or not len(lanes.lines):
@@ -76,7 +76,10 @@ def compare_headings(lanes: OneWayLanes, x_m: Floats, y_m: Floats, yaw_rad: Floa
 
 
 def vote_handedness(handedness: str, headings: LaneHeadings) -> str | None:
-    """Return lht or rht by the headings of moving vehicles; None: too few, or they disagree."""
+    """Return the driving side (lht, rht) that the headings show; None: there are too few, or they disagree.
+
+    `handedness`: the side for which the lanes' directions were made.
+    """
     if len(headings.agree) < LEAST_VOTES:
         return None
     agree = float(np.mean(headings.agree))
@@ -88,9 +91,9 @@ def vote_handedness(handedness: str, headings: LaneHeadings) -> str | None:
 
 
 def reversed_road(lanes: OneWayLanes, headings: LaneHeadings) -> str | None:
-    """Return a road on which there is traffic both ways and nearly all of it, as on the whole map, runs against its lane.
+    """Return the id of a road with traffic against its lanes in both directions; None: there is none.
 
-    Two roads of one direction each, one beside the other, count as one.
+    Nearly all traffic on the map must be against its lane. Two parallel roads of opposite direction count as one road.
     """
     if len(headings.agree) < LEAST_VOTES or float(np.mean(headings.agree)) > 1 - AGREEMENT_SHARE:
         return None
@@ -110,7 +113,7 @@ def reversed_road(lanes: OneWayLanes, headings: LaneHeadings) -> str | None:
 
 
 def _heading(line: NDArray[np.object_], points: NDArray[np.object_]) -> Floats:
-    """Return the heading (rad) of each line beside a point."""
+    """Return the heading (rad) of each line at the location closest to the point."""
     at = shapely.line_locate_point(line, points)
     ahead = shapely.get_coordinates(shapely.line_interpolate_point(line, at + 0.5))
     behind = shapely.get_coordinates(shapely.line_interpolate_point(line, np.maximum(at - 0.5, 0.0)))
@@ -119,16 +122,16 @@ def _heading(line: NDArray[np.object_], points: NDArray[np.object_]) -> Floats:
 
 
 def lane_areas(environment: MapTables) -> shapely.STRtree:
-    """Return the areas of every lanelet of any type, to look positions up in."""
+    """Return a spatial index of the areas of all lanelets of any type."""
     areas = _shapes(environment, environment.tables["lanelet"]["lanelet_id"])[0]
     shapely.prepare(areas)
     return shapely.STRtree(areas)
 
 
 def count_on_map(lanes: shapely.STRtree, x_m: Floats, y_m: Floats) -> tuple[int, int]:
-    """Return how many known positions, evenly spread, are looked at, and how many of them lie on some lanelet.
+    """Return how many known positions, evenly spread, were examined, and how many of them are on a lanelet.
 
-    A few do where one is found; before it is said that there is none, `MOST_POSITIONS` are looked at.
+    `FIRST_POSITIONS` are examined first; only if none of them is on a lanelet, `MOST_POSITIONS` are examined.
     """
     known = np.flatnonzero(np.isfinite(x_m) & np.isfinite(y_m))
     looked = found = 0
@@ -142,7 +145,7 @@ def count_on_map(lanes: shapely.STRtree, x_m: Floats, y_m: Floats) -> tuple[int,
 
 
 def _shapes(environment: MapTables, lanelet_ids: pa.ChunkedArray) -> tuple[NDArray[np.object_], NDArray[np.object_]]:
-    """Return areas and centre lines of these lanelets."""
+    """Return the areas and the centre lines of these lanelets."""
     points = environment.tables["lane_point"]
     points = points.filter(pc.is_in(points["lanelet_id"], value_set=lanelet_ids.combine_chunks())).sort_by(
         [("lanelet_id", "ascending"), ("k", "ascending")]

@@ -1,4 +1,4 @@
-"""A folder of maps, for logs of several places."""
+"""Finds the map of a log in a folder of maps, for logs of several places."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ if TYPE_CHECKING:
 MANIFEST: Final = "maps.csv"
 _HEAD_BYTES = 65536
 _LANES_OF_ARGOVERSE: Final = b'"lane_segments"'
-"""What the JSON of an Argoverse map has somewhere, and other JSON files have not."""
+"""A key that the JSON of every Argoverse map contains, and other JSON files do not."""
 
 
 class MapFolder:
-    """The maps of a folder, each read when it is asked for.
+    """The maps of a folder; each is read when it is needed.
 
-    Errors: `MapError` for a folder that is none or has no maps, and for a manifest that cannot be understood.
+    Errors: `MapError` if the folder does not exist or has no maps, or if the manifest is invalid.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -43,7 +43,7 @@ class MapFolder:
         self._source = cache(lambda name: read_source(self._files[name]))
 
     def for_log(self, log: Path) -> MapSource | None:
-        """Return the map that the manifest gives the log, else one of its name or its folder's name; None: neither."""
+        """Return the log's map by the manifest, else the only map with the name of the log or of its folder; None: there is none."""
         for pattern, name in self._manifest:
             if fnmatchcase(log.name, pattern):
                 return self._source(name)
@@ -54,12 +54,12 @@ class MapFolder:
         return None
 
     def with_reference(self, reference: str) -> MapSource | None:
-        """Return the map with this geo reference, if it is the only one that has it."""
+        """Return the map with this geo reference; None: not exactly one map has it."""
         found = [source for source in self.sources() if same_reference(reference_of(source) or "", reference)]
         return found[0] if len(found) == 1 else None
 
     def sources(self) -> Sequence[MapSource]:
-        """Return every map, in order of name."""
+        """Return every map, sorted by name."""
         return [self._source(name) for name in self._files]
 
     def _read_manifest(self) -> list[tuple[str, str]]:

@@ -1,8 +1,14 @@
 """Finds the map of each drive; each map is read once.
 
-Of a folder of maps each drive gets its own: the one that `maps.csv` (columns log, map) names, else the one of the log's
-name or of its folder's, else the log's own, else the only one of the log's geo reference, else the only one on whose lanes the
-drive lies. A drive in the coordinates of another geo reference is moved into the map's.
+From a folder of maps, each drive gets the first of these that exists:
+
+1. the map that `maps.csv` (columns log, map) names,
+2. the map with the name of the log or of its folder,
+3. the map in the log,
+4. the only map with the log's geo reference,
+5. the only map with lanes at the drive's positions.
+
+A drive in coordinates of another geo reference is transformed into the map's.
 """
 
 from __future__ import annotations
@@ -42,15 +48,15 @@ FITS_PROJECTION: Final = QualityFinding(
     "info",
     "the log does not state its frame: it fits the map in the coordinates of the map's projection",
 )
-OFF_MAP_M = 50.0  # beyond the map's own lanes by this much, a drive is somewhere else
+OFF_MAP_M = 50.0  # a drive that is farther than this from all lanes of a map is at another place
 
 
 class MapLibrary:
-    """Finds the environment of each drive: the user's map, or the one embedded in its log; `None` where there is neither.
+    """Finds the environment (map) of each drive: the user's map, or the map in its log; `None` if there is neither.
 
-    A drive for which a folder of maps has none is judged without one: `doubts` says so.
+    A drive without a map in the user's folder is judged without a map: `doubts` reports it.
 
-    Errors: `MapError` for a map or folder that cannot be read, `UsageError`.
+    Errors: `MapError` for a map or folder that cannot be read, `UsageError` for options that exclude each other.
     """
 
     def __init__(self, options: DriveInput) -> None:
@@ -66,18 +72,19 @@ class MapLibrary:
         self._without_map: dict[Path, str] = {}
 
     def load_given(self) -> None:
-        """Read the map of `--map` before there is a drive, to know that it can be read. Errors: `MapError`, `UsageError`."""
+        """Read the map of `--map` before any drive, to report an unreadable map early. Errors: `MapError`, `UsageError`."""
         if self._given is not None:
             self._load(self._given, None, None)
 
     def given_nation(self) -> str | None:
-        """Return the nation of the map of `--map`; None: it states none. Errors: `MapError`, `UsageError`."""
+        """Return the nation of the map of `--map`; None: no map, or no nation in it. Errors: `MapError`, `UsageError`."""
         return None if self._given is None else self._load(self._given, None, None).nation
 
     def find(self, trace: Trace) -> tuple[MapTables | None, Trace]:
-        """Return the environment for one drive, and the drive in its frame; the user's `--map-offset` goes before the drive's own.
+        """Return the environment of one drive, and the drive in the environment's frame.
 
-        Errors: `MapError` if the map cannot be read, or is of another place.
+        The user's `--map-offset` takes precedence over the offset in the log. Errors: `MapError` if the map cannot be read, or is of
+        another place.
         """
         source = self.find_source(trace)
         if source is None:
@@ -97,11 +104,14 @@ class MapLibrary:
         return environment, with_condition_of_map(trace, "nation", environment.nation)
 
     def _in_its_frame(self, environment: MapTables, trace: Trace) -> tuple[Trace, str | None]:
-        """Return the drive in the map's frame, and the evidence that it is of another place.
+        """Return the drive in the map's frame, and the evidence that it is at another place, or None.
 
-        What the references say is not taken where it leads away from the map, and the coordinates as they are do not; nor what the
-        same one says of `<offset>`: a log that says no offset of its own mostly has the coordinates of the file. A log without a reference
-        that lies far from the map may have the coordinates of the map's projection, as SUMO's `--fcd-output.utm` writes them.
+        These coordinates are tried, and the first that fit the map are used:
+
+        1. the coordinates transformed by the geo references,
+        2. the coordinates as recorded (tried first if log and map have the same reference and the log has no offset, because such a log
+           mostly uses the coordinates of the map file, without its `<offset>`),
+        3. for a log without a reference, projected coordinates, as SUMO's `--fcd-output.utm` writes them.
         """
         refused = None
         try:
@@ -121,7 +131,7 @@ class MapLibrary:
         return (trace, refused or troubles[0]) if fitting is None else (fitting, None)
 
     def find_source(self, trace: Trace) -> MapSource | None:
-        """Return the map that `find` takes for one drive, as it was given. Errors: as there."""
+        """Return the source of the map that `find` uses for a drive. Errors: as `find`."""
         own = MapSource("embedded", trace.embedded_map) if trace.embedded_map is not None else None
         if self._map_folder is None:
             return self._given or own
@@ -133,15 +143,15 @@ class MapLibrary:
         )
 
     def uses_embedded(self, trace: Trace) -> bool:
-        """Say whether the map in the log is the one that `find` takes."""
+        """Return whether `find` uses the map in the log."""
         if trace.embedded_map is None or self._given is not None:
             return False
         return self._map_folder is None or not self._map_folder.for_log(trace.path)
 
     def doubts(self, trace: Trace, environment: MapTables | None) -> dict[str, str]:
-        """Return check id -> why the map may be wrong for this drive: geo reference, driving side, maps not looked at.
+        """Return check id -> why the map may be wrong or missing for this drive: driving side, geo reference, unreadable maps.
 
-        Keys name the check. Errors: `MapError` where the traffic shows that the lanes run the other way.
+        Errors: `MapError` if the traffic shows that the lanes have the wrong direction.
         """
         if environment is None:
             return {NOT_IN_FOLDER: text} if (text := self._without_map.get(trace.path)) else {}
@@ -184,9 +194,9 @@ class MapLibrary:
         return map_fit.compare_headings(self._lanes(environment), x_m, y_m, yaw_rad, max_positions)
 
     def _only_fitting(self, maps: MapFolder, trace: Trace) -> MapSource | None:
-        """Return the one map on which the drive lies, of those that can be read; None: there is none.
+        """Return the only readable map that fits the drive's positions; None: no map fits.
 
-        Errors: `MapError` where there are several.
+        Errors: `MapError` if several maps fit.
         """
         fitting = []
         unread: list[MapError] = []
@@ -199,7 +209,7 @@ class MapLibrary:
             if not self._in_its_frame(environment, trace)[1]:
                 fitting.append(source)
         if len(fitting) == 1:
-            if unread:  # it may have been the right one
+            if unread:  # an unreadable map may be the right one
                 self._unread[trace.path] = (
                     f"{fitting[0].name} is the only map of the place among those that can be read; {len(unread)} cannot, the first: "
                     f"{unread[0]}"
@@ -218,7 +228,7 @@ class MapLibrary:
         return None
 
     def _load(self, source: MapSource, trace: Trace | None, voted_handedness: str | None) -> MapTables:
-        """Return a map in the place that the user or the drive says; `trace` None: the user alone."""
+        """Return a map, shifted by the offset of the user, else of the log. `trace` None: the user's offset only."""
         offset = self._options.map_offset or (trace and trace.map_offset) or (0.0, 0.0)
         key = (source.sha256, offset, voted_handedness)
         if key not in self._loaded:
@@ -233,7 +243,7 @@ class MapLibrary:
 
 
 def _elsewhere(environment: MapTables, lanes: shapely.STRtree, states: pa.Table) -> str | None:
-    """Return the evidence that the map is of another place than the drive, or None."""
+    """Return the evidence that the map and the drive are at different places, or None."""
     drive, roads = _extent(states), _extent(environment.tables["lane_point"])
     if drive is None or roads is None:
         return None

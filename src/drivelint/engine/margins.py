@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from drivelint.engine.memory import Memory
 
 ROW_GROUP_ROWS: Final = 1 << 20
-"""Rows of a row group: those of a drive of many egos are too many to hold at once."""
+"""The rows of a row group, and the most in memory at once: a drive of many egos has too many."""
 _ORDER: Final = "drive_id, ego_id, rule_id, profile NULLS FIRST, object_id NULLS FIRST, ref_id NULLS FIRST, t_ns"
 _COLUMNS: Final = (
     "* REPLACE (drive_id::VARCHAR AS drive_id, ego_id::VARCHAR AS ego_id, object_id::VARCHAR AS object_id)"
@@ -23,7 +23,7 @@ _COLUMNS: Final = (
 
 
 class MarginFile:
-    """Writes the table `margin` of one batch after another to a Parquet file at `path`."""
+    """Appends the table `margin` of each batch to a Parquet file at `path`."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -31,7 +31,7 @@ class MarginFile:
         self._waiting: list[pa.RecordBatch] = []
 
     def add(self, con: duckdb.DuckDBPyConnection, memory: Memory) -> None:
-        """Append the margins of the batch that was just judged, totally ordered."""
+        """Append the sorted margins of the batch that was just judged."""
         if self._file is None:
             self.path.parent.mkdir(parents=True, exist_ok=True)
             schema = con.execute(f"SELECT {_COLUMNS} FROM margin LIMIT 0").to_arrow_table().schema
@@ -48,10 +48,10 @@ class MarginFile:
             self._file.close()
 
     def _write(self) -> None:
-        """Write one block of the waiting rows, or all of them if there are fewer."""
+        """Write one row group of the waiting rows, or all rows if they are fewer."""
         if self._file and self._waiting:
             rows = pa.Table.from_batches(self._waiting)
-            # as one piece: where it was cut would show in the pages
+            # as one chunk: the pages of the file would otherwise depend on the chunks
             self._file.write_table(rows.slice(0, ROW_GROUP_ROWS).combine_chunks(), row_group_size=ROW_GROUP_ROWS)
             self._waiting = rows.slice(ROW_GROUP_ROWS).to_batches()
 
@@ -64,7 +64,7 @@ def _blocks(con: duckdb.DuckDBPyConnection, memory: Memory) -> Iterator[pa.Recor
             for block in rows.to_arrow_reader(ROW_GROUP_ROWS):
                 yield block
                 sent += block.num_rows
-        except (duckdb.OutOfMemoryException, OSError):  # Arrow's reader has one class for whatever the database says
+        except (duckdb.OutOfMemoryException, OSError):  # Arrow's reader raises OSError for every error of the database
             if not memory.lift_limit():
                 raise
         else:

@@ -1,6 +1,6 @@
-"""Limits the memory of a run: raises the database's limit or judges less at once. It never changes a verdict.
+"""Limits the memory of a run. If memory is short, it judges less at once or raises the database's limit. Verdicts do not depend on it.
 
-A drive that runs out of memory is judged again with fewer egos at once, until each is judged alone; only then the limit is lifted.
+A drive that runs out of memory is judged again with fewer egos at once, down to a single ego; only then the limit is lifted.
 """
 
 from __future__ import annotations
@@ -21,16 +21,16 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 DEFAULT_MEMORY: Final = 1_200_000_000
-"""Bytes: measured to cost nothing on a drive of 600,000 states, and to hold one of 4.8 million in 2.3 GB instead of 13.7."""
+"""The default limit in bytes. Measured: no slower for a drive of 600,000 states; 2.3 GB instead of 13.7 GB for 4.8 million states."""
 LEAST_MEMORY: Final = 100_000_000
-"""Bytes with which a database can be opened and a small drive be judged."""
+"""The least limit in bytes with which a database can be opened and a small drive judged."""
 
 
 class Memory:
-    """What the database `con` may take (`limit` in bytes, None: 80 % of the machine's), and how much is judged at once.
+    """The memory limit of the database `con` (`limit` in bytes, None: 80 % of the machine's memory), and how much is judged at once.
 
-    A lower limit begins with smaller parts: what does not fit is then found less often. What gave way stays so for the run; that
-    the limit did is told to `note`.
+    With a lower limit, parts are smaller from the start, so that fewer run out of memory. A halved part size or a lifted limit stays so for
+    the run. `note` receives a message when the limit is lifted.
     """
 
     def __init__(
@@ -42,14 +42,14 @@ class Memory:
         self.limited = limit is not None
         share = 1.0 if limit is None else min(1.0, limit / DEFAULT_MEMORY)
         self.pairs_per_part = max(1, int(batch.PAIRS_PER_PART * share))
-        """Meetings of one part of a drive: see `batch.skipped_egos_by_part`."""
+        """The most pairs of a part of a drive: see `batch.skipped_egos_by_part`."""
 
     def halve_parts(self, pairs: int) -> None:
-        """Judge parts of at most half as many pairs as the part that did not fit."""
+        """Limit parts to half the pairs of the part that ran out of memory."""
         self.pairs_per_part = max(1, pairs // 2)
 
     def lift_limit(self) -> bool:
-        """Lift the database's memory limit to the machine's; return whether it was lower before."""
+        """Raise the database's memory limit to what the machine allows; return False if it was raised before."""
         if not self.limited or self._limit is None:
             return False
         self.limited = False
@@ -60,7 +60,7 @@ class Memory:
         return True
 
     def release(self) -> None:
-        """Return unused memory to the system. It is called between statements, and the limits stay as they are."""
+        """Return unused memory to the system, without changing the limits. Call it between statements."""
         try:
             store.release_memory(self._con)
         finally:  # an interrupt must not leave the database without memory
@@ -70,11 +70,10 @@ class Memory:
                 store.lift_memory_limit(self._con)
 
     def most_growth(self) -> int | None:
-        """Return by how many bytes the process may grow while a rule runs; None if that means nothing about the rule.
+        """Return by how many bytes the process may grow while a rule runs.
 
-        The system may not report free memory, or logs are being read meanwhile.
-
-        The database counts what its tables take. Functions on huge values take more than that without being counted.
+        None: the system does not report free memory, or logs are being read, so growth says nothing about the rule. This limit is needed
+        because the database counts the memory of its tables, but not that of functions on huge values.
         """
         free = free_bytes()
         if free is None or batch.logs_being_read():
@@ -82,11 +81,11 @@ class Memory:
         return min(2 * self._limit, free) if self.limited and self._limit is not None else int(0.8 * free)
 
     def execute(self, sql: str) -> None:
-        """Run one statement, with more memory if that is short."""
+        """Run one statement; if memory is short, repeat it with a raised limit."""
         self.run_job(lambda con: con.execute(sql))
 
     def run_job(self, job: Callable[[duckdb.DuckDBPyConnection], T]) -> T:
-        """Run a job on the database and return its result; repeat it with more memory if that is short."""
+        """Run a job on the database and return its result; if memory is short, repeat it with a raised limit."""
         try:
             with store.telling_short_memory():
                 return job(self._con)
@@ -97,7 +96,7 @@ class Memory:
 
 
 def peak_bytes() -> int | None:
-    """Return the most bytes of memory that this process has had; None if the system does not report it."""
+    """Return the peak memory of this process in bytes; None if the system does not report it."""
     try:
         import resource
     except ImportError:  # Windows
@@ -107,7 +106,7 @@ def peak_bytes() -> int | None:
 
 
 def free_bytes() -> int | None:
-    """Return how many bytes of memory programs can still get; None if the system does not report it."""
+    """Return the available memory in bytes; None if the system does not report it."""
     try:
         found = re.search(r"^MemAvailable:\s*(\d+) kB", Path("/proc/meminfo").read_text(encoding="ascii"), re.MULTILINE)
     except OSError:  # not Linux

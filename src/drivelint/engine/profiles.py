@@ -1,4 +1,4 @@
-"""The profiles of `queries/profiles.toml`: ways of overtaking that a controller may follow (paper, Appendix A)."""
+"""Loads the profiles of `queries/profiles.toml`: styles of overtaking that a controller may follow (paper, Appendix A)."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 DEFAULT_PROFILES = ("nominal", "observed")
-"""The default profiles of an overtake: as it is planned, and as it was driven."""
+"""The default profiles: an overtake as it is usually driven, and this overtake as it was driven."""
 
 
 class Profile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """One way of overtaking: angles in degrees, gaps in metres, the speeds it is meant for; all absent for `observed`."""
+    """One style of overtaking: angles in degrees, gaps in metres, and the range of speeds it applies to; all None for `observed`."""
 
     style: int
     pull_out_angle_deg: float | None = None
@@ -35,9 +35,9 @@ class Profile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def load_profiles(dirs: Sequence[Path] = ()) -> dict[str, Profile]:
-    """Return the shipped profiles and those of a `profiles.toml` in each folder of `dirs`, a later one replacing an earlier.
+    """Return the built-in profiles, and those of the `profiles.toml` in each folder of `dirs`; later folders override earlier ones.
 
-    Errors: `RuleError` naming the file for bad TOML or an unknown key.
+    Errors: `RuleError` naming the file, for invalid TOML or an unknown key.
     """
     profiles: dict[str, Profile] = {}
     for root in (folder("queries"), *dirs):
@@ -52,9 +52,9 @@ def load_profiles(dirs: Sequence[Path] = ()) -> dict[str, Profile]:
 
 
 def profile_table(profiles: dict[str, Profile], selected: Sequence[str]) -> pa.Table:
-    """Return the rows of the library table `profile`; nothing selected means `DEFAULT_PROFILES`.
+    """Return the rows of the library table `profile`. `selected`: names of profiles; empty: `DEFAULT_PROFILES`.
 
-    Errors: `UsageError` for a name that no profile has, with the nearest one.
+    Errors: `UsageError` for an unknown name, with the nearest known one.
     """
     chosen = set(selected or DEFAULT_PROFILES)
     for name in sorted(chosen - profiles.keys()):

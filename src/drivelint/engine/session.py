@@ -1,4 +1,4 @@
-"""Judges drives batch by batch: fills the tables, derives, evaluates, clears."""
+"""Judges drives batch by batch: fills tables, derives further ones, evaluates the rules, and clears the tables."""
 
 from __future__ import annotations
 
@@ -40,23 +40,22 @@ if TYPE_CHECKING:
 
 
 class BatchObserver(Protocol):
-    """Called after each batch while its tables are still filled."""
+    """A function that is called after each batch, while its tables still have their rows."""
 
     def __call__(self, con: duckdb.DuckDBPyConnection, drives: Sequence[Drive], /, *, first: bool, last: bool) -> None:
-        """Look at a batch, or at the egos of a part of one drive: `first` and `last` of its parts or not."""
+        """Process a batch, or the egos of a part of one drive; `first` and `last`: whether it is the first or the last part."""
         ...
 
 
 class JudgingSession:
-    """Judges batches of drives in one database, which is locked for that. Between batches only results stay in it, and a few states.
+    """Judges batches of drives in one database, which it locks. Between batches, the database contains only results and a few states.
 
-    A drive of many egos is judged some of them at a time, so that its tables stay small whatever their number.
-    `out` is where `margins_file` and the kept database go. `observers` are called after each part while its tables are there.
-    `memory` says how many, and gives way where there is too little (default: the database has no limit of ours).
-    `interruption` ends a batch before it is judged.
-    `errors`: those of the copies that show how robust findings are; None: no copies are judged.
-    `copies_of_all`: of all critical and major findings, else of the gravest. `judge_copies` ends their judging.
-    `limits` of each rule in a batch of drives, `limits_of_copies` in one of copies (default: both as `RuleLimits` has them).
+    A drive of many egos is judged in parts, so that its tables stay small. Call `judge_copies` after the last batch.
+    `out`: the folder of `margins_file` and the kept database. `observers`: called after each part, while its tables have their rows.
+    `memory`: limits the size of parts and of the database (default: no limit). `interruption`: can abort a batch.
+    `errors`: of the copies that show how robust findings are; None: no copies. `copies_of_all`: copies for all critical and major
+    findings, else for the worst ones.
+    `limits`: of each rule on a batch of drives; `limits_of_copies`: on a batch of copies (default: those of `RuleLimits`).
     """
 
     def __init__(
@@ -110,11 +109,11 @@ class JudgingSession:
         self._kept = out / "drivelint.duckdb" if keep_db and out else None
         if self._kept:
             self._attach(self._kept)
-        store.lock(con)  # from here on foreign rules may run in it
+        store.lock(con)  # from here on, rules of other authors may run in the database
 
     @property
     def margins_file(self) -> Path | None:
-        """The path of the margins file; None: none was asked for."""
+        """The path of the margins file; None: margins were not requested."""
         return None if self._margins is None else self._margins.path
 
     @property
@@ -123,20 +122,20 @@ class JudgingSession:
         return frozenset(self._seen)
 
     def has_judged(self, drive: Drive) -> bool:
-        """Whether this very log was judged before."""
+        """Return whether this log was judged before, by its drive id."""
         return drive.trace.drive_id in self._seen
 
     def forget_judged(self) -> None:
-        """Forget which logs were judged, so that they can be judged again. The caller has taken their results out of the database."""
+        """Clear the list of judged logs, so that they can be judged again. The caller must first delete their results."""
         self._seen.clear()
         for limits in (self._limits, self._limits_of_copies):
-            limits.forget()  # what a worker judged before is by chance
+            limits.forget()  # limits must not depend on which logs this worker happened to judge before
 
     def judge(self, drives: Sequence[Drive]) -> None:
-        """Judge a batch of drives; if it fails, nothing of it stays behind.
+        """Judge a batch of drives; if it fails, its rows are deleted.
 
-        Errors: `InterruptedRunError`. `duckdb.OutOfMemoryException` for several drives, which may fit one by one, and for one that does
-        not fit with all the memory there is, each of its egos alone.
+        Errors: `InterruptedRunError`; `duckdb.OutOfMemoryException` if memory is short for several drives, or for a single drive even with
+        one ego at a time and all memory of the machine.
         """
         if not drives:
             return
@@ -148,10 +147,10 @@ class JudgingSession:
                 with one_core, store.telling_short_memory(), self._interruption.interruptible(self._con):
                     done = self._judge(drives)
             except InterruptedRunError:
-                self._forget([drive.trace.drive_id for drive in drives])  # what did so may have been interrupted too
+                self._forget([drive.trace.drive_id for drive in drives])  # `_judge`'s deletion may be incomplete
                 raise
             except duckdb.OutOfMemoryException:
-                # what one ego needs and cannot be spilled to disk may take what the machine has
+                # data of a single ego that cannot be spilled to disk may use all memory of the machine
                 if len(drives) > 1 or not self._memory.lift_limit():
                     raise
         ids = [drive.trace.drive_id for drive in drives]
@@ -163,28 +162,28 @@ class JudgingSession:
                 self._robustness.add(drives)
             undo.pop_all()
         self._seen.update(ids)
-        if not are_few(drives):  # a few take little memory, and the next batch recreates their tables anyway
+        if not are_few(drives):  # few states need little memory, and the next batch recreates the tables anyway
             store.recreate_empty(self._con, self._filled("drive", "part"))
 
     @property
     def n_waiting(self) -> int:
-        """The number of drives whose copies still wait to be judged."""
+        """The number of drives whose copies are not judged yet."""
         return self._robustness.n_waiting if self._robustness else 0
 
     def n_to_copy(self) -> int:
-        """Return how many findings copies are judged of at first."""
+        """Return the number of findings for which copies are judged first."""
         return self._robustness.n_asked() if self._robustness else 0
 
     def judge_copies(self, advance: Callable[[int], None] | None = None) -> None:
-        """Judge the copies that still wait: those of several batches are judged together. After an interruption too, for a while.
+        """Judge the waiting copies of several batches together; after an interruption, only for a limited time.
 
-        `advance` hears of findings whose copies suffice.
+        `advance` is called with the number of findings that are newly settled.
         """
         if self._robustness:
             self._robustness.judge(advance)
 
     def _judge(self, drives: Sequence[Drive]) -> bool:
-        """Judge a batch. Return False if a part of several egos ran out of memory: the next try has fewer of them in it."""
+        """Judge a batch. Return False if a part with several egos ran out of memory: the next try has smaller parts."""
         ids = [drive.trace.drive_id for drive in drives]
         on_earth = [drive.trace.drive_id for drive in drives if drive.geo]
         with ExitStack() as undo:
@@ -214,14 +213,14 @@ class JudgingSession:
                         raise
                     self._memory.halve_parts(sum(judged.values()))
                     return False
-                # a kept database has every ego
+                # the kept database contains every ego, so `deferred_ego` is not copied
                 self._keep((t for t in store.tables_of_lifetime("part") if t != "deferred_ego"), again=no > 0)
             self._keep(store.tables_of_lifetime("drive"))
             undo.pop_all()
         return True
 
     def _judge_part(self, ids: Sequence[str], *, may_retry: bool, release: Callable[[], None] | None) -> None:
-        """Judge the egos that are not skipped in this part."""
+        """Judge the egos of the current part."""
         derive(self._con, self._tables, of_the_map=False, also=self._also)
         margins, series = self._margins is not None, bool(self._observers)
         evaluate(
@@ -234,13 +233,13 @@ class JudgingSession:
             limits=self._limits,
             release=release,
         )
-        # a rule that erred on a crowd is tried on each drive alone: the fault of one is not the others'
+        # the caller then judges each drive alone, so that only the faulty drive is affected
         erred = "SELECT rule_id FROM verdict WHERE verdict = 'error' AND list_contains(?, drive_id) ORDER BY rule_id LIMIT 1"
         if len(ids) > 1 and (row := self._con.execute(erred, [list(ids)]).fetchone()):
             raise RuleError(f"{row[0]} failed on a batch of {len(ids)} drives")
 
     def close(self) -> None:
-        """Finish the files that grew with the batches."""
+        """Finish the margins file and the kept database."""
         if self._margins:
             self._margins.close()
         if self._kept:
@@ -251,7 +250,7 @@ class JudgingSession:
     def _load(self, drives: Sequence[Drive]) -> None:
         environments = {d.environment.environment_id: d.environment for d in drives if d.environment}
         if not environments.keys() <= self._maps:
-            self._maps = frozenset()  # until the new ones are whole: a failure here must not leave half a map behind
+            self._maps = frozenset()  # until the new maps are complete: a failure here must not leave half a map
             # an earlier session may have left its map in the database
             self._con.execute(";".join(f"DELETE FROM {table}" for table in store.tables_of_lifetime("map")))
             for id_, environment in sorted(environments.items()):
@@ -271,7 +270,7 @@ class JudgingSession:
             set_aside(self._con, drive.trace)
 
     def _filled(self, *lifetimes: str) -> list[str]:
-        """Return the tables of these lifetimes that are ever filled: those of a log, and those derived that the rules need."""
+        """Return the tables of these lifetimes that get rows: those of a log, and the derived tables that the rules need."""
         unneeded = derived_tables() - {each.table for each in needed_derivations(self._tables, self._also)}
         return [table for table in store.tables_of_lifetime(*lifetimes) if table not in unneeded]
 
@@ -280,11 +279,11 @@ class JudgingSession:
         path.unlink(missing_ok=True)
         with store.connect(path):
             pass
-        self._con.execute("RESET GLOBAL checkpoint_threshold")  # or its log would be as large as itself
+        self._con.execute("RESET GLOBAL checkpoint_threshold")  # else the WAL would grow as large as the database
         self._con.execute(f"ATTACH {store.quoted(path)} AS kept")
 
     def _keep(self, tables: Iterable[str], *, again: bool = False) -> None:
-        """Copy tables to the kept database; `again`: rows that are the same for all parts of a drive are there already."""
+        """Append tables to the kept database; `again`: it already contains the rows that all parts of a drive have in common."""
         if not self._kept:
             return
         for table in tables:
@@ -303,11 +302,11 @@ class JudgingSession:
 
     def _forget(self, ids: Sequence[str]) -> None:
         self._forget_copies(ids)
-        for table in store.tables_of_lifetime("drive", "part") if self._kept else ():  # parts of it may be there
+        for table in store.tables_of_lifetime("drive", "part") if self._kept else ():  # some parts may have been copied
             self._con.execute(f"DELETE FROM kept.{table} WHERE list_contains(?, drive_id)", [list(ids)])
 
     def _forget_copies(self, ids: Sequence[str]) -> None:
-        """Delete the rows of these drives from the database; a kept database never had copies."""
+        """Delete the rows of these drives from the database, but not from the kept database, which never contains copies."""
         store.recreate_empty(self._con, self._filled("drive", "part"))
         for table in store.tables_of_lifetime("run"):
             if "drive_id" in store.column_comments()[table]:

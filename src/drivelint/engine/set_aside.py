@@ -1,4 +1,4 @@
-"""Keeps the tables of a long drive on disk once the database has them: memory has to hold them once, not twice."""
+"""Moves the tables of a long drive to disk after they were copied into the database, so that memory does not contain them twice."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import Trace
 
 LEAST_BYTES = 200_000_000
-"""A smaller table stays in memory."""
+"""Smaller tables stay in memory."""
 
 
 def set_aside(con: duckdb.DuckDBPyConnection, trace: Trace) -> None:
-    """Replace large tables of a trace, in place, by equal ones that the system reads from the database's spill folder when they are used.
+    """Replace large tables of a trace, in place, by memory-mapped files in the database's spill folder.
 
-    Where there is no such folder, or no room in it, they stay in memory.
+    If there is no such folder, or no space in it, the tables stay in memory.
     """
     folder = spill_folder(con)
     large = [name for name, rows in trace.tables.items() if rows.nbytes > LEAST_BYTES]
@@ -34,6 +34,6 @@ def set_aside(con: duckdb.DuckDBPyConnection, trace: Trace) -> None:
         except OSError:
             return
         finally:
-            path.unlink(missing_ok=True)  # the system keeps the content as long as it is in use
+            path.unlink(missing_ok=True)  # the system keeps the content as long as it is mapped
     if large:
         pa.default_memory_pool().release_unused()

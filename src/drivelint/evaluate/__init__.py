@@ -1,8 +1,7 @@
 """Evaluates rules over the tables of a database, for all drives and egos at once.
 
-Every (subject, rule) gets at least one verdict row, by construction: what was decided before running, what the rule's
-statements left, or not applicable. Where a rule's SQL fails, that rule is `error` for the subjects that it was to
-judge, and the others go on.
+Every rule and subject (an ego in a drive) gets at least one verdict row: decided before the rule runs, returned by the rule's statements,
+or not applicable. If the SQL of a rule fails, its verdict is `error` for the subjects that it had to judge; other rules are not affected.
 """
 
 from __future__ import annotations
@@ -36,15 +35,13 @@ def evaluate(
     limits: RuleLimits | None = None,
     release: Callable[[], None] | None = None,
 ) -> None:
-    """Judge every (drive_id, ego_id) of `clock` by `rules`; append to `verdict`, `finding` and, if asked for, `margin`, `course`.
+    """Judge every (drive_id, ego_id) of `clock` by `rules`; append to `verdict`, `finding` and, if requested, `margin` and `course`.
 
-    `con` holds the tables of schemas/*.sql, filled, and is not inside a transaction. `params` is rule id -> parameter
-    -> value.
-    A failing statement costs its rule only, and so does one beyond `limits` (None: there are none).
-    `release` gives memory back; it is called before the statements that are about all rules.
-    With `may_retry`, running out of memory is no failure of the rule but raised, and the
-    tables are then of no use. Errors: `UsageError` for parameters of rules or names that do not exist;
-    `duckdb.OutOfMemoryException`.
+    `con`: a database with the filled tables of schemas/*.sql, not inside a transaction. `params`: rule id -> parameter -> value.
+    `margins`, `keep_measure_series`: fill `margin` and `course`. A statement that fails or exceeds `limits` (None: no limits) affects only
+    its rule. `release` frees memory; it is called before the statements about all rules. `may_retry`: if memory is short, raise the error
+    instead of recording it for the rule; the tables are then incomplete. Errors: `UsageError` for parameters of unselected rules or with
+    unknown names; `duckdb.OutOfMemoryException`.
     """
     params = params or {}
     strange = sorted(params.keys() - {rule.id for rule in rules})
@@ -71,7 +68,7 @@ def evaluate(
 def query_plans(con: duckdb.DuckDBPyConnection, rule: Rule) -> list[str]:
     """Return the physical plans of all statements that a rule may run.
 
-    Errors: `duckdb.Error` where the rule's SQL does not match the tables.
+    Errors: `duckdb.Error` if the rule's SQL does not match the tables.
     """
     plans: list[str] = []
     for margins in (False, True):

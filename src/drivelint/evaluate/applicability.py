@@ -1,7 +1,7 @@
-"""Builds the SQL that decides whether a rule is in force: its header's conditions and the automated driver's engagement.
+"""Builds the SQL that decides whether a rule is in force, by the conditions in its header and the automated driver's engagement.
 
-Engagement costs nothing if it is not declared: `_watched` names the subjects with a step at which the automated driver does not drive, or
-may not; for all others every step is engaged.
+The table `_watched` has the subjects with a step at which the automated driver does not drive, or possibly does not. All others are
+engaged at every step, and need no check.
 """
 
 from __future__ import annotations
@@ -14,20 +14,21 @@ if TYPE_CHECKING:
     from drivelint.catalogue import Rule
 
 ROUNDING_MPS = 0.01
-"""Speed limits are kilometres or miles per hour, rounded in one place and not in another: 50 km/h is 13.89 or 13.8889 m/s."""
+"""The tolerance for speed limits, which are converted from km/h or mph and may be rounded: 50 km/h is 13.89 or 13.8889 m/s."""
 ENGAGED = "(w.ego_id IS NULL OR e.engaged)"
 
 
 def has_conditions(rule: Rule) -> bool:
-    """Whether the rule's header names any condition."""
+    """Return whether the rule's header contains any condition."""
     return bool(rule.applies.restricting) or rule.applies.restricts_speed_limit
 
 
 def fragments(rule: Rule, alias: str, time: str, check_engagement: bool) -> dict[str, str]:
-    """Return the fragments about rows with these keys and time.
+    """Return SQL fragments for the rows of the table `alias` at `time` (an SQL expression).
 
-    `in_force`: whether the rule is in force there, true, false or NULL: one condition that is false settles it. `doubt`: the reason code
-    of the first condition that is not known, or NULL. `condition_joins`: the joins that they need, and with `check_engagement` `ENGAGED`.
+    `in_force`: whether the rule is in force: false if any condition is false, else NULL if any is unknown. `doubt`: the reason code of the
+    first unknown condition, or NULL. `condition_joins`: the joins that these fragments need, and with `check_engagement` those that
+    `ENGAGED` needs.
     """
     terms = _terms(rule, check_engagement)
     whens = " ".join(f"WHEN ({term}) IS NULL THEN '{name}_unknown'" for name, term in terms.items())
@@ -43,7 +44,7 @@ def fragments(rule: Rule, alias: str, time: str, check_engagement: bool) -> dict
 
 
 def bound_values(rule: Rule) -> dict[str, object]:
-    """Return the values that the conditions bind."""
+    """Return parameter name -> value, for the parameters in the conditions' SQL."""
     least, most = rule.applies.limit_min_mps, rule.applies.limit_max_mps
     values: dict[str, object] = {
         "_limit_min": None if least is None else least - ROUNDING_MPS,
@@ -56,7 +57,7 @@ def bound_values(rule: Rule) -> dict[str, object]:
 
 
 def _terms(rule: Rule, check_engagement: bool) -> dict[str, str]:
-    """Return condition -> its three-valued SQL, the driver's engagement first."""
+    """Return condition -> its SQL (true, false or NULL), with the automated driver's engagement first."""
     found = {"engaged": ENGAGED} if check_engagement else {}
     for name in rule.applies.restricting:
         found[name] = (

@@ -1,4 +1,4 @@
-"""One evaluation: the statements that a rule needs, in order, the early ends, and the statements for all rules at once."""
+"""Runs an evaluation: for each rule the statements that it needs, in order, and then the statements about all rules at once."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ if TYPE_CHECKING:
     from drivelint.evaluate.sql_fragments import Binding
 
 LEAST_RULES_FOR_TWO_CONNECTIONS: Final = 16
-"""From so many rules on they are judged on two connections."""
+"""From this number of built-in rules on, rules are judged on two connections."""
 LEAST_STEPS_FOR_TWO_CONNECTIONS: Final = 2_000
-"""Steps below which they are not: the tables that the second one needs cost more than it would save."""
+"""Below this number of steps, one connection is used: the tables of a second one would cost more than it saves."""
 MOST_STEPS_FOR_TWO_CONNECTIONS: Final = 200_000
-"""Steps from which on they are not: one statement then uses all cores, and two would need twice the memory."""
+"""From this number of steps on, one connection is used: one statement then uses all cores, and two would need twice the memory."""
 LEAST_STEPS_FOR_A_FIRST_PASS: Final = 2_000
-"""Steps from which on groups that are kept are settled first: on fewer, a second statement costs more than the steps."""
+"""From this number of steps on, there is a first pass (see `invariant`); for fewer steps, it costs more than it saves."""
 MOST_PENDING_ROWS: Final = 50_000
-"""With more judged steps than these, they are made into outcomes before another rule is judged."""
+"""If there are more judged steps than this, `conclude` is called before the next rule."""
 
 
 class _StepsToJudge(NamedTuple):
-    """Which steps of an invariant's grid are judged one by one, and how many they are; -1: that is not known."""
+    """Which steps of an invariant's grid are judged one by one, and their number (-1: unknown)."""
 
     selection: invariant.Steps
     n: int
@@ -44,7 +44,7 @@ class _StepsToJudge(NamedTuple):
 
 @dataclass
 class Evaluation:
-    """A connection, the rules to judge on it, the request, and the data that the rules share."""
+    """A connection, the rules to judge on it, the options, and the state that the rules have in common."""
 
     con: duckdb.DuckDBPyConnection
     bindings: Sequence[Binding]
@@ -53,12 +53,12 @@ class Evaluation:
     may_retry: bool = False
     limits: RuleLimits = field(default_factory=lambda: RuleLimits(None))
     release: Callable[[], None] | None = None
-    """Gives memory back before the statements that are about all rules."""
+    """Called before the statements about all rules, to free memory."""
     alone: bool = True
-    """No rule is judged on a second connection at the same time."""
+    """Whether no rule is judged on another connection at the same time."""
     _n_todo: dict[int, int] = field(default_factory=dict, init=False)
     _outside: set[int] = field(default_factory=set, init=False)
-    """The rules whose conditions hold at no step."""
+    """The numbers of the rules whose conditions are met at no step."""
     _n_subjects: int = field(default=0, init=False)
     _has_holes: bool = field(default=False, init=False)
     _check_engagement: bool = field(default=False, init=False)
@@ -67,18 +67,18 @@ class Evaluation:
     _empty: set[str] = field(default_factory=set, init=False)
     _is_short: bool = field(default=False, init=False)
     _pending: list[Binding] = field(default_factory=list, init=False)
-    """The rules whose judged steps are not yet made into outcomes."""
+    """The rules whose judged steps are not aggregated to outcomes yet."""
     _n_pending: int = field(default=0, init=False)
     _may_be_double: bool = field(default=False, init=False)
-    """The pending steps may be more than one for a key."""
+    """Whether there may be several pending steps with the same key."""
     _alone: set[int] = field(default_factory=set, init=False)
-    """The rules that share no outcomes with others: something failed when they did."""
+    """The numbers of the rules whose steps are concluded separately, because `conclude` failed with several rules."""
 
     def judge(self) -> None:
-        """Judge by every rule, then write the verdicts, findings and margins of all of them at once."""
+        """Judge by every rule, then write the verdicts, findings and margins of all rules at once."""
         self.prepare()
         todo = deque(binding for binding in self.bindings if self._n_todo.get(binding.no))
-        # what memory the process takes can be laid to a rule only if no other one runs meanwhile
+        # only built-in rules run in parallel: the growth of memory is a user rule's only if no other rule runs
         shipped = deque(binding for binding in todo if _is_shipped(binding))
         n_steps = self._count("SELECT count(*) FROM step")
         if (
@@ -104,7 +104,7 @@ class Evaluation:
             self._run("course")
 
     def _share(self, todo: deque[Binding]) -> None:
-        """Judge on a second connection too: on so few rows a statement is planned and run on one core."""
+        """Judge the rules of the queue on two connections, because DuckDB uses only one core for few rows."""
         with ThreadPoolExecutor(1) as pool, store.cursor(self.con) as other:
             self.alone = False
             helper = replace(self, con=other)
@@ -115,17 +115,17 @@ class Evaluation:
                 for table in temp_tables.OUTCOME_TABLES:
                     store.insert(self.con, table, other.execute(f"FROM temp.{table}").to_arrow_table())
             finally:
-                todo.clear()  # whatever came between, the helper stops after its present rule
+                todo.clear()  # if an error occurred, the helper stops after its current rule
                 wait([helped])
                 self.alone = True
 
     def judge_from_queue(self, todo: deque[Binding]) -> None:
-        """Judge rules from a shared queue; another run collects the outcomes."""
+        """Judge rules from a shared queue; the other `Evaluation` collects the outcomes."""
         self.prepare()
         self._work(todo)
 
     def _work(self, todo: deque[Binding]) -> None:
-        """Judge by the rules that are still to do, until there are none."""
+        """Judge by the rules of the queue until it is empty, and make outcomes of their steps."""
         self._take(todo)
         while self._pending:
             try:
@@ -135,7 +135,7 @@ class Evaluation:
                 self._take(deque(self._apart(self._pending)))
 
     def _apart(self, bindings: Sequence[Binding]) -> list[Binding]:
-        """Drop the results of these rules, and let each be judged by itself: the fault of one must not affect the others."""
+        """Delete the results of these rules, and return the rules to judge them separately, so that only the faulty one fails."""
         again = list(bindings)
         numbers = [binding.no for binding in again]
         for table in temp_tables.OUTCOME_TABLES:
@@ -173,7 +173,7 @@ class Evaluation:
             self._blame(binding, failure, held.excess)
 
     def prepare(self) -> None:
-        """Make the run's tables, decide which rules need not run, and group the default grids once for all rules."""
+        """Create the temporary tables, decide which rules need not run, and group the default grids once for all rules."""
         self._n_todo, self._outside = temp_tables.create_tables(self.con, self.bindings)
         self._forget_pending()
         self._is_short = self._count("SELECT count(*) FROM step") < LEAST_STEPS_FOR_A_FIRST_PASS
@@ -192,7 +192,7 @@ class Evaluation:
             self.con.execute(statement("judging/grid_group"), {"_objects": objects})
 
     def judge_rule(self, binding: Binding) -> None:
-        """Judge the steps by one rule; `conclude` makes outcomes of them."""
+        """Judge the steps by one rule; `conclude` makes outcomes of the judged steps."""
         self._pending.append(binding)
         if binding.rule.kind == "invariant":
             self._invariant(binding)
@@ -200,11 +200,11 @@ class Evaluation:
             self._occasion(binding)
 
     def _has_no_occasion(self, binding: Binding) -> bool:
-        """Whether a rule needs no statement; one of the user's may have an error in it, which only running it shows."""
+        """Return whether a built-in rule has no outcome because a table is empty; a user's rule always runs, to show its errors."""
         return bool(binding.rule.occasion_needs & self._empty) and _is_shipped(binding)
 
     def _is_quick(self, binding: Binding) -> bool:
-        """Whether the first pass is to settle groups; margins need every step anyway."""
+        """Return whether the rule has a first pass; margins need every step, so there is none then."""
         return not self._is_short and not self.margins and invariant.has_default_grid(binding.rule)
 
     def _is_partial(self, binding: Binding) -> bool:
@@ -218,11 +218,11 @@ class Evaluation:
             invariant.judged_steps_sql(rule, partial, self._check_engagement, steps.selection), binding
         )
         self._n_pending += n_judged
-        # as many rows as the grid has steps: none can be double
+        # if there are as many rows as steps in the grid, no key can be repeated
         self._may_be_double |= self._check_engagement or n_judged != steps.n
 
     def _first_pass(self, binding: Binding) -> _StepsToJudge | None:
-        """Settle the subjects that need no look at each step; return the remaining steps, None: there are none."""
+        """Settle groups without judging each step; return the remaining steps, or None if there are none."""
         rule, partial = binding.rule, self._is_partial(binding)
         if rule.per_profile:
             self._execute(rule_statement("profile_set", rule), binding)
@@ -263,7 +263,7 @@ class Evaluation:
         self._may_be_double = True
 
     def conclude(self) -> None:
-        """Make the pending steps into outcomes, failing stretches, measure series and margins, of all their rules at once."""
+        """Aggregate the pending steps to outcomes, failing stretches, measure series and margins, for all pending rules at once."""
         kinds = {binding.rule.kind == "invariant" for binding in self._pending}
         if not self._may_stop(self._n_pending):
             if self._may_be_double:
@@ -287,7 +287,7 @@ class Evaluation:
 
     def _forget_pending(self) -> None:
         self._pending, self._n_pending, self._may_be_double = [], 0, False
-        self.con.execute(statement("judging/pending"))  # a new table: DuckDB keeps the room of deleted rows
+        self.con.execute(statement("judging/pending"))  # a new table: DuckDB does not free space of deleted rows
 
     def _may_stop(self, n_rows: int) -> bool:
         return n_rows == 0
@@ -298,13 +298,13 @@ class Evaluation:
             self.con.execute(statement(f"judging/{name}"))
 
     def _execute(self, sql: str, binding: Binding) -> int:
-        """Execute one statement with exactly the values it names; return how many rows it made."""
+        """Execute one statement with the values of its parameters; return the number of rows that it inserted."""
         parsed = self.con.extract_statements(sql)[0]
         row = self.con.execute(parsed, binding.values(parsed.named_parameters)).fetchone()
         return int(row[0]) if row else 0
 
     def _columns(self, sql: str, binding: Binding) -> list[str]:
-        """Return the columns that a SELECT of a rule returns."""
+        """Return the names of the columns of a rule's SELECT."""
         parsed = self.con.extract_statements(f"SELECT * FROM (\n{sql}\n) LIMIT 0")[0]
         described = self.con.execute(parsed, binding.values(parsed.named_parameters)).description or []
         return [str(column[0]) for column in described]
@@ -314,7 +314,7 @@ class Evaluation:
         return int(row[0]) if row else 0
 
     def _blame(self, binding: Binding, error: duckdb.Error, excess: Excess | None) -> None:
-        """Record this rule as an error for every drive and ego that it was to judge; raise the error if a retry may avoid it."""
+        """Record an error for this rule, for every drive and ego that it had to judge; raise the error if a retry may avoid it."""
         if excess is not None:
             self._record(binding, excess)
         elif isinstance(error, duckdb.OutOfMemoryException):
@@ -337,18 +337,18 @@ def _is_shipped(binding: Binding) -> bool:
 
 @dataclass
 class PlanRecorder(Evaluation):
-    """An evaluation that records the plan of every statement and runs all alternatives."""
+    """An evaluation that records the query plan of every statement, and runs all statements that a rule may need."""
 
     keep_measure_series: bool = True
     plans: list[str] = field(default_factory=list, init=False)
 
     def prepare(self) -> None:
-        """Make the run's tables; holes and drivers that are not engaged are always looked for."""
+        """Create the temporary tables, and enable the statements about holes and engagement, whatever the drives contain."""
         super().prepare()
         self._has_holes = self._check_engagement = True
         self._empty, self._outside = set(), set()
 
-    def _may_stop(self, n_rows: int) -> bool:  # noqa: ARG002 - the shape of what it overrides
+    def _may_stop(self, n_rows: int) -> bool:  # noqa: ARG002 - the signature of the overridden method
         return False
 
     def _execute(self, sql: str, binding: Binding) -> int:

@@ -1,6 +1,7 @@
-"""Invariants: judged on every step of a grid, one verdict per continuous applicable episode and object.
+"""Builds the SQL of invariants, which are judged at every step of a grid: one verdict per continuous applicable episode and object.
 
-Groups that are whole and kept are settled by one aggregation without a join; only the others are laid over the grid.
+A group is the steps of one ego (and one object). A first pass settles complete groups that pass, by one aggregation; only the others are
+joined with the grid.
 """
 
 from __future__ import annotations
@@ -15,11 +16,11 @@ if TYPE_CHECKING:
     from drivelint.catalogue import Rule
 
 Steps = Literal["all", "unsettled", "asked"]
-"""All steps of a rule's grid, those of the groups that a first pass did not settle, or those of the table `_asked`."""
+"""The steps to judge: all of a rule's grid, those of the groups that the first pass did not settle, or those of the table `_asked`."""
 
 
 def has_default_grid(rule: Rule) -> bool:
-    """Whether a rule is an invariant that neither brings its own grid nor needs each step looked at."""
+    """Return whether a rule is an invariant with the default grid, whose groups the first pass can settle."""
     return not (
         rule.kind != "invariant"
         or "applies" in rule.sections
@@ -30,7 +31,7 @@ def has_default_grid(rule: Rule) -> bool:
 
 
 def first_pass_sql(rule: Rule, partial: bool) -> str:
-    """Return the SQL that appends to `_group` the groups that pass on all their steps without a gap."""
+    """Return the SQL that appends the groups to `_group`, `clean` if they pass at all their steps without a gap."""
     return rule_statement(
         "group",
         rule,
@@ -42,7 +43,7 @@ def first_pass_sql(rule: Rule, partial: bool) -> str:
 
 
 def first_pass_measure_series_sql(rule: Rule) -> str:
-    """Return the SQL that appends to `_course` the measure's values around near misses of groups that the first pass settled."""
+    """Return the SQL that appends the measure's values around near misses to `_course`, for groups that the first pass settled."""
     return rule_statement(
         "course_of_near_groups",
         rule,
@@ -51,7 +52,7 @@ def first_pass_measure_series_sql(rule: Rule) -> str:
 
 
 def _grid(rule: Rule, partial: bool, unsettled: bool, check_engagement: bool) -> str:
-    """Return CTEs ending in `_step_to_judge`; `unsettled`: only the groups that a first pass did not settle."""
+    """Return CTEs of which the last is `_step_to_judge`; `unsettled`: only the groups that the first pass did not settle."""
     keep = ""
     if unsettled:
         keep = " SEMI JOIN (SELECT * FROM _group WHERE rule_no = $_no AND NOT clean) _u"
@@ -85,15 +86,15 @@ def _base(rule: Rule) -> str:
 
 
 def steps_to_judge_sql(rule: Rule, partial: bool, check_engagement: bool) -> str:
-    """Return the SQL for `_asked`: the grid of a rule without a first pass; empty where nothing is to be judged."""
+    """Return the SQL for `_asked`: the steps to judge of a rule without a first pass."""
     return statement("judging/asked", grid=_grid(rule, partial, False, check_engagement))
 
 
 def judged_steps_sql(rule: Rule, partial: bool, check_engagement: bool, steps: Steps) -> str:
-    """Return the SQL that appends to `_judged` these steps of the grid."""
+    """Return the SQL that judges these steps of the grid and appends them to `_judged`."""
     same_key = ""
     if rule.per_object:
-        # an author's own grid may hold a step at which it is not known which object is meant
+        # in an author's grid, the object of a step may be NULL: unknown
         same_key += f" AND g.object_id {'IS NOT DISTINCT FROM' if 'applies' in rule.sections else '='} v.object_id"
     if rule.per_profile:
         same_key += " AND p.profile = v.profile"
@@ -112,7 +113,7 @@ def _steps_with_episode(source: str) -> str:
 
 
 def lost_objects_sql(rule: Rule, partial: bool, check_engagement: bool) -> str:
-    """Return the SQL that appends one unknown row per object whose track ends while it could still have been there."""
+    """Return the SQL that appends one unknown outcome per object that may have been present after its track ended."""
     return rule_statement(
         "outcome_of_lost_objects",
         rule,

@@ -1,8 +1,8 @@
-"""Holds each rule to an amount of computing time and of memory.
+"""Limits the computing time and the memory of each rule.
 
-The time is that of the processor, so that verdicts do not depend on other programs of the machine. A statement beyond its limit is
-interrupted. DuckDB heeds an interrupt between two vectors of rows, not inside one: a function that works on one huge value, or many of
-them, continues. The maker of the limits decides what to do about such a rule (`DeafRules`).
+The time is CPU time, so that verdicts do not depend on other programs of the machine. A statement that exceeds its limit is interrupted.
+DuckDB reacts to an interrupt only between two vectors of rows: a function that works on huge values continues. `DeafRules` decides what
+to do about such a deaf rule.
 """
 
 from __future__ import annotations
@@ -22,46 +22,46 @@ if TYPE_CHECKING:
     import duckdb
 
 DEFAULT_TIMEOUT_S: Final = 30.0
-"""Seconds of computing per rule and batch."""
+"""The default limit of CPU seconds per rule and batch."""
 MOST_EXCESSES: Final = 3
-"""A rule that exceeded its limits so often is not tried again: every drive of a batch is judged alone after a rule failed on it."""
+"""A rule that exceeded its limits this many times does not run again; else it would run for each drive of a failed batch."""
 _LOOK_S: Final = 0.1
 _MEMORY_GRACE_S: Final = 0.5
-"""How long a rule may compute before it heeds an interrupt for its memory, unless it takes too much more meanwhile."""
+"""CPU seconds within which a rule must react to an interrupt because of its memory, unless `_MOST_EXCESS` is reached before."""
 _MOST_EXCESS: Final = 1.25
-"""A rule that has taken this many times its memory limit is not waited for any longer."""
+"""If a rule has used this many times its memory limit, it gets no more time to react to the interrupt."""
 
 Excess = Literal["rule_timeout", "out_of_memory"]
-"""The limit that a rule went beyond, as the reason code of its verdicts."""
+"""The limit that a rule exceeded, as the reason code of its verdicts."""
 
 
 class RunningRule:
-    """A rule that runs, and the limit that it went beyond, if any."""
+    """The current run of a rule, and the limit that it exceeded, if any. `over` is set at its end."""
 
     def __init__(self) -> None:
         self.excess: Excess | None = None
         self.over = Event()
         self.lock = Lock()
-        """Held while it is interrupted: an interrupt after its end would meet the next rule."""
+        """Locked while the rule is interrupted, because an interrupt after its end would hit the next rule."""
 
 
 class DeafRules(Protocol):
-    """What to do about rules that do not heed an interrupt, and which ones are known. `task`: what was judged, drives or copies."""
+    """The interface to handle deaf rules: rules that do not react to an interrupt. `task`: whether drives or copies are judged."""
 
     def excesses(self, task: str) -> Mapping[str, Excess]:
-        """Return the rules that are not to be tried, and the limit that they went beyond."""
+        """Return the ids of the deaf rules, which must not run, and the limit that each exceeded."""
         ...
 
     def restart_without(self, task: str, rule_id: str, excess: Excess) -> NoReturn:
-        """End this process, or let another program take its place; called from the thread that watches."""
+        """End this process, or replace it by a new one without this rule; called from the watching thread."""
         ...
 
 
 class RuleLimits:
-    """The limits of every rule of a run, and which rules have lost their turn.
+    """The limits of every rule of a run, and the rules that must not run again.
 
-    `seconds`: of computing per rule and batch, None: no limit. `deaf_rules`: for rules that did not heed the interrupt within the same time
-    again; None: the interrupt is repeated until the rule ends.
+    `seconds`: CPU seconds per rule and batch, None: no limit. `deaf_rules`: handles a rule that has not reacted to an interrupt for
+    another `seconds`; None: the interrupt is repeated until the rule ends.
     """
 
     def __init__(
@@ -73,9 +73,9 @@ class RuleLimits:
     ) -> None:
         self.seconds = seconds
         self.batches = 1.0
-        """The number of batches that the judged drive makes, if more than one: a long drive is not cut."""
+        """The size of the judged drives in batches; over 1 for a long drive, which is not split and gets more time."""
         self.memory: Callable[[], int | None] = lambda: None
-        """Bytes by which the process may grow while a rule runs alone, at present; None: any number."""
+        """Returns by how many bytes the process may grow while a rule runs alone; None: no limit."""
         self._task = task
         self._deaf = deaf_rules
         self._lost: dict[str, Excess] = {}
@@ -84,23 +84,23 @@ class RuleLimits:
 
     @property
     def allowed_s(self) -> float | None:
-        """Seconds that a rule may compute on the present drives."""
+        """The CPU seconds of a rule for the current drives; None: no limit."""
         return None if self.seconds is None else self.seconds * max(1.0, self.batches)
 
     def excess_of(self, rule_id: str) -> Excess | None:
-        """Return the limit because of which a rule is not tried any more; None: it is tried."""
+        """Return the limit because of which a rule must not run; None: it may run."""
         return self._lost.get(rule_id)
 
     def forget(self) -> None:
-        """Try every rule again but those that are known to be deaf."""
+        """Allow every rule to run again, except the deaf ones."""
         self._lost = {} if self._deaf is None else dict(self._deaf.excesses(self._task))
         self._excesses.clear()
 
     @contextmanager
     def hold(self, con: duckdb.DuckDBPyConnection, rule_id: str, *, alone: bool) -> Iterator[RunningRule]:
-        """Hold the statements on `con` inside the block to the limits.
+        """Apply the limits to the statements on `con` inside the block.
 
-        `alone`: no other rule runs meanwhile, so that the memory that the process takes is this rule's.
+        `alone`: no other rule runs at the same time, so that this rule causes the growth of the process's memory.
         """
         rule_run = RunningRule()
         if self.seconds is None:
@@ -125,7 +125,7 @@ class RuleLimits:
         seconds = self.allowed_s or 0.0
         work, before = Work(thread), resident_bytes()
         patience = 0.0
-        most: int | None = None  # what the process may have at most before the rule is not waited for
+        most: int | None = None  # the memory of the process above which the rule gets no more time to react
         while not rule_run.over.wait(min(_LOOK_S, seconds)):
             now, resident = work.seconds(), resident_bytes()
             excess = rule_run.excess
@@ -141,7 +141,7 @@ class RuleLimits:
                 else:
                     continue
             elif most is not None and resident > most:
-                patience = now  # also of a rule that is interrupted for its time, and goes on growing
+                patience = now  # also for a rule that was interrupted because of its time, and continues to grow
             with rule_run.lock:
                 if rule_run.over.is_set():
                     return

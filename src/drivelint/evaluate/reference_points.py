@@ -1,7 +1,7 @@
 """Builds the SQL of rules with reference points: executions, preconditions and postconditions.
 
-References come first; where there is none the rule stops. Then the points that must be judged (`reference_step`), the
-conditions left-joined to them on keys alone (`_judged`).
+The first statement finds the reference points; without any, no other statement runs. The next ones find the points to judge
+(`_reference_step`), and left-join the condition's rows to them on keys only (`_judged`).
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def references_sql(rule: Rule, columns: Sequence[str], partial: bool) -> str:
 
 
 def windows_sql(rule: Rule, own_object: bool, check_engagement: bool) -> str:
-    """Return the SQL that appends to `_occasion`: each reference point with its window, and whether the rule applies there."""
+    """Return the SQL that appends each reference point to `_occasion`, with its window and whether the rule applies there."""
     has_window = rule.subtype != "physical"
     return statement(
         "judging/occasion",
@@ -45,7 +45,7 @@ def windows_sql(rule: Rule, own_object: bool, check_engagement: bool) -> str:
 
 
 def reference_steps_sql(rule: Rule) -> str:
-    """Return the SQL that appends to `_reference_step` where each reference is judged; t_ns is NULL for an anchor that is not known."""
+    """Return the SQL that appends to `_reference_step` the times at which each reference is judged; NULL for an unknown anchor."""
     if rule.subtype == "temporal":
         return statement("judging/reference_step_of_windows")
     if rule.subtype == "physical":
@@ -54,7 +54,7 @@ def reference_steps_sql(rule: Rule) -> str:
 
 
 def judged_steps_sql(rule: Rule, own_object: bool, check_engagement: bool) -> str:
-    """Return the SQL that appends to `_judged` every expected point, judged or not; combined over objects where the rule says so."""
+    """Return the SQL that appends every expected point to `_judged`, judged or not; combined over objects if the rule requires it."""
     points = "SELECT *, false AS nobody, NULL::DOUBLE AS sensor_range_m, NULL::VARCHAR AS lost FROM reference_step"
     if rule.per_object and not own_object:
         points = statement("judging/points_with_objects")

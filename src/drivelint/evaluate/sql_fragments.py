@@ -1,6 +1,6 @@
-"""SQL fragments that all kinds of rules share.
+"""Builds SQL fragments that all kinds of rules use.
 
-Rule text is our own checked file; it stands in the statement as a CTE. Values are always bound.
+The text of a rule was checked when it was loaded, so it is inserted into the statement as a CTE. Values are always bound.
 """
 
 from __future__ import annotations
@@ -21,12 +21,16 @@ _PROFILES = "JOIN (SELECT drive_id, ego_id, profile FROM _profile_set WHERE rule
 _REFERENCE_STEP = (
     "reference_step AS NOT MATERIALIZED (SELECT * EXCLUDE (rule_no) FROM _reference_step WHERE rule_no = $_no), "
 )
-"""The steps of one rule's reference points, which its condition sees; materialized, as what is read twice is, it would not be filtered."""
+"""The CTE with the steps of a rule's reference points, which its condition reads. DuckDB materializes CTEs that are read twice by default,
+and does not filter them."""
 _ENGINE = {"window_s": "_window_ns", "exempt_after_s": "_exempt_ns", "merge_gap_s": "_merge_ns"}
 
 
 class Binding:
-    """A rule's place in this run: its number and the values that its statements bind."""
+    """A rule in this evaluation: its number and the values that its statements bind.
+
+    `overrides`: parameter -> the user's value. Errors: `UsageError` for an unknown parameter or an invalid time.
+    """
 
     def __init__(self, rule: Rule, no: int, overrides: Mapping[str, object]) -> None:
         self.rule = rule
@@ -51,7 +55,7 @@ class Binding:
             self._values[name] = None if seconds is None else _nanoseconds(seconds, rule.id, field)
 
     def values(self, names: Iterable[str]) -> dict[str, object]:
-        """Return the values of these parameters only; DuckDB refuses others."""
+        """Return the values of these parameters only, because DuckDB rejects additional ones."""
         return {name: self._values[name] for name in names}
 
 
@@ -62,7 +66,7 @@ def _nanoseconds(seconds: object, rule_id: str, field: str) -> int:
 
 
 def rule_statement(name: str, rule: Rule, **fragments: str) -> str:
-    """Return `queries/judging/<name>.sql` for a rule: with its condition, its profiles, and `fragments`."""
+    """Return `queries/judging/<name>.sql` for a rule, with its condition, its profiles, and `fragments` filled in."""
     return statement(
         f"judging/{name}",
         condition=f"{_REFERENCE_STEP if rule.kind != 'invariant' else ''}{condition_ctes(rule)}",
@@ -75,16 +79,16 @@ def rule_statement(name: str, rule: Rule, **fragments: str) -> str:
 def condition_ctes(rule: Rule) -> str:
     """Return the CTEs `_condition` and `_state` of a rule.
 
-    `_state`: drive_id, ego_id, t_ns, object_id, ref_id, profile ('' for none), applies, observed, required, holds
-    (NULL: unknown),
-    gain (the signed margin, infinite where unlimited; 0 for sense = holds), code, reason (the author's, or NULL).
-    NaN is NULL, and so is negative infinity, which no measure is, where it would keep any limit. What is missed by less than the `error`
-    of the value is unknown.
-    A lower bound proves what it can: a pass for > and >=, a violation for < and <=.
+    `_state`: drive_id, ego_id, t_ns, object_id, ref_id, profile (NULL: none), applies, observed, required, holds (NULL: unknown), gain (the
+    signed margin, possibly infinite; 0 for sense = holds), code, reason (the author's, or NULL).
+
+    NaN becomes NULL. So does negative infinity, which is no valid measure, if it would satisfy any limit. A limit that is missed by at most
+    the `error` of the value gives unknown. A value that is only a lower bound can prove a pass for > and >=, and a violation for < and <=;
+    otherwise the result is unknown.
     """
     has = rule.has_column
     measured = rule.sense != "holds"
-    # for >= and <= values are rounded, so that 1.5 m still keeps "at least 1.5 m" after the rounding errors of geometry
+    # for >= and <=, values are rounded, so that 1.5 m satisfies "at least 1.5 m" in spite of rounding errors
     exact = "{0}::DOUBLE" if rule.sense in {">", "<"} else "round({0}::DOUBLE, 9)"
     number = f"CASE WHEN isnan({{0}}::DOUBLE){{1}} THEN NULL ELSE {exact} END AS {{0}}"
     keeps_all = {"required" if rule.sense[0] == ">" else "observed": " OR {0}::DOUBLE = '-Infinity'::DOUBLE"}
@@ -115,7 +119,7 @@ def condition_ctes(rule: Rule) -> str:
         if has("at_least"):
             proven = f"{compare}" if rule.sense[0] == ">" else f"NOT {compare}"
             holds = f"CASE WHEN NOT at_least OR ({proven}) THEN {compare} END"
-            # the numbers are known, but only as a bound that does not decide
+            # the value is known as a bound only, which does not decide
             code = f"coalesce(code, CASE WHEN ({holds}) IS NULL AND {compare} IS NOT NULL THEN 'only_a_bound' END)"
     return f"""_condition AS (
 {rule.sections["condition"]}
@@ -125,7 +129,7 @@ def condition_ctes(rule: Rule) -> str:
 
 
 def subject_join(partial: bool, alias: str) -> str:
-    """Return the semi-join that keeps the subjects for which the rule is to be run; '' if it is run for all."""
+    """Return the semi-join that keeps the subjects that the rule has to judge; '' if it judges all (`partial` is False)."""
     if not partial:
         return ""
     subjects = "(SELECT drive_id, ego_id FROM _todo WHERE rule_no = $_no) _t"
@@ -133,7 +137,7 @@ def subject_join(partial: bool, alias: str) -> str:
 
 
 def deciding_step(rule: Rule) -> str:
-    """Return the aggregate that picks the deciding step of `_state`: as the macro `deciding_step`, without `who`."""
+    """Return the aggregate that selects the deciding step of `_state`, like the macro `deciding_step`, but without `who`."""
     eventually = rule.quantifier == "eventually"
     good, bad = (0, 1) if eventually else (1, 0)
     unknown = 2
@@ -143,7 +147,11 @@ def deciding_step(rule: Rule) -> str:
 
 
 def step_by_rank(good: int, bad: int, unknown: int, sign: str, object_fields: str) -> str:
-    """Return the aggregate that picks a step by these ranks, then by margin, time and `object_fields`: fields for the object, or ''."""
+    """Return the aggregate that selects a step by these ranks, then by margin, time and `object_fields`.
+
+    `good`, `bad`, `unknown`: the ranks by result, the lowest first. `sign`: '-' for the largest margin first, else ''. `object_fields`: SQL
+    of struct fields about the object, or ''.
+    """
     return (
         f"min({{'b': CASE WHEN holds THEN {good} WHEN NOT holds THEN {bad} ELSE {unknown} END, "
         f"'g': CASE WHEN holds IS NULL THEN 0.0::DOUBLE ELSE {sign}gain END, 't': coalesce(t_ns, unknown_time_ns()), "

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from drivelint.evaluate.sql_fragments import Binding
 
 OUTCOME_TABLES = ("_error", "_group", "_outcome", "_stretch", "_course", "_margin")
-"""Tables that hold what rules found; those of a second connection are appended to them."""
+"""Tables with the results of rules. The rows of a second connection are appended to those of the first."""
 _ALLOWED_WORD_SCHEMA = pa.schema(
     [("rule_no", pa.int32()), *((name, pa.string()) for name in ("code", "condition", "word"))]
 )
@@ -32,13 +32,13 @@ _CREATED_TABLE = re.compile(r"^CREATE OR REPLACE TEMP (TABLE|VIEW) (\w+)", re.MU
 
 
 def create_tables(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -> tuple[dict[int, int], set[int]]:
-    """Create the run's temporary tables.
+    """Create the temporary tables of an evaluation.
 
-    Return rule number -> subjects for which it is to be run, and the rules whose conditions hold at no step of any of these.
+    Return rule number -> number of subjects to judge, and the numbers of the rules whose conditions are met at no step of these subjects.
     """
     for name in ("macros", "sentences", "tables"):
         con.execute(statement(f"judging/{name}"))
-    # as Arrow tables: lists bound as parameters took a tenth of a second each
+    # as Arrow tables, because binding a list as a parameter takes a tenth of a second
     store.insert(con, "_rule", _rules(bindings))
     store.insert(con, "_needs", _needs(bindings))
     store.insert(con, "_allowed", _allowed_words(bindings))
@@ -49,7 +49,7 @@ def create_tables(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -
 
 
 def create_doubts(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -> None:
-    """Create the table of the steps that rules may not judge: the log is doubted there in what they use."""
+    """Create the table of the steps that rules must not judge, because a quantity that they use is doubtful there."""
     with store.registered(con, {"_rule_quantity": _quantities(bindings)}):
         con.execute(statement("judging/doubted"))
 
@@ -91,7 +91,7 @@ def _quantities(bindings: Sequence[Binding]) -> pa.Table:
 
 
 def _allowed_words(bindings: Sequence[Binding]) -> pa.Table:
-    """Return the words that each rule's law and conditions allow, and those that leave it open whether they do."""
+    """Return the words that each rule's law and conditions allow, and more general words, which may include an allowed one."""
     columns = ("rule_no", "code", "condition", "word")
     rows = []
     for b in bindings:
@@ -105,6 +105,6 @@ def _allowed_words(bindings: Sequence[Binding]) -> pa.Table:
 
 
 def drop_tables(con: duckdb.DuckDBPyConnection) -> None:
-    """Drop the run's temporary tables."""
+    """Drop the temporary tables of an evaluation."""
     made = [("TABLE", "_worded"), *_CREATED_TABLE.findall("\n".join(texts("judging").values()))]
     con.execute(";".join(f"DROP {kind} IF EXISTS temp.{name}" for kind, name in made))

@@ -1,1 +1,1 @@
-"""Describes for each reason code what a verdict lacks, and what to record or to provide."""
+"""Describes for each reason code why a verdict is unknown, and what to record or to provide."""

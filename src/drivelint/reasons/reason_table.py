@@ -1,4 +1,4 @@
-"""Makes a temporary table with the text of each distinct reason."""
+"""Makes a temporary database table with the text of each distinct reason."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ CREATE OR REPLACE TEMP TABLE _worded
 
 
 def _json(arguments: Mapping[str, Any]) -> str:
-    """Return arguments as JSON, which has no infinite numbers."""
+    """Return arguments as JSON, with null for NaN and infinity, which JSON does not have."""
     told = {
         name: None if isinstance(value, float) and not isfinite(value) else value for name, value in arguments.items()
     }
@@ -35,16 +35,17 @@ def _json(arguments: Mapping[str, Any]) -> str:
 def make_reason_table(
     con: duckdb.DuckDBPyConnection, select: str, rule_texts: Mapping[int, Mapping[str, ReasonText]] | None = None
 ) -> None:
-    """Make the temporary table `_worded` of the distinct rows of `select`: rule_no, cause, start_ns (not NULL, the log's start).
+    """Make the temporary table `_worded` from the distinct rows of `select`: rule_no, cause, start_ns (the log's start, not NULL).
 
-    It has the same columns, the words of the cause, its code and its arguments as JSON. `rule_texts`: rule_no -> the codes of that rule.
+    It has these columns, and the words of the cause, its code, and its arguments as JSON. `rule_texts`: rule_no -> code -> text, for
+    the codes of that rule.
     """
     con.execute(_TABLE)
     causes = con.execute(
         f"SELECT DISTINCT rule_no, cause, start_ns FROM ({select}) WHERE cause IS NOT NULL ORDER BY ALL"
     ).fetchall()
     if not causes:
-        return  # as in most short drives: ten milliseconds
+        return  # saves ten milliseconds; most short drives have no causes
     reasons = [reason_text.parse_reason(cause) for _, cause, _ in causes]
     sentences = [reason_text.sentence(cause, start_ns, (rule_texts or {}).get(no)) for no, cause, start_ns in causes]
     rows = {

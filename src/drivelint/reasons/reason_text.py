@@ -1,7 +1,7 @@
 """Turns reasons, which are codes with arguments, into sentences.
 
-SQL gives a reason by the macro `why(code, arguments)`, as JSON text. The words of a code stand in `words.toml`, those of a code that
-only one rule gives in the header of the rule. A rule of a user may give plain text instead: it is its own words.
+The SQL macro `why(code, arguments)` returns a reason as JSON text. The text of a code is in `words.toml`, or in the header of the rule if
+only this rule uses the code. A user's rule may return plain text instead, which is printed as it is.
 """
 
 from __future__ import annotations
@@ -22,17 +22,17 @@ _OPTIONAL = re.compile(r"\[([^\[\]]*)\]")
 _ARGUMENT = re.compile(r"\{(\w+)(?::(\.?\d?[fg]))?\}")
 _BEGINS = '{"code":'
 PLAIN_TEXT: Final = "text"
-"""The code of a reason that a rule gives as plain text; the text is its argument."""
+"""The code of a reason that is plain text; the text is its argument."""
 
 
 class ReasonText(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The text and the advice of a reason code; `{name}` is an argument, `[...]` is left out if an argument in it is NULL."""
+    """The text and the advice of a reason code; `{name}` is an argument, and `[...]` is left out if an argument in it is NULL."""
 
     says: str
     advice: str = ""
 
     def __post_init__(self) -> None:
-        """Refuse text in braces that is no argument: filling it in may be harmful."""
+        """Raise `ValueError` for text in braces that is no argument: formatting it may be unsafe."""
         for text in (self.says, self.advice):
             if rest := re.search(r"[{}].*", _ARGUMENT.sub("", text)):
                 raise ValueError(f"{rest[0]!r}: write an argument as {{name}} or {{name:.1f}}")
@@ -44,14 +44,14 @@ class ReasonText(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Reason(NamedTuple):
-    """A reason as SQL gives it."""
+    """A reason: its code and its arguments by name."""
 
     code: str
     arguments: dict[str, Any]
 
 
 def shared_texts() -> dict[str, ReasonText]:
-    """Return reason code -> text, for the codes that no single rule owns."""
+    """Return reason code -> text, for the codes of `words.toml`, which do not belong to a single rule."""
     return _read()[0]
 
 
@@ -63,7 +63,7 @@ def _read() -> tuple[dict[str, ReasonText], dict[str, dict[str, str]]]:
 
 
 def parse_reason(reason: str) -> Reason:
-    """Return the code and arguments of a reason, which is JSON from the SQL macro `why` or plain text."""
+    """Return the code and the arguments of a reason; `reason`: JSON from the SQL macro `why`, or plain text."""
     try:
         raw = json.loads(reason) if reason.startswith(_BEGINS) else {}
         return Reason(str(raw["code"]), dict(raw.get("args") or {}))
@@ -72,9 +72,9 @@ def parse_reason(reason: str) -> Reason:
 
 
 def sentence(reason: str, start_ns: int = 0, rule_texts: Mapping[str, ReasonText] | None = None) -> str:
-    """Return a reason in words, its advice last.
+    """Return a reason as a sentence, with its advice at the end.
 
-    `start_ns`: when the log starts, since times count from it; `rule_texts`: the rule's words.
+    `start_ns`: the start of the log, from which times count; `rule_texts`: the texts of the rule's codes.
     """
     code, arguments = parse_reason(reason)
     return reason if code == PLAIN_TEXT else _sentence(code, arguments, start_ns, rule_texts)
@@ -102,13 +102,13 @@ def codes_in(code: str, arguments: Mapping[str, Any]) -> set[str]:
 
 
 def _nested(arguments: Mapping[str, Any]) -> list[Reason]:
-    """Return the reasons among the arguments of a reason."""
+    """Return those arguments of a reason that are reasons themselves."""
     found = [parse_reason(value) for value in arguments.values() if isinstance(value, str)]
     return [reason for reason in found if reason.code != PLAIN_TEXT]
 
 
 def text_of(code: str, rule_texts: Mapping[str, ReasonText] | None = None) -> ReasonText:
-    """Return the text of a code; a code without a text is its own text."""
+    """Return the text of a code: from the rule, else from `words.toml`, else the code itself with spaces."""
     return (rule_texts or {}).get(code) or shared_texts().get(code) or ReasonText(code.replace("_", " "))
 
 
@@ -124,12 +124,15 @@ def _filled(
 
 def _formatted(value: Any, spec: str) -> str:
     if value is None:
-        return "?"  # NULL where the words need it
+        return "?"  # a required argument is NULL
     return format(value, spec) if isinstance(value, int | float) else str(value)
 
 
 def _argument_words(name: str, value: Any, start_ns: int, rule_texts: Mapping[str, ReasonText] | None) -> Any:
-    """Return an argument as it is put into words: a time from the start, a reason in its words, a value in those of its name."""
+    """Return an argument as it is inserted into a text.
+
+    A time is converted to seconds from the start, a value in the table `[values.<name>]` to its words, a reason to its sentence.
+    """
     if name.endswith("_ns") and isinstance(value, int):
         return f"{(value - start_ns) / 1e9:.3f} s"
     if isinstance(value, str):

@@ -1,4 +1,4 @@
-"""Describes how to provide a signal that rules require, and by reason code what would decide an unknown verdict."""
+"""Describes how to provide the signals that rules require, and, for each reason code, what would decide an unknown verdict."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from drivelint.facts import toml_beside
 from drivelint.phrases import hint
 
 TEXTS: Final = toml_beside(__file__, "signals.toml")
-"""`advice`: signal -> what to give; `remedies`: reason code -> what to do; `where`: format -> key -> where its logs have it."""
+"""`advice`: signal -> what to provide. `remedies`: reason code -> what to do. `where`: format -> key -> its place in such a log."""
 ADVICE: Final[dict[str, str]] = {
     **{
         name: f"{CONDITION_TEXTS[name].partition(';')[0]}: --env {name}={words[0]} ({', '.join(words[1:])})"
@@ -23,46 +23,47 @@ ADVICE: Final[dict[str, str]] = {
     **TEXTS["advice"],
 }
 SIGNALS: Final = ADVICE.keys() - CONDITION_VALUES.keys()
-"""The signals that a rule may require: those of the table `capability`. The others are conditions of a drive."""
+"""The signals that a rule may require, as in the table `capability`; the other keys of `ADVICE` are conditions of a drive."""
 MISSING_PREFIX: Final = "missing_"
-"""Begins the reason code of a rule that is unknown for want of a signal."""
+"""The prefix of the reason code of a rule that is unknown because a signal is missing."""
 UNRECORDED_PREFIX: Final = "unrecorded_"
-"""Begins the reason code of a rule that is not applicable because the log has nothing of a signal that few logs have."""
+"""The prefix of the reason code of a rule that is not applicable because the log lacks one of `SIGNALS_OF_FEW_LOGS`."""
 SIGNALS_OF_FEW_LOGS: Final = {
     "indicator", "brake_light", "declared_events", "modes", *(f"mode_{mode}" for mode in ON_OFF_EVENTS)
 }  # fmt: skip
-"""What the ego itself would have to record: a rule that needs it asks nothing of a log that has none, unless it is asked for by its id."""
+"""Signals that only the ego itself can record. If the log lacks one, a rule that needs it is not applicable; it is unknown if the user
+selected the rule by its id."""
 SIGNAL_OF_CONDITION: Final = {"road_type": "road_types", "limit": "speed_limits"}
-"""Conditions that the map gives under another name."""
+"""Condition -> the signal of the map that provides it, if its name differs."""
 WHAT_IS_NULL: Final = "what is NULL, or has no row, in the rows that it was judged on"
-"""The remedy of a reason that has none of its own: the verdict's own words say more."""
+"""The remedy for a reason code without one; the text of the verdict is more specific."""
 _A_MAP_THAT_GOES_ON = "a map that goes on, or a longer --sensor-range of check"
 _AGAIN = "; run drivelint check with it: what else the rule needs is not looked at before"
 REMEDIES: Final[dict[str, str]] = TEXTS["remedies"]
 
 
 def signal_name(reason_code: str) -> str:
-    """Return in words the signal that a verdict lacks, or the reason code of one that lacks none."""
+    """Return the name of the missing signal in a reason code, or the code itself, with spaces for underscores."""
     return (
         reason_code.removeprefix(MISSING_PREFIX).removeprefix(UNRECORDED_PREFIX).removeprefix("mode_").replace("_", " ")
     )
 
 
 def problem(signal: str) -> str | None:
-    """Return the problem of the name of a signal; None: it is one."""
+    """Return why this is not the name of a signal, with a hint; None: it is valid."""
     if signal in SIGNALS:
         return None
     return f"{signal!r} is no signal; {hint(signal, sorted(SIGNALS))}"
 
 
 def how_to_provide(signal: str, log_format: str, advice: str | None = None) -> str:
-    """Return how to provide a signal in a log of this format. `advice`: that of the reason why it is missing."""
+    """Return how to provide a signal in a log of this format. `advice`: the advice of the reason why it is missing."""
     if signal == "registration" and advice:
-        return advice  # the map is not at fault
-    from drivelint.formats.registry import format_words  # the readers, which the catalogue needs not
+        return advice  # the reason shows that the map is not the problem
+    from drivelint.formats.registry import format_words  # loads the readers, which the catalogue does not need
 
     name = "mapped" if format_words(log_format) is None else log_format
-    # what a format cannot hold is given in the Parquet tables of a converted log
+    # a signal that the format cannot contain can be added to the Parquet tables of a converted log
     tables = TEXTS["where"]["canonical-parquet"].items()
     where = {key: f"drivelint convert --to parquet, and in its tables {table}" for key, table in tables}
     where |= TEXTS["where"].get(name, {})
@@ -70,7 +71,7 @@ def how_to_provide(signal: str, log_format: str, advice: str | None = None) -> s
 
 
 def remedy(code: str, object_id: str | None, log_format: str, advice: str | None = None) -> str:
-    """Return what would decide an unknown verdict with this reason code, for a log of this format. `advice`: that of its cause."""
+    """Return what would decide an unknown verdict with this reason code, for a log of this format. `advice`: its cause's advice."""
     if code.startswith((MISSING_PREFIX, UNRECORDED_PREFIX)) and code not in REMEDIES:
         return (
             how_to_provide(code.removeprefix(MISSING_PREFIX).removeprefix(UNRECORDED_PREFIX), log_format, advice)
@@ -89,7 +90,7 @@ def remedy(code: str, object_id: str | None, log_format: str, advice: str | None
 
 
 def condition_of(code: str) -> str | None:
-    """Return the column of `ego_condition` that a reason code says is not known; None: it is about none."""
+    """Return the column of `ego_condition` that is unknown according to this reason code; None: the code is not about a condition."""
     condition = code.removesuffix("_unknown")
     if condition == code:
         return None

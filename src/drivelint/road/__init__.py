@@ -1,1 +1,1 @@
-"""The model of a road map: the output of a map reader, and code that all map formats share."""
+"""Defines the output of a map reader, and contains the code that all map formats use."""

@@ -1,5 +1,7 @@
-"""Builds lanes from their two bounds (Lanelet2, CommonRoad, OSI, Argoverse), which run in the direction of travel.
-Such maps have no roads: the lanes that lie side by side are taken as one, numbered from the middle outwards."""
+"""Builds lanes from their two bounds (Lanelet2, CommonRoad, OSI, Argoverse), whose points are in the direction of travel.
+
+Such maps have no roads: lanes side by side are grouped as one road, and numbered from its middle outwards.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class Mark(NamedTuple):
-    """The marking of one side of a lane between two shares (0 to 1) of the lane's length. None: not known."""
+    """The marking of one side of a lane between two shares (0 to 1) of the lane's length. None: unknown."""
 
     side: str
     begin: float
@@ -39,17 +41,18 @@ SpeedLimitSpan = tuple[float, float, float | None]
 
 
 def both_marks(left: str | None, right: str | None) -> tuple[Mark, Mark]:
-    """Return the marks of a lane whose markings do not change along it."""
+    """Return the marks of a lane with the same markings along its whole length."""
     return Mark("left", 0.0, 1.0, left), Mark("right", 0.0, 1.0, right)
 
 
 @dataclass(eq=False)
 class BoundedLane:
-    """One lane. `left`, `right`: bounds (n, 2), (m, 2) in metres, in the direction of travel; the rest as in `lanelet`.
+    """One lane. Fields that are not explained here are as in the table `lanelet`.
 
-    `left_against`: the lane on that side is driven the other way. `marks`: none, if the markings are not known. `limits`: from one
-    share of the length to another, in m/s, None where there is none or it cannot be read; none, if the map does not say one.
-    `limit_source` is the source of `speed_limit`. `z`: height of each point of `line`; NaN: not known.
+    `left`, `right`: bounds (n, 2), (m, 2) in metres, in the direction of travel. `left_against`, `right_against`: the lane on that side has
+    the opposite direction. `marks`: empty if the markings are unknown. `limits`: start and end (shares of the length) and m/s (None: no
+    limit, or an unreadable one); empty if the map states none. `limit_source`: the column `source` of `speed_limit`. `z`: the height of
+    each point of `line`, NaN: unknown.
     """
 
     lanelet_id: str
@@ -76,12 +79,12 @@ class BoundedLane:
 
     @property
     def road_s(self) -> Floats:
-        """Stations of the points on the road."""
+        """The stations of the lane's points along the road."""
         return self.line.s if self.along > 0 else self.line.s[-1] - self.line.s
 
 
 def build_lanes(lanes: Iterable[BoundedLane], offset: tuple[float, float], quality: MapQuality) -> list[BoundedLane]:
-    """Build the lanes, sorted by id; report in `quality` a lane that cannot be built, and leave it out."""
+    """Build the lanes and return them sorted by id; a lane that cannot be built is left out and reported in `quality`."""
     built: dict[str, BoundedLane] = {}
     for lane in sorted(lanes, key=lambda lane: _by_number(lane.lanelet_id)):
         try:
@@ -110,7 +113,7 @@ def _by_number(name: str) -> tuple[int, int, str]:
 
 
 def _roads(lanes: Mapping[str, BoundedLane]) -> None:
-    """Number the lanes that lie side by side as one road: -1, -2, ... to the right of its middle, 1, 2, ... to the left."""
+    """Group lanes side by side as one road, and number them: -1, -2, ... to the right of its middle, 1, 2, ... to the left."""
     for first in lanes.values():
         if first.road_id:
             continue
@@ -123,7 +126,7 @@ def _roads(lanes: Mapping[str, BoundedLane]) -> None:
 
 
 def _row(first: BoundedLane, lanes: Mapping[str, BoundedLane]) -> list[tuple[BoundedLane, int]]:
-    """Return the lanes side by side from left to right, seen along the first; -1: driven the other way."""
+    """Return the lanes side by side with `first`, from left to right in its direction; 1: same direction, -1: opposite."""
     row, lane_ids = [(first, 1)], {first.lanelet_id}
     for step in (1, -1):
         lane, along = first, 1
@@ -151,7 +154,7 @@ def map_from_bounds(
     geo: GeoFrame | None = None,
     nation: str | None = None,
 ) -> MapTables:
-    """Return the map of the lanes of `build_lanes` with their furniture: see `map_tables`."""
+    """Return the map of lanes from `build_lanes`. `furniture`: table -> rows, such as signals. Other parameters: see `map_tables`."""
     by_id = {lane.lanelet_id: lane for lane in lanes}
     content: dict[str, Rows | dict[str, Any]] = {
         "lanelet": [_lanelet(lane) for lane in lanes],
@@ -184,7 +187,7 @@ def map_from_bounds(
 
 
 def signal_row(lane: BoundedLane, s_m: float, place: Floats, **columns: Any) -> dict[str, Any]:
-    """Return a row of `traffic_signal`: where it holds on the lane, the place (x, y) where it stands, and what is said of it."""
+    """Return a row of `traffic_signal`. `s_m`: where it applies on the lane; `place`: its x and y; `columns`: more columns."""
     return {
         "country": None, "type": None, "subtype": None, "value": None, "unit": None, "dynamic": False, "turns": None, **columns,
         "road_id": lane.road_id, "road_s_m": s_m if lane.along > 0 else lane.line.length - s_m,
@@ -206,7 +209,7 @@ def _lanelet(lane: BoundedLane) -> dict[str, Any]:
 def lane_points(lanes: Sequence[Any]) -> dict[str, Any]:
     """Return the columns of `lane_point`.
 
-    Each lane has `lanelet_id`, `line`, `road_s` (stations on its road) and `z` (heights, NaN: not known).
+    Each lane has `lanelet_id`, `line`, `road_s` (stations on its road) and `z` (heights, NaN: unknown).
     """
     counts = [len(lane.line.s) for lane in lanes]
     columns: dict[str, Any] = {
@@ -230,9 +233,9 @@ def lane_points(lanes: Sequence[Any]) -> dict[str, Any]:
 
 
 def side_driven_on(lanes: Sequence[BoundedLane]) -> str | None:
-    """Return lht or rht by the lanes beside each other that are driven in opposite directions; None: there are none.
+    """Return the driving side (lht, rht) by neighbouring lanes of opposite direction; None: there are none.
 
-    Where the left is driven on, the oncoming lane is the one on the right. If the map names none, its geometry shows it.
+    In left-hand traffic, the oncoming lane is on the right. If the map states no neighbours, the geometry is used.
     """
     one_way = {lane.lanelet_id: lane for lane in lanes if lane.drivable and not lane.bidirectional}
     left = sum(lane.left_against is True and lane.left_id in one_way for lane in one_way.values())
@@ -246,9 +249,9 @@ def side_driven_on(lanes: Sequence[BoundedLane]) -> str | None:
 def crossings(
     walks: Iterable[BoundedLane], lanes: Sequence[BoundedLane], offset: tuple[float, float], quality: MapQuality
 ) -> Rows:
-    """Return the rows of `crossing`: one for each drivable lanelet that a lane for people on foot lies across.
+    """Return the rows of `crossing`: one for each pair of a pedestrian lane (`walks`) and a drivable lanelet that it crosses.
 
-    Report in `quality` a lane that lies across none, or of which the shape is not known.
+    A pedestrian lane that crosses no lanelet, or has no valid shape, is reported in `quality`.
     """
     drivable_lanes = [lane for lane in lanes if lane.drivable]
     lines = [shapely.LineString(lane.line.centre) for lane in drivable_lanes]

@@ -1,4 +1,4 @@
-"""Finds the country that a code of ISO 3166-1 means, as maps and logs write it."""
+"""Finds the country of an ISO 3166-1 code in a map or log, and its driving side."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ _LEFT_DRIVEN: Final = frozenset({
 
 
 def nation_of(code: str | int | None) -> str | None:
-    """Return the two letters of a country by its two or three letters, in any case, or its number; None: no country's."""
+    """Return the two-letter code of a country by its two or three letters, in any case, or its number; None: unknown code."""
     return _nations().get(code.strip().lower() if isinstance(code, str) else code)
 
 
 def side_of_nation(nation: str) -> str:
-    """Return lht or rht: the side of the road that is driven on in a country."""
+    """Return the driving side (lht, rht) of a country."""
     return "lht" if nation in _LEFT_DRIVEN else "rht"
 
 
 def only_nation(codes: Iterable[str | None]) -> str | None:
-    """Return the country if all codes of countries are of one; None: they are of several, or there is none."""
+    """Return the country that all known codes mean; None: they mean several countries, or no code is known."""
     nations = {nation for code in codes if (nation := nation_of(code))}
     return nations.pop() if len(nations) == 1 else None
 

@@ -1,7 +1,7 @@
-"""Finds the side driven on from lanes that run beside each other in opposite directions, and chooses among the sources.
+"""Finds the driving side from neighbouring lanes of opposite directions, and chooses among several sources of it.
 
-In right-hand traffic, an oncoming vehicle passes on the left, on a road with both directions as on two roads of one direction
-each. On a road of one direction alone nothing lies on either side, and its lanes' direction does not show which side is driven on.
+In right-hand traffic, oncoming vehicles pass on the left, both on two-way roads and on pairs of one-way roads. A single one-way road has
+no oncoming lane, so it does not show the driving side.
 """
 
 from __future__ import annotations
@@ -20,19 +20,19 @@ if TYPE_CHECKING:
     from drivelint.road.quality import MapQuality
 
 
-SAME_CARRIAGEWAY_M: Final = 2.0  # so far apart two directions of one carriageway may be painted, as in lane_beside.sql
-CENTRAL_RESERVATION_M: Final = 15.0  # and the two carriageways of a road
-LEAST_LENGTH_M: Final = 20.0  # less of it is a corner or a mistake in the map
+SAME_CARRIAGEWAY_M: Final = 2.0  # the largest gap between opposite lanes of one carriageway, as in lane_beside.sql
+CENTRAL_RESERVATION_M: Final = 15.0  # the largest gap between the two carriageways of a road
+LEAST_LENGTH_M: Final = 20.0  # shorter lanes beside each other are a corner or an error of the map
 DECISIVE_SHARE: Final = 2 / 3
-_OVERLAP_M: Final = 0.5  # more of it is the same ground twice, as where lanes fork
-_LEVEL_M: Final = 3.0  # as far apart in height, lanes are not beside each other
+_OVERLAP_M: Final = 0.5  # lanes that overlap more are not neighbours, such as lanes that fork
+_LEVEL_M: Final = 3.0  # lanes with at least this difference in height are not neighbours
 _ALONG: Final = float(np.cos(np.radians(30)))
 _WIDEST_HALF_M: Final = 4.0
-_PROBES: Final = 20_000  # stations looked at, evenly spread
+_PROBES: Final = 20_000  # the most segments that are examined, evenly spread
 
 
 class _Pieces(NamedTuple):
-    """The segments of the centre lines of all lanes, (m,): lane, start and end (m, 4), length, direction."""
+    """The segments (m) of the centre lines of all lanes: lane, start and end (m, 4), length, unit direction."""
 
     lane: Indices
     begin: Floats
@@ -43,10 +43,10 @@ class _Pieces(NamedTuple):
 
 
 def side_driven_on(courses: Sequence[Floats]) -> str | None:
-    """Return lht or rht by the lanes that run beside each other in opposite directions; None: there are none, or they disagree.
+    """Return the driving side (lht, rht) by neighbouring lanes of opposite directions; None: there are none, or they disagree.
 
-    `courses`: the lanes that are driven one way, outside junctions, as arrays (n, 4) in metres: x and y of the middle, its height (NaN:
-    not known) and half the width. Those that touch count before those across a central reservation.
+    `courses`: the one-way lanes outside junctions, as arrays (n, 4) in metres: x and y of the centre line, its height (NaN: unknown) and
+    half the width. Lanes across a central reservation count only if too few lanes adjoin.
     """
     if len(courses) < 2:
         return None
@@ -72,9 +72,9 @@ def _pieces(courses: Sequence[Floats]) -> _Pieces:
 
 
 def _opposing(pieces: _Pieces, reach_m: float) -> tuple[float, float]:
-    """Return along how many metres the nearest lane, within reach of a bound, is an opposing one, on the left and on the right.
+    """Return the lengths (m) along which the nearest lane on the left, and on the right, has the opposite direction.
 
-    Where both sides have one, the nearer counts.
+    Gaps of more than `reach_m` do not count. If both sides have an opposite lane, only the nearer counts.
     """
     n = len(pieces.lane)
     chosen = np.unique(np.linspace(0, n - 1, min(_PROBES, n)).astype(np.intp))
@@ -85,7 +85,7 @@ def _opposing(pieces: _Pieces, reach_m: float) -> tuple[float, float]:
 
 
 def _gap_to_opposing(pieces: _Pieces, tree: shapely.STRtree, indices: Indices, side: float, reach_m: float) -> Floats:
-    """Return the gap (m) from these pieces to the nearest lane on one side (1 left, -1 right); infinity: none, or it runs the same way."""
+    """Return the gap (m) from these pieces to the nearest lane on one side (1: left, -1: right); infinity if it is no opposite lane."""
     x, y, _, half = ((pieces.begin + pieces.end) / 2)[indices].T
     ux, uy = pieces.ux[indices], pieces.uy[indices]
     reach = (half - _OVERLAP_M, half + reach_m + _WIDEST_HALF_M)
@@ -100,22 +100,22 @@ def _gap_to_opposing(pieces: _Pieces, tree: shapely.STRtree, indices: Indices, s
 def _nearest_opposing(
     pieces: _Pieces, indices: Indices, probe: Indices, other_piece: Indices, *, side: float, reach_m: float
 ) -> tuple[Indices, Floats]:
-    """Return the probes that have a lane beside them, and the gap to the nearest one; infinity: it runs the same way.
+    """Return the pieces (positions in `indices`) with a lane beside them, and the gap to the nearest; infinity if it is no opposite lane.
 
-    `probe`: numbers of `indices`, each with one of the pieces that the line across meets.
+    `probe`, `other_piece`: pairs of a position in `indices`, and a piece that the line across meets.
     """
     x, y, z, half = ((pieces.begin + pieces.end) / 2)[indices].T
     ux, uy = pieces.ux[indices], pieces.uy[indices]
     along = ux[probe] * pieces.ux[other_piece] + uy[probe] * pieces.uy[other_piece]
     beside = (pieces.lane[other_piece] != pieces.lane[indices[probe]]) & (np.abs(along) > _ALONG)
     probe, other_piece, along = probe[beside], other_piece[beside], along[beside]
-    # where the line across meets the other's middle
+    # the point where the line across meets the other piece's centre line
     other_x, other_y, other_z, other_half = pieces.begin[other_piece].T
     dx, dy = other_x - x[probe], other_y - y[probe]
     cross = ux[probe] * pieces.uy[other_piece] - uy[probe] * pieces.ux[other_piece]
     off = dy * ux[probe] - dx * uy[probe] - (dx * ux[probe] + dy * uy[probe]) * cross / along
     gap = side * off - half[probe] - other_half
-    on_level = ~(np.abs(z[probe] - other_z) >= _LEVEL_M)  # a height that is not known is any
+    on_level = ~(np.abs(z[probe] - other_z) >= _LEVEL_M)  # also true for an unknown height
     fits = (gap > -_OVERLAP_M) & (gap <= reach_m) & on_level
     probe, gap, along = probe[fits], gap[fits], along[fits]
     order = np.lexsort((along, gap, probe))
@@ -129,7 +129,7 @@ def opposite_side(side: str) -> str:
 
 
 def correction_hint(side: str, source: str) -> str:
-    """Return the remedy for the opposite side; `source`: the source of `side`, such as option, attribute or lanes."""
+    """Return what the user can do if `side` is wrong; `source`: the source of `side`, such as option, attribute or lanes."""
     return (
         f"leave the option out, or set {opposite_side(side)}"
         if source == "option"
@@ -140,7 +140,7 @@ def correction_hint(side: str, source: str) -> str:
 def choose_side(
     statements: Iterable[tuple[str, str | None]], quality: MapQuality, where: str = "the map"
 ) -> tuple[str, str]:
-    """Return the side driven on and its source: the first of (source, side) that has a side; report that others disagree."""
+    """Return the first of the statements (source, side) that has a side, as side and source; report disagreement in `quality`."""
     stated_sides = [(source, side) for source, side in statements if side is not None]
     if not stated_sides:
         message = f"{where} does not state which side is driven on: right-hand traffic is a guess; set --handedness"

@@ -1,4 +1,4 @@
-"""Reads the geo reference of a map, compares it with that of a log, and checks whether it yields positions on the earth."""
+"""Reads the geo reference of a map, compares it with that of a log, and checks whether it gives positions on the earth."""
 
 from __future__ import annotations
 
@@ -23,24 +23,24 @@ _REFERENCE: Final = re.compile(rb"<geoReference[^>]*>(.*?)</geoReference>", re.D
 _CDATA: Final = re.compile(r"<!\[CDATA\[(.*?)\]\]>", re.DOTALL)
 _HEAD_BYTES: Final = 65536
 _SILENT: Final = frozenset({"no_defs", "wktext", "type", "units", "vunits", "geoidgrids"})
-"""What does not move a place in the plane (lengths are metres in all our formats)."""
+"""PROJ parameters that do not change positions in the plane (lengths are in metres in all supported formats)."""
 _DEFAULTS: Final = {("x_0", "0.0"), ("y_0", "0.0"), ("k", "1.0"), ("k_0", "1.0")}
-"""What holds without being said."""
+"""PROJ parameters with their default values."""
 _DIGITS: Final = 9
-"""Decimals that are compared: a tenth of a millimetre on the ground, even of a degree; writers round the last of theirs."""
+"""The number of decimals that are compared, because writers round the last ones: 0.1 mm on the ground, even for degrees."""
 _TANGENT_PLANE: Final = "ortho"
 _LOCAL_M: Final = 100_000.0
 _EQUATOR_DEG: Final = 1.0
 _POLE_DEG: Final = 5.0  # 0,0 of the southern zones of UTM is 4.5 degrees from the pole
 _DEGREE_M: Final = 111_195.0  # of a great circle, on the sphere of the earth's mean radius
 _METRE: Final = (0.4, 1.6)
-"""What a unit of a projection in metres may measure on the ground: Mercator's shrinks to 0.4 m at 66 degrees of latitude."""
+"""The range of the length on the ground (m) of one metre of a projection: Mercator's is 0.4 m at 66 degrees of latitude."""
 
 
 class GeoFrame(NamedTuple):
-    """A projection, and how coordinates become its own: turned by `yaw_rad`, then moved by x, y and z (metres).
+    """A projection, and the transformation into it: coordinates are turned by `yaw_rad`, then shifted by x, y and z (metres).
 
-    ASAM OpenDRIVE 1.7 and later define `<offset>` so (8.5, georeferencing), ASAM OSI `proj_frame_offset`.
+    `<offset>` of ASAM OpenDRIVE 1.7 and later (8.5, georeferencing), and `proj_frame_offset` of ASAM OSI, are defined like this.
     """
 
     reference: str
@@ -50,20 +50,20 @@ class GeoFrame(NamedTuple):
     yaw_rad: float = 0.0
 
     def project(self, xy: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return coordinates, (n, 2), in the projection."""
+        """Convert coordinates (n, 2) in this frame to projected coordinates."""
         return xy @ self._turn().T + (self.x_m, self.y_m)
 
     def unproject(self, xy: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return coordinates, (n, 2), of places in the projection."""
+        """Convert projected coordinates (n, 2) to coordinates in this frame."""
         return (xy - (self.x_m, self.y_m)) @ self._turn()
 
     def after_shift(self, x_m: float, y_m: float) -> GeoFrame:
-        """Return the frame of the same coordinates after x and y were added to them."""
+        """Return the frame that is valid after x and y (metres) were added to all coordinates."""
         ((x, y),) = self.project(-np.array([[x_m, y_m]])).tolist()
         return self._replace(x_m=x, y_m=y)
 
     def degrees(self, xy: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return longitude and latitude, (n, 2), of coordinates. Errors: as `transform`."""
+        """Convert coordinates (n, 2) in this frame to longitude and latitude. Errors: as `transform`."""
         return transform(self.project(xy), self.reference, WGS84)
 
     def _turn(self) -> NDArray[np.float64]:
@@ -72,15 +72,15 @@ class GeoFrame(NamedTuple):
 
 
 def tangent_plane(latitude: float, longitude: float) -> GeoFrame:
-    """Return the frame of metres to the east and north of a point (degrees, WGS 84)."""
+    """Return the frame whose coordinates are metres to the east and north of a point (degrees, WGS 84)."""
     return GeoFrame(f"+proj={_TANGENT_PLANE} +lat_0={latitude!r} +lon_0={longitude!r} +datum=WGS84 +units=m +no_defs")
 
 
 def why_unusable(frame: GeoFrame, x_m: float, y_m: float) -> str | None:
-    """Return why the frame gives no positions on the earth, judged at one place of the map or log; None: it gives them.
+    """Return why the frame gives no positions on the earth, tested at one position of the map or log; None: it is usable.
 
-    A placeholder cannot be distinguished from a true reference by its text alone: local coordinates near 0,0 of a projection that has its
-    origin on the equator or at a pole would be in the Gulf of Guinea or on the ice.
+    A placeholder cannot be recognised by its text. But with it, local coordinates near 0,0 would be near the projection's origin on the
+    equator or at a pole: in the Gulf of Guinea or on the ice.
     """
     ((x, y),) = frame.project(np.array([[x_m, y_m]])).tolist()
     try:
@@ -103,29 +103,29 @@ def why_unusable(frame: GeoFrame, x_m: float, y_m: float) -> str | None:
 
 
 def transform(xy: NDArray[np.float64], source: str, target: str) -> NDArray[np.float64]:
-    """Return places of one reference, (n, 2), in another, not finite where it has none for them.
+    """Convert coordinates (n, 2) from the reference `source` to the reference `target`; not finite if they do not exist there.
 
-    Errors: `duckdb.Error` where PROJ does not understand a reference.
+    Errors: `duckdb.Error` if PROJ does not understand a reference.
     """
     sql = (
         "SELECT ST_X(p) AS x, ST_Y(p) AS y "
         "FROM (SELECT ST_Transform(ST_Point(x, y), $source, $target, always_xy := true) AS p FROM places)"
     )
     with store.open_as_is() as con:
-        store.lock(con)  # a reference may name files of grids
+        store.lock(con)  # a reference may contain the names of grid files
         con.register("places", pa.table({"x": xy[:, 0], "y": xy[:, 1]}))
         found = con.execute(sql, {"source": source, "target": target}).fetchnumpy()
     return np.stack([np.ma.filled(found[axis], np.nan) for axis in ("x", "y")], axis=1)
 
 
 def _has_local_origin(reference: str) -> bool:
-    """Say whether a PROJ string names the latitude of its origin, which UTM does not heed."""
+    """Return whether a PROJ string has its own latitude of origin; UTM ignores this parameter."""
     said = dict(_parsed(reference))
     return said.get("proj") != "utm" and said.get("lat_0", "0.0") != "0.0"
 
 
 def reference_of(source: MapSource) -> str | None:
-    """Return the geo reference in an OpenDRIVE header, None where there is none or it is empty."""
+    """Return the geo reference in an OpenDRIVE header; None: it is absent or empty."""
     found = _REFERENCE.search(source.content[:_HEAD_BYTES])
     if found is None:
         return None
@@ -135,19 +135,19 @@ def reference_of(source: MapSource) -> str | None:
 
 
 def same_reference(first: str, second: str) -> bool:
-    """Say whether two references mean the same: PROJ strings parameter by parameter, other texts word by word."""
+    """Return whether two references are equal: PROJ strings by their parameters, other texts by their words."""
     return _parsed(first) == _parsed(second)
 
 
 def different_places(first: str, second: str) -> bool:
-    """Return whether two references mean different places: they are unequal PROJ strings, each with a projection."""
+    """Return whether two references contradict each other: unequal PROJ strings, both with a projection that is no `tangent_plane`."""
     return not same_reference(first, second) and all(
         "proj" in dict(_parsed(text)) and not is_tangent_plane(text) for text in (first, second)
     )
 
 
 def is_tangent_plane(reference: str) -> bool:
-    """Say whether a reference is that of `tangent_plane`: the user's `--map-origin` says where the log's 0,0 lies."""
+    """Return whether a reference was made by `tangent_plane`, from the user's `--map-origin`."""
     return dict(_parsed(reference)).get("proj") == _TANGENT_PLANE
 
 

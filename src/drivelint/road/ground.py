@@ -1,4 +1,4 @@
-"""How much ground the lanes of a map lie on: the tables in which places are looked up have a row for each square of it."""
+"""Estimates the size of a map's spatial tables, which have a row for each grid square that a lane covers."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ if TYPE_CHECKING:
     from drivelint.arrays import Floats
 
 SQUARE_M: Final = 2.0
-"""The grid of `lane_cell`."""
+"""The size of a square of the grid of `lane_cell`."""
 BYTES_PER_SQUARE: Final = 224
-"""What a square takes in the database: a row of `lane_cell`, and those of `strip_cell` for the ground beside the lane."""
+"""The bytes of a square in the database: a row of `lane_cell`, and the rows of `strip_cell` beside the lane."""
 
 
 def ground_squares(lane_points: pa.Table) -> float:
-    """Return about how many rows `lane_cell` has: the squares that the boxes round the segments of the lanes touch."""
+    """Return the approximate number of rows of `lane_cell`: the squares that the bounding boxes of lane segments touch."""
     if lane_points.num_rows < 2:
         return 0.0
     lane = pc.dictionary_encode(lane_points["lanelet_id"].combine_chunks()).indices.to_numpy()

@@ -1,4 +1,4 @@
-"""Geometry of a lane that its two bounds give: points side by side, with stations, tangents and widths."""
+"""Computes the geometry of a lane from its two bounds: pairs of opposite points, with stations, tangents and widths."""
 
 from __future__ import annotations
 
@@ -11,25 +11,25 @@ import shapely
 if TYPE_CHECKING:
     from drivelint.arrays import Floats, Mask
 
-_SPACING_M = 4.0  # points of a lane are no further apart: its cells are looked up by segment
-_SAME_M = 0.0005  # points no further apart are one point
-_JITTER_M = 0.01  # over so short a way, a line that turns back is drawn by an unsteady hand
-_WIDEST_M = 60.0  # wider is a mistake in the bounds
-FARTHEST_M: Final = 1e12  # beyond it a coordinate is a mistake, and GEOS may refuse to count with it
-_LONGEST_M = 100_000.0  # so is longer
+_SPACING_M = 4.0  # the most between points of a lane, because positions are searched by the grid cells of each segment
+_SAME_M = 0.0005  # points at most this far apart are one point
+_JITTER_M = 0.01  # a step back that is at most this long is inaccurate drawing
+_WIDEST_M = 60.0  # a wider lane is an error in the bounds
+FARTHEST_M: Final = 1e12  # a larger coordinate is an error, and GEOS may fail on it
+_LONGEST_M = 100_000.0  # a longer lane is an error in the bounds
 
 
 class UnbuildableError(ValueError):
-    """A lane that has no shape or no direction; caught where the lane is named."""
+    """Raised for a lane without a valid shape or direction; the caller adds the lane's name."""
 
 
 def stations(line: Floats) -> Floats:
-    """Return how far along a line (n, 2) or (n, 3), seen from above, each of its points lies (m)."""
+    """Return the station (m) of each point of a line (n, 2) or (n, 3): the horizontal distance along the line."""
     return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line[:, :2], axis=0).T))])
 
 
 def resampled(line: Floats, s: Floats, at: Floats) -> Floats:
-    """Return the points (m, k) of a line (n, k) at other stations (m,) than its own (n,)."""
+    """Return the points (m, k) of a line (n, k), whose stations are `s` (n,), at the stations `at` (m,)."""
     return np.column_stack([np.interp(at, s, column) for column in line.T])
 
 
@@ -46,43 +46,43 @@ class LaneGeometry:
 
     @property
     def length(self) -> float:
-        """Length along the centre line (m)."""
+        """The length of the centre line (m)."""
         return float(self.s[-1])
 
     @property
     def turn(self) -> float:
-        """Change of heading along the lane (rad), left positive."""
+        """The change of heading along the lane (rad), positive to the left."""
         a, b = self.tangent[:-1], self.tangent[1:]
         return float(np.arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], (a * b).sum(1)).sum())
 
     @property
     def area(self) -> float:
-        """Area between the bounds (m2)."""
+        """The area between the bounds (m2)."""
         ring = np.vstack([self.right, self.left[::-1]])
         x, y = (ring - ring[0]).T
         return abs(0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)))
 
     @property
     def width(self) -> float:
-        """Mean width (m)."""
+        """The mean width (m)."""
         return float(((self.half_width[:-1] + self.half_width[1:]) * np.diff(self.s)).sum() / self.s[-1])
 
     @property
     def polygon(self) -> shapely.Polygon:
-        """The ground between the bounds."""
+        """The polygon between the bounds."""
         return shapely.Polygon(np.vstack([self.right, self.left[::-1]])).buffer(0.0)
 
     def driving_side_points(self, z: Floats) -> Floats:
-        """Return centre line, height and half width at each point, (n, 4), as `driving_side` takes them; `z`: heights (m), NaN: unknown."""
+        """Return x, y, height and half width (m) of each point, (n, 4), for `driving_side`; `z`: heights (m), NaN: unknown."""
         return np.column_stack([self.centre, z, self.half_width])
 
     def station(self, place: Floats) -> float:
-        """Return how far along the centre line (m) a place (2,) lies."""
+        """Return the station (m) of the point of the centre line that is closest to a position (2,)."""
         return float(shapely.line_locate_point(shapely.LineString(self.centre), shapely.Point(place)))
 
 
 def check_bounds(left: Floats, right: Floats) -> None:
-    """Refuse bounds (n, 2), (m, 2) of which no lane can be made. Errors: `UnbuildableError`."""
+    """Raise `UnbuildableError` if no lane can be made of these bounds (n, 2), (m, 2)."""
     if len(left) < 2 or len(right) < 2:
         raise UnbuildableError("a bound has fewer than two points")
     if not all((np.abs(bound) < FARTHEST_M).all() for bound in (left, right)):
@@ -90,7 +90,7 @@ def check_bounds(left: Floats, right: Floats) -> None:
 
 
 def lane_geometry(left: Floats, right: Floats) -> LaneGeometry:
-    """Return the points of a lane. Errors: `UnbuildableError` with its problem."""
+    """Return the geometry of a lane with these bounds. Errors: `UnbuildableError` with the problem."""
     check_bounds(left, right)
     left, right = _paired(left, right)
     for keep_points in (_distinct, _forwards):
@@ -123,13 +123,13 @@ def lane_geometry(left: Floats, right: Floats) -> LaneGeometry:
 
 
 def _distinct(centre: Floats) -> Mask:
-    """Return which points of a centre line (n, 2) are not the ones before them again."""
+    """Return the mask of points of a centre line (n, 2) that do not repeat the point before them."""
     distinct: Mask = np.r_[True, np.hypot(*np.diff(centre, axis=0).T) > _SAME_M]
     return distinct
 
 
 def _forwards(centre: Floats) -> Mask:
-    """Return which points of a centre line (n, 2) are not ends of a short way back."""
+    """Return the mask of points of a centre line (n, 2) that are not part of a short step back."""
     step = np.diff(centre, axis=0)
     short = np.hypot(*step.T) <= _JITTER_M
     back = np.sum(step[:-1] * step[1:], axis=1) < 0.0
@@ -138,7 +138,7 @@ def _forwards(centre: Floats) -> Mask:
 
 
 def _paired(left: Floats, right: Floats) -> tuple[Floats, Floats]:
-    """Return the bounds with as many points each, one beside the other: as given, or at equal shares of their lengths."""
+    """Return the bounds with equal numbers of points: unchanged if the numbers are equal, else at equal shares of their lengths."""
     if len(left) == len(right):
         return left, right
     shares = [s / s[-1] if s[-1] > 0 else np.linspace(0.0, 1.0, len(s)) for s in map(stations, (left, right))]
@@ -147,7 +147,7 @@ def _paired(left: Floats, right: Floats) -> tuple[Floats, Floats]:
 
 
 def _dense(centre: Floats, bound: Floats) -> Floats:
-    """Return a bound with points added so that the centre line's are no more than `_SPACING_M` apart."""
+    """Return a bound with points added, so that the points of the centre line are at most `_SPACING_M` apart."""
     length = np.hypot(*np.diff(centre, axis=0).T)
     pieces = np.maximum(1, np.ceil(length / _SPACING_M)).astype(np.int64)
     start = np.repeat(np.arange(len(pieces)), pieces)

@@ -1,4 +1,4 @@
-"""Heights along the lines of a map."""
+"""Interpolates heights along the lines of a map."""
 
 from __future__ import annotations
 
@@ -14,6 +14,6 @@ if TYPE_CHECKING:
 
 
 def heights_beside(line: Floats, points: Floats) -> Floats:
-    """Return the height of a line (n, 3) beside points (m, 2)."""
+    """Return the heights (m) of a line (n, 3) at its locations closest to these points (m, 2)."""
     at = shapely.line_locate_point(shapely.LineString(line[:, :2]), shapely.points(points))
     return np.asarray(np.interp(at, stations(line), line[:, 2]), np.float64)

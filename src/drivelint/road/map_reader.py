@@ -1,4 +1,4 @@
-"""Defines the input and the output of a map reader, for all map formats."""
+"""Defines the types of the input and the output of a map reader, for all map formats."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class MapSource:
-    """The input of a map reader: the bytes of a map, wherever they came from."""
+    """The input of a map reader: the bytes of a map, from a file or a log."""
 
-    name: str  # file name, or the log it was embedded in
+    name: str  # the file name; a fixed name for a map in a log
     content: bytes = field(repr=False)
 
     @property
     def sha256(self) -> str:
-        """Hash of the content, hexadecimal."""
+        """The hash of the content, hexadecimal."""
         return sha256(self.content).hexdigest()
 
 
@@ -27,9 +27,9 @@ class MapSource:
 class MapOptions:
     """The options for reading a map: offset, driving side, origin.
 
-    `offset` in metres is added to all coordinates; `side` is the driving side that the user gives (lht, rht), `voted_handedness` the side
-    by whose rule the lanes run as the traces drive (lht, rht; see `MapTables.lanes`), used only where neither option nor map decides.
-    `origin`: latitude and longitude (degrees) of the point that is 0,0 in the log, for maps that lie on the globe.
+    `offset` (metres) is added to all coordinates. `side`: the driving side that the user gives (lht, rht). `voted_handedness`: the side for
+    which the lanes' directions fit the traces (lht, rht; see `MapTables.lanes`), used only if neither option nor map decides. `origin`:
+    latitude and longitude (degrees) of the point that is 0,0 in the log, for maps in degrees.
     """
 
     offset: tuple[float, float] = (0.0, 0.0)
@@ -40,12 +40,11 @@ class MapOptions:
 
 @dataclass(frozen=True, eq=False)
 class MapTables:
-    """A map as rows: every table of `schemas/map.sql`, its columns and types exactly, rows totally ordered.
+    """A map as tables: every table of `schemas/map.sql`, with exactly its columns and types, and sorted rows.
 
-    `lanes`: the side (lht, rht) by whose rule the lanes' directions were read, which on roads of one direction alone need not be
-    the side that is driven on; None: the map gives each lane's direction. `lanes_source` states how it was found, as
-    `handedness_source` does; default: a guess that the traces may correct. `nation`: the country of all its roads, as two letters;
-    None: the map does not say it.
+    `lanes`: the side (lht, rht) that was assumed to find the lanes' directions; on one-way roads it may differ from the driving side. None:
+    the map states each lane's direction. `lanes_source`: the source of `lanes`, with the words of `handedness_source`; `default` is a guess
+    that the traces may correct. `nation`: the country of all roads of the map, as two letters; None: unknown.
     """
 
     environment_id: str

@@ -1,4 +1,4 @@
-"""Junctions of maps that name none: lanes for driving that lie across each other."""
+"""Finds the junctions of maps that do not name them, by drivable lanes that overlap."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 
 _LEAST_M2: Final = 1.0
 _LEVEL_M: Final = 3.0
-"""As far apart in height, lanes lie over each other and not across (as in `driving_side`)."""
+"""Lanes with at least this difference in height are above each other and do not cross (as in `driving_side`)."""
 
 
 def mark_junctions(lanes: Sequence[BoundedLane], *, least_share: float = 0.0, least_angle_rad: float = 0.0) -> None:
-    """Mark lanes whose areas overlap another's, that do not lie side by side, as parts of one junction.
+    """Mark overlapping lanes as parts of one junction, in place, except neighbours and successors.
 
-    `least_share`: of the smaller one's area; less of it is the inaccuracy of bounds. `least_angle_rad`: between two lanes where they
-    cross, or where they have parted or not yet joined; lanes at a smaller one split or merge. Lanes at different heights do not meet.
+    `least_share`: a smaller overlap, as share of the smaller lane's area, is inaccuracy of the bounds. `least_angle_rad`: lanes at a
+    smaller angle split or merge, but do not cross (see `_angle_rad`). Lanes at different heights do not cross.
     """
     drivable_lanes = [lane for lane in lanes if lane.drivable]
     areas = [lane.line.polygon for lane in drivable_lanes]
@@ -54,15 +54,18 @@ def mark_junctions(lanes: Sequence[BoundedLane], *, least_share: float = 0.0, le
 
 
 def _apart_m(a: BoundedLane, b: BoundedLane, common: shapely.Geometry) -> float:
-    """Return how far apart two lanes are in height where they overlap; NaN: not known."""
+    """Return the difference in height (m) of two lanes where they overlap; NaN: unknown."""
     return abs(float(np.subtract(*(_at(lane, common, lane.z[:, None])[0] for lane in (a, b)))))
 
 
 def _angle_rad(a: BoundedLane, b: BoundedLane, common: shapely.Geometry) -> float:
-    """Return the angle between two lanes where they overlap, or at their other ends where they begin or end together."""
+    """Return the angle (rad) at which two lanes cross where they overlap.
+
+    If they have a common start or end, the angle at their other ends is used if it is larger.
+    """
     first, second = (_at(lane, common, lane.line.tangent) for lane in (a, b))
     across = abs(float(first[0] * second[1] - first[1] * second[0]))
-    angle = float(np.arcsin(min(across, 1.0)))  # two that run against each other on the same ground do not cross
+    angle = float(np.arcsin(min(across, 1.0)))  # 0 for lanes of opposite direction, which do not cross
     if set(a.successors) & set(b.successors):
         angle = max(angle, _angle_between(a.line.tangent[0], b.line.tangent[0]))
     if np.hypot(*(a.line.centre[0] - b.line.centre[0])) < 1.0:
@@ -75,7 +78,7 @@ def _angle_between(first: Floats, second: Floats) -> float:
 
 
 def _at(lane: BoundedLane, area: shapely.Geometry, values: Floats) -> Floats:
-    """Return the values (n, k) along a lane where it passes the middle of an area, (k,)."""
+    """Return the values (k,) of a lane closest to the centroid of an area; `values` (n, k): one row per point of the lane."""
     middle = area.centroid
     s = lane.line.station(np.array([middle.x, middle.y]))
     return np.array([np.interp(s, lane.line.s, column) for column in values.T])

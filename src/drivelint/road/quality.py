@@ -1,4 +1,4 @@
-"""The problems of a map, collected while it is read."""
+"""Collects the problems of a map while it is read."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from drivelint.phrases import escape_invisible, listed
 from drivelint.sql.words import vocabularies
 
 SIGNS_UNMAPPED: Final = "signs_unmapped"
-"""The check of a map that has no stop and give-way signs, whether they stand there or not."""
+"""The id of the check for a map without stop and give-way signs, even if they exist on the road."""
 _UNKNOWN_WORDS: Final = {
     "lane_type": ("warning", "types of lanes", "vehicles are assumed not to drive there"),
     "road_type": ("info", "types of roads", "treated as not stated"),
@@ -19,7 +19,7 @@ _UNKNOWN_WORDS: Final = {
 }
 """Vocabulary -> severity, the subject of its words, and the effect of an unknown word."""
 _NETCONVERT_STAND_IN_MPS: Final = 39.44
-"""The limit that SUMO's netconvert 1.28 gives to roads with `maxspeed=none`, and to motorways without one: 142 km/h, which no sign says."""
+"""The limit (142 km/h) that SUMO's netconvert 1.28 writes for roads with `maxspeed=none`, and for motorways without a limit."""
 _ORDER = {"error": 0, "warning": 1, "info": 2}
 
 
@@ -33,35 +33,35 @@ class MapQuality:
         self._sides_by_number = 0
 
     def posted_limit(self, limit_mps: float) -> float | None:
-        """Return a limit of the map in m/s; None, and counted, where it stands in for one that the map's source did not have."""
+        """Return a speed limit (m/s) of the map; None, and count it, if it is netconvert's placeholder for a missing limit."""
         if abs(limit_mps - _NETCONVERT_STAND_IN_MPS) > 1e-9:
             return limit_mps
         self._stand_ins += 1
         return None
 
     def side_by_number(self) -> None:
-        """Count a lane section of OpenDRIVE whose lanes all have numbers of the side under which they do not stand."""
+        """Count an OpenDRIVE lane section whose lanes are all under `<left>` or all under `<right>`, with numbers of the other side."""
         self._sides_by_number += 1
 
     def known_word(self, vocabulary: str, word: str) -> str | None:
-        """Return a word of the map as the vocabulary spells it, whatever its case; None, and counted, where it has none such."""
+        """Return a word of the map in the vocabulary's spelling, whatever its case; None, and count it, if it is unknown."""
         known = vocabularies()[vocabulary].spelled(word)
         if known is None:
             self._unknown_words[vocabulary][word] += 1
         return known
 
     def add(self, check: str, severity: str, lanelet: str | None, message: str, n: int = 1) -> None:
-        """Add a row; `lanelet` is the lanelet or road concerned, None the whole map."""
-        assert severity in _ORDER, severity  # noqa: S101 - a mistake of ours
+        """Add a row; `lanelet`: the lanelet or road concerned, None: the whole map."""
+        assert severity in _ORDER, severity  # noqa: S101 - a programming error
         self.rows.append(_row(check, severity, lanelet, message, n))
 
     def geo_unusable(self, reference: str, why: object) -> None:
-        """Say that the map has a geo reference, and why it gives no positions on the earth."""
+        """Add a row on why the map's geo reference gives no positions on the earth."""
         message = f"the geo reference {reference!r} gives no positions on the earth: {why}"
         self.add("geo_reference_unusable", "info", None, message)
 
     def sorted_rows(self) -> list[dict[str, Any]]:
-        """Return the rows, the most severe first, with one for each vocabulary that lacks words of the map."""
+        """Return the rows, the most severe first, including one for each kind of counted problem."""
         rows = list(self.rows)
         for vocabulary, words in self._unknown_words.items():
             severity, what, follows = _UNKNOWN_WORDS[vocabulary]

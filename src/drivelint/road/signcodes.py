@@ -1,6 +1,7 @@
-"""Translates a signal's code into the values of the `traffic_signal` table.
+"""Translates the code of a signal (a sign or light) into the values of the `traffic_signal` table.
 
-The codes stand in `signcodes.toml`, the rest in `signnames.toml`. Where a code is not known, the signal's name may say its kind.
+The codes are in `signcodes.toml`; countries, names and arrows are in `signnames.toml`. If a code is unknown, the signal's name may show
+its kind.
 """
 
 from __future__ import annotations
@@ -29,13 +30,13 @@ def kind_of(country: str, code: str, name: str) -> str | None:
 
 
 def codes_of(kind: str) -> dict[str, list[str]]:
-    """Return the codes of a kind of signal by whose list they are: OpenDRIVE's, de, gb, us, es; lists without one are left out."""
+    """Return name of a list (OpenDRIVE, de, gb, us, es) -> its codes for this kind of signal; lists without such a code are left out."""
     return dict(toml_beside(__file__, "signcodes.toml").get(kind, {}))
 
 
 @cache
 def _kinds(country: str) -> dict[str, str]:
-    """Return code -> kind, of OpenDRIVE's list and of a country's."""
+    """Return code -> kind, from the lists of OpenDRIVE and of the country."""
     return {
         code: kind
         for kind, lists in toml_beside(__file__, "signcodes.toml").items()
@@ -45,7 +46,7 @@ def _kinds(country: str) -> dict[str, str]:
 
 
 def turns_of(code: str, subtype: str) -> list[str] | None:
-    """Return the turns that an OpenDRIVE traffic light holds for by its code; None: it does not say.
+    """Return the turns that an OpenDRIVE traffic light applies to, by its code; None: the code does not show it.
 
     Source: the signal list of OpenDRIVE as openPASS reads it (1.000.011: arrows 10 left, 20 right, 30 straight, 40 left
     and straight, 50 right and straight) and SUMO writes it.
@@ -57,10 +58,10 @@ def turns_of(code: str, subtype: str) -> list[str] | None:
 
 
 def turns_of_direction(word: str) -> list[str] | None:
-    """Return the turns that a CommonRoad traffic light holds for by its `direction`; None: it does not say."""
+    """Return the turns that a CommonRoad traffic light applies to, by its `direction`; None: unknown word."""
     return list(_FACTS["directions"].get(word, ())) or None
 
 
 def _plain(code: str) -> str:
-    """Return a code without the dots between thousands and without a decimal."""
+    """Return a code without dots between thousands (1.000.011), or without a final `.0`."""
     return code.replace(".", "") if _DOTTED.fullmatch(code) else code.removesuffix(".0")

@@ -1,4 +1,4 @@
-"""Arrow tables with exactly the columns and types of schemas/map.sql."""
+"""Makes Arrow tables with exactly the columns and types of schemas/map.sql."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Rows = list[dict[str, Any]]
 
 
 def crossing_row(crossing: str, lanelet: str, stations: Any, kind: str | None) -> dict[str, Any]:
-    """Return a row of `crossing` from the first to the last of some stations (m) on the lanelet."""
+    """Return a row of `crossing` that extends from the least to the largest of these stations (m) on the lanelet."""
     return {
         "crossing_id": crossing, "lanelet_id": lanelet,
         "s_start_m": float(min(stations)), "s_end_m": float(max(stations)), "kind": kind,
@@ -47,18 +47,17 @@ def map_tables(
     lanes_reversed: bool = False,
     nation: str | None = None,
 ) -> MapTables:
-    """Return the map: `content`, rows or columns by table, with `environment` and `map_quality`.
+    """Return the map with `content` (table -> rows or columns), `environment` and `map_quality`.
 
-    Its id is `<map stem>-<first 8 hex of sha256><offset, if any>@<lht or rht>`, the same on every machine; a question mark: the side is
-    a guess.
+    The map's id is `<map stem>-<first 8 hex of sha256><offset, if any>@<lht or rht>`, the same on every machine. A question mark follows if
+    the side is a guess, and a tilde if `lanes_reversed`.
 
-    `kind`: its format; `side`: the side that is driven on, and what says so; `geo`: how its own coordinates lie on the earth;
-    `lanes_reversed`: the lanes run the other way than its rule says, which the traces may have shown; then the id ends in a tilde.
-    `nation`: the country of its roads, as two letters; None: it does not say it.
+    `kind`: the map's format; `side`: the driving side and its source; `geo`: the frame of the map's own coordinates; `lanes_reversed`: the
+    lanes' directions are opposite to those of the driving side; `nation`: the country of the roads, as two letters, None: unknown.
     """
     x, y = (float(v) + 0.0 for v in request.offset)
     shift = f"{x:+}{y:+}" if x or y else ""
-    # a side that is only the standard's default is marked: the traces of another drive may prove it
+    # a default side is marked, because the traces of another drive may show the real one
     marks = f"{'?' if side[1] == 'default' else ''}{'~' if lanes_reversed else ''}"
     name = f"{PurePath(source.name).stem}-{source.sha256[:8]}{shift}@{side[0]}{marks}"
     tables = {table: owned_table(table, name, rows, kind) for table, rows in content.items()}
@@ -79,6 +78,6 @@ def map_tables(
 
 
 def _geo_trouble(geo: GeoFrame, points: pa.Table, request: MapOptions) -> str | None:
-    """Return why the frame gives no positions on the earth, judged in the middle of the lanes."""
+    """Return why the frame gives no positions on the earth, tested in the middle of the lanes; None: it is usable."""
     middle = [sum(pc.min_max(points[axis]).as_py().values()) / 2.0 for axis in ("x_m", "y_m")]
     return why_unusable(geo, middle[0] - request.offset[0], middle[1] - request.offset[1])

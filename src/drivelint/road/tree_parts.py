@@ -1,4 +1,4 @@
-"""Finds the shapes of a tree that lie at others, some at a time: where all lie at one place, all pairs at once would take all memory."""
+"""Queries a spatial index in parts, to limit memory: if many shapes overlap, all pairs at once may not fit."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ if TYPE_CHECKING:
 FIRST_PART: Final = 8
 GROWTH: Final = 8
 PAIRS_PER_PART: Final = 1_000_000
-"""A part is asked for about so many pairs, by what the part before it gave for each shape."""
+"""The aim for the number of pairs in a part; the size of a part follows from the pairs per shape in the part before."""
 MOST_AT_ONE_PLACE: Final = 1000
-"""Shapes that lie at another one, as the mean of a part. Real maps have 12 at most."""
+"""The most shapes found per query shape, as the mean of a part. Real maps have at most 12."""
 
 
 class CrowdedPlaceError(Exception):
-    """So many shapes lie at one place that this is no road network."""
+    """Raised if more shapes overlap at one position than in any road network."""
 
     def __init__(self, n: int) -> None:
         super().__init__(f"{n} lanes or lines lie at one place")
@@ -36,10 +36,10 @@ def query_in_parts(
     predicate: Literal["intersects", "within", "dwithin"],
     distance: float | None = None,
 ) -> Iterator[tuple[Indices, Indices]]:
-    """Yield what `tree.query` returns, in parts: indices of `shapes`, which rise from part to part, and of the tree's shapes at them.
+    """Yield the result of `tree.query` in parts: indices of `shapes`, ascending between parts, and indices of the tree's shapes.
 
-    Between two parts a limit of reading can strike: a single call does not look for it. Errors: `CrowdedPlaceError`, before what would
-    take longest.
+    A time limit of reading takes effect between two parts, but not inside a call of the index. Errors: `CrowdedPlaceError` if a part has
+    too many pairs.
     """
     every = np.asarray(shapes, dtype=object)
     begin, n = 0, FIRST_PART
@@ -58,7 +58,7 @@ def all_in_parts(
     predicate: Literal["intersects", "within", "dwithin"],
     distance: float | None = None,
 ) -> tuple[Indices, Indices]:
-    """Return all parts of `query_in_parts` as one."""
+    """Return all parts of `query_in_parts`, concatenated."""
     none = np.zeros(0, np.intp)
     parts = [(none, none), *query_in_parts(tree, shapes, predicate, distance)]
     first, second = (np.concatenate([part[k] for part in parts]) for k in (0, 1))

@@ -1,1 +1,1 @@
-"""Doubts motion that no road user makes, and tracks that are not separate bodies."""
+"""Reports doubts about motion that is impossible for a road user, and about tracks that are not separate bodies."""

@@ -1,8 +1,8 @@
-"""Doubts tracks that are not separate bodies: one body in two tracks, a track that begins elsewhere, or one that is held at its end.
+"""Finds tracks that are not separate bodies: one body in two tracks, tracks with a false start, and tracks prolonged at their end.
 
-A tracker may keep a second track of a long vehicle, and a data set may have a rider and the bicycle. Two boxes that lie deep in each
-other from the first sample that both have, at the same velocity, are one body: vehicles that collide were apart before. So are two that
-drive bumper to bumper, nearer than anybody follows, and sink into each other without an impact.
+A tracker may have two tracks of one long vehicle, and a data set may have both a rider and the bicycle. Two boxes that overlap deeply
+from their first common sample on, at the same velocity, are one body: vehicles that collide were apart before. Two boxes are also one
+body if one follows closer than any vehicle does, and they then overlap without an impact.
 """
 
 from __future__ import annotations
@@ -25,23 +25,23 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import QualityFinding, States
 
 DEEP_SHARE: Final = 0.5
-"""Two boxes lie deep in each other if they overlap by this share of the smaller one, along it and across it."""
+"""Two boxes overlap deeply if they overlap by this share of the smaller extent, both along and across the first box."""
 SAME_MPS: Final = 2.0
-"""Tracks of one body differ in velocity by no more than this, as the median."""
+"""The median difference of the velocities of two tracks of one body is at most this."""
 COMMON_SHARE: Final = 0.8
-"""They lie in each other in at least this share of the samples that both have,"""
+"""Two tracks of one body overlap deeply in at least this share of their common samples."""
 LEAST_COMMON: Final = 3
-"""and have at least so many in common."""
+"""Two tracks of one body have at least this many common samples."""
 FARTHEST_REACH_M: Final = 100.0
-"""No two middles of bodies that lie in each other are further apart."""
+"""The centres of two overlapping bodies are at most this far apart."""
 FARTHEST_CELL: Final = 10**10
-"""Cells of places that cannot be are one: their number times that of the times is a whole number of 64 bits."""
+"""Numbers of grid cells are clipped to this, so that the cell number times the number of times fits into 64 bits."""
 PAIRS_PER_PART: Final = 1_000_000
-"""Most pairs of boxes in memory at once."""
+"""The approximate number of pairs of boxes in memory at once."""
 ENTRY_SAMPLES: Final = 3
-"""A track that begins somewhere else comes to its place within so many samples."""
+"""A track with a false start reaches its true position within this many samples."""
 ENTRY_LEAST_MPS: Final = 5.0
-"""A first step that differs less from the next one is noise of the first detections."""
+"""If the first step differs by less than this from the next one, the difference is noise of the first detections."""
 
 
 COUPLED_M: Final = 2.0
@@ -49,12 +49,12 @@ COUPLED_ASIDE_M: Final = 1.0
 COUPLED_MPS: Final = 5.0
 COUPLED_LEAST: Final = 10
 SUNK_M: Final = 0.3
-"""In at least so many samples two boxes keep so near behind each other, in line, at more than this speed, and overlap by so much in the
-end: one body. No vehicle follows so near for a second."""
+"""Two tracks are coupled (one body) if in all common samples, at least `COUPLED_LEAST`, one box is within `COUPLED_M` behind the other and
+`COUPLED_ASIDE_M` to the side, at a median speed of `COUPLED_MPS`, and they overlap by `SUNK_M` in some sample."""
 
 
 class _Boxes(NamedTuple):
-    """Boxes (n): middle (2, n), unit vector along the box (2, n), half length and half width, velocity (2, n)."""
+    """Boxes (n): centre (2, n), unit vector along the box (2, n), half length and half width (2, n), velocity (2, n)."""
 
     place: Floats
     along: Floats
@@ -64,21 +64,26 @@ class _Boxes(NamedTuple):
 
 BEGIN_M: Final = 0.3
 BEGIN_MPS: Final = 2.0
-"""Boxes of two moving actors overlap by this much from the first common sample: no touch was seen, and their places are doubted."""
+"""If two boxes, both at least this fast, overlap by this much in their first common sample, no contact was recorded: the positions are
+doubtful."""
 BESIDE_M: Final = 0.3
-"""Places and headings of tracks tremble by so much."""
+"""The noise that positions and headings add to a lateral overlap."""
 BESIDE_SHARE: Final = 2 / 3
-"""Two boxes that overlap by no more than this share of the narrower width may be beside each other: the error may be across the road."""
+"""Two boxes that overlap laterally by at most this share of the smaller width may be side by side: the position error may be lateral."""
 HIT_MPS: Final = 1.5
-"""A velocity that changes by more from one sample to the next may be that of a vehicle that was hit."""
+"""A velocity that changes by more than this between two samples may be caused by an impact."""
 HELD_NS: Final = 2_000_000_000
 ARRIVAL_NS: Final = 1_000_000_000
 LEAVING_MPS2: Final = 4.0
-"""An actor that stands as its track ends can leave with this acceleration; if another actor is there sooner, it was not there before."""
+"""The highest acceleration of an actor after a standstill at the end of its track. If another vehicle is there sooner, within `ARRIVAL_NS`,
+the last `HELD_NS` of the track are repeated positions."""
 
 
 def same_bodies(states: States, actors: Actors, egos: Collection[str]) -> list[QualityFinding]:
-    """Return a finding on the tracks that are another one's body; of two, the ego's, else the longer one, is believed."""
+    """Return findings on tracks that are the same body as another, and on tracks that overlap from the start.
+
+    Of two tracks of one body, the ego's is used, else the longer one.
+    """
     rows, begun, pairs = np.zeros(len(states), np.bool_), np.zeros(len(states), np.bool_), []
     half = _half_sizes(states, actors)
     for a, b in _begin_upon(states, actors):
@@ -106,7 +111,7 @@ def same_bodies(states: States, actors: Actors, egos: Collection[str]) -> list[Q
 
 
 def false_entries(states: States, step: Steps) -> list[QualityFinding]:
-    """Return a finding on the first samples of tracks that reach their place by an impossible step."""
+    """Return a finding on the first samples of tracks that begin with an impossible step."""
     n = len(states)
     rows = np.zeros(n, np.bool_)
     starts = track_starts(states.actor)
@@ -125,7 +130,10 @@ def false_entries(states: States, step: Steps) -> list[QualityFinding]:
 
 
 def held_tracks(states: States, actors: Actors) -> list[QualityFinding]:
-    """Return a finding on the end of tracks that are held: standing, where another vehicle then is, sooner than they can have left."""
+    """Return a finding on tracks that end with repeated positions.
+
+    They end at a standstill, and another vehicle is at the same position sooner than the first one could leave it.
+    """
     starts, order = track_starts(states.actor), np.argsort(states.t_ns, kind="stable")
     t_ns, rows = states.t_ns[order], np.zeros(len(states), np.bool_)
     vehicle = np.isin(np.array(actors.classes, dtype=object), list(MOTOR_VEHICLES))
@@ -138,7 +146,7 @@ def held_tracks(states: States, actors: Actors) -> list[QualityFinding]:
         now, after, end = np.searchsorted(
             t_ns, [states.t_ns[last], states.t_ns[last] + 1, states.t_ns[last] + ARRIVAL_NS]
         )
-        # who touches it then, or brakes hard from then on, may have run into it
+        # an actor that touches it at that time, or brakes hard from then on, may have collided with it
         before = order[now:after]
         clear = (
             _overlap(_boxes(states, half, np.full(len(before), last)), _boxes(states, half, before))[0].min(axis=0)
@@ -164,18 +172,18 @@ def held_tracks(states: States, actors: Actors) -> list[QualityFinding]:
 
 
 def _begin_upon(states: States, actors: Actors) -> Iterator[tuple[int, int]]:
-    """Yield pairs of tracks of which one has its first sample deep in the other's box, or close before or behind it.
+    """Yield pairs of tracks of which one starts inside the box of the other, or close before or behind it.
 
-    Who are only close behind each other may be coupled, for which both need more samples than many tracks of a crowd have.
+    In the second case, only tracks with at least `COUPLED_LEAST` samples are used, which excludes many short tracks of a crowd.
     """
     starts, half = track_starts(states.actor), _half_sizes(states, actors)
     may_be_coupled = np.bincount(states.actor, minlength=len(states.ids)) >= COUPLED_LEAST
     number = np.full(len(states), -1)
     number[starts] = np.arange(len(starts))
     for first, second in _neighbours(states, actors, starts):
-        # of two that begin together each is met once
+        # if both tracks start at this time, the pair is yielded only once
         once = (states.actor[first] != states.actor[second]) & ((number[second] < 0) | (number[second] > number[first]))
-        first, second = first[once], second[once]  # noqa: PLW2901  the rest is of no use
+        first, second = first[once], second[once]  # noqa: PLW2901  only these pairs are used
         mine, theirs = _boxes(states, half, first), _boxes(states, half, second)
         coupled = may_be_coupled[states.actor[first]] & may_be_coupled[states.actor[second]] & _in_line(mine, theirs)
         near = _deep(mine, theirs) | coupled | (_overlap(mine, theirs)[0] >= BEGIN_M).all(axis=0)
@@ -183,7 +191,7 @@ def _begin_upon(states: States, actors: Actors) -> Iterator[tuple[int, int]]:
 
 
 def _neighbours(states: States, actors: Actors, starts: Indices) -> Iterator[tuple[Indices, Indices]]:
-    """Yield, in parts, the rows that begin a track beside the rows of the same time whose box may reach so far along x."""
+    """Yield pairs of rows in parts: the first row of a track, and a row of the same time whose box may overlap it along x."""
     half_m = np.hypot(actors.sizes["length_m"], actors.sizes["width_m"]) / 2.0
     reach_m = min(2.0 * float(np.nanmax(half_m, initial=0.0)) + COUPLED_M, FARTHEST_REACH_M)
     x = states.numbers["x_m"]
@@ -191,7 +199,7 @@ def _neighbours(states: States, actors: Actors, starts: Indices) -> Iterator[tup
     if not len(starts):
         return
     cell = np.floor(x[rows] / reach_m).clip(-FARTHEST_CELL, FARTHEST_CELL).astype(np.int64)
-    # one whole number for time and cell, so that no neighbour of a cell is one of another time
+    # one integer key for time and cell, so that neighbouring keys never belong to different times
     time = np.unique(states.t_ns[rows], return_inverse=True)[1].astype(np.int64)
     key = time * int(np.ptp(cell) + 3) + cell - cell.min()
     at = key[np.searchsorted(rows, starts)]
@@ -206,13 +214,13 @@ def _neighbours(states: States, actors: Actors, starts: Indices) -> Iterator[tup
 
 
 def _common(states: States, a: slice, b: slice) -> tuple[Indices, Indices]:
-    """Return the rows of two tracks at the times that both have."""
+    """Return the rows of two tracks at their common times."""
     _, in_a, in_b = np.intersect1d(states.t_ns[a], states.t_ns[b], assume_unique=True, return_indices=True)
     return in_a + a.start, in_b + b.start
 
 
 def _half_sizes(states: States, actors: Actors) -> Floats:
-    """Return half the length and half the width (2, n) of the actors that have states, by their number there."""
+    """Return half the length and half the width (2, n) of the actors in `states.ids`, in the same order."""
     index = {name: i for i, name in enumerate(actors.ids)}
     who = [index[name] for name in states.ids]
     half: Floats = np.stack([actors.sizes["length_m"][who], actors.sizes["width_m"][who]]) / 2.0
@@ -220,21 +228,21 @@ def _half_sizes(states: States, actors: Actors) -> Floats:
 
 
 def _boxes(states: States, half: Floats, rows: Indices) -> _Boxes:
-    """Return the boxes at these states. It is called for each pair of tracks: nothing here goes over all actors."""
+    """Return the boxes at these states. This is called for each pair of tracks, so it must not loop over all actors."""
     x, y, yaw, vx, vy = (states.numbers[name][rows] for name in ("x_m", "y_m", "yaw_rad", "vx_mps", "vy_mps"))
     sizes = half[:, states.actor[rows]]
     return _Boxes(np.stack([x, y]), np.stack([np.cos(yaw), np.sin(yaw)]), sizes, np.stack([vx, vy]))
 
 
 def _deep(first: _Boxes, second: _Boxes) -> Mask:
-    """Say of each pair of boxes (n) whether they overlap by half of the smaller one along the first box and across it; NaN: no."""
+    """Return the mask of the pairs of boxes (n) that overlap deeply (see `DEEP_SHARE`); False where a value is NaN."""
     overlap, reach = _overlap(first, second)
     deep: Mask = np.all(overlap >= 2.0 * DEEP_SHARE * np.minimum(first.half, reach), axis=0)
     return deep
 
 
 def _in_line(first: _Boxes, second: _Boxes) -> Mask:
-    """Say of each pair of boxes (n) whether they are close behind each other, one heading and one track; NaN: no."""
+    """Return the mask of the pairs of boxes (n) that are close behind each other, in line, with one heading; False for NaN."""
     overlap, reach = _overlap(first, second)
     aside = first.half[1] + reach[1] - overlap[1]
     ahead = first.half[0] + reach[0] - overlap[0]
@@ -244,7 +252,7 @@ def _in_line(first: _Boxes, second: _Boxes) -> Mask:
 
 
 def _coupled(first: _Boxes, second: _Boxes) -> bool:
-    """Say whether two tracks keep close in line at speed in all that both have, and sink into each other without an impact."""
+    """Return whether two tracks are coupled: close behind each other, in line, at speed in all common samples, with an overlap."""
     line = _in_line(first, second)
     if len(line) < COUPLED_LEAST or not line.all():
         return False
@@ -254,7 +262,10 @@ def _coupled(first: _Boxes, second: _Boxes) -> bool:
 
 
 def _overlap_at_begin(first: _Boxes, second: _Boxes) -> Mask:
-    """Say in which of their first samples (n) two tracks that move overlap, deep at once, or are hardly apart, without an impact."""
+    """Return the mask of the first common samples (n) with doubtful positions, because two moving tracks overlap from the start.
+
+    It extends until the boxes are as far apart as they overlapped, and is empty after an impact.
+    """
     across, depth = _overlap(first, second)[0][1], _overlap(first, second)[0].min(axis=0)
     speeds = np.minimum(np.hypot(*first.velocity), np.hypot(*second.velocity))
     together: Mask = np.logical_and.accumulate(depth >= 0.0)
@@ -262,7 +273,7 @@ def _overlap_at_begin(first: _Boxes, second: _Boxes) -> Mask:
         return np.zeros(len(together), np.bool_)
     until = int(together.sum()) + 1
     hit = [np.hypot(*np.diff(boxes.velocity[:, :until])) > HIT_MPS for boxes in (first, second)]
-    # places that are off by so much are not believed before the boxes are as far apart as they overlapped
+    # the position error may be as large as the overlap
     near: Mask = np.logical_and.accumulate(depth > -depth[together].max())
     if across[0] <= BESIDE_SHARE * 2 * min(first.half[1][0], second.half[1][0]):
         most = across[together].max() + BESIDE_M
@@ -271,7 +282,10 @@ def _overlap_at_begin(first: _Boxes, second: _Boxes) -> Mask:
 
 
 def _overlap(first: _Boxes, second: _Boxes) -> tuple[Floats, Floats]:
-    """Return by how much pairs of boxes (n) overlap along the first and across it, negative: are apart, and the other's half extents so."""
+    """Return the overlaps (2, n) of pairs of boxes along and across the first box, negative if they are apart.
+
+    Also return the half extents (2, n) of the second box in these directions.
+    """
     apart = second.place - first.place
     cos, sin = (
         (first.along * second.along).sum(axis=0),

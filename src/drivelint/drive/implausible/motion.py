@@ -1,7 +1,7 @@
-"""Doubts motion that no road user makes: a jolt and back, a step aside and back, a turn on the spot, a pedestrian as fast as a car.
+"""Finds motion that is impossible for a road user: a jolt and back, a step aside and back, a turn on the spot, too high a speed.
 
-What is doubted stays as it is recorded; the table `doubt` has the actor, the quantity and the time, and no verdict depends on it.
-`states` are in order, with their velocities completed.
+Doubtful values stay as recorded. The table `doubt` contains the actor, the quantity and the time, and no verdict may depend on these
+values. `states` are in order, with completed velocities.
 """
 
 from __future__ import annotations
@@ -24,30 +24,32 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import QualityFinding, States
 
 TYRE_MPS2: Final = 12.0
-"""No tyre changes a velocity faster, and an impact does not change it back (see `ukhc.contact-signature`)."""
+"""No tyre changes a velocity faster than this, and an impact does not change it back (see `ukhc.contact-signature`)."""
 LONGEST_JOLT: Final = 2
-"""A jolt of so many samples is one of the recording: central differences make two of one wrong position."""
+"""A jolt of at most this many samples is a recording error: with central differences, one wrong position affects two velocities."""
 LEAST_JOLT_MPS: Final = 1.0
-"""Smaller ones are within the accuracy of a tracker's velocities."""
+"""Smaller changes of velocity are within the accuracy of a tracker."""
 LEAST_STEP_M: Final = 0.5
 STEP_SHARE: Final = 0.15
-"""A single step of the positions differs from the velocities' way by noise and their error: more is a step of the recording."""
+"""A single step of the positions is a recording error if it is off the velocity by more than 0.5 m + 15 %, and by more than `STEP_SIGMAS`
+standard deviations of the noise."""
 STEP_SIGMAS: Final = 6.0
 BACK_SHARE: Final = 0.3
 BACK_NS: Final = 3_000_000_000
-"""A step aside is taken back by one that differs from its opposite by no more than this share, within this time."""
+"""A step within 3 s reverses an earlier one if their sum is at most 30 % of the earlier one."""
 SPIN_LEAST_RAD: Final = np.deg2rad(12.0)
 SPIN_RADIUS_M: Final = 3.0
 SPIN_WINDOW_S: Final = 1.0
 SPIN_MPS: Final = 1.0
-"""A vehicle turns by no more than its way within a second divided by 3 m, which no turning circle undercuts, and a detector's noise."""
+"""Within a second, a slow vehicle turns by at most its distance divided by 3 m (the smallest turning radius), plus 12 degrees for a
+detector's noise."""
 FASTEST_MPS: Final = {"pedestrian": 12.5, "animal": 30.0, "bicycle": 30.0}
 """Class -> its highest possible speed: a sprinter's record, a galloping horse, a descent of racers."""
 LEAST_FAST_SAMPLES: Final = 3
 
 
 def implausible_motion(states: States, step: Steps, actors: Actors, *, derived: bool) -> list[QualityFinding]:
-    """Return findings and doubts on impossible motion. `derived`: velocities come from the positions and do not contradict them."""
+    """Return findings and doubts on impossible motion. `derived`: the velocities are derived from the positions."""
     if len(states) < 3:
         return []
     jolt = _jolts(states, step)
@@ -77,7 +79,7 @@ def implausible_motion(states: States, step: Steps, actors: Actors, *, derived: 
 
 
 def _jolts(states: States, step: Steps) -> Mask:
-    """Return the samples between two changes of velocity, against each other, of which no tyre makes either."""
+    """Return the mask of the samples between two opposite changes of velocity that are both too fast for tyres."""
     v = states.velocity
     jolt = np.zeros(len(states), np.bool_)
     change = np.diff(v)
@@ -91,7 +93,7 @@ def _jolts(states: States, step: Steps) -> Mask:
         for i in range(width + 1):
             whole &= step.continuous[i : len(step.continuous) - width + i]
         against = np.sum(change[:, to] * change[:, away], axis=0) < 0.0
-        # the rest of both changes is a motion that an actor can make in that time
+        # the sum of both changes is possible for an actor in that time
         span_s = sum(step.dt_s[i : len(step.dt_s) - width + i] for i in range(width + 1))
         goes_on = np.hypot(*(v[:, width + 1 :] - v[:, : -width - 1])) <= TYRE_MPS2 * span_s
         first = np.flatnonzero(hard[to] & hard[away] & whole & against & goes_on)
@@ -101,7 +103,10 @@ def _jolts(states: States, step: Steps) -> Mask:
 
 
 def _displaced(states: States, step: Steps) -> Mask:
-    """Return the samples beside single steps of the positions that the velocities do not have, and those until a step is taken back."""
+    """Return the mask of the samples at both ends of false steps: single steps of the positions that the velocities do not show.
+
+    If a later false step reverses one, the samples between them are included.
+    """
     aside = np.zeros(len(states), np.bool_)
     known = known_motion(states, step)
     off = np.where(known, np.diff(states.place) - integral_per_step(states.velocity, step, known), 0.0)
@@ -115,9 +120,9 @@ def _displaced(states: States, step: Steps) -> Mask:
         states.place, Tracklets.from_samples(states.t_ns, states.place, step), states.actor, unknown=0.0
     )
     limit = np.maximum(limit, STEP_SIGMAS * np.sqrt(2.0) * sigma[:-1])
-    # a step stands alone: where the steps beside it are off alike, it is the velocity that is wrong
+    # only isolated steps count: if the neighbouring steps differ in the same direction, the velocity is wrong
     alone = size > 2.0 * np.maximum(_shifted(off, size, 1), _shifted(off, size, -1))
-    # an impact moves the actor that it hits, and changes its velocity
+    # a real step by an impact also changes the velocity
     hit = np.hypot(*np.diff(states.velocity)) > TYRE_MPS2 * step.dt_s
     at = np.flatnonzero((size > limit) & alone & ~hit)
     aside[at] = aside[at + 1] = True
@@ -129,7 +134,7 @@ def _displaced(states: States, step: Steps) -> Mask:
 
 
 def _shifted(off: Floats, size: Floats, by: int) -> Floats:
-    """Return how far the neighbouring step is off the same way as each step (n - 1)."""
+    """Return for each step (n - 1) how far the error of its neighbour goes in the same direction, in metres."""
     neighbour = np.roll(off, by, axis=1)
     neighbour[:, 0 if by > 0 else -1] = 0.0
     along: Floats = np.sum(neighbour * off, axis=0) / np.where(size > 0.0, size, 1.0)
@@ -137,7 +142,7 @@ def _shifted(off: Floats, size: Floats, by: int) -> Floats:
 
 
 def _spins(states: States, step: Steps, actors: Actors) -> Mask:
-    """Return the samples within a second in which a vehicle that hardly moves turns further than its way allows."""
+    """Return the mask of the samples within one-second windows in which a slow vehicle turns further than its distance allows."""
     spin, n = np.zeros(len(states), np.bool_), len(states)
     k = max(1, round(SPIN_WINDOW_S * 1e9 / step.period_ns)) if step.period_ns else n
     if n <= k:
@@ -162,7 +167,7 @@ def _spins(states: States, step: Steps, actors: Actors) -> Mask:
 
 
 def _too_fast(states: States, actors: Actors) -> Mask:
-    """Return all samples of the actors that are faster than possible for their class in at least three samples."""
+    """Return the mask of all samples of the actors that exceed the highest speed of their class in at least three samples."""
     kinds = dict(zip(actors.ids, actors.classes, strict=True))
     limits = np.array([FASTEST_MPS.get(kinds.get(name) or "", np.inf) for name in states.ids])
     over = np.hypot(*states.velocity) > limits[states.actor]

@@ -1,1 +1,1 @@
-"""Finds how sure findings are: windows of their drives are copied with assumed errors of a recording, and judged."""
+"""Estimates how certain findings are: copies windows of their drives with assumed recording errors, and judges the copies."""

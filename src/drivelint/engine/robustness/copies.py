@@ -1,14 +1,13 @@
-"""Makes copies of a drive, or of a part of it, with assumed errors of a recording.
+"""Makes copies of a drive, or of a part of it, with assumed recording errors.
 
-Every copy has, drawn once for the whole drive (such errors drift slowly, they do not jump from step to step):
-for each actor an offset of its position (x and y alike) and one of its clock, which moves it along its velocity;
-and one offset of the map, which is one of all actors together. Normal distributions about nothing.
+The errors of a copy are constant, because real ones drift slowly. They are normally distributed with mean 0: for each actor, an offset of
+its position in x and in y, and of its clock, which moves it along its velocity; and one offset of the map, applied to all actors.
 
-A draw depends on the seed, the actor's id and the copy's number only. So a part of a drive has the errors of the whole, and the same
-drive in another file, under another name, has the same errors.
+A draw depends only on the seed, the actor's id and the copy's number. So a part of a drive has the same errors as the whole drive, and
+the same drive in another file, under another name, has the same errors.
 
-Copies come in blocks. In a block, the errors of one kind are one from each of as many equally probable ranges (a Latin hypercube sample):
-small and large errors occur as often as they should, so that fewer copies show in how many of all a finding would stay.
+In a block of 20 copies, each error is a Latin hypercube sample: one draw from each of 20 equally probable ranges. Small and large errors
+then occur in the right proportion, so fewer copies are needed.
 """
 
 from __future__ import annotations
@@ -31,12 +30,12 @@ if TYPE_CHECKING:
     from drivelint.engine.batch import Drive
 
 BLOCK: Final = 20
-"""Copies among which each error is drawn once from each of as many ranges."""
+"""The number of copies in a block, and of the ranges that each error is drawn from."""
 
 
 @dataclass(frozen=True)
 class MeasurementErrors:
-    """Standard deviations of the errors, the number of copies (None: as many as it takes) and the seed."""
+    """Standard deviations of the errors, the number of copies (None: as many as needed) and the seed."""
 
     position_m: float = 0.1
     time_s: float = 0.05
@@ -46,12 +45,12 @@ class MeasurementErrors:
 
     @property
     def words(self) -> str:
-        """Their standard deviations."""
+        """The standard deviations as text."""
         return f"{self.position_m:g} m in every actor's position, {self.time_s:g} s in its clock, {self.map_m:g} m in the map's place"
 
 
 def copies(drive: Drive, errors: MeasurementErrors, numbers: Sequence[int]) -> tuple[list[str], Drive]:
-    """Return the ids of these copies of a drive, and all of them as the rows of one; 0 is the copy without errors."""
+    """Return the ids of the copies with these numbers, and one `Drive` with the rows of all of them; copy 0 has no errors."""
     ids = [f"{drive.trace.drive_id}~{number:05}" for number in numbers]
     states = drive.trace.tables["actor_state"]
     tables = {name: _repeated(rows, ids) for name, rows in drive.trace.tables.items()}
@@ -62,13 +61,13 @@ def copies(drive: Drive, errors: MeasurementErrors, numbers: Sequence[int]) -> t
 
 
 def _repeated(rows: pa.Table, ids: Sequence[str]) -> pa.Table:
-    """Return a table's rows once for each of these drives."""
+    """Return a table's rows repeated for each of these drive ids."""
     owner = pa.array(ids, pa.string()).take(np.repeat(np.arange(len(ids)), rows.num_rows))
     return with_columns(pa.concat_tables([rows] * len(ids)), {"drive_id": owner})
 
 
 def _draws(drive: Drive, errors: MeasurementErrors, numbers: Sequence[int]) -> Floats:
-    """Return (copies, states, 3): the errors of x, y (m) and clock (s) of each state."""
+    """Return the errors of x, y (m) and clock (s) of each state, shape (copies, states, 3)."""
     tables = drive.trace.tables
     actors = pc.unique(tables["actor_state"]["actor_id"])
     of_actor = np.stack([_standard(numbers, errors.seed, name) for name in actors.to_pylist()], axis=1)
@@ -81,8 +80,8 @@ def _draws(drive: Drive, errors: MeasurementErrors, numbers: Sequence[int]) -> F
 
 
 def _standard(numbers: Sequence[int], seed: int, actor: str | None) -> Floats:
-    """Return (copies, 3) draws of the standard normal distribution; zeros for the copy 0. `actor` None: the map."""
-    from scipy.special import ndtri  # loading it takes longer than judging a rule
+    """Return draws (copies, 3) of the standard normal distribution, zeros for copy 0. `actor`: an actor's id; None: the map."""
+    from scipy.special import ndtri  # imported here, because loading scipy takes longer than judging a rule
 
     key = sha256("\0".join([str(seed), "map" if actor is None else f"actor {actor}"]).encode()).digest()
     rng = np.random.Generator(np.random.PCG64(int.from_bytes(key)))
@@ -93,7 +92,7 @@ def _standard(numbers: Sequence[int], seed: int, actor: str | None) -> Floats:
 
 
 def _positions_of_copies(states: pa.Table, draws: Floats) -> dict[str, Floats]:
-    """Return the positions of all copies, one after the other; an unknown velocity is taken to be none."""
+    """Return the positions of all copies, concatenated; an unknown velocity counts as 0."""
     found = {}
     for axis, (place, speed) in enumerate((("x_m", "vx_mps"), ("y_m", "vy_mps"))):
         along = np.nan_to_num(floats(states[speed])) * draws[:, :, 2]
@@ -102,13 +101,13 @@ def _positions_of_copies(states: pa.Table, draws: Floats) -> dict[str, Floats]:
 
 
 def renamed(trace: Trace, drive_id: str) -> Trace:
-    """Return a trace under another name."""
+    """Return the trace with another drive id."""
     tables = {name: _repeated(rows, [drive_id]) for name, rows in trace.tables.items()}
     return replace(trace, drive_id=drive_id, tables=tables)
 
 
 def crop(drive: Drive, from_ns: int, to_ns: int, actors: Collection[str] | None = None) -> Drive:
-    """Return the part of a drive between two times, with these actors (None: all that are seen then)."""
+    """Return the part of a drive between two times, with these actors (None: all that have states then)."""
     tables = dict(drive.trace.tables)
     for name in ("actor_state", "signal_state", "declared_event"):
         t_ns = tables[name]["t_ns"]

@@ -1,18 +1,18 @@
-"""Counts for each critical and major finding in how many copies with the errors of a recording it is a finding too.
+"""Counts for each critical and major finding in how many copies with recording errors it stays a finding.
 
-Only a window of the drive around a finding is copied, with the actors near the ego, and judged by the rules that failed. The first
-window has some seconds around the worst step. Its copy without errors must give the finding with the same margin: where it does not,
-a wider window is tried, and then none.
+Only a window of the drive around the finding, with the actors near the ego, is copied, and judged by the rule that failed. The first
+window is some seconds around the worst step. Its copy without errors must give the finding with the same margin. Otherwise wider windows
+are tried; if none gives that margin, the finding gets no count.
 
-A stretch stays in a copy where any step of it fails. The errors of a copy are the same at all steps, so a copy in which the worst step
-passes loses the stretch. Where the first window has only a part of the stretch and a copy tells neither, the wider one is judged,
-unless so few copies keep the finding that it is only possible anyway.
+The finding of an invariant is a stretch of steps. It stays in a copy if any of its steps fails there. It is lost if its worst step passes,
+because a copy's errors are the same at all steps. If the first window has only a part of the stretch and a copy shows neither, a wider
+window is judged, unless so many copies lose the finding that it is only possible.
 
-Of a rule that an ego breaks several times, the gravest finding is judged, and those that are as near to the threshold as the errors are
-large. Where the gravest is only possible, the others are judged too. On request, the copies of all findings are judged.
+If an ego breaks a rule several times, copies are judged for the worst finding, and for findings whose margins are as small as the errors.
+If the worst finding is only possible, the other findings of this ego and rule follow. On request, copies are judged for all findings.
 
-100 copies are judged, 32 where all of these keep the finding, or 20 where their margins are far from 0, too. Fewer are enough where so
-many of them lose it that it is only possible, whatever the others would show.
+At most 100 copies are judged. 32 are enough if all of them keep the finding, and 20 if the margins are also far from 0. Judging ends early
+if so many copies lose the finding that it is only possible.
 """
 
 from __future__ import annotations
@@ -45,16 +45,20 @@ if TYPE_CHECKING:
     from drivelint.evaluate.limits import RuleLimits
 
 SAME_REFERENCE_NS: Final = 2_000_000_000
-"""A reference point that moved by no more is the same one."""
+"""Reference points of a drive and of its copy are the same if they are at most this far apart."""
 HASTY_STATES: Final = 10_000
-"""So many copied states cost a quarter of what a pass over none costs, which most runs do not need."""
+"""If the additional copies have at most this many states, all copies are judged in one pass. They cost a quarter of the fixed cost of a
+second pass."""
 _DERIVED: Final = ("clock", "step", "ego_state", "pair", "ego_condition")
-"""Tables that the evaluation reads itself, without those that it reads for unknown verdicts."""
+"""Tables that the evaluation itself reads, except those that only unknown verdicts need."""
 _HANDED_OVER: Final = frozenset({"capability", "registration"})
 
 
 class Robustness:
-    """Judges copies in the database of a session, which `load`s drives into it and `forget`s all that is there of them."""
+    """Judges copies in the database of a session.
+
+    `load` fills the database with drives, `forget` deletes the rows of drives. `of_all`: judge copies for all critical and major findings.
+    """
 
     def __init__(
         self,
@@ -85,7 +89,7 @@ class Robustness:
         self._advance: Callable[[int], None] = lambda _: None
 
     def add(self, drives: Sequence[Drive]) -> None:
-        """Keep the drives with findings until there are enough of them: a pass over few copies costs nearly what one over many does."""
+        """Keep the drives with findings, and judge their copies once there are enough: few copies cost nearly as much as many."""
         ids = [drive.trace.drive_id for drive in drives]
         found = self._con.execute(statement("robustness/findings"), {"drives": ids}).to_arrow_table()
         with_findings = set(pc.unique(found["drive_id"]).to_pylist())
@@ -95,11 +99,11 @@ class Robustness:
 
     @property
     def n_waiting(self) -> int:
-        """The number of waiting drives."""
+        """The number of drives whose copies are not judged yet."""
         return len(self._waiting)
 
     def n_asked(self) -> int:
-        """Return of how many findings of the drives that wait copies are judged at first."""
+        """Return the number of findings of the waiting drives for which copies are judged first."""
         questions = self._questions(self._waiting)
         gravest, near, _ = by_weight(questions)
         return len(questions) if self._of_all else len(gravest) + len(near)
@@ -109,16 +113,16 @@ class Robustness:
         return [Question(row, self._rules[row["rule_id"]], ends_early=not self._of_all) for row in found.to_pylist()]
 
     def judge(self, advance: Callable[[int], None] | None = None) -> None:
-        """Write `n_copies` and `n_stays` of the findings of the drives that wait, whose own tables are not needed any more.
+        """Judge copies for the findings of the waiting drives, and write `n_copies` and `n_stays`.
 
-        A finding that is not settled when the run is stopped stays without an answer. `advance` hears of findings that are settled.
+        A finding that is not settled when the run is stopped gets no count. `advance` is called with the number of newly settled findings.
         """
         by_id, self._waiting = self._waiting, {}
         if not by_id:
             return
         self._advance = advance or (lambda _: None)
         questions = self._questions(by_id)
-        cut(questions)  # findings of one overtake share a window, whichever of them are judged
+        cut(questions)  # of all findings, so that the windows do not depend on which of them are judged
         gravest, near, others = by_weight(questions)
         most_states = BATCH_STATES
         if are_large(by_id.values()):
@@ -130,7 +134,7 @@ class Robustness:
         self._answer([q for q in questions if q.n_copies and q.is_settled])
 
     def _settle(self, drives: Mapping[str, Drive], questions: Sequence[Question], most_states: int) -> None:
-        """Judge copies until they suffice."""
+        """Judge copies until all questions are settled, no larger window is left, or the run is stopped."""
         open_ = questions
         while open_ and not self._is_stopped():
             chunks = _chunks(_windows(drives, open_), most_states)
@@ -141,7 +145,7 @@ class Robustness:
             open_ = left
 
     def _try(self, chunk: Sequence[Window]) -> None:
-        """Judge windows together; if that errs, one by one, so that one rule's fault is not the others'."""
+        """Judge windows together; if that fails, judge them one by one, so that only the faulty window gets no result."""
         try:
             with store.telling_short_memory():
                 found = self._stays(chunk)
@@ -162,7 +166,7 @@ class Robustness:
                 question.take(window.numbers, outcome.margins, outcome.passes)
 
     def _stays(self, chunk: Sequence[Window]) -> list[dict[int, Outcome]]:
-        """Return for each window: question -> the result of its copies."""
+        """Judge the copies of the windows, and return for each window: id of the question -> outcome."""
         made = [copies(window.part(f"{no:05}"), self._errors, window.numbers) for no, window in enumerate(chunk)]
         asked = [(no, question) for no, window in enumerate(chunk) for question in window.questions]
         rules = {question.rule.id: question.rule for _, question in asked}
@@ -211,7 +215,7 @@ class Robustness:
 
 
 def _windows(drives: Mapping[str, Drive], questions: Sequence[Question]) -> list[Window]:
-    """Return the windows to judge next, with all copies at once where that costs less than another pass."""
+    """Return the windows to judge next, with all copies at once if that costs less than another pass."""
     found = windows(drives, questions, N_COPIES)
     more = sum(window.n_states * (N_COPIES[-1] // len(window.numbers)) for window in found if window.numbers[1] == 1)
     if more > HASTY_STATES:
@@ -222,7 +226,7 @@ def _windows(drives: Mapping[str, Drive], questions: Sequence[Question]) -> list
 
 
 def _input_rows(chunk: Sequence[Window], ids: Sequence[Sequence[str]]) -> dict[str, list[dict[str, object]]]:
-    """Return the rows of the copies, and of the findings that are looked for in them, in the order of the windows."""
+    """Return the rows of the tables `_copy` and `_question`: the copies and the findings to search in them, by window."""
     copies_ = [
         {"window_id": no, "copy_id": name, "copy_no": number, "drive_id": window.drive_id, "ego_id": window.ego_id}
         for no, window in enumerate(chunk)
@@ -235,7 +239,7 @@ def _input_rows(chunk: Sequence[Window], ids: Sequence[Sequence[str]]) -> dict[s
             "finding_no": finding_no,
             "window_id": no,
             **{key: question.finding[key] for key in same},
-            "any_object": question.rule.combine != "each",  # else the object is only the one that decided
+            "any_object": question.rule.combine != "each",  # in a copy, another object may decide
             "t_from_ns": question.finding["t_start_ns"],
             "t_to_ns": question.finding["t_end_ns"],
             "t_worst_ns": question.finding["t_worst_ns"],
@@ -246,7 +250,7 @@ def _input_rows(chunk: Sequence[Window], ids: Sequence[Sequence[str]]) -> dict[s
 
 
 def _chunks(windows: Sequence[Window], most_states: int) -> Iterator[list[Window]]:
-    """Cut windows into those whose copies have at most so many states, a larger one being parts of fewer copies."""
+    """Yield groups of windows whose copies have at most `most_states` states; larger windows are split into parts with fewer copies."""
     chunk: list[Window] = []
     n_states = 0
     for window in (part for whole in windows for part in whole.parts(most_states)):
@@ -260,7 +264,7 @@ def _chunks(windows: Sequence[Window], most_states: int) -> Iterator[list[Window
 
 
 def _schema(row: Mapping[str, object]) -> pa.Schema:
-    """Return the schema of the rows of a table; a column may be NULL in all of them."""
+    """Return the schema of a table by the names of its columns, because all values of a column may be NULL."""
     texts = {"copy_id", "drive_id", "ego_id", "rule_id", "profile", "object_id"}
     kinds = {"any_object": pa.bool_(), **dict.fromkeys(texts, pa.string())}
     return pa.schema([(name, kinds.get(name, pa.int64())) for name in row])

@@ -1,4 +1,4 @@
-"""Findings for which copies are judged: how many copies each needs, and the result of these."""
+"""Findings for which copies are judged: how many copies each needs, and what the copies show."""
 
 from __future__ import annotations
 
@@ -18,49 +18,49 @@ if TYPE_CHECKING:
     from drivelint.engine.robustness.window import Extent
 
 N_COPIES: Final = (20, 32, 100)
-"""The first 32 copies suffice if all keep the finding. Of a finding that 90 % of all copies would keep, 32 of 32 do in 3.4 % of draws,
-and 95 of 100 or more in 2.4 %; of one that 93 % would, in 10 % and in 25 %. 20 are a block of `copies`, which has each error from
-the smallest to the largest."""
+"""The numbers of copies that may suffice. 32 suffice if all keep the finding. If the true share of copies that keep it is 90 %, all of 32
+keep it with a probability of 3.4 %, and at least 95 of 100 with 2.4 %; if it is 93 %, with 10 % and 25 %. 20 is the block size of
+`copies`: a block has errors from the smallest to the largest."""
 FAR_SPREADS: Final = 5.0
-"""The first 20 suffice if all keep the finding, and the mean of their margins is so many standard deviations from 0."""
+"""20 copies suffice if all keep the finding, and the mean of their margins is at least this many standard deviations from 0."""
 LEAST_SHARE: Final = 0.95
-"""A finding that fewer of its copies keep is only possible, as `result.certainty` says."""
+"""A finding is only possible if less than this share of its copies keep it (see `result.certainty`)."""
 SMALL_MARGIN: Final = {"m": 0.3, "s": 0.1}
-"""Unit -> margin up to which all copies are judged at once, as errors of a decimetre may take it away."""
+"""Unit -> margin up to which a finding is near the threshold: errors of a decimetre may remove it, so all copies are judged."""
 NOT_FAR: Final = 10.0
-"""Below so many small margins, 20 copies will hardly suffice."""
+"""For margins below this multiple of `SMALL_MARGIN`, 20 copies will probably not suffice."""
 
 
 @dataclass
 class Question:
-    """A finding, and the result of its copies so far."""
+    """A finding, and what its copies have shown so far."""
 
     finding: dict[str, Any]
     rule: Rule
     size: int = 0
-    """The size of the present window."""
+    """The size of the current window (see `window.SIZES`)."""
     ends_early: bool = True
-    """It ends as soon as it is only possible; whoever gives a confidence of their own needs the share of all copies."""
+    """Stop judging copies as soon as the finding is only possible. False: the user gave a confidence, which needs all copies."""
     n_copies: int = 0
     n_stays: int = 0
-    """The number of copies that keep it."""
+    """The number of copies that keep the finding."""
     margins: list[float | None] = field(default_factory=list)
-    """The margins in those that keep it."""
+    """The margins in the copies that keep the finding."""
     is_doubtful: bool = False
-    """Some copies lost it in the first window, so that all are judged in the next."""
+    """The first window left some copies undecided, so all copies are judged in the next window."""
     is_hasty: bool = False
-    """All copies are judged at once, which saves a pass. The last ones count only where the first do not suffice."""
+    """Judge all copies at once, which saves a pass. The later copies count only if the earlier ones do not suffice."""
     extent: Extent | None = None
-    """What its copies of this size are copies of."""
+    """The times and actors of the current window; None: it was not cut yet."""
 
     @cached_property
     def of_overtake(self) -> bool:
-        """Whether its rule is about overtakes."""
+        """Whether the finding's rule is about overtakes."""
         return "overtake" in with_sources(self.rule.reads)
 
     @property
     def is_near(self) -> bool:
-        """Whether errors of a decimetre may take it away."""
+        """Whether the margin is so small that errors of a decimetre may remove the finding."""
         return self._is_within(1.0)
 
     def _is_within(self, share: float) -> bool:
@@ -69,18 +69,18 @@ class Question:
 
     @property
     def numbers(self) -> range:
-        """The copies to judge next."""
+        """The numbers of the copies to judge next."""
         goal = N_COPIES[-1] if self.is_hasty else next((n for n in N_COPIES if n > self.n_copies), N_COPIES[-1])
         return range(self.n_copies + 1, max(goal, self._n_first) + 1)
 
     @property
     def _n_first(self) -> int:
-        """How many copies are judged together at first: those that will hardly suffice save no time."""
+        """The number of copies in the first pass: 32 if 20 will probably not suffice."""
         return N_COPIES[self.finding["margin"] is None or self._is_within(NOT_FAR)]
 
     @property
     def is_settled(self) -> bool:
-        """Whether the copies suffice."""
+        """Whether enough copies were judged."""
         few, more, most = N_COPIES
         if self.n_copies >= most or (self.ends_early and self.n_copies - self.n_stays > (1.0 - LEAST_SHARE) * most):
             return True
@@ -98,16 +98,16 @@ class Question:
 
     @property
     def is_sure(self) -> bool:
-        """Whether the copies show that it is more than possible."""
+        """Whether the copies show that the finding is certain, not only possible."""
         return self.n_copies > 0 and self.is_settled and self.n_stays >= LEAST_SHARE * self.n_copies
 
     def take(self, numbers: Sequence[int], margins: Mapping[int, float | None], passes: Collection[int] = ()) -> None:
-        """Take the copies of a window in which the finding stays, with their margins; the first copy is the one without errors.
+        """Add the result of the copies `numbers` of a window; the first number is the copy without errors.
 
-        `passes`: copies in which the rule is kept at the finding's worst step.
+        `margins`: the copies that keep the finding, with their margins. `passes`: copies in which the worst step passes.
         """
         if numbers[1] != self.n_copies + 1 or self.is_settled:
-            return  # the window of the copies before these does not do, or these copies suffice
+            return  # the window of the copies before these failed, or the question is settled
         margin, whole = self.finding["margin"], margins.get(0)
         same = 0 in margins and (margin is None or (whole is not None and abs(whole - margin) < 1e-6))
         if not same:
@@ -122,36 +122,36 @@ class Question:
 
     @property
     def _is_whole(self) -> bool:
-        """Whether no step outside the window can keep the finding: one of a stretch does, and the first window may not have all."""
+        """Whether the window contains every step that can keep the finding; the first window may have only a part of a stretch."""
         start, end = span(self)
         whole = start <= self.finding["t_start_ns"] and end >= self.finding["t_end_ns"]
         return self.size > 0 or self.finding["t_ref_ns"] is not None or whole
 
     def _is_decided(self, numbers: Sequence[int], conclusive_copies: Collection[int], n_stays: int) -> bool:
-        """Whether undecided copies can be counted as lost: there are none, or the finding is only possible anyway."""
+        """Return whether undecided copies may count as lost: there are none, or the finding is only possible even if they keep it."""
         may_stay = self.n_stays + n_stays + len(set(numbers) - set(conclusive_copies)) + N_COPIES[-1] - numbers[-1]
         return set(conclusive_copies) >= set(numbers) or may_stay < LEAST_SHARE * N_COPIES[-1]
 
     def restart(self, size: int) -> None:
-        """Forget the copies, and try this size of window; none is left: it stays without an answer."""
+        """Discard the results, and continue with this size of window; with the size `SIZES`, the finding gets no count."""
         self.size, self.n_copies, self.n_stays, self.margins, self.extent = size, 0, 0, [], None
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """Of a finding in a window: the copies that keep it with their margins, and those in which its worst step passes."""
+    """The result of a finding in a window: copies that keep it, with their margins, and copies in which the worst step passes."""
 
     margins: dict[int, float | None] = field(default_factory=dict)
     passes: set[int] = field(default_factory=set)
 
 
 def breach(question: Question) -> tuple[str, ...]:
-    """Return which drive, ego and rule a finding is of."""
+    """Return the drive, ego and rule of a finding."""
     return tuple(question.finding[key] for key in ("drive_id", "ego_id", "rule_id"))
 
 
 def by_weight(questions: Sequence[Question]) -> tuple[list[Question], list[Question], list[Question]]:
-    """Return the gravest finding of each rule that an ego breaks, of the others those near the threshold, and the rest."""
+    """Return three lists: the worst finding (by margin) of each drive, ego and rule; others near the threshold; the remaining ones."""
     gravest: dict[tuple[str, ...], Question] = {}
     for question in sorted(questions, key=lambda q: np.nan_to_num(q.finding["margin"] or np.nan, nan=np.inf)):
         gravest.setdefault(breach(question), question)

@@ -1,4 +1,4 @@
-"""Cuts the windows of drives that are copied to see how robust findings are."""
+"""Cuts windows out of drives; copies of these windows show how robust findings are."""
 
 from __future__ import annotations
 
@@ -20,65 +20,65 @@ if TYPE_CHECKING:
     from drivelint.engine.batch import Drive
 
 SIZES: Final = 3
-"""The sizes of a window: 0, the seconds around the worst step, and two larger ones if these seconds are not enough."""
+"""The number of window sizes. Size 0 is some seconds around the worst step; sizes 1 and 2 are larger, if that is not enough."""
 NEAR_M: Final = (10.0, 25.0, 100.0)
-"""For each size: actors that stay farther away from the ego, along x or y, are left out."""
+"""For each size: actors that are always farther than this from the ego, along x or y, are left out."""
 SHORT_NS: Final = 3_000_000_000
-"""A stretch that is no longer is in its first window as a whole."""
+"""The first window contains the whole stretch of a finding that is at most this long."""
 LONG_NS: Final = 10_000_000_000
-"""Of a longer stretch, what is farther away from its worst step is left out at first."""
+"""A window of size 1 is limited to this time before and after the worst step of a stretch."""
 
 
 class Around(NamedTuple):
-    """How long before and after its step a window of size 0 is, in nanoseconds."""
+    """The time in nanoseconds by which a window of size 0 extends before the first of its steps and after the last."""
 
     before_ns: int
     after_ns: int
 
 
 AT_STEP: Final = Around(1_000_000_000, 600_000_000)
-"""For an invariant."""
+"""The window around the worst step of an invariant."""
 AT_REFERENCE: Final = Around(2_000_000_000, 2_000_000_000)
-"""For a rule with reference points: around these and the worst step."""
+"""The window around the reference point and the worst step, for rules with reference points."""
 IN_OVERTAKE: Final = Around(3_000_000_000, 2_000_000_000)
-"""For an invariant about overtakes, which are known only with the lane before."""
+"""The window around the worst step of an invariant about overtakes, which are detected by the ego's lane before them."""
 AT_OVERTAKE: Final = Around(3_000_000_000, 6_000_000_000)
-"""For a rule with reference points in overtakes."""
+"""The same as `AT_REFERENCE`, for rules about overtakes."""
 
 
 class FindingWithCopies(Protocol):
-    """A finding that copies are judged for."""
+    """The interface of a finding for which copies are judged."""
 
     finding: dict[str, Any]
     size: int
     extent: Extent | None
-    """What its copies of this size are copies of; None: no window of this size was cut yet."""
+    """The times and actors of its window; None: the window was not cut yet."""
 
     @property
     def of_overtake(self) -> bool:
-        """Whether its rule is about overtakes."""
+        """Whether the finding's rule is about overtakes."""
         ...
 
     @property
     def numbers(self) -> range:
-        """The copies to judge next."""
+        """The numbers of the copies to judge next."""
         ...
 
 
 @dataclass
 class Extent:
-    """Times and actors of a window. All copies for a finding have the same."""
+    """Times and actors of a window. They are the same for all copies of a finding."""
 
     from_ns: int
     to_ns: int
     size: int
     objects: set[str]
-    """The objects of the findings in it."""
+    """The objects of the findings in the window."""
     at_once: bool
-    """Actors are near only if they are so at the same time: else wherever the ego is in the window."""
+    """Whether an actor is near only if it is close to the ego at the same time. False: if it is close to any part of the ego's path."""
 
     def add(self, question: FindingWithCopies) -> None:
-        """Let a finding's window be in it, too."""
+        """Include the window of this finding, and set the finding's extent."""
         start, end = span(question)
         self.from_ns, self.to_ns = min(self.from_ns, start), max(self.to_ns, end)
         if question.finding["object_id"]:
@@ -89,18 +89,18 @@ class Extent:
 
 @dataclass
 class Window:
-    """A part of a drive with one ego, the copies of it to judge, and the findings whose times it covers."""
+    """A part of a drive with one ego, the copies of it to judge, and the findings in it."""
 
     drive: Drive
     ego_id: str
     numbers: Sequence[int]
-    """The copy without errors, and those with errors that are to be judged."""
+    """The numbers of the copies to judge; the first is 0, the copy without errors."""
     extent: Extent
     questions: list[Any]
 
     @property
     def drive_id(self) -> str:
-        """The drive."""
+        """The id of the drive."""
         return self.drive.trace.drive_id
 
     @cached_property
@@ -111,22 +111,22 @@ class Window:
         return replace(part, trace=replace(part.trace, tables={**part.trace.tables, "actor": actors}))
 
     def part(self, name: str) -> Drive:
-        """Return the copied part as a drive, with this suffix after the name of the whole."""
+        """Return the part as a drive whose id is that of the whole drive with this suffix."""
         return replace(self._part, trace=renamed(self._part.trace, f"{self.drive_id}~{name}"))
 
     @property
     def n_states(self) -> int:
-        """Rows of `actor_state` of all copies."""
+        """The number of rows of `actor_state` of all copies."""
         return self._part.n_states * len(self.numbers)
 
     def parts(self, most_states: int) -> Iterator[Window]:
-        """Yield the same window with fewer copies each, so that their states are at most so many, if that can be."""
+        """Yield the window split into parts with fewer copies, each with at most `most_states` states if that is possible."""
         at_once = max(1, most_states // max(1, self._part.n_states) - 1)
         for start in range(1, len(self.numbers), at_once):
             yield replace(self, numbers=(0, *self.numbers[start : start + at_once]))
 
     def _near(self) -> set[str]:
-        """Return the ego, the findings' objects and the actors near the ego; an actor whose place is not known may be near."""
+        """Return the ego, the objects of the findings, and the actors near the ego; an actor at an unknown position counts as near."""
         states, extent = self.drive.trace.tables["actor_state"], self.extent
         t_ns = states["t_ns"].to_numpy()
         rows = np.flatnonzero((t_ns >= extent.from_ns) & (t_ns <= extent.to_ns))
@@ -147,10 +147,10 @@ class Window:
 
 
 def windows(drives: Mapping[str, Drive], questions: Sequence[FindingWithCopies], goals: Sequence[int]) -> list[Window]:
-    """Return the windows in which findings are copied next, those with the first copies first.
+    """Return the windows to judge next for these findings, those with the lowest copy numbers first.
 
-    Windows of one ego that overlap are one. They are of the same copies: those up to one of the `goals`, and those from there on,
-    each with the copy without errors.
+    Overlapping windows of one ego are merged. The copy numbers are split after each of the `goals`, so that merged windows have the same
+    ones. Each window also has copy 0.
     """
     cut([question for question in questions if question.extent is None])
     found: dict[tuple[Any, ...], Window] = {}
@@ -166,7 +166,7 @@ def windows(drives: Mapping[str, Drive], questions: Sequence[FindingWithCopies],
 
 
 def cut(questions: Sequence[FindingWithCopies]) -> None:
-    """Give each finding the extent of its window, which it shares with those of the same ego that it overlaps."""
+    """Set the extent of each finding; findings of one ego, of the same size and kind, share it if their windows overlap."""
     last: dict[tuple[object, ...], Extent] = {}
     for question in sorted(questions, key=lambda each: (each.finding["drive_id"], each.finding["ego_id"], span(each))):
         key = (question.finding["drive_id"], question.finding["ego_id"], question.size, question.of_overtake)
@@ -177,13 +177,13 @@ def cut(questions: Sequence[FindingWithCopies]) -> None:
 
 
 def _parts(numbers: range, goals: Sequence[int]) -> list[range]:
-    """Return the same numbers, cut behind each goal."""
+    """Return the numbers as several ranges, split after each goal."""
     cuts = [goal + 1 for goal in goals if numbers.start < goal + 1 < numbers.stop]
     return [range(*ends) for ends in pairwise((numbers.start, *cuts, numbers.stop))]
 
 
 def span(question: FindingWithCopies) -> tuple[int, int]:
-    """Return from when to when a finding's window is: its worst step with what is around it, its stretch, or much more."""
+    """Return the start and end (ns) of a finding's window, by its size, the kind of rule, and the finding's times."""
     finding, ref, worst = question.finding, question.finding["t_ref_ns"], question.finding["t_worst_ns"]
     if question.size == 0:
         steps = (worst,) if ref is None else (ref, worst)
@@ -197,7 +197,7 @@ def span(question: FindingWithCopies) -> tuple[int, int]:
     if ref is not None:
         start, end = min(ref, finding["t_start_ns"]), max(ref, finding["t_end_ns"])
         before, after = 6_000_000_000, 6_000_000_000
-    if question.size > 1 or finding["profile"] is not None:  # what a driver did is known when the manoeuvre is over
+    if question.size > 1 or finding["profile"] is not None:  # a profile needs the whole manoeuvre
         start, end = min(start, finding["t_start_ns"]), max(end, finding["t_end_ns"])
         before = after = 20_000_000_000
     return start - before, end + after
