@@ -1,7 +1,7 @@
-"""Pages about single drives of an audit, one file each beside the fleet page: facts, findings, unknown verdicts and their reasons.
+"""Writes pages about single drives of an audit, one file each: facts, findings, unknown verdicts and their reasons.
 
-The rows of all chosen drives are put into tables by one statement per table of the audit, and read from there some drives at a time:
-neither the number of scans nor the memory of this process grows with the drives.
+One statement per table of the audit copies the rows of all chosen drives into temporary tables. These are then read in groups of drives.
+Neither the number of scans nor the memory of this process therefore grows with the number of drives.
 """
 
 from __future__ import annotations
@@ -36,46 +36,46 @@ if TYPE_CHECKING:
 
 FOLDER: Final = "drives"
 MOST_DRIVES: Final = 100
-"""Number of drives that get a page by default."""
+"""The default number of drives that get a page."""
 MAX_FINDINGS: Final = 200
-"""Findings on a page."""
+"""The largest number of findings on a page."""
 MAX_NOTES: Final = 40
-"""Reasons of unknown verdicts on a page, and notes on the data."""
+"""The largest number of reasons for unknown verdicts on a page, and of notes on the data."""
 _AT_A_TIME: Final = 100
 _PLAIN: Final = re.compile(r"[0-9a-f]{64}")
 _HERE: Final = Path(__file__).parent
 
 
 def page_name(key: str) -> str:
-    """Return the name of a drive's page by its key; a key that is no SHA-256 may hold anything, so its hash stands for it."""
+    """Return the file name of a drive's page. A key that is not a SHA-256 may contain anything, so its hash is used instead."""
     plain = key if _PLAIN.fullmatch(key) else hashlib.sha256(key.encode("utf-8", "surrogatepass")).hexdigest()
     return f"{FOLDER}/{plain}.html"
 
 
 def is_page_name(name: str) -> bool:
-    """Whether a name is one that `page_name` gives."""
+    """Return whether a name has the form of `page_name`."""
     folder, _, file = name.rpartition("/")
     return folder == FOLDER and file.endswith(".html") and _PLAIN.fullmatch(file.removesuffix(".html")) is not None
 
 
 def choose(con: duckdb.DuckDBPyConnection, max_drives: int | None) -> list[str]:
-    """Choose the drives that get a page, after `content`; return the names of the pages.
+    """Choose the drives that get a page, and return the names of the pages. `content` must run before.
 
-    `max_drives`: so many of the drives with findings, the worst first; None: all drives of the audit.
+    `max_drives`: the number of drives with findings, the worst first; None: all drives of the audit.
     """
     con.execute(statement("fleet_report/page_drives", ranked=ranked()), {"most": max_drives})
     return [page_name(key) for (key,) in con.execute("SELECT key FROM page_drive ORDER BY no").fetchall()]
 
 
 def links(con: duckdb.DuckDBPyConnection, keys: Iterable[str | None]) -> dict[str, str]:
-    """Return key -> address, for a link from the fleet page, of those of these drives that were chosen to have a page."""
+    """Return key -> relative URL of the page, for those of the given drives that have a page."""
     asked = sorted({key for key in keys if key is not None})
     found = con.execute("SELECT key FROM page_drive WHERE list_contains($keys, key) ORDER BY no", {"keys": asked})
     return {key: page_name(key) for (key,) in found.fetchall()}
 
 
 def pages(con: duckdb.DuckDBPyConnection, audit: Audit, rules: Mapping[str, Row]) -> Iterator[tuple[str, bytes]]:
-    """Yield name and content of the page of each chosen drive. `rules`: rule_id -> row of the table `rule`."""
+    """Yield the name and content of each chosen drive's page. `rules`: rule_id -> row of the table `rule`."""
     con.execute(statement("fleet_report/page_facts", options=options_column(con)))
     con.execute(
         statement("fleet_report/page_findings", gravest_first=gravest_first(), event=one_per_event("paged_")),
@@ -98,7 +98,7 @@ def pages(con: duckdb.DuckDBPyConnection, audit: Audit, rules: Mapping[str, Row]
 
 
 def _some(con: duckdb.DuckDBPyConnection, audit: Audit, first: int, last: int) -> Iterator[Row]:
-    """Yield the template's values for each of the drives with these numbers."""
+    """Yield the values of the template for each drive with a number from `first` to `last`."""
     bound = {"first": first, "last": last}
     facts = rows(con, "page_some", bound, table="page_facts", order="no")
     findings = rows(con, "page_some", bound, table="page_finding", order="no, nth")
@@ -139,7 +139,7 @@ def _page_content(
 
 
 def _headline(drive: Row, by_severity: Mapping[str, int], counts: Mapping[str, int]) -> tuple[str, str]:
-    """Return the outcome (fail, unknown or pass) of a drive, and the sentence at the top."""
+    """Return the outcome (fail, unknown or pass) of a drive, and the sentence at the top of its page."""
     if drive["status"] != "judged":
         return "unknown", "Could not be judged"
     if n := sum(by_severity.values()):

@@ -1,4 +1,4 @@
-"""The list of the drive pages beside the fleet page, by which a later report removes those that it does not write again."""
+"""Maintains the list of the drive pages beside the fleet page. A later report uses it to remove pages that it does not write again."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ _KEY: Final = "written_by_drivelint"
 
 @contextmanager
 def listed(results: ResultStore, names: Collection[str]) -> Iterator[None]:
-    """List the pages that are written meanwhile; afterwards, remove those of an earlier report that are not among them.
+    """List the pages that the block writes; afterwards, remove the pages of an earlier report that were not written again.
 
-    While they are written, the list has the earlier ones too: if this report is killed, the next one knows of both. Files that are not
+    During the block, the list also has the earlier pages: if this report is killed, the next one knows all of them. Files that are not
     listed are never removed. Errors: `OutputError`.
     """
     earlier = _listed(results)
@@ -38,7 +38,7 @@ def listed(results: ResultStore, names: Collection[str]) -> Iterator[None]:
 
 
 def _listed(results: ResultStore) -> set[str]:
-    """Return the pages of an earlier report. Other names in the list are not ours: nothing may be removed by them."""
+    """Return the pages of an earlier report. Other names in the list are ignored, because no foreign file may be removed."""
     try:
         told = msgspec.json.decode(results.read(LIST_FILE) or b"{}", type=dict[str, list[str]])
     except msgspec.MsgspecError:
