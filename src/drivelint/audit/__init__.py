@@ -1,4 +1,4 @@
-"""Audits: many workers judge many drives. The results stay when an audit is interrupted, and the next run continues from them.
+"""Audits: many workers judge many drives. After an interruption, the next run continues from the results so far.
 
 The key of a drive's result is a hash of everything that determines the result. A worker writes a batch of drives as one Parquet file per
 table, and then one receipt per drive. A drive without a receipt has no result. Batches are later packed into chunks of some thousand

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 _CELL: Final = re.compile(r'(")((?:[^"]|"")*)"|[^,"\r\n]+')
 _NUMBER: Final = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|[+-]?(?:inf|nan)")
 _FORMULA: Final = tuple("=+-@\n\uff1d\uff0b\uff0d\uff20")
-"""First characters of a cell that a spreadsheet treats as a formula. A tab is one too, but `inert` shows it as a backslash and t."""
+"""First characters of a cell that a spreadsheet treats as a formula. A tab is not needed here: `inert` replaces it by a backslash and t."""
 
 
 def ask(dest: str, query: str, format_: str, warn: Callable[[str], None] = lambda _: None) -> str:

@@ -30,7 +30,7 @@ _RETRY: Final[Any] = {
 }
 """Requests to a busy store are repeated with increasing pauses; then the run ends with exit code 75."""
 _ATTEMPTS: Final = 6
-"""The largest number of requests if the answer is cut off each time."""
+"""Largest number of requests for an answer that is cut off each time."""
 _CLIENT: Final[Any] = {"allow_http": True, "timeout": timedelta(seconds=60)}
 
 
@@ -54,7 +54,7 @@ def is_url(text: str) -> bool:
 
 
 def as_url(path: Path) -> str | None:
-    """Return the URL that was given as a path, which loses one `/`; None: it is a local path."""
+    """Return the URL in a path that was made from a URL, which drops one `/`; None: the path is local."""
     text = re.sub(r"^(\w+):/(?=[^/])", r"\1://", path.as_posix())
     return text if is_url(text) else None
 
@@ -137,7 +137,7 @@ class Bucket:
 
 
 def list_objects(url: str) -> Iterator[Object]:
-    """Yield the objects below a prefix, in the order of the store. Errors: `StoreError`, `UsageError`."""
+    """Yield the objects below a URL prefix, in the order of the store. Errors: `StoreError`, `UsageError`."""
     client, prefix = _open_bucket(url)
     root = "/".join(url.split("/")[:3])
     try:
@@ -197,7 +197,7 @@ def _listed(client: Any, prefix: str) -> Iterator[Any]:
                 for about in some:
                     yield about
                     last = about["path"]
-            return  # noqa: TRY300 - the loop's end
+            return  # noqa: TRY300 - return ends the loop
         except (exceptions.GenericError, OSError):
             if attempt + 1 == _ATTEMPTS:
                 raise

@@ -1,7 +1,7 @@
 """Claims: several audits that write to the same place share its drives without a scheduler.
 
-Before an audit judges a drive, it writes a claim with its own id. It writes a heartbeat every few seconds. If an audit writes no heartbeat
-for `LEASE_S`, its claims expire. Claims only save work: if two audits judge the same drive, one receipt is valid.
+Before an audit judges a drive, it writes a claim with its own id. The audit also writes a heartbeat every few seconds. If an audit writes
+no heartbeat for `LEASE_S`, its claims expire. Claims only save work: if two audits judge the same drive, one receipt is valid.
 """
 
 from __future__ import annotations

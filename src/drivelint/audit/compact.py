@@ -1,7 +1,7 @@
 """Packs the many small files of an audit into chunks of some thousand drives: one file per table, and one for the receipts.
 
-The receipts of a chunk are written last: a chunk without receipts does not count. Only then are its drives removed from the small files. An
-audit that is killed at any moment therefore neither loses a drive nor has it twice.
+The receipts of a chunk are written last: a chunk without receipts does not count. Only after that, the small files of its drives are
+removed. An audit that is killed at any moment therefore neither loses a drive nor has it twice.
 """
 
 from __future__ import annotations

@@ -42,7 +42,7 @@ DIGEST: Final = "drivelint.digest"
 """The key in the metadata of a commit for the `digest` of the audit's summary."""
 _OPTIONS: Final = {"allow_http": "true", "retry_timeout": "20s"}
 _ATTEMPTS: Final = 6
-"""Six attempts of 20 s are two minutes, the time after which a busy store ends a run."""
+"""Six attempts of 20 s make the two minutes after which a run gives up on a busy store."""
 _COLOUR: Final = re.compile(r"\x1b\[[0-9;]*m")
 """Colour codes in the error messages of deltalake."""
 
@@ -149,7 +149,7 @@ def _open_table(where: str, table: str, run: str) -> DeltaTable | None:
 
 
 def _active(table: DeltaTable) -> dict[str, int]:
-    """Return the files of the newest version: name -> size in bytes."""
+    """Return the files of the table's newest version: name -> size in bytes."""
     told = pa.table(table.get_add_actions(flatten=True)).select(["path", "size_bytes"])
     return {row["path"]: row["size_bytes"] for row in told.to_pylist()}
 

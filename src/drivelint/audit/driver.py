@@ -28,7 +28,7 @@ WINDOW: Final = 4
 """Number of tasks per worker that are submitted at a time: enough to keep the worker busy, few enough to fit into memory."""
 TASK_BYTES: Final = 8_000_000
 TASK_DRIVES: Final = 64
-"""A task is complete when its logs reach this size in bytes or this number of drives, so short drives are judged together."""
+"""A task ends when its logs have `TASK_BYTES` or it has `TASK_DRIVES` drives, so short drives are judged together."""
 LEAST_TASK_DRIVES: Final = 8
 """Number of drives in a task if there are few drives in all. Results then come early, and all workers have work."""
 MOST_ATTEMPTS: Final = 3

@@ -13,7 +13,7 @@ ALL, CLAIM = "all", "claim"
 
 
 def name_of(shard: tuple[int, int] | None, *, claim: bool) -> str:
-    """Return the name of the part that has these options."""
+    """Return the name of an audit's part: a shard, a share by claims, or all drives."""
     if shard is not None:
         return f"{shard[0]}-of-{shard[1]}"
     return CLAIM if claim else ALL

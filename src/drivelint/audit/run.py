@@ -224,7 +224,7 @@ def _compact_apart(out: str) -> None:
     """Pack the complete results in a separate process, so that its memory does not add to the driver's. Errors: as `compact`."""
     context = multiprocessing.get_context("spawn")  # a fork would copy threads that hold locks
     with (
-        suppress(BrokenProcessPool),  # results that a killed process has not packed are packed the next time
+        suppress(BrokenProcessPool),  # if the process is killed, the next compaction packs its results
         ProcessPoolExecutor(1, context, initializer=begin_worker, initargs=(os.getpid(),)) as apart,
     ):
         with deaf_to_ctrl_c():
@@ -331,9 +331,9 @@ def _begin(request: AuditRequest, results: ResultStore, id_: str) -> bool:
             raise UsageError(f"{request.out}: the audit there was made with {why}: choose another --out")
         was_whole = _is_whole(results, request.out)
         sealed.unseal(results)
-        results.delete([SUMMARY_FILE, GATE_FILE])  # they do not describe the results that follow
+        results.delete([SUMMARY_FILE, GATE_FILE])  # they describe the earlier results
         if request.shard is None and not request.claim:
-            results.write(AUDIT_FILE, content)  # `fail_on`, `strict` and `min_judged` may differ
+            results.write(AUDIT_FILE, content)  # its `fail_on`, `strict` and `min_judged` may differ
     # The process that wrote audit.json may not have written the rules yet, or was killed before it could.
     results.create(RULES_FILE, parquet_bytes(rule_table(request.settings), "rule"))
     return was_whole

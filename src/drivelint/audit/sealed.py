@@ -35,10 +35,11 @@ _AGAIN: Final = "audit the drives again into another --out"
 
 
 def seal(results: ResultStore, names: Iterable[str], summary: bytes) -> None:
-    """Write the summary, then the list `files.json` with the hashes of the summary, these files and all tables. Errors: `OutputError`."""
+    """Write the summary, then the list `files.json` with the hashes of the summary, the files `names` and all tables. Errors:
+    `OutputError`."""
     hashes = {name: sha256(results.read(name) or b"").hexdigest() for name in {*names, *results.names(_TABLES)}}
     hashes[SUMMARY_FILE] = sha256(summary).hexdigest()
-    results.write(SUMMARY_FILE, summary)  # last but one: an audit with a summary must have the list
+    results.write(SUMMARY_FILE, summary)  # before the list: an audit with a summary must have one
     results.write(MANIFEST, manifest(set(hashes), dict(sorted(hashes.items()))))
 
 
@@ -50,8 +51,8 @@ def unseal(results: ResultStore) -> None:
 def require_unchanged(results: ResultStore, home: Path, dest: str) -> bool:
     """Raise `UsageError`, which names the first changed file, if the audit's files have changed since it ended.
 
-    Return whether the audit has the list of its files. An audit without a list has not ended, or is of an older version. `home`: folder for
-    copies. Errors: also `OutputError`.
+    Return whether the audit has `files.json`. An audit without it has not ended, or is of an older version. `home`: folder for copies.
+    Errors: also `OutputError`.
     """
     said = hashes_in(results.read(MANIFEST) or b"")
     if not said:
@@ -65,7 +66,7 @@ def require_unchanged(results: ResultStore, home: Path, dest: str) -> bool:
 
 
 def require_as_written(results: ResultStore, home: Path, dest: str) -> None:
-    """Raise `UsageError` if an audit was changed: it has ended but lacks its list, or a file or a drive's rows differ from their hash.
+    """Raise `UsageError` if an audit was changed: it has ended but lacks `files.json`, or a file or a drive's rows differ from their hash.
 
     `home`: folder for copies. Errors: also `OutputError`.
     """
@@ -90,7 +91,7 @@ def require_list(results: ResultStore, dest: str) -> None:
 
 
 def _has_ended(results: ResultStore) -> bool:
-    """Return whether an audit has ended: it has a summary, or its only part was the audit of all drives, and that part has ended."""
+    """Return whether an audit has ended: it has a summary, or its only part, the audit of all drives, has ended."""
     if results.read(SUMMARY_FILE) is not None:
         return True
     return parts.begun(results) == {parts.ALL} and not parts.unfinished_parts(results)
@@ -108,7 +109,7 @@ def require_rows_unchanged(results: ResultStore, dest: str, *, packed: bool) -> 
     for some in loose_receipts(results, whole_batches=False):
         for batch, receipts in groupby(some, key=lambda receipt: receipt.batch):
             if results.read(batch_name("drives", batch)) is None:
-                continue  # drives without rows are judged again
+                continue  # the rows were removed: these drives are judged again
             expected_hashes = {each.key: (each.log, each.rows_sha256) for each in receipts}
             _require_rows(results, dest, {table: batch_name(table, batch) for table in TABLES}, expected_hashes)
     for chunk in chunks(results) if packed else ():

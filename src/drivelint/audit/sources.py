@@ -45,8 +45,8 @@ _ROWS: Final = 10_000
 def drives(sources: Sequence[str], options: DriveInput) -> Iterator[AuditDrive]:
     """Yield the drives of the sources. `options` apply to each drive, unless the manifest overrides them.
 
-    A source that is one Parquet or CSV file with a column `log` is a manifest. It is read in pieces, so it may be of any length. Its paths
-    are relative to its folder. All other sources are the same as for `check`.
+    A Parquet or CSV file with a column `log` is a manifest. It may be of any length, and its paths are relative to its folder. All other
+    sources are the same as for `check`.
     Errors: `UsageError` for an invalid manifest, `TraceError` for a missing source.
     """
     conditions.parse(options.env)

@@ -59,7 +59,7 @@ class LocalFolder:
         try:
             temporary = self._staged(path, content)
             try:
-                os.link(temporary, path)  # unlike a rename, this fails where the name is taken
+                os.link(temporary, path)  # unlike a rename, this fails if the name exists
             except FileExistsError:
                 return False
             finally:

@@ -73,7 +73,7 @@ class AuditSummary:
     unknown_for: list[dict[str, Any]] = field(default_factory=list)
     not_judged: list[dict[str, Any]] = field(default_factory=list)
     copied: list[dict[str, Any]] = field(default_factory=list)
-    """The first broken rules, reasons for unknown verdicts, drives that were not judged, and copies (`log`, `other`, `same_options`)."""
+    """The first rows of each kind: broken rules, reasons for unknown verdicts, drives that were not judged, and copies."""
     lossy_logs: list[str] = field(default_factory=list)
     off_map_logs: list[str] = field(default_factory=list)
     """The first lossy logs, and the first logs that their map does not fit. Logs with the same content are listed once."""

@@ -114,7 +114,7 @@ def _not_judged(audit_summary: AuditSummary, out: str) -> Iterator[str]:
 
 
 def _log_lines(label: str, logs: list[str], n: int) -> Iterator[str]:
-    """Yield a line with the first logs that have this label, and how many more there are."""
+    """Yield a line with `label`, the first logs, and how many more there are."""
     if logs:
         yield f"  {label}: {', '.join(logs)}{f' and {n - len(logs)} more' if n > len(logs) else ''}"
 
@@ -134,7 +134,7 @@ def _copies(audit_summary: AuditSummary, out: str) -> Iterator[str]:
 
 
 def _repeated(row: dict[str, Any]) -> str:
-    """Return why a result repeats an earlier result of the same content."""
+    """Return a phrase that says how a result repeats an earlier one."""
     if row["log"] != row["other"]:
         return f"a copy of {row['other']}"
     if row["same_options"]:

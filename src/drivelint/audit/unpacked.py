@@ -1,4 +1,4 @@
-"""Creates views over an audit that has not ended or is not packed, as over a complete one, with a warning."""
+"""Creates the views of a complete audit over an audit that has not ended or is not packed, and returns a warning."""
 
 from __future__ import annotations
 

@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 TABLES = ("verdicts", "findings", "drives")
 """The tables of an audit: the tables of a check with the additional column `key`; `drives` also has `log` and `tags`."""
 TASKS_PER_RELEASE = 8
-"""After this many tasks a worker frees memory that it does not need. With 8 tasks of short drives, this takes less than 1 % of the time."""
+"""After this many tasks a worker frees memory that it does not need. For short drives this takes less than 1 % of the time."""
 _LASTING_TABLES = frozenset({"profile", "environment", "map_quality"})
 
 
@@ -118,7 +118,7 @@ class Judge:
             trace = read_trace(path, options.ingest_options())
             _require_unchanged(path, identity)
             return key, drive_with_map(trace, self._library(options))
-        except BaseException as error:  # noqa: BLE001 - libraries of some formats raise errors that are no Exception
+        except BaseException as error:  # noqa: BLE001 - some libraries raise errors that are not an Exception
             return key, refusal_of(path, error)
 
     def _at_hand(self, drive: AuditDrive) -> tuple[Path, DriveInput]:
@@ -298,7 +298,7 @@ def batch_name(table: str, batch: str) -> str:
 
 
 def receipt_name(key: str) -> str:
-    """Return the name of a receipt."""
+    """Return the file name of the receipt with this key."""
     return f"receipts/{key[:2]}/{key}.json"
 
 

@@ -65,9 +65,9 @@ def compare(
     """Return the difference of two audits. `base`, `new`: prefixes of their views' names.
 
     In the views of `drivelint.fleet.distinct_logs`, several results of the same log count once.
-    `tools`: the versions of drivelint that made the audits; None: not known. The function creates the temporary table `difference`. It has
-    the columns of `drivelint.result.gate.ComparedFinding` without `stable`, the keys of both drives, `causes` and `causes_not_known`.
-    Errors: `UsageError` for an audit whose tables lack the times in which actors were recorded.
+    `tools`: the versions of drivelint that made the audits; None: not known. The temporary table `difference` gets the columns of
+    `drivelint.result.gate.ComparedFinding` without `stable`, the keys of both drives, `causes` and `causes_not_known`. Errors: `UsageError`
+    for an audit whose tables lack the times in which actors were recorded.
     """
     if any("recorded" not in con.table(f"{of}drives").columns for of in (base, new)):
         raise UsageError(

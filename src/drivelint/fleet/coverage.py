@@ -1,4 +1,4 @@
-"""Returns the coverage of a fleet: which rules were decided, and which situations occurred."""
+"""Computes the coverage of a fleet: which rules were decided, and which situations occurred."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class SituationCoverage:
 
 @dataclass(frozen=True)
 class Coverage:
-    """The rules by their results in the fleet; the situations, including those that never occurred; and the questions that the tables
+    """The rules with their results in the fleet; the situations, including those that never occurred; and the questions that the tables
     cannot answer."""
 
     rules: tuple[RuleCoverage, ...]

@@ -5,7 +5,7 @@ Logs with the same content are one log, whatever their names are.
 * A log counts as one drive.
 * An ego of a log counts once, and so do its distance and time. Different egos of a log count separately.
 * A verdict or finding that occurs in several results of the log counts once. A verdict or finding that occurs in only one result counts
-  too, such as one under other conditions: a copy hides nothing.
+  too, such as one under other conditions.
 * A rate takes the verdicts of an ego from the first result that has the ego; with a tag, from the first result at each value of the tag.
   The first result is the one with the smallest `log`; see `queries/fleet/first_result.sql`.
 """

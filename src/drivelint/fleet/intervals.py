@@ -12,7 +12,7 @@ CONFIDENCE: Final = 0.95
 
 
 class Estimate(NamedTuple):
-    """A rate and the bounds of its confidence interval. `rate` is None without exposure: then nothing is known about it."""
+    """A rate and the bounds of its confidence interval. `rate` is None without exposure."""
 
     rate: float | None
     low: float

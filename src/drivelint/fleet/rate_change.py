@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from drivelint.fleet.rates import Rate
 
 ALLOWED_FALSE_CALLS: Final = 0.05
-"""The probability that any rule is reported as different although no rates differ."""
+"""The allowed probability that any rule is reported although no rate differs."""
 
 
 class RateTest(NamedTuple):

@@ -1,11 +1,11 @@
 """Computes rates of a fleet: findings per 100 km and per hour, failures per occasion and per ego, each with its confidence interval.
 
 **Which denominator.** A subject is an ego in a drive. A rate of a rule counts only subjects that were completely judged. A subject is left
-out, with its findings and its exposure, if the rule has an unknown or error verdict or judged only some of its steps. Findings and exposure
-that are left out are reported beside the rate. Three other methods would be wrong:
+out, with its findings and exposure, if the rule has an unknown or error verdict or judged only some steps. These findings and this exposure
+are reported beside the rate. Three other methods would be wrong:
 
-* Counting its exposure: what was not judged would count as kept, and the rate would be too low.
-* Counting only its findings: the rate would be too high.
+* Counting the exposure of such a subject: what was not judged would count as kept, and the rate would be too low.
+* Counting only the findings of such a subject: the rate would be too high.
 * Leaving the subject out only if it has no finding: one finding is enough to fail, while a pass needs every step. The outcome would then
   determine what is counted, and the rate would be too high.
 
@@ -78,17 +78,17 @@ class Rate:
 
     @property
     def per_100km(self) -> Estimate:
-        """Findings per 100 km."""
+        """The rate of findings per 100 km."""
         return intervals.poisson(self.findings, self.km / 100)
 
     @property
     def per_hour(self) -> Estimate:
-        """Findings per hour."""
+        """The rate of findings per hour."""
         return intervals.poisson(self.findings, self.hours)
 
     @property
     def per_occasion(self) -> Estimate:
-        """Failed occasions per occasion."""
+        """The share of occasions that failed."""
         return intervals.binomial(self.occasions_failed, self.occasions)
 
     @property

@@ -69,9 +69,8 @@ def what_if(
 ) -> WhatIf:
     """Return the verdicts of a rule with another value of a parameter, by profile and value of a tag.
 
-    Unless a new check is needed, the function creates the temporary table `what_if`, with one row per verdict. Findings are not predicted:
-    a failed verdict may have several, and their start and end depend on every step. Errors: `UsageError` for a parameter that the rule does
-    not have.
+    The temporary table `what_if` gets one row per verdict, unless a new check is needed. Findings are not predicted: a failed verdict may
+    have several, and their start and end depend on every step. Errors: `UsageError` for a parameter that the rule does not have.
     """
     if why := needs_check(rule, param):
         return WhatIf(rule.id, param, value, why)

@@ -1,4 +1,4 @@
-"""Opens one or two audits as views of one database."""
+"""Opens one or two audits as views in one database."""
 
 from __future__ import annotations
 

@@ -33,9 +33,9 @@ if TYPE_CHECKING:
     from drivelint.fleet_report.rows import Row
 
 MAX_DRIVES: Final = 50
-"""The largest number of drives in a table."""
+"""Largest number of drives in a table."""
 MAX_CHANGES: Final = 50
-"""The largest number of findings per standing (new, fixed, …) in the comparison with a baseline."""
+"""Largest number of findings per standing (new, fixed, …) in the comparison with a baseline."""
 
 
 @dataclass(frozen=True)
@@ -127,7 +127,7 @@ class FleetContent:
 
 
 def content(con: duckdb.DuckDBPyConnection, audit: Audit, base: Audit | None, by: Sequence[str]) -> FleetContent:
-    """Return the content of the page about an audit of `open_audits`. Errors: `UsageError` for a tag in `by` that no drive has."""
+    """Return the content of the page about an audit from `open_audits`. Errors: `UsageError` for a tag in `by` that no drive has."""
     share = str(LEAST_SHARE)
     create_counted_views(con)
     event = statement("fleet/event", of=COUNTED_PREFIX, least_share=share)

@@ -124,7 +124,7 @@ class AuditDifference:
     new_unknowns: list[NewUnknowns]
     rates: list[RateChange]
     gating_rules: dict[str, str]
-    """Stable rule of the newer audit -> its severity."""
+    """Id of a stable rule in the newer audit -> severity."""
 
     @property
     def headline(self) -> str:
@@ -185,7 +185,7 @@ def _at_or_above(counts: dict[str, int], least: str) -> int:
 
 
 def difference(con: duckdb.DuckDBPyConnection, new: Audit, base: Audit, max_entries: int) -> AuditDifference:
-    """Return the difference of the audits of `open_audits`, with at most `max_entries` findings per standing."""
+    """Return the difference of the audits from `open_audits`, with at most `max_entries` findings per standing."""
     sides = {"base": create_counted_views(con, BASE), "new": create_counted_views(con)}
     comparison = compare(con, base=sides["base"], new=sides["new"], tools=(base.version, new.version))
     (gating,) = rows(con, "gating", None, **sides)

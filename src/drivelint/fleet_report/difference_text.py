@@ -27,7 +27,7 @@ AUDIT_DIFF_SCHEMA: Final = 1
 """Version of the JSON format: raised when a key is removed or changes its meaning."""
 _MOST_RISEN: Final = 3
 JSON_ENTRIES: Final = 1_000
-"""The largest number of findings per standing in the JSON."""
+"""Largest number of findings per standing in the JSON."""
 
 
 def rate_name(of: RateChange | RuleCoverage) -> str:
@@ -84,7 +84,7 @@ def _code_and_reason(difference: AuditDifference, fail_on: str | None) -> str:
 
 
 def _rates_sentence(difference: AuditDifference) -> str:
-    """Return the result of comparing the rates of two audits without a common drive."""
+    """Return a phrase about the comparison of rates of two audits without a common drive."""
     least = _own_severity(difference)
     if risen := difference.risen(least):
         rates_text = ", ".join(

@@ -1,7 +1,7 @@
 """Writes pages about single drives of an audit, one file each: facts, findings, unknown verdicts and their reasons.
 
-One statement per table of the audit copies the rows of all chosen drives into temporary tables. These are then read in groups of drives.
-Neither the number of scans nor the memory of this process therefore grows with the number of drives.
+One statement per table of the audit copies the rows of all chosen drives into temporary tables, which are read in groups of drives. Neither
+the number of scans nor the memory of this process grows with the number of drives.
 """
 
 from __future__ import annotations
@@ -36,11 +36,11 @@ if TYPE_CHECKING:
 
 FOLDER: Final = "drives"
 MOST_DRIVES: Final = 100
-"""The default number of drives that get a page."""
+"""Default number of drives that get a page."""
 MAX_FINDINGS: Final = 200
-"""The largest number of findings on a page."""
+"""Largest number of findings on a page."""
 MAX_NOTES: Final = 40
-"""The largest number of reasons for unknown verdicts on a page, and of notes on the data."""
+"""Largest number of reasons for unknown verdicts on a page, and of notes on the data."""
 _AT_A_TIME: Final = 100
 _PLAIN: Final = re.compile(r"[0-9a-f]{64}")
 _HERE: Final = Path(__file__).parent

@@ -35,7 +35,7 @@ def interval(estimate: Estimate) -> str:
 
 
 def least_rate(rate: Rate) -> tuple[str, str] | None:
-    """Return a lower bound and an explanation, to show instead of a rate of 0 that leaves findings out; None: the rate is not of this kind.
+    """Return a lower bound and an explanation, to show instead of a rate of 0 that leaves findings out; None: for any other rate.
 
     The drives with these findings were not completely judged, so they do not count for the rate. A rate of 0 would look as if nothing had
     happened.

@@ -1,5 +1,5 @@
-"""Applies the gate to an audit. The audit is read as the result of a check, so baseline, waivers, exit codes, JUnit and SARIF are the same
-as for `check`.
+"""Applies the gate to an audit. The audit is read as a check's result, so baseline, waivers, exit codes, JUnit and SARIF work as for
+`check`.
 
 Logs with the same content are one drive, as in every count of an audit. All rows are in memory: about 0.3 MB per drive with 60 rules.
 """
@@ -121,7 +121,7 @@ def _result(con: duckdb.DuckDBPyConnection, audit: Audit) -> Result:
 
 
 def _gate(results: ResultStore) -> gate.Gate | None:
-    """Return the gate of the audit's last run; None: there was none."""
+    """Return the gate that the audit's last run stored; None: it stored none."""
     content = results.read(GATE_FILE)
     if content is None:
         return None

@@ -99,7 +99,7 @@ def _words(fleet: FleetContent) -> dict[str, Any]:
 
 
 def _beside(rate: Rate) -> str:
-    """Return the note beside a rate about findings of egos that were not wholly judged."""
+    """Return the note beside a rate about findings of egos that were not completely judged."""
     if not rate.findings_of_unknown:
         return ""
     least = rate.at_least_per_100km
@@ -107,7 +107,7 @@ def _beside(rate: Rate) -> str:
 
 
 def _provide(missing_signal: MissingSignal) -> str:
-    """Return how to provide a signal in the formats of the logs that lack it."""
+    """Return advice how to provide a signal in the formats of the logs that lack it."""
     formats_by_text: dict[str, list[str]] = {}
     for log_format in missing_signal.formats:
         formats_by_text.setdefault(how_to_provide(missing_signal.signal, log_format), []).append(log_format)

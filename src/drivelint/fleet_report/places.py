@@ -18,8 +18,7 @@ _WIDTH: Final = 900
 _MOST_HEIGHT: Final = 620
 _CELL_PX: Final = 6
 _M_PER_DEGREE: Final = 111_320.0
-"""Metres per degree of latitude, and of longitude at the equator, on a sphere with the earth's mean radius. This is precise enough for the
-map."""
+"""Metres per degree of latitude, and of longitude at the equator, on a sphere with the earth's mean radius."""
 _LEAST_DEGREES: Final = 0.002
 
 

@@ -33,7 +33,7 @@ def one_per_event(of: str) -> str:
 
 
 def gravest_first() -> str:
-    """Return the ORDER BY expressions that sort the findings `f` of the rules `r` by severity."""
+    """Return the ORDER BY expressions that sort the findings `f` of the rules `r` from most to least severe."""
     return statement("fleet_report/gravest_first", least_share=str(LEAST_SHARE))
 
 

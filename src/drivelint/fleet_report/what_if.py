@@ -29,9 +29,9 @@ if TYPE_CHECKING:
 WHAT_IF_SCHEMA: Final = 1
 """Version of the JSON format: raised when a key is removed or changes its meaning."""
 MAX_VALUES: Final = 50
-"""The largest number of tag values, and of verdicts, in the text; the JSON has all values."""
+"""Largest number of tag values, and of verdicts, in the text; the JSON has all values."""
 MAX_FLIPPED: Final = 10_000
-"""The largest number of changed verdicts in the JSON."""
+"""Largest number of changed verdicts in the JSON."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class AskedWhatIf:
 
     @property
     def exit_code(self) -> ExitCode:
-        """OK; or NOT_JUDGED if a new audit is needed, the audit has not ended, or it has no verdict of the rule."""
+        """The exit code: NOT_JUDGED if a new audit is needed, the audit has not ended, or it has no verdict of the rule; else OK."""
         left = self.answer.needs_check or self.answer.not_known or self.audit.warning or not self.answer.verdicts
         return ExitCode.NOT_JUDGED if left else ExitCode.OK
 

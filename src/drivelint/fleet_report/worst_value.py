@@ -1,4 +1,4 @@
-"""Finds the value of a tag at which a rule's findings per km differ most from the other values, over all tags."""
+"""Finds the value of a tag at which a rule's findings per km exceed the other values most, over all tags."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class WorstValue(NamedTuple):
 
     @property
     def worst(self) -> Rate:
-        """The rate at the value that differs most."""
+        """The highest rate."""
         return self.rates[0]
 
     @property
@@ -66,11 +66,10 @@ class _Compared(NamedTuple):
 
 
 def worst_value(con: duckdb.DuckDBPyConnection, all_rates: Sequence[Rate]) -> WorstValue | None:
-    """Return the value of a tag that differs most from the others; None: no tag can be compared.
+    """Return the value of a tag whose rate exceeds the others most; None: no tag can be compared.
 
     `all_rates`: the rates of all drives, the most severe first; the first rules with findings are compared. Only the highest rate of a tag
-    and rule can be reported. The correction nevertheless counts each value as a comparison, because each could have been the highest by
-    chance.
+    and rule can be reported, but the correction counts each value, because each could be the highest by chance.
     """
     ids = list(dict.fromkeys(rate.rule_id for rate in all_rates if rate.findings))[:MAX_RULES]
     all_tags = rows(con, "tags")
@@ -110,8 +109,8 @@ def worst_value(con: duckdb.DuckDBPyConnection, all_rates: Sequence[Rate]) -> Wo
 
 
 def _compared(tag: str, tag_rates: Sequence[Rate]) -> _Compared:
-    """Compare the highest rate with all others by a binomial test: given the sum of findings, each falls on a value with its share of the
-    distance."""
+    """Compare the highest rate with all others by a binomial test: a finding falls on a value with the probability of the value's share of
+    the distance."""
     from scipy.stats import binomtest
 
     ranked = sorted(tag_rates, key=lambda rate: (-(rate.per_100km.rate or 0.0), -rate.findings, rate.tag_value or ""))

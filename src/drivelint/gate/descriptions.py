@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from drivelint.result.text import Row
 
 MAX_LINES: Final = 50
-"""The largest number of findings or reasons per kind on a terminal; JSON has all of them."""
+"""Largest number of findings or reasons per kind on a terminal; JSON has all of them."""
 
 DIFF_SCHEMA: Final = 1
 """Version of the JSON format: raised when a key is removed or changes its meaning."""
@@ -212,7 +212,7 @@ def waiver_warnings(gate: Gate) -> Iterator[str]:
 
 
 def waiver_scope(waiver: Waiver) -> str:
-    """Return the rule, drive, ego, object, profile and times that a waiver covers."""
+    """Return a phrase with the rule, drive, ego, object, profile and times that a waiver covers."""
     parts = [("drive", waiver.drive), ("ego", waiver.ego), ("object", waiver.object), ("profile", waiver.profile)]
     said = "".join(f", {name} {value}" for name, value in parts if value is not None)
     since = "" if waiver.from_s is None else f", from {waiver.from_s:g} s"

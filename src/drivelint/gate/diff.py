@@ -1,4 +1,4 @@
-"""Compares two results: which findings are new, fixed, changed, unchanged, failing elsewhere, unknown now or lost."""
+"""Compares two results: which findings are new, fixed, changed, unchanged, failing elsewhere, unknown or lost in the second one."""
 
 from __future__ import annotations
 
@@ -40,7 +40,8 @@ _FIXED_VERDICTS = ("pass", "not_applicable")
 def compare(base: Result, new: Result, base_name: str = "base", name: str = "new") -> Difference:
     """Return the difference of two results. `base_name` and `name` are shown to the reader.
 
-    `match.match_drives` finds the drives that both have. Findings of `new` come first, in its order, then findings that only `base` has.
+    `match.match_drives` finds the drives that both results have. Findings of `new` come first, in its order, then findings that only `base`
+    has.
     """
     had, has = ResultLookup(base), ResultLookup(new)
     same = match.match_drives(list(had.drives.values()), list(has.drives.values()))
@@ -119,7 +120,7 @@ def _noting_rule(outcome: LookupResult, at: TimedFinding, had: ResultLookup, has
 
 
 def _matched_finding(now: TimedFinding, was: TimedFinding, has: ResultLookup) -> ComparedFinding:
-    """Return a finding that both results have, and how it changed."""
+    """Return the entry of a finding that both results have, with notes on how it changed."""
     notes = []
     if now.row["severity"] != was.row["severity"]:
         notes.append(f"severity {now.row['severity']}, was {was.row['severity']}")

@@ -92,8 +92,7 @@ def may_match(had: TimedFinding, now: TimedFinding, *, same_log: bool) -> bool:
     """Return whether two findings are close enough in time and place to be the same.
 
     In the same log: at most `NEAR_S` apart. In another log, such as a repeated run: the worst steps are at most `NEAR_S` and `NEAR_M`
-    apart, or the findings share at least half of their total time. The second criterion exists because the worst step can be anywhere in a
-    long stretch.
+    apart, or the findings share at least half of their total time. The worst step can be anywhere in a long stretch.
     """
     if same_log:
         return gap_s(had, now) <= NEAR_S
@@ -105,7 +104,7 @@ def may_match(had: TimedFinding, now: TimedFinding, *, same_log: bool) -> bool:
 
 
 def is_part_of(part: TimedFinding, whole: TimedFinding, *, same_log: bool) -> bool:
-    """Return whether a finding is a part of a longer one of the other result."""
+    """Return whether a finding is a part of a longer finding of the other result."""
     slack = NEAR_S if same_log else 0.0
     longer = finding_key(part.row) == finding_key(whole.row) and part.end - part.start < whole.end - whole.start
     return longer and part.start >= whole.start - slack and part.end <= whole.end + slack

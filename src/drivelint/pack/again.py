@@ -87,7 +87,7 @@ def check_again(result: Result, check_request: RunRequest, work: Path | None, *,
 
 
 def params_of(rules: Iterable[Rule], check_request: RunRequest) -> dict[str, dict[str, object]]:
-    """Return rule -> parameter -> value, for these rules of a check."""
+    """Return rule -> parameter -> value, for the given rules of a check."""
     mine = list(rules)
     names = {rule.id for rule in mine}
     given = catalogue.parse_params(

@@ -25,14 +25,14 @@ _IDENTITIES, _IDENTITIES_ANSWER, _SIGN, _SIGN_ANSWER = 11, 12, 13, 14
 _KIND: Final = b"ssh-ed25519"
 _LONGEST: Final = 1 << 18  # OpenSSH's limit for the length of a message
 _PATIENCE_S: Final = 300.0
-"""Timeout of the agent in seconds. It is long because an agent may ask the user to confirm (ssh-add -c)."""
+"""Timeout of the agent in seconds: an agent may ask the user to confirm (ssh-add -c)."""
 
 
 class AgentKey:
     """A key in the agent at `SSH_AUTH_SOCK`. It has the same methods for signing as `Ed25519PrivateKey`."""
 
     def __init__(self, public: Ed25519PublicKey) -> None:
-        """Connect to the key. Errors: `UsageError` if there is no agent, or the agent does not have the key."""
+        """Find the key in the agent. Errors: `UsageError` if there is no agent, or the agent does not have the key."""
         self._public = public
         self._blob = _string(_KIND) + _string(public.public_bytes(Encoding.Raw, PublicFormat.Raw))
         answer = _ask(bytes([_IDENTITIES]), _IDENTITIES_ANSWER)

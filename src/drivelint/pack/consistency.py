@@ -127,7 +127,7 @@ def _misplaced(run: dict[str, Any], evidence: dict[str, Any]) -> list[str]:
 
 
 def _of_files(folder: Path, evidence: dict[str, Any]) -> list[Problem]:
-    """Return the files of the payload that `evidence.json` does not name: they are evidence of nothing."""
+    """Return the files of the payload that `evidence.json` does not name."""
     named_files = {EVIDENCE, *(f"{RESULT}/{name}" for name in OUTPUTS), *(rule["file"] for rule in evidence["rules"])}
     named_files |= set(sheets.sheet_files(evidence))
     inside = evidence["inputs"] or {"traces": {}}

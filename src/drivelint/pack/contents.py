@@ -1,4 +1,4 @@
-"""The content of `evidence.json`: the logs, rules, outputs and findings of a pack."""
+"""Builds the content of `evidence.json`: the logs, rules, outputs and findings of a pack."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def _options(check_request: RunRequest, result: Result) -> dict[str, Any]:
 
 
 def library_versions() -> dict[str, str]:
-    """Return the versions of the libraries that wrote the pack."""
+    """Return the versions of drivelint, Python and the libraries in use."""
     return {
         "drivelint": __version__,
         "python": platform.python_version(),

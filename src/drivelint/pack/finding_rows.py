@@ -48,7 +48,7 @@ def evidence(
 ) -> dict[str, bytes] | str:
     """Return file name -> content of the files that reproduce the numbers of a finding, or why there are none.
 
-    `tables`: all rows about the ego that the rule's condition reads.
+    `tables`: name of a table that the rule's condition reads -> all its rows about the ego.
     """
     sql = finding_sql.query(rule, params, finding, ref_id)
     if not finding_sql.is_read_alike(sql):

@@ -66,7 +66,7 @@ def literal(value: object) -> str:
 
 
 def text_literal(text: str) -> str:
-    """Return a text as an SQL literal on one line, without invisible characters: an id from the log may contain any."""
+    """Return a text as an SQL literal on one line, without invisible characters, which an id may contain."""
     shown = (c if c.isprintable() else f"' || chr({ord(c)}) || '" for c in text.replace("'", "''"))
     return f"'{''.join(shown)}'" if text.isprintable() else f"('{''.join(shown)}')"
 

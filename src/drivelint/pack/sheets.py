@@ -22,8 +22,7 @@ _PDF: Final = ".pdf"
 def of_result(folder: Path, result: Result, check_request: RunRequest) -> dict[str, bytes]:
     """Return path in the pack -> content of the incident sheets in a result folder that belong to its findings.
 
-    `check_request` has the paths of the logs. A PDF is included only if the HTML page beside it equals the page that is written again, so
-    that both have the same content.
+    `check_request` has the paths of the logs. A PDF is included only if the HTML page beside it equals the page that is written again.
     """
     ids = set(result.findings["finding_id"].to_pylist())
     found = {}

@@ -89,7 +89,8 @@ def resource_descriptor(name: str, digest: str) -> dict[str, Any]:
 
 
 def _tests(verdicts: Iterable[Mapping[str, Any]]) -> dict[str, list[str]]:
-    """Return outcome -> tests. The worst verdict of a test counts; a rule that did not apply is not a test."""
+    """Return outcome (pass, near_miss, fail, unknown) -> tests. The worst verdict of a test counts; a rule that did not apply is not a
+    test."""
     order = ("fail", "unknown", "near_miss", "pass")
     worst: dict[str, int] = defaultdict(lambda: len(order))
     for row in verdicts:

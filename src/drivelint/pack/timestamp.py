@@ -28,7 +28,7 @@ _HASHES: Final = {
 
 
 class StampCheck(NamedTuple):
-    """The result of checking a time stamp: its problems, its time and authority in words, and notes on what was not checked."""
+    """The result of checking a time stamp: its problems, a phrase about its time and authority, and notes on what was not checked."""
 
     problems: list[Problem]
     description: str = ""

@@ -235,6 +235,6 @@ def _of_result(folder: Path, stated: Stated, check_request: RunRequest) -> tuple
 
 
 def _judged_rows(result: Result, name: str) -> Any:
-    """Return a table of a result, without the drives that were not judged, because these cannot be judged again."""
+    """Return a table of a result, without the drives that could not be judged."""
     rows = getattr(result, name)
     return rows.filter(pc.equal(rows["status"], "judged")) if name == "drives" else rows

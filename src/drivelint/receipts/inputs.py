@@ -47,7 +47,7 @@ def state(path: str, is_output: IsOutput) -> str | None:
 
 
 def matches(pattern: str, is_output: IsOutput) -> str:
-    """Return the hash of the names that a pattern matches."""
+    """Return the hash of the file names that a glob pattern matches."""
     found = glob(pattern, recursive=True)  # noqa: PTH207 - same function as the search for logs
     return _hash(sorted(name for name in found if not is_output(os.path.realpath(name))))
 

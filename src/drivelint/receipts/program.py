@@ -31,7 +31,7 @@ ENVIRONMENT: Final = (
 
 
 def program_folders() -> tuple[Path, ...]:
-    """Return the folders of the program's own files."""
+    """Return the folders of drivelint's own files: code, queries and schemas."""
     return Path(__file__).parents[1], folder("queries"), folder("schemas")
 
 
@@ -39,7 +39,7 @@ def program_folders() -> tuple[Path, ...]:
 def program_sha256() -> str:
     """Return the hash of all files of the program, of Python's version, and of the names and versions of installed packages.
 
-    The version of drivelint is not enough: developers change drivelint without changing its version.
+    Developers change drivelint without changing its version.
     """
     whole = sha256()
     for root in program_folders():

@@ -1,7 +1,7 @@
 """Records the inputs of a run: every file that Python opens, every folder that it lists, and other searched paths.
 
-The state of each input is taken before its first use, and again at the end of the run. If the states differ, it is unknown which of them
-was judged. Files that Python's importer reads and the package's own files are not recorded: the key of a receipt includes them.
+The state of each input is taken before its first use and at the end of the run. If these differ, it is unknown which state was judged.
+Files that Python's importer reads and the package's own files are not recorded: the key of a receipt includes them.
 """
 
 from __future__ import annotations

@@ -36,7 +36,7 @@ _PIECE: Final = 1 << 20
 class Receipt:
     """The receipt of a run: its inputs, output, notes and exit code, and the names and sizes of the files that it wrote.
 
-    `day`: the day of the run, if the result depends on it. `grown_files`: names of files that were written bit by bit during the run.
+    `day`: the day of the run, if the result depends on it. `grown_files`: names of files that were written in pieces during the run.
     """
 
     inputs: Inputs
@@ -57,7 +57,7 @@ class OpenedReceipt:
         self._start = start
 
     def unpack(self, work: Path) -> tuple[dict[str, bytes], dict[str, Path]]:
-        """Return name -> content of the files, and name -> path of the files that grew during the run, which are written into `work`."""
+        """Return name -> content of the files, and name -> path of the `grown_files`, which are written into `work`."""
         self._file.seek(self._start)
         contents: dict[str, bytes] = {}
         grown_files: dict[str, Path] = {}

@@ -74,7 +74,7 @@ class DaskCluster:
                 raise self._scheduler_error(str(error)) from error
             if self._client.status != "running":
                 raise self._scheduler_error("the connection was lost")
-            # a future whose result was lost with its worker is not kept here: another worker computes it again
+            # futures whose result was lost with a worker are skipped: another worker computes them again
             ended = {future for future in ended if future.status in _ENDED}
             if ended:
                 self._workerless_since = None
@@ -97,7 +97,7 @@ class DaskCluster:
         except Exception as error:
             if future.status != "error":  # the task itself has not failed, but its result cannot be fetched
                 raise self._scheduler_error("a result could not be fetched") from error
-            return Outcome(task, error=error)  # the driver distinguishes them
+            return Outcome(task, error=error)  # the driver distinguishes kinds of errors
 
     def _require_workers(self) -> None:
         try:

@@ -193,8 +193,8 @@ def _serve(pipe: Connection, parent: int) -> None:
 @contextmanager
 def deaf_to_ctrl_c() -> Iterator[None]:
     """Block Ctrl-C in threads and processes that start inside this block: only the main thread handles it."""
-    sys.warnoptions.append("ignore:resource_tracker")  # no warnings about leftovers that it removes
-    resource_tracker.ensure_running()  # its start would unblock the signal
+    sys.warnoptions.append("ignore:resource_tracker")  # no warnings about resources that it frees
+    resource_tracker.ensure_running()  # started later, it would unblock the signal
     sys.warnoptions.pop()
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
