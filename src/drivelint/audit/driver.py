@@ -30,7 +30,7 @@ TASK_BYTES: Final = 8_000_000
 TASK_DRIVES: Final = 64
 """A task ends when its logs have `TASK_BYTES` or it has `TASK_DRIVES` drives, so short drives are judged together."""
 LEAST_TASK_DRIVES: Final = 8
-"""Number of drives in a task if there are few drives in all. Results then come early, and all workers have work."""
+"""Number of drives in a task if there are few drives. Results then come early, and all workers have work."""
 MOST_ATTEMPTS: Final = 3
 """A drive is quarantined after this many workers died on it. From the second attempt on it is judged alone."""
 

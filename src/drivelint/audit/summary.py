@@ -123,7 +123,7 @@ class AuditSummary:
         return replace(self, **both, failed=dict(Counter(self.failed) + Counter(second.failed)))
 
     def exit_code(self, fail_on: str, *, strict: bool) -> ExitCode:
-        """Return the exit code; if several apply, the precedence is 2 > 1 > 4 > 3 > 0."""
+        """Return the exit code: the first that applies of 2 (USAGE), 1 (FAILED), 4 (NOT_JUDGED), 3 (LOSSY), 0 (OK)."""
         gating = SEVERITIES[: SEVERITIES.index(fail_on) + 1] if fail_on != "never" else ()
         if self.errors > self.beyond_limits:
             return ExitCode.USAGE

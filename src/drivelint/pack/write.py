@@ -45,7 +45,8 @@ class _PackSource(NamedTuple):
 def write_pack(request: PackRequest) -> dict[str, Any]:
     """Write the pack and return the content of its `evidence.json`. Nothing exists at `out` until the pack is complete.
 
-    Errors: `UsageError` for a result, log, map, rule or key that is missing or has changed, and if `out` already exists; `OutputError`.
+    Errors: `UsageError` for a result, log, map, rule or key that is missing or has changed, and if `out` exists without `overwrite`;
+    `OutputError`.
     """
     key = ready(request)
     is_audit = audits.is_audit(request.folder)
@@ -81,8 +82,8 @@ def write_pack(request: PackRequest) -> dict[str, Any]:
 
 
 def ready(request: PackRequest) -> signature.SigningKey | None:
-    """Return the key that signs a pack; None: the pack is not signed. Errors: `UsageError` for an invalid request, or if `out` already
-    exists."""
+    """Return the key that signs a pack; None: the pack is not signed. Errors: `UsageError` for an invalid request, or if `out` exists
+    without `overwrite`."""
     if (url := as_url(request.folder)) is not None:
         raise UsageError(f"{url}: is in an object store: copy it into a folder of this machine and pack that")
     if (url := as_url(request.out)) is not None:
