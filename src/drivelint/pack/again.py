@@ -61,7 +61,7 @@ def rules_of_table(rules: pa.Table, rules_dirs: Sequence[Path]) -> list[Rule]:
 
 def check_again(result: Result, check_request: RunRequest, work: Path | None, *, evidence: bool = True) -> Result:
     """Run the check of a result again, and return the new result. `work`: folder for the margins; None: margins are not computed.
-    `evidence`: also collect the data for pictures.
+    `evidence`: also gather what reports show.
 
     Errors: `UsageError` for a rule that is not in the catalogue or was changed since, and the errors of a check.
     """
