@@ -24,7 +24,7 @@ _HASHES: Final = {
     "2.16.840.1.101.3.4.2.2": hashlib.sha384,
     "2.16.840.1.101.3.4.2.3": hashlib.sha512,
 }
-"""Id of an algorithm -> hash function. Older algorithms are not accepted: another statement could be given the same hash."""
+"""Object identifier of an algorithm -> hash function. Algorithms with known collisions are not accepted."""
 
 
 class StampCheck(NamedTuple):
