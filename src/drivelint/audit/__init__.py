@@ -1,7 +1,8 @@
-"""Audits: many drives judged by many workers, with results that stay when the audit is interrupted and resumed.
+"""Audits: many workers judge many drives. After an interruption, the next run continues from the results so far.
 
-The key of a drive's result is a hash of everything that decides it. Workers write a batch of drives as one Parquet file per table and
-then a receipt per drive; a drive without a receipt has no result. Small files are packed into chunks of some thousand drives.
+The key of a drive's result is a hash of everything that determines the result. A worker writes a batch of drives as one Parquet file per
+table, and then one receipt per drive. A drive without a receipt has no result. Batches are later packed into chunks of some thousand
+drives.
 """
 
 from drivelint.audit.model import JudgeSettings

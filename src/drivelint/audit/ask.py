@@ -1,4 +1,4 @@
-"""`drivelint sql`: one SELECT over the tables of an audit or a check. It changes nothing and opens no other file."""
+"""`drivelint sql`: runs one SELECT over the tables of an audit or a check. It changes nothing and opens no other file."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ if TYPE_CHECKING:
 _CELL: Final = re.compile(r'(")((?:[^"]|"")*)"|[^,"\r\n]+')
 _NUMBER: Final = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|[+-]?(?:inf|nan)")
 _FORMULA: Final = tuple("=+-@\n\uff1d\uff0b\uff0d\uff20")
-"""First characters of a cell that a spreadsheet treats as a formula; so is a tab, which is shown as a backslash and t."""
+"""First characters of a cell that a spreadsheet treats as a formula. A tab is not needed here: `inert` replaces it by a backslash and t."""
 
 
 def ask(dest: str, query: str, format_: str, warn: Callable[[str], None] = lambda _: None) -> str:
-    """Return the rows of a SELECT as text, csv or json. `warn` hears that the audit has not ended, or that files were changed.
+    """Return the rows of a SELECT as text, csv or json. `warn` receives a warning if the audit has not ended or files were changed.
 
-    Errors: `UsageError` for another statement, or one that fails.
+    Errors: `UsageError` for another kind of statement, or one that fails.
     """
     with database() as con, TemporaryDirectory(prefix="drivelint-sql-") as home:
         _open(con, dest, Path(home), warn)
@@ -59,14 +59,14 @@ def ask(dest: str, query: str, format_: str, warn: Callable[[str], None] = lambd
 
 
 def _inert_cell(cell: re.Match[str]) -> str:
-    """Return a cell of CSV that is a text to a spreadsheet, and inert on a terminal; a number stays one."""
+    """Return a CSV cell that a spreadsheet does not run and a terminal does not interpret; a number stays a number."""
     quote, text = cell[1] or "", inert(cell[2] if cell[1] else cell[0])
     is_formula = text.startswith(_FORMULA) and not _NUMBER.fullmatch(text)
     return f"{quote}{chr(39) * is_formula}{text}{quote}"
 
 
 def _open(con: duckdb.DuckDBPyConnection, dest: str, home: Path, warn: Callable[[str], None]) -> None:
-    """Create the views of an audit, or of a check's result, and close the database off from everything else."""
+    """Create the views of an audit, or of a check's result, and then bar the database from all other files."""
     results = open_store(dest)
     is_audit = results.read(AUDIT_FILE) is not None
     _warn_of_changes(results, dest, home, warn, is_audit=is_audit)
@@ -96,9 +96,9 @@ def _open(con: duckdb.DuckDBPyConnection, dest: str, home: Path, warn: Callable[
 def _warn_of_changes(
     results: ResultStore, dest: str, home: Path, warn: Callable[[str], None], *, is_audit: bool
 ) -> None:
-    """Warn of the first file that has changed since it was written; a query may be about exactly that.
+    """Warn about the first file that has changed since it was written: the query may read that file.
 
-    Errors: `UsageError` for an audit that has ended and does not say how its files were.
+    Errors: `UsageError` for an audit that has ended but lacks the list of its files.
     """
     if is_audit:
         sealed.require_list(results, dest)
@@ -106,7 +106,7 @@ def _warn_of_changes(
             sealed.require_as_written(results, home, dest)
         except UsageError as error:
             warn(str(error))
-    elif isinstance(results, LocalFolder):  # the files of a bucket would have to be copied here
+    elif isinstance(results, LocalFolder):  # the files of a bucket would have to be downloaded
         for name in changed_files(results.root)[:1]:
             warn(f"{dest.rstrip('/')}/{name}: was changed since drivelint check wrote it: check the drives again")
 

@@ -1,4 +1,4 @@
-"""Object stores: `s3://`, `gs://`, `az://`, for results, logs, maps and manifests. Credentials are those of the environment."""
+"""Object stores (`s3://`, `gs://`, `az://`) for results, logs, maps and manifests. Credentials come from the environment."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ _RETRY: Final[Any] = {
     "retry_timeout": timedelta(seconds=120),
     "backoff": {"init_backoff": timedelta(seconds=0.1), "max_backoff": timedelta(seconds=10), "base": 2},
 }
-"""Requests to a busy store are repeated after longer and longer pauses; then the run ends with exit code 75."""
+"""Requests to a busy store are repeated with increasing pauses; then the run ends with exit code 75."""
 _ATTEMPTS: Final = 6
-"""Number of requests for an answer that is cut off."""
+"""Largest number of requests for an answer that is cut off each time."""
 _CLIENT: Final[Any] = {"allow_http": True, "timeout": timedelta(seconds=60)}
 
 
 class StoreError(DriveLintError):
-    """An object store that does not answer, or refuses: the run can be given again."""
+    """An object store does not answer, or refuses a request. The same command can be run again."""
 
     exit_code = ExitCode.TEMPFAIL
 
@@ -49,19 +49,19 @@ class Object(NamedTuple):
 
 
 def is_url(text: str) -> bool:
-    """Whether a text names something in an object store."""
+    """Return whether a text is a URL of an object store."""
     return _URL.fullmatch(text) is not None
 
 
 def as_url(path: Path) -> str | None:
-    """Return the URL that was given where a path is expected; None: it is a path."""
+    """Return the URL in a path that was made from a URL, which drops one `/`; None: the path is local."""
     text = re.sub(r"^(\w+):/(?=[^/])", r"\1://", path.as_posix())
     return text if is_url(text) else None
 
 
 @cache
 def _store(root: str) -> Any:
-    """Return the client for a bucket (`s3://name`). Errors: `UsageError` where it cannot be configured."""
+    """Return the client for a bucket (`s3://name`). Errors: `UsageError` if it cannot be configured."""
     try:
         return from_url(root, client_options=_CLIENT, retry_config=_RETRY)
     except (exceptions.BaseError, ValueError) as error:
@@ -76,7 +76,7 @@ def _open_bucket(url: str) -> tuple[Any, str]:
 
 
 class Bucket:
-    """A prefix of a bucket as `ResultStore`. An object is there whole or not at all; `create` is one conditional PUT."""
+    """A prefix of a bucket as `ResultStore`. An object exists completely or not at all; `create` is one conditional PUT."""
 
     def __init__(self, url: str) -> None:
         self._client, self._prefix = _open_bucket(url)
@@ -137,7 +137,7 @@ class Bucket:
 
 
 def list_objects(url: str) -> Iterator[Object]:
-    """Yield the objects below a prefix, in the order of the store. Errors: `StoreError`, `UsageError`."""
+    """Yield the objects below a URL prefix, in the order of the store. Errors: `StoreError`, `UsageError`."""
     client, prefix = _open_bucket(url)
     root = "/".join(url.split("/")[:3])
     try:
@@ -148,7 +148,7 @@ def list_objects(url: str) -> Iterator[Object]:
 
 
 def look(url: str) -> Object | None:
-    """Return an object's size and ETag; None: there is none of that name. Errors: `StoreError`."""
+    """Return an object with its size and ETag; None: it does not exist. Errors: `StoreError`."""
     client, path = _open_bucket(url)
     try:
         about = obstore.head(client, path)
@@ -160,9 +160,9 @@ def look(url: str) -> Object | None:
 
 
 def download(bucket_object: Object, folder: Path) -> Path:
-    """Copy an object into a folder, under its own name; return the copy's path.
+    """Download an object into a folder under the object's name; return the path of the copy.
 
-    Errors: `TraceError` for an object that is gone or has changed since it was found; `StoreError`.
+    Errors: `TraceError` if the object was removed or has changed since it was listed; `StoreError`.
     """
     client, path = _open_bucket(bucket_object.url)
     copy = folder / (path.rpartition("/")[2] or "object")
@@ -189,7 +189,7 @@ def download(bucket_object: Object, folder: Path) -> Path:
 
 
 def _listed(client: Any, prefix: str) -> Iterator[Any]:
-    """Yield the objects below a prefix of a store, page after page; a page that was cut off is requested again."""
+    """Yield the objects below a prefix, page by page; a page that was cut off is requested again."""
     last: str | None = None
     for attempt in range(_ATTEMPTS):
         try:
@@ -197,14 +197,14 @@ def _listed(client: Any, prefix: str) -> Iterator[Any]:
                 for about in some:
                     yield about
                     last = about["path"]
-            return  # noqa: TRY300 - the loop's end
+            return  # noqa: TRY300 - return ends the loop
         except (exceptions.GenericError, OSError):
             if attempt + 1 == _ATTEMPTS:
                 raise
 
 
 def _whole(job: Callable[[], T]) -> T:
-    """Run a job that reads an object; again if the answer was cut off, which the client does not do by itself."""
+    """Run a job that reads an object, and repeat it if the answer was cut off: the client does not repeat such requests itself."""
     for _ in range(_ATTEMPTS - 1):
         try:
             return job()

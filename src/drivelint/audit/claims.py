@@ -1,7 +1,7 @@
-"""Claims: how several audits into one place share its drives without a scheduler.
+"""Claims: several audits that write to the same place share its drives without a scheduler.
 
-Before an audit judges a drive, it writes a claim with its name. It writes a sign of life every few seconds. If an audit shows no sign of
-life for `LEASE_S`, its claims no longer count. Claims only save work: if two audits judge the same drive, one receipt wins.
+Before an audit judges a drive, it writes a claim with its own id. The audit also writes a heartbeat every few seconds. If an audit writes
+no heartbeat for `LEASE_S`, its claims expire. Claims only save work: if two audits judge the same drive, one receipt is valid.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ if TYPE_CHECKING:
     from drivelint.audit.store import ResultStore
 
 LEASE_S: Final = 60.0
-"""Seconds without a sign of life after which claims lapse; the clocks of the machines must agree better than that."""
+"""Seconds without a heartbeat after which claims expire. The clocks of the machines must differ by less than that."""
 
 
 class Claim(Enum):
-    """Which audit has a drive after an attempt to claim it. `NO_WORK_LEFT`: the drive has its result, or this audit already judges it."""
+    """Which audit owns a drive after an attempt to claim it. `NO_WORK_LEFT`: the drive has its result, or this audit already judges it."""
 
     THIS_AUDIT = "this audit"
     ANOTHER_AUDIT = "another audit"
@@ -36,7 +36,7 @@ class Claim(Enum):
 
 
 class Claims:
-    """The claims of one audit among several into the same place."""
+    """The claims of one audit among several that write to the same place."""
 
     def __init__(self, results: ResultStore, lease_s: float = LEASE_S) -> None:
         self._results = results
@@ -47,7 +47,7 @@ class Claims:
 
     @contextmanager
     def alive(self) -> Iterator[None]:
-        """Give signs of life until the block ends."""
+        """Write heartbeats until the block ends."""
         self._sign()
         beat = threading.Thread(target=self._beat, daemon=True)
         beat.start()
@@ -59,10 +59,10 @@ class Claims:
             self._results.delete([f"claims/owners/{self._owner}.json"])
 
     def claimed_drives(self, todo: Iterable[AuditDrive]) -> Iterator[AuditDrive]:
-        """Yield the drives that this audit gets in one pass over `todo`, the drives to be judged by all audits.
+        """Yield the drives that this audit claims in one pass over `todo`, the drives that have no result yet.
 
-        `n_waiting` is then the number of drives that other living audits have: after a while they are done, or free. This never waits
-        itself: the caller marks the drives that are judged meanwhile as done.
+        Afterwards, `n_waiting` is the number of drives that other live audits have claimed; later these are done or free. The method never
+        waits. The caller marks judged drives as done.
         """
         self.n_waiting = self.n_taken = 0
         left = iter(todo)
@@ -83,16 +83,16 @@ class Claims:
                 yield drive
 
     def pause(self) -> None:
-        """Wait for others, after a pass that got nothing."""
+        """Wait for other audits, after a pass that claimed no drive."""
         time.sleep(self._lease_s / 6)
 
     def mark_done(self, drives: Iterable[AuditDrive]) -> None:
-        """Say that drives have their results."""
+        """Record that drives have their results."""
         for drive in drives:
             self._results.write(_name(drive), b'{"owner": ""}\n')
 
     def _take(self, drive: AuditDrive) -> tuple[Claim, str]:
-        """Claim a drive. Return the outcome of the claim, and the id of the drive's owner, '' if the drive is done."""
+        """Claim a drive. Return the outcome, and the id of the audit that owns the drive; '' if the drive is done."""
         if self._results.create(_name(drive), self._claim()):
             return Claim.THIS_AUDIT, self._owner
         content = self._results.read(_name(drive))

@@ -1,7 +1,7 @@
-"""Packs the many small files of an audit into few: chunks of some thousand drives, each a file per table and its receipts.
+"""Packs the many small files of an audit into chunks of some thousand drives: one file per table, and one for the receipts.
 
-A chunk is there once its receipts are: they are written last. Only then are its drives removed from the small files, so that an audit
-that is killed at any moment neither loses a drive nor has it twice.
+The receipts of a chunk are written last: a chunk without receipts does not count. Only after that, the small files of its drives are
+removed. An audit that is killed at any moment therefore neither loses a drive nor has it twice.
 """
 
 from __future__ import annotations
@@ -57,19 +57,19 @@ _ORDER: Final = {"verdicts": _KEYS, "findings": f"{_KEYS}, finding_id", "drives"
 
 
 def chunk_name(table: str, chunk: str) -> str:
-    """Return the name of a chunk's file of a table, or of its receipts."""
+    """Return the file name of a chunk in one table, or of its receipts."""
     return f"tables/{table}/{chunk}.parquet"
 
 
 def chunks(results: ResultStore) -> list[str]:
-    """Return the ids of the chunks that are whole, sorted."""
+    """Return the ids of the complete chunks, sorted."""
     return sorted(Path(name).stem for name in results.names("tables/receipts"))
 
 
 def compact(results: ResultStore, *, while_judging: bool = False) -> int:
-    """Pack every receipt that is in no chunk yet, with its rows; return how many there were.
+    """Pack every receipt that is in no chunk yet, with the drive's rows. Return how many were packed.
 
-    `while_judging`: workers may be writing, so only batches are packed of which all receipts are there.
+    `while_judging`: workers may be writing, so only batches with all their receipts are packed.
     Only one process may compact an audit at a time. Errors: `OutputError`; `DriveLintError` for results that contradict each other.
     """
     _remove_unfinished(results)
@@ -83,7 +83,7 @@ def compact(results: ResultStore, *, while_judging: bool = False) -> int:
 
 
 def drop(results: ResultStore, keys: pa.Array) -> None:
-    """Remove the drives with these keys from the chunks, so that they are judged again. Not while another process compacts."""
+    """Remove the drives with these keys from the chunks, so that they are judged again. No other process may compact meanwhile."""
     with TemporaryDirectory(prefix="drivelint-compact-") as home:
         for chunk in chunks(results) if len(keys) else ():
             receipts = _read(results, "receipts", chunk, Path(home))
@@ -93,7 +93,7 @@ def drop(results: ResultStore, keys: pa.Array) -> None:
             left = kept["key"].combine_chunks()
             rows = {table: _read(results, table, chunk, Path(home)) for table in TABLES}
             rows = {table: of.filter(pc.is_in(of["key"], value_set=left)) for table, of in rows.items()}
-            # first the old receipts: killed in between, a drive is judged again, where it would be there twice
+            # remove the old receipts first: if killed in between, drives are judged again, but never exist twice
             results.delete([chunk_name("receipts", chunk), *(chunk_name(table, chunk) for table in TABLES)])
             if kept.num_rows:
                 _write_chunk(results, {table: _parquet(of) for table, of in rows.items()}, kept)
@@ -101,7 +101,7 @@ def drop(results: ResultStore, keys: pa.Array) -> None:
 
 @contextmanager
 def database() -> Iterator[duckdb.DuckDBPyConnection]:
-    """Open a database in memory that uses the disk beyond `MEMORY`."""
+    """Open a database in memory that writes to disk what exceeds `MEMORY`."""
     with TemporaryDirectory(prefix="drivelint-audit-") as spill, duckdb.connect() as con:
         con.execute(f"SET memory_limit='{MEMORY}'")
         con.execute("SET temp_directory=?", [spill])
@@ -111,9 +111,9 @@ def database() -> Iterator[duckdb.DuckDBPyConnection]:
 
 
 def create_views(con: duckdb.DuckDBPyConnection, results: ResultStore, home: Path, prefix: str = "") -> None:
-    """Create the views `verdicts`, `findings`, `drives`, `rules`, `receipts` over all chunks, which must be packed. `home`: for copies.
+    """Create the views `verdicts`, `findings`, `drives`, `rules` and `receipts` over all chunks.
 
-    `prefix`: what the names of the views begin with.
+    Everything must be packed before. `home`: folder for copies of remote files. `prefix`: prefix of the view names.
     """
     con.read_parquet(escaped([str(results.fetch("rules.parquet", home))])).create_view(f"{prefix}rules", replace=True)
     ids = chunks(results)
@@ -128,7 +128,7 @@ def create_views(con: duckdb.DuckDBPyConnection, results: ResultStore, home: Pat
 
 
 def tables_digest(con: duckdb.DuckDBPyConnection) -> str:
-    """Return a hash of all rows of the views, which does not depend on chunks, order, or where the logs lie."""
+    """Return a hash of all rows of the views. It does not depend on the chunks, on the order of rows, or on the paths of the logs."""
     told: list[Any] = []
     for table in TABLES:
         left_out = " EXCLUDE (log)" if table == "drives" else ""
@@ -138,7 +138,7 @@ def tables_digest(con: duckdb.DuckDBPyConnection) -> str:
 
 
 def loose_receipts(results: ResultStore, *, whole_batches: bool) -> Iterator[list[Receipt]]:
-    """Yield the receipts that are in no chunk, those of a batch together, some thousand at a time."""
+    """Yield lists of some thousand receipts that are in no chunk. The receipts of one batch are in the same list."""
     by_batch: dict[str, list[Receipt]] = {}
     for name in sorted(results.names("receipts")):
         content = results.read(name)
@@ -164,9 +164,9 @@ def loose_receipts(results: ResultStore, *, whole_batches: bool) -> Iterator[lis
 
 
 def _pack(results: ResultStore, con: duckdb.DuckDBPyConnection, receipts: Sequence[Receipt], home: Path) -> int:
-    """Write a chunk of these receipts and their rows, then remove the small files. Return how many drives it has."""
+    """Write a chunk of these receipts and their rows, then remove the small files. Return the number of drives in the chunk."""
     lost = {batch for batch in {each.batch for each in receipts} if results.read(batch_name("drives", batch)) is None}
-    if lost:  # somebody removed the rows: without its receipt, a drive is judged again
+    if lost:  # the rows were removed: without a receipt, the drives are judged again
         results.delete(receipt_name(receipt.key) for receipt in receipts if receipt.batch in lost)
         receipts = [receipt for receipt in receipts if receipt.batch not in lost]
     packed_keys = _packed_keys(results, con, receipts, home)
@@ -195,7 +195,7 @@ def _pack(results: ResultStore, con: duckdb.DuckDBPyConnection, receipts: Sequen
 def batch_rows(
     con: duckdb.DuckDBPyConnection, results: ResultStore, home: Path, table: str, receipts: Sequence[Receipt]
 ) -> str:
-    """Return the SELECT of the rows of a table that the batches of these receipts have, of the drives in the relation `_packed`."""
+    """Return the SELECT that reads one table's rows from the batches of these receipts, for the drives in the relation `_packed`."""
     files = {each.batch: str(results.fetch(batch_name(table, each.batch), home)) for each in receipts}
     con.read_parquet(escaped(files.values()), filename=True).create_view("_rows", replace=True)
     return statement("audit/packed", order=_ORDER[table])
@@ -204,7 +204,7 @@ def batch_rows(
 def _packed_keys(
     results: ResultStore, con: duckdb.DuckDBPyConnection, receipts: Sequence[Receipt], home: Path
 ) -> set[str]:
-    """Return the keys that a chunk has already: a log that was moved, or a compaction that was killed."""
+    """Return the keys that a chunk already contains, because a log was moved or a compaction was killed."""
     ids = chunks(results)
     if not ids:
         return set()
@@ -229,7 +229,7 @@ def _write_chunk(results: ResultStore, tables: dict[str, bytes], receipts: pa.Ta
 
 
 def _remove_unfinished(results: ResultStore) -> None:
-    """Remove files of chunks without receipts: their compaction was killed, and their content is still in small files."""
+    """Remove files of chunks without receipts. Their compaction was killed, and the small files still have their content."""
     whole = set(chunks(results))
     results.delete(
         name for table in TABLES for name in list(results.names(f"tables/{table}")) if Path(name).stem not in whole
@@ -237,7 +237,7 @@ def _remove_unfinished(results: ResultStore) -> None:
 
 
 def _remove_orphans(results: ResultStore) -> None:
-    """Remove batches without a receipt: their worker was killed, and their drives have no result."""
+    """Remove batches without a receipt. Their worker was killed, and their drives have no result."""
     used = {
         Receipt.from_json(content).batch
         for name in results.names("receipts")
@@ -253,7 +253,7 @@ def _read(results: ResultStore, table: str, chunk: str, home: Path) -> pa.Table:
 
 
 def receipt_row(receipt: Receipt) -> dict[str, Any]:
-    """Return a receipt as a row of its table."""
+    """Return a receipt as a row of the table `receipts`."""
     told = msgspec.to_builtins(receipt)
     return {**told, **{key: sorted(told[key].items()) for key in ("counts", "failed", "tags")}}
 
@@ -265,5 +265,5 @@ def _parquet(rows: pa.Table) -> bytes:
 
 
 def escaped(files: Iterable[str]) -> list[str]:
-    """Return paths in which DuckDB takes no character for a pattern."""
+    """Return the paths with wildcard characters escaped for DuckDB."""
     return [file.replace("[", "[[]").replace("*", "[*]").replace("?", "[?]") for file in files]

@@ -1,8 +1,8 @@
-"""Keeps Delta tables of an audit's packed tables, for Spark, Databricks, Trino and others that read them.
+"""Writes the packed tables of an audit as Delta tables, which Spark, Databricks, Trino and others read.
 
-A Delta table is a folder of Parquet files and a log that names the files of each version. Its files are copies of the packed files, named
-by the hash of their content. One commit adds the files that are new and takes out those that the audit has no more, so that a reader sees
-the former version or the next one, also where the writer is killed.
+A Delta table is a folder of Parquet files with a log that lists the files of each version. The Parquet files are copies of the packed
+files, named by the hash of their content. One commit adds new files and removes files that the audit does not have. A reader sees either
+the former version or the next one, even if the writer is killed.
 """
 
 from __future__ import annotations
@@ -37,37 +37,37 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 NAMES: Final = ("rules", *TABLES, "receipts")
-"""The Delta tables, in the order in which they are written: as in a chunk, receipts are the last."""
+"""The Delta tables in the order in which they are written. Receipts are written last, as in a chunk."""
 DIGEST: Final = "drivelint.digest"
-"""The member of a commit that has the `digest` of the audit's summary."""
+"""The key in the metadata of a commit for the `digest` of the audit's summary."""
 _OPTIONS: Final = {"allow_http": "true", "retry_timeout": "20s"}
 _ATTEMPTS: Final = 6
-"""Six attempts of 20 s are the two minutes after which a store that is busy ends a run."""
+"""Six attempts of 20 s make the two minutes after which a run gives up on a busy store."""
 _COLOUR: Final = re.compile(r"\x1b\[[0-9;]*m")
-"""The texts of deltalake's errors are coloured."""
+"""Colour codes in the error messages of deltalake."""
 
 
 class DeltaChange(NamedTuple):
-    """The number of files that a write added and removed, in all tables."""
+    """The number of files that were added and removed, in all tables."""
 
     n_added: int
     n_removed: int
 
     def text(self, dest: str) -> str:
-        """Return the sentence for a person."""
+        """Return the numbers as a sentence."""
         if not self.n_added and not self.n_removed:
             return f"{dest}: the Delta tables were up to date"
         return f"{dest}: {plural(self.n_added, 'file')} added to the Delta tables, {self.n_removed} removed"
 
 
 def ready(dest: str, out: str, run: str) -> None:
-    """Make sure, before anything is judged, that the tables of the audit in `out` can be written to `dest`. `run`: the audit's run id.
+    """Raise an error, before any drive is judged, if the tables of the audit in `out` cannot be written to `dest`. `run`: the audit's run
+    id.
 
-    Errors: `UsageError` where deltalake is not installed, or where `dest` is a file, is within `out`, or has other tables;
-    `OutputError`.
+    Errors: `UsageError` if deltalake is not installed, or if `dest` is a file, is within `out`, or has other tables; `OutputError`.
     """
     try:
-        import deltalake  # noqa: F401 - only whether it is there
+        import deltalake  # noqa: F401 - only tests whether it is installed
     except ModuleNotFoundError as error:
         raise UsageError(f"--delta: {error.name} is not installed: pip install 'drivelint[delta]'") from error
     if f"{_absolute(dest)}/".startswith(f"{_absolute(out)}/"):
@@ -82,10 +82,10 @@ def ready(dest: str, out: str, run: str) -> None:
 def write(
     con: duckdb.DuckDBPyConnection, results: ResultStore, home: Path, dest: str, *, run: str, digest: str | None
 ) -> DeltaChange:
-    """Make the Delta tables in `dest` equal to the packed tables, each by one commit, where they differ.
+    """Make the Delta tables in `dest` equal to the packed tables, with one commit for each table that differs.
 
-    `con`: has the views of `create_views`; `home`: has their copies. `digest`: that of the audit's summary. Only one process may write
-    an audit's tables at a time. Errors: `UsageError` for a table of another program; `OutputError`.
+    `con` has the views of `create_views`; `home` has local copies of the files. `digest`: the digest in the audit's summary. Only one
+    process may write an audit's tables at a time. Errors: `UsageError` for a table of another program; `OutputError`.
     """
     ids = chunks(results)
     n_added = n_removed = 0
@@ -133,7 +133,7 @@ def _write_table(
 
 
 def _open_table(where: str, table: str, run: str) -> DeltaTable | None:
-    """Return the Delta table that is there; None: there is none. Errors: `UsageError` for that of another audit."""
+    """Return the Delta table at `where`; None: there is none. Errors: `UsageError` for a table of another audit or program."""
     from deltalake import DeltaTable
     from deltalake.exceptions import TableNotFoundError
 
@@ -149,13 +149,13 @@ def _open_table(where: str, table: str, run: str) -> DeltaTable | None:
 
 
 def _active(table: DeltaTable) -> dict[str, int]:
-    """Return the files of the newest version and their sizes in bytes."""
+    """Return the files of the table's newest version: name -> size in bytes."""
     told = pa.table(table.get_add_actions(flatten=True)).select(["path", "size_bytes"])
     return {row["path"]: row["size_bytes"] for row in told.to_pylist()}
 
 
 def _last_digest(store: ResultStore, version: int) -> str | None:
-    """Return the digest that the newest commit has; None: it has none, or its file was cleaned up."""
+    """Return the digest in the newest commit; None: it has none, or the commit file was deleted."""
     lines = (store.read(f"_delta_log/{version:020}.json") or b"").splitlines()
     found = [info for line in lines if (info := json.loads(line).get("commitInfo"))]
     return found[0].get(DIGEST) if found else None
@@ -179,7 +179,7 @@ def _where(dest: str, table: str) -> str:
 
 
 def _uri(where: str) -> str:
-    """Return the URI of a place; of a folder, its name may have any character."""
+    """Return the URI of a place. The path of a local folder may contain any character."""
     return where if is_url(where) else Path(where).absolute().as_uri()
 
 
@@ -188,9 +188,9 @@ def _absolute(place: str) -> str:
 
 
 def _persistent(where: str, job: Callable[[], T]) -> T:
-    """Run a job on a Delta table, and again where it fails: deltalake does not ask again for an answer that was cut off.
+    """Run a job on a Delta table, and repeat it if it fails: deltalake does not repeat a request whose answer was cut off.
 
-    The job looks anew at the table each time. Errors: `OutputError`.
+    The job reads the state of the table anew each time. Errors: `OutputError`.
     """
     from deltalake.exceptions import DeltaError
 

@@ -1,4 +1,4 @@
-"""The driver: divides drives into tasks, keeps the workers busy, repeats lost tasks, and quarantines drives that kill workers."""
+"""The driver: divides drives into tasks, gives them to the workers, repeats lost tasks, and quarantines drives that kill workers."""
 
 from __future__ import annotations
 
@@ -25,18 +25,18 @@ if TYPE_CHECKING:
     from drivelint.audit.store import ResultStore
 
 WINDOW: Final = 4
-"""Tasks per worker that are handed over at a time: enough to keep it busy, few enough to hold in memory."""
+"""Number of tasks per worker that are submitted at a time: enough to keep the worker busy, few enough to fit into memory."""
 TASK_BYTES: Final = 8_000_000
 TASK_DRIVES: Final = 64
-"""A task ends with the drive with which its logs have so many bytes or so many are in it: short drives are judged together."""
+"""A task ends when its logs have `TASK_BYTES` or it has `TASK_DRIVES` drives, so short drives are judged together."""
 LEAST_TASK_DRIVES: Final = 8
-"""The number of drives in a task if there are few drives, so that results come soon and all workers have work."""
+"""Number of drives in a task if there are few drives. Results then come early, and all workers have work."""
 MOST_ATTEMPTS: Final = 3
-"""A drive over which so many workers were lost is quarantined; from the second on it is judged alone."""
+"""A drive is quarantined after this many workers died on it. From the second attempt on it is judged alone."""
 
 
 def task_size(n_drives: int, capacity: int) -> int:
-    """Return how many drives a task has at most."""
+    """Return the largest number of drives that a task may have."""
     return max(LEAST_TASK_DRIVES, min(TASK_DRIVES, n_drives // (WINDOW * capacity)))
 
 
@@ -50,9 +50,9 @@ def tasks(
     max_drives: int = TASK_DRIVES,
     n_small: int = 0,
 ) -> Iterator[Task]:
-    """Cut drives into tasks, the largest of each `ahead` drives first, so that no long one is left for the end.
+    """Divide drives into tasks. Each group of `ahead` drives starts with its largest logs, so that no long log is left for the end.
 
-    The first `n_small` tasks are small: an audit that is interrupted early keeps something.
+    The first `n_small` tasks are small, so that an audit that is interrupted early has some results.
     """
     left, n_cut = iter(drives), 0
     while some := list(islice(left, ahead)):
@@ -71,7 +71,10 @@ def tasks(
 
 @dataclass
 class Driver:
-    """Runs tasks on an executor. `tell` gets every receipt, `mark_done` the drives that have theirs; `busy` is called between tasks."""
+    """Runs tasks on an executor.
+
+    `tell` receives every receipt. `mark_done` receives the drives of a completed task. `busy` is called between tasks.
+    """
 
     executor: Executor
     results: ResultStore
@@ -80,8 +83,11 @@ class Driver:
     mark_done: Callable[[tuple[AuditDrive, ...]], None] = lambda _drives: None
 
     def run(self, todo: Iterable[Task]) -> None:
-        """Run all tasks. Errors: those that are not caused by a drive, such as `OutputError`; any other error belongs to the drives of
-        its task."""
+        """Run all tasks.
+
+        Errors: any `DriveLintError` except `InternalError`, such as `OutputError`. Every other error counts as a loss of the task, and its
+        drives are tried again.
+        """
         waiting = iter(todo)
         again: deque[Task] = deque()
         n_running = 0
@@ -107,7 +113,8 @@ class Driver:
             self.busy()
 
     def _after_loss(self, task: Task, why: str) -> list[Task]:
-        """Return the tasks to repeat: the drives of a lost task one by one; a drive alone until it is quarantined."""
+        """Return the tasks that repeat a lost task: one task per drive. If the task had only one drive, it is repeated until it is
+        quarantined."""
         attempts = task.attempts + 1
         if len(task.drives) > 1:
             return [replace(task, drives=(drive,), attempts=attempts) for drive in task.drives]
@@ -119,7 +126,8 @@ class Driver:
         return []
 
     def _quarantine(self, drive: AuditDrive, why: str) -> list[Receipt]:
-        """Write the receipt of a drive that cannot be judged without losing the worker. Its key is not of its content."""
+        """Write the receipt of a drive on which every worker died, and return it. Its key is the `source_id`, not a hash of the log's
+        content."""
         key = drive.source_id
         name = drive.log.rpartition("/")[2]
         about = collect.unjudged_drive(name.rpartition(".")[0] or name, name, f"{drive.log}: {why}")
@@ -145,7 +153,8 @@ class Driver:
 
 
 def _loss(outcome: Outcome) -> str | None:
-    """Return why a task has no result; None: it has one. An unexpected error, such as one for lack of memory, is of its drives."""
+    """Return why a task has no result; None: it has a result. An unexpected error, such as lack of memory, counts as caused by its
+    drives."""
     if outcome.error is None:
         return outcome.loss_reason
     words = (str(outcome.error).splitlines() or [""])[0][:200]
@@ -153,7 +162,7 @@ def _loss(outcome: Outcome) -> str | None:
 
 
 def empty_rows() -> dict[str, pa.Table]:
-    """Return the tables of an audit without rows."""
+    """Return all tables of an audit, each with no rows."""
     nobody = AuditDrive("", DriveInput())
     return {
         table: with_key(empty_table(TABLE_OF_FILE[table]), "", nobody if table == "drives" else None)

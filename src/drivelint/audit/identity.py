@@ -1,4 +1,4 @@
-"""Everything that decides a result besides the log: its hash is part of the key of a result."""
+"""Hashes everything that determines a result besides the log. These hashes are part of the key of a result."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _LIBRARIES = ("duckdb", "duckdb-extension-spatial", "pyarrow", "numpy")
 
 
 def versions() -> dict[str, str]:
-    """Return the versions of drivelint and of the libraries on which a verdict's bytes may depend, and the hash of its own SQL."""
+    """Return the versions of drivelint and of the libraries that can affect a verdict's bytes, and the hash of drivelint's SQL."""
     return {"drivelint": __version__, **{name: version(name) for name in _LIBRARIES}, "queries": _queries_sha256()}
 
 
@@ -43,14 +43,15 @@ def _queries_sha256() -> str:
 
 
 def rule_table(settings: JudgeSettings) -> pa.Table:
-    """Return the table `rule` of the selected rules. Errors: `UsageError`, `RuleError` for what was asked."""
+    """Return the table `rule` of the selected rules. Errors: `UsageError`, `RuleError` for wrong settings."""
     rules = catalogue.select_rules(catalogue.load_rules(settings.rules_dirs), settings.rules, settings.ignore)
     params = catalogue.parse_params(rules, settings.params)
     return collect.rule_table(rules, params, settings.profiles or DEFAULT_PROFILES)
 
 
 def run_id(settings: JudgeSettings) -> str:
-    """Return the hash of rules, which are named, their parameters, profiles, whether copies are judged, and versions. Errors: as there."""
+    """Return the hash of rules, which of them were named, their parameters, profiles, `robustness`, and versions. Errors: as
+    `rule_table`."""
     rules = rule_table(settings).select(["rule_id", "rule_version", "params", "profiles"]).to_pylist()
     profiles = profile_table(load_profiles(settings.rules_dirs), settings.profiles).to_pylist()
     chosen = catalogue.select_rules(catalogue.load_rules(settings.rules_dirs), settings.rules, settings.ignore)
@@ -59,7 +60,7 @@ def run_id(settings: JudgeSettings) -> str:
 
 
 class OptionHashes:
-    """Hashes the options of drives; a map or mapping that many drives have is read once."""
+    """Hashes the options of drives. A map or mapping that many drives share is read once."""
 
     def __init__(self) -> None:
         self._known: dict[str, str] = {}
@@ -68,7 +69,7 @@ class OptionHashes:
     def of(self, options: DriveInput) -> str:
         """Return the hash of a drive's options and of the content of its map and mapping.
 
-        A map that cannot be read counts by its name: the drive is refused, until the map is there.
+        For a map that cannot be read, the hash uses its name; drives with that map are refused until it can be read.
         """
         told: dict[str, Any] = msgspec.to_builtins(options, enc_hook=str)
         name = digest(told)

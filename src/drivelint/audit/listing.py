@@ -1,4 +1,4 @@
-"""The drives of the sources as a table of the database, which is compared with the receipts."""
+"""Lists the drives of the sources in a database table, which is compared with the receipts."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def fill(
     run_id: str,
     shard: tuple[int, int] | None,
 ) -> int:
-    """Fill the table `_listed` with the drives of the sources; return how many there are."""
+    """Fill the table `_listed` with the drives of the sources, or of one shard. Return the number of drives."""
     con.execute(statement("audit/listed"))
     hashes = OptionHashes()
     some: list[dict[str, Any]] = []
@@ -71,7 +71,7 @@ def _insert(con: duckdb.DuckDBPyConnection, rows: list[dict[str, Any]]) -> None:
 
 
 def todo(con: duckdb.DuckDBPyConnection) -> Iterator[AuditDrive]:
-    """Yield the listed drives that have no receipt, in the order of their logs."""
+    """Yield the listed drives that have no receipt, ordered by log."""
     rows = con.cursor().execute(statement("audit/todo"))
     for batch in rows.to_arrow_reader(1_000):
         for row in batch.to_pylist():
@@ -81,7 +81,7 @@ def todo(con: duckdb.DuckDBPyConnection) -> Iterator[AuditDrive]:
 
 
 def _stamp(log: str) -> tuple[int, str]:
-    """Return a log's size in bytes and the time of its last change, or its ETag; (0, "") where it cannot be looked at."""
+    """Return a log's size in bytes, and the time of its last change or its ETag; (0, "") if the log cannot be read."""
     if is_url(log):
         found = look(log)
         return (0, "") if found is None else (found.size, found.e_tag)

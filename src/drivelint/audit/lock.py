@@ -1,4 +1,4 @@
-"""Keeps two audits, or an audit and a merge, from packing one place at the same time."""
+"""Locks the place of an audit's results, so that two audits, or an audit and a merge, do not pack it at the same time."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ if TYPE_CHECKING:
     from drivelint.audit.store import ResultStore
 
 LAPSE_S: Final = 60.0
-"""Seconds without a sign of life after which the lock of an object store lapses. That of a folder ends with its process."""
+"""Seconds without a heartbeat after which the lock of an object store expires. The lock of a folder ends with its process."""
 _NAME: Final = "lock.json"
 
 
 @contextmanager
 def locked(results: ResultStore, *, shared: bool) -> Iterator[None]:
-    """Hold a place while the block runs. `shared`: with others that share it, as shards do, which pack nothing.
+    """Lock a place while the block runs. `shared`: others may hold a shared lock too, such as shards, which do not pack.
 
-    Errors: `UsageError` if another process has it.
+    Errors: `UsageError` if another process holds a lock that excludes this one.
     """
     if isinstance(results, LocalFolder):
         with _locked_folder(results, shared=shared):
@@ -76,7 +76,7 @@ def _locked_store(results: ResultStore) -> Iterator[None]:
     finally:
         stop.set()
         thread.join()
-        with suppress(Exception):  # it lapses by itself
+        with suppress(Exception):  # the lock expires by itself
             results.delete([_NAME])
 
 

@@ -1,4 +1,4 @@
-"""The data of an audit: its request, one drive of it, a task for a worker, and the receipt that proves a drive's result."""
+"""The data types of an audit: settings, one drive, a task for a worker, and the receipt that proves a drive's result."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import DriveInput
 
 RECEIPT_VERSION: Final = 1
-"""Version of receipts: raised when a field changes its meaning or goes."""
+"""Version of the receipt format: raised when a field is removed or changes its meaning."""
 Status = Literal["judged", "refused", "quarantined"]
-"""judged; refused: the log cannot be judged; quarantined: each process that judged the drive died or took too long."""
+"""`refused`: the log cannot be judged. `quarantined`: each process that judged the drive died or exceeded a limit."""
 
 
 @dataclass(frozen=True)
 class JudgeSettings:
-    """The settings that decide the verdicts of an audit besides its logs and maps: the options of `check` of the same names."""
+    """The settings that determine the verdicts of an audit, besides its logs and maps. They have the names of the options of `check`."""
 
     rules: tuple[str, ...] = ()
     ignore: tuple[str, ...] = ()
@@ -35,8 +35,8 @@ class JudgeSettings:
 class AuditDrive:
     """One drive of an audit: a row of the manifest, or a log that was found in a folder.
 
-    `log`: path or URL. `size` in bytes and `stamp` (time of the last change, or ETag) identify an unchanged file.
-    `source_id`: hash of them, of the tags, of the options and of the run; `options_id`: hash of the options and of what the map holds.
+    `log`: path or URL. `size` in bytes and `stamp` (time of the last change, or ETag) show whether a file is unchanged.
+    `source_id`: hash of path, size, stamp, tags, options and run. `options_id`: hash of the options and of the map's content.
     """
 
     log: str
@@ -48,7 +48,7 @@ class AuditDrive:
     options_id: str = ""
 
     def with_ids(self, size: int, stamp: str, run_id: str, options_id: str) -> AuditDrive:
-        """Return the drive with the data of its log, and its ids."""
+        """Return the drive with the size and the stamp of its log, and with its ids."""
         source_id = digest([run_id, options_id, self.log, size, stamp, self.tags])
         return replace(self, size=size, stamp=stamp, source_id=source_id, options_id=options_id)
 
@@ -60,7 +60,7 @@ class AuditDrive:
 
 @dataclass(frozen=True)
 class Task:
-    """Drives that a worker judges together, where it puts the results, and how often workers were lost over them."""
+    """Drives that a worker judges together, the place of the results, and how many workers were already lost on these drives."""
 
     drives: tuple[AuditDrive, ...]
     dest: str
@@ -70,20 +70,21 @@ class Task:
 
     @property
     def size(self) -> int:
-        """Bytes of all logs."""
+        """The size of all logs in bytes."""
         return sum(drive.size for drive in self.drives)
 
 
 @dataclass(frozen=True)
 class Receipt:
-    """The proof that a drive was judged, written after its results: a drive without one has no result.
+    """The proof that a drive was judged. It is written after the drive's results: a drive without a receipt has no result.
 
-    `key`: hash of log, tags, map, options, rules, parameters, and versions. `batch`: the file of each table that has its rows, beside those
-    of `n_in_batch` drives in all.
-    `off_map`: the map does not fit it. `rows_sha256`: hash of these rows, whatever other drives are in the file.
-    `counts`: verdict -> rows; `failed`: severity -> failed verdicts of stable rules, which gate; `unknown`: unknown ones of stable rules.
-    `beyond_limits`: of the verdicts that are errors, those of rules that took too much time or memory.
-    `options`: those of the drive, as JSON.
+    `key`: hash of log, tags, map, options, rules, parameters, and versions. `batch`: name of the files that contain the drive's rows; the
+    batch has `n_in_batch` drives.
+    `off_map`: the map does not fit the drive. `rows_sha256`: hash of the drive's rows, independent of other drives in the files.
+    `counts`: verdict -> number of rows. `failed`: severity -> number of failed verdicts of stable rules, which gate. `unknown`: number of
+    unknown verdicts of stable rules.
+    `beyond_limits`: number of the `error` verdicts whose rules exceeded their limit of time or memory. `options`: the drive's options as
+    JSON.
     """
 
     key: str
@@ -110,11 +111,11 @@ class Receipt:
     options: str = ""
     n_in_batch: int = 1
     reused: bool = False
-    """The result existed before. This is only for this run and is never stored."""
+    """The result existed before this run. This field is never stored."""
     version: int = RECEIPT_VERSION
 
     def to_json(self) -> bytes:
-        """Return the receipt as it is stored."""
+        """Return the receipt as the JSON that is stored."""
         told = msgspec.to_builtins(self)
         del told["reused"]
         return msgspec.json.encode(told, order="sorted") + b"\n"

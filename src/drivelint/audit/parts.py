@@ -1,4 +1,4 @@
-"""The parts of an audit that have started, and those that have ended, so that an unfinished audit never looks complete."""
+"""Records which parts of an audit have begun and which have ended, so that an unfinished audit never looks complete."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ if TYPE_CHECKING:
     from drivelint.audit.store import ResultStore
 
 ALL, CLAIM = "all", "claim"
-"""The names of an audit of all drives, and of audits that share their drives. That of a shard is `2-of-3`."""
+"""The part names of an audit of all drives, and of audits that share their drives by claims. A shard has a name such as `2-of-3`."""
 
 
 def name_of(shard: tuple[int, int] | None, *, claim: bool) -> str:
-    """Return the name of a part."""
+    """Return the name of an audit's part: a shard, a share by claims, or all drives."""
     if shard is not None:
         return f"{shard[0]}-of-{shard[1]}"
     return CLAIM if claim else ALL
 
 
 def begin(results: ResultStore, part: str) -> None:
-    """Say that a part has begun. With a shard, all the others are expected, too."""
+    """Record that a part has begun. If it is a shard, record all other shards as expected."""
     _, is_shard, n = part.partition("-of-")
     for name in [f"{i}-of-{n}" for i in range(1, int(n) + 1)] if is_shard else [part]:
         results.create(f"parts/begun/{name}", b"\n")
@@ -28,12 +28,15 @@ def begin(results: ResultStore, part: str) -> None:
 
 
 def ask(results: ResultStore, part: str, n_drives: int) -> None:
-    """Say how many drives a part that has begun is to judge."""
+    """Record how many drives a part that has begun has to judge."""
     results.write(f"parts/begun/{part}", f"{n_drives}\n".encode())
 
 
 def n_expected_drives(results: ResultStore) -> int | None:
-    """Return how many drives the parts without an end are to judge, or all parts; of shards all of them; None: not known."""
+    """Return how many drives the audit has to judge; None: not known.
+
+    Unfinished parts count, or all parts if none is unfinished. If one of these is a shard, all shards count.
+    """
     said = {Path(name).name: (results.read(name) or b"").strip() for name in results.names("parts/begun")}
     open_ = unfinished_parts(results) or sorted(said)
     if not open_:
@@ -43,15 +46,15 @@ def n_expected_drives(results: ResultStore) -> int | None:
 
 
 def end(results: ResultStore, part: str) -> None:
-    """Say that a part has come to its end."""
+    """Record that a part has ended."""
     results.write(f"parts/ended/{part}", b"\n")
 
 
 def begun(results: ResultStore) -> set[str]:
-    """Return the parts that have begun, or are expected."""
+    """Return the names of the parts that have begun or are expected."""
     return {Path(name).name for name in results.names("parts/begun")}
 
 
 def unfinished_parts(results: ResultStore) -> list[str]:
-    """Return the parts that have begun, or are expected, and have not come to their end."""
+    """Return the names of the parts that have begun or are expected, but have not ended."""
     return sorted(begun(results) - {Path(name).name for name in results.names("parts/ended")})

@@ -1,4 +1,4 @@
-"""One run of an audit: finds the drives without a result, has them judged, packs the results and summarises them."""
+"""One run of an audit: finds the drives without a result, lets workers judge them, packs the results and summarises them."""
 
 from __future__ import annotations
 
@@ -49,19 +49,19 @@ if TYPE_CHECKING:
 AUDIT_FILE: Final = "audit.json"
 RULES_FILE: Final = "rules.parquet"
 _LISTED: Final = "(FROM receipts SEMI JOIN _listed USING (source_id))"
-"""The receipts of the drives of this part that were packed before."""
+"""The receipts that were packed before, of drives that this part of the audit lists."""
 RECEIPTS_PER_COMPACTION: Final = 4_000
 WORKER_BYTES: Final = 500_000_000
-"""The memory of a worker besides its database: programs, rules, and a log that is being read."""
+"""Bytes that a worker needs besides its database: for the program, its libraries, and the log that it reads."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class AuditRequest(DriveInput):
-    """The options of `audit`, under the names that they have there.
+    """The options of the command `audit`, under the same names.
 
-    `shard`: (i, n) judges the i-th of n parts of the source, counted from 1; `claim`: several audits into one place share its
-    drives. Both leave the packing to `merge`.
-    `worker_memory` in bytes, `drive_timeout_s`: what one worker may take.
+    `shard`: (i, n) judges the i-th of n parts of the source, counted from 1. `claim`: several audits that write to the same place share the
+    drives. With either, `merge` packs the results later.
+    `worker_memory`: limit of one worker in bytes. `drive_timeout_s`: limit of computing time per drive.
     """
 
     sources: tuple[str, ...]
@@ -70,7 +70,7 @@ class AuditRequest(DriveInput):
     fail_on: str = "critical"
     strict: bool = False
     min_judged: float | None = None
-    """The least share of rules that must be decided, see `result.model.decided_share`."""
+    """The least share of rules that must be decided (pass or fail), see `result.model.decided_share`."""
     workers: int | None = None
     worker_memory: int | None = None
     drive_timeout_s: float | None = None
@@ -79,17 +79,17 @@ class AuditRequest(DriveInput):
     lease_s: float = LEASE_S
     retry_errors: bool = False
     prune: bool = False
-    """Remove results of logs that are no longer among the sources."""
+    """Remove the results of logs that are not among the sources."""
     cluster: str | None = None
     delta: str | None = None
-    """Folder or prefix of Delta tables of the packed tables."""
+    """Folder or URL prefix where the packed tables are also written as Delta tables."""
 
 
 def audit(request: AuditRequest, progress: Progress, executor: Executor | None = None) -> AuditSummary:
-    """Judge every drive of the sources without a result, and return the summary of all drives of the sources.
+    """Judge every drive of the sources that has no result, and return the summary of all drives of the sources.
 
-    Errors: `UsageError`, `RuleError`, `TraceError` for what was asked; `OutputError` where results cannot be written. Whatever ends
-    it, what was judged stays, and the same command goes on with the rest.
+    Errors: `UsageError`, `RuleError`, `TraceError` for a wrong request; `OutputError` if results cannot be written. After any error, the
+    results so far stay, and the same command continues with the other drives.
     """
     rules = chosen_selectors(request.settings.rules, request.settings.rules_dirs, request)
     request = replace(request, settings=replace(request.settings, rules=rules))
@@ -120,7 +120,7 @@ def _audited(
     executor: Executor | None,
     was_whole: bool,
 ) -> AuditSummary:
-    """`was_whole`: what was packed before is known to be as it was written."""
+    """Run the audit while its lock is held. `was_whole`: the files of the earlier audit are known to be unchanged."""
     alone = request.shard is None and not request.claim
     if alone:
         if isinstance(results, LocalFolder):
@@ -157,7 +157,7 @@ def _audited(
 
 
 def _doubtful_tags(con: duckdb.DuckDBPyConnection) -> Iterator[str]:
-    """Yield warnings about tags that may be meant for something else."""
+    """Yield warnings about tags whose names look like a condition or an option of the manifest."""
     rows = con.execute("SELECT DISTINCT unnest(map_keys(tags)) FROM _listed ORDER BY 1").fetchall()
     yield from doubtful_tags([name for (name,) in rows])
 
@@ -171,7 +171,7 @@ def _judge(
     id_: str,
     executor: Executor | None,
 ) -> AuditSummary:
-    """Have the listed drives without a receipt judged; return their summary."""
+    """Let workers judge the listed drives that have no receipt; return the summary of these drives."""
     audit_summary, fresh = AuditSummary(), 0
     claims = Claims(results, request.lease_s) if request.claim else None
 
@@ -212,7 +212,7 @@ def _judge(
 
 
 def _settings_of_workers(request: AuditRequest) -> JudgeSettings:
-    """Return the settings with so little memory for the database that the worker has enough beside it. It changes no result."""
+    """Return the settings with a memory limit of the database that leaves `WORKER_BYTES` to its worker. This changes no result."""
     if request.worker_memory is None:
         return request.settings
     memory = DEFAULT_MEMORY if request.settings.memory is None else request.settings.memory
@@ -221,10 +221,10 @@ def _settings_of_workers(request: AuditRequest) -> JudgeSettings:
 
 
 def _compact_apart(out: str) -> None:
-    """Pack the complete results in a process of its own, so that their memory does not add up in the driver. Errors: as `compact`."""
+    """Pack the complete results in a separate process, so that its memory does not add to the driver's. Errors: as `compact`."""
     context = multiprocessing.get_context("spawn")  # a fork would copy threads that hold locks
     with (
-        suppress(BrokenProcessPool),  # what a killed process has not packed is packed the next time
+        suppress(BrokenProcessPool),  # if the process is killed, the next compaction packs its results
         ProcessPoolExecutor(1, context, initializer=begin_worker, initargs=(os.getpid(),)) as apart,
     ):
         with deaf_to_ctrl_c():
@@ -237,7 +237,7 @@ def _compact_there(out: str) -> None:
 
 
 def _drop_stale(con: duckdb.DuckDBPyConnection, results: ResultStore, *, retry: bool) -> int:
-    """Take out the results of logs that have changed, with `retry` also those of drives that were not judged; return how many."""
+    """Remove the results of changed logs; with `retry`, also those of drives that were not judged. Return how many were removed."""
     stale = _stale(con, retry=retry)
     drop(results, stale)
     return len(stale)
@@ -250,7 +250,7 @@ def _stale(con: duckdb.DuckDBPyConnection, *, retry: bool) -> pa.Array:
 def _close(
     con: duckdb.DuckDBPyConnection, results: ResultStore, home: Path, n_reused: int, missing_parts: Sequence[str] = ()
 ) -> AuditSummary:
-    """Pack everything, write the summary and the list of files last, and return the summary."""
+    """Pack everything, then write the summary and the list of files. Return the summary."""
     sealed.unseal(results)
     compact(results)
     create_views(con, results, home)
@@ -272,7 +272,7 @@ def _write_delta(
     id_: str,
     audit_summary: AuditSummary,
 ) -> None:
-    """Write the packed results to the Delta tables. With some parts missing, they would look like those of a complete audit."""
+    """Write the packed results to the Delta tables. Leave the tables unchanged if parts of the audit have not ended."""
     if audit_summary.missing_parts:
         progress.note(f"{dest}: the Delta tables stay as they are: parts of the audit have not ended")
         return
@@ -281,9 +281,9 @@ def _write_delta(
 
 
 def merge(out: str, progress: Progress, delta_dest: str | None = None) -> AuditSummary:
-    """Pack the results of shards and claims, when none of them runs any more, and sum them up.
+    """Pack the results of all shards and claims after they have ended, and return their summary.
 
-    `delta_dest`: folder or prefix of Delta tables of the packed tables. Errors: `UsageError`, `OutputError`.
+    `delta_dest`: folder or URL prefix where the packed tables are also written as Delta tables. Errors: `UsageError`, `OutputError`.
     """
     results = open_store(out)
     told = told_of(results, out)
@@ -305,7 +305,7 @@ def merge(out: str, progress: Progress, delta_dest: str | None = None) -> AuditS
 
 
 def _absent(con: duckdb.DuckDBPyConnection, results: ResultStore, request: AuditRequest, progress: Progress) -> int:
-    """Return how many results are of logs that are not among the sources; take them out where that is asked."""
+    """Return how many results belong to logs that are not among the sources; remove these results if the request says `prune`."""
     absent = con.execute(statement("audit/absent")).to_arrow_table()["key"].combine_chunks()
     if request.prune and len(absent):
         drop(results, absent)
@@ -314,10 +314,10 @@ def _absent(con: duckdb.DuckDBPyConnection, results: ResultStore, request: Audit
 
 
 def _begin(request: AuditRequest, results: ResultStore, id_: str) -> bool:
-    """Write the settings that decide the results, or check that the existing audit has the same.
+    """Write the settings that determine the results, or check that the existing audit has the same settings.
 
-    Return whether that audit had ended, and its files are as they were then. Errors: `UsageError` for an audit by other rules,
-    parameters or versions, and for one whose files were changed since it ended.
+    Return whether the existing audit had ended and its files are unchanged since then. Errors: `UsageError` if the existing audit used
+    other rules, parameters or versions, or if its files were changed after it ended.
     """
     told = {"run_id": id_, "versions": versions(), "settings": _plain(request.settings)}
     told |= {name: getattr(request, name) for name in ("fail_on", "strict", "min_judged")}
@@ -331,16 +331,17 @@ def _begin(request: AuditRequest, results: ResultStore, id_: str) -> bool:
             raise UsageError(f"{request.out}: the audit there was made with {why}: choose another --out")
         was_whole = _is_whole(results, request.out)
         sealed.unseal(results)
-        results.delete([SUMMARY_FILE, GATE_FILE])  # they are not of what is there from now on
+        results.delete([SUMMARY_FILE, GATE_FILE])  # they describe the earlier results
         if request.shard is None and not request.claim:
-            results.write(AUDIT_FILE, content)  # what gates may be another
-    # The process that wrote audit.json may still be about to write the rules, or may have been killed before.
+            results.write(AUDIT_FILE, content)  # its `fail_on`, `strict` and `min_judged` may differ
+    # The process that wrote audit.json may not have written the rules yet, or was killed before it could.
     results.create(RULES_FILE, parquet_bytes(rule_table(request.settings), "rule"))
     return was_whole
 
 
 def told_of(results: ResultStore, dest: str) -> dict[str, Any] | None:
-    """Return the content of `audit.json`; None: no audit. `dest`: where, for the error. Errors: `UsageError` for a damaged file."""
+    """Return the content of `audit.json`; None: there is no audit. `dest`: the place, for the error message. Errors: `UsageError` for a
+    damaged file."""
     content = results.read(AUDIT_FILE)
     try:
         told = None if content is None else json.loads(content)

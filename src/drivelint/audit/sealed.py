@@ -1,7 +1,7 @@
 """Checks whether an audit's files were changed after they were written.
 
-An audit that has ended has `files.json`, the sha256 of tables and summary, as in the folder of a check. One that has not ended has
-the receipts, each with the hash of its drive's rows.
+An audit that has ended has `files.json`, with the SHA-256 of its tables and summary, like the folder of a check. In an audit that has not
+ended, each receipt has the hash of its drive's rows.
 """
 
 from __future__ import annotations
@@ -35,39 +35,40 @@ _AGAIN: Final = "audit the drives again into another --out"
 
 
 def seal(results: ResultStore, names: Iterable[str], summary: bytes) -> None:
-    """Write the summary, and then the list of it, of these files and of all tables. Errors: `OutputError`."""
+    """Write the summary, then the list `files.json` with the hashes of the summary, the files `names` and all tables. Errors:
+    `OutputError`."""
     hashes = {name: sha256(results.read(name) or b"").hexdigest() for name in {*names, *results.names(_TABLES)}}
     hashes[SUMMARY_FILE] = sha256(summary).hexdigest()
-    results.write(SUMMARY_FILE, summary)  # after all is hashed: with it the audit has ended, and has to have the list
+    results.write(SUMMARY_FILE, summary)  # before the list: an audit with a summary must have one
     results.write(MANIFEST, manifest(set(hashes), dict(sorted(hashes.items()))))
 
 
 def unseal(results: ResultStore) -> None:
-    """Remove the list, before anything is changed that it lists. Errors: `OutputError`."""
+    """Remove the list `files.json`, before any listed file changes. Errors: `OutputError`."""
     results.delete([MANIFEST])
 
 
 def require_unchanged(results: ResultStore, home: Path, dest: str) -> bool:
-    """Refuse an audit whose files have changed since it ended; return whether it has the list of them.
+    """Raise `UsageError`, which names the first changed file, if the audit's files have changed since it ended.
 
-    One without a list has not ended, or is of an older version. `home`: for copies. Errors: `UsageError`, which names the first of
-    these files; `OutputError`.
+    Return whether the audit has `files.json`. An audit without it has not ended, or is of an older version. `home`: folder for copies.
+    Errors: also `OutputError`.
     """
     said = hashes_in(results.read(MANIFEST) or b"")
     if not said:
         return False
     for name in sorted({*results.names(_TABLES), *said}):
         if name not in said or _sha256(results, home, name) != said[name]:
-            if results.read(MANIFEST) is None:  # a shard has found the files as they were, and has begun to change them
+            if results.read(MANIFEST) is None:  # a shard has found the files unchanged, and has begun to change them
                 return False
             raise UsageError(f"{dest.rstrip('/')}/{name}: was changed since drivelint audit wrote it: {_AGAIN}")
     return True
 
 
 def require_as_written(results: ResultStore, home: Path, dest: str) -> None:
-    """Refuse to read an audit that was changed: it has ended and lacks its list, a file or the rows of a receipt are others.
+    """Raise `UsageError` if an audit was changed: it has ended but lacks `files.json`, or a file or a drive's rows differ from their hash.
 
-    `home`: for copies. Errors: `UsageError`; `OutputError`.
+    `home`: folder for copies. Errors: also `OutputError`.
     """
     require_list(results, dest)
     is_listed = require_unchanged(results, home, dest)
@@ -81,7 +82,7 @@ def require_as_written(results: ResultStore, home: Path, dest: str) -> None:
 
 
 def require_list(results: ResultStore, dest: str) -> None:
-    """Refuse an audit that has ended and does not say how its files were. Errors: `UsageError`; `OutputError`."""
+    """Raise `UsageError` if an audit has ended but has no readable list of its files. Errors: also `OutputError`."""
     if not hashes_in(results.read(MANIFEST) or b"") and _has_ended(results):
         raise UsageError(
             f"{dest}: has ended, and {MANIFEST}, the list of its files, is missing or not readable: "
@@ -90,7 +91,7 @@ def require_list(results: ResultStore, dest: str) -> None:
 
 
 def _has_ended(results: ResultStore) -> bool:
-    """Whether an audit has come to its end: that of all drives has, or what was judged was summed up."""
+    """Return whether an audit has ended: it has a summary, or its only part, the audit of all drives, has ended."""
     if results.read(SUMMARY_FILE) is not None:
         return True
     return parts.begun(results) == {parts.ALL} and not parts.unfinished_parts(results)
@@ -101,15 +102,14 @@ def _names(results: ResultStore) -> set[str]:
 
 
 def require_rows_unchanged(results: ResultStore, dest: str, *, packed: bool) -> None:
-    """Refuse an audit in which a drive's rows are not those of its receipt. Not while another process packs.
+    """Raise `UsageError`, which names the log, if a drive's rows do not match the hash in its receipt, or a file cannot be read.
 
-    `packed`: look at packed results, too, besides those that are not packed yet. Errors: `UsageError`, which names the first such
-    log, or a file that cannot be read; `OutputError`.
+    No other process may pack meanwhile. `packed`: also check the results that are already packed. Errors: also `OutputError`.
     """
     for some in loose_receipts(results, whole_batches=False):
         for batch, receipts in groupby(some, key=lambda receipt: receipt.batch):
             if results.read(batch_name("drives", batch)) is None:
-                continue  # its drives are judged again
+                continue  # the rows were removed: these drives are judged again
             expected_hashes = {each.key: (each.log, each.rows_sha256) for each in receipts}
             _require_rows(results, dest, {table: batch_name(table, batch) for table in TABLES}, expected_hashes)
     for chunk in chunks(results) if packed else ():
@@ -128,7 +128,8 @@ def _require_rows(
     *,
     nothing_else: bool = False,
 ) -> None:
-    """Compare rows with `expected_hashes`: key -> log and hash. `names`: table -> its file; `nothing_else`: no rows of another drive."""
+    """Raise `UsageError` if rows do not match `expected_hashes`: key -> (log, hash). `names`: table -> its file. `nothing_else`: also
+    refuse rows of other drives."""
     with TemporaryDirectory(prefix="drivelint-audit-") as home:
         read = {
             table: _read(results, dest, name, Path(home), empty_rows()[table].schema) for table, name in names.items()
@@ -146,7 +147,7 @@ def _require_rows(
 
 
 def _by_key(rows: pa.Table) -> Iterator[tuple[str, pa.Table]]:
-    """Yield each key with its rows, which stand together."""
+    """Yield each key with its rows. The rows of a key are contiguous."""
     ends = pc.run_end_encode(rows["key"].combine_chunks())
     first = 0
     for key, end in zip(ends.values.to_pylist(), ends.run_ends.to_pylist(), strict=True):
@@ -158,12 +159,12 @@ def _read(results: ResultStore, dest: str, name: str, home: Path, schema: pa.Sch
     try:
         rows = pq.read_table(results.fetch(name, home), partitioning=None)
         return rows if schema is None else rows.cast(schema)
-    except (OSError, ValueError) as error:  # those of pyarrow are among these
+    except (OSError, ValueError) as error:  # errors of pyarrow are subclasses of these
         raise UsageError(f"{dest.rstrip('/')}/{name}: was changed since drivelint audit wrote it: {_AGAIN}") from error
 
 
 def _sha256(results: ResultStore, home: Path, name: str) -> str | None:
-    """Return the hash of a file; None where there is none: its name may come from a damaged list."""
+    """Return the hash of a file; None: there is no such file. The name may come from a damaged list."""
     try:
         with results.fetch(name, home).open("rb") as file:
             return file_digest(file, "sha256").hexdigest()

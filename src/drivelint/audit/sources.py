@@ -29,24 +29,25 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
 
 OPTION_COLUMNS: Final = ("log", "map", "ego", "environment", "handedness", "mapping", "topic")
-"""Columns of a manifest that are no tags: the log, its map, its ego, conditions (`weather=wet;light=night`), and options."""
+"""Columns of a manifest that are options, not tags: the log, its map, its ego, conditions (`weather=wet;light=night`), and other
+options."""
 _SIDES: Final = ("auto", "lht", "rht")
 _TABLE_NEVER_HAS: Final = frozenset({"map", "environment", "handedness", "mapping"})
-"""Columns of a manifest that no table of states has."""
+"""Columns that a manifest may have, but no table of states."""
 _LEAST_NUMBERS: Final = 3
-"""Numbers that a row of a table of states has at least: a time and two coordinates."""
+"""A row of a table of states has at least this many numbers: a time and two coordinates."""
 _LINES: Final = 100
 _ALIKE: Final = 0.8
-"""From this likeness on, the name of a tag is taken for a misspelt column: `maps` is, `lap` is not."""
+"""From this similarity on, the name of a tag counts as a misspelt column: `maps` does, `lap` does not."""
 _ROWS: Final = 10_000
 
 
 def drives(sources: Sequence[str], options: DriveInput) -> Iterator[AuditDrive]:
-    """Yield the drives that sources name. `options` hold for each, unless the manifest says otherwise.
+    """Yield the drives of the sources. `options` apply to each drive, unless the manifest overrides them.
 
-    A source that is one Parquet or CSV file with a column `log` is a manifest; it is read in pieces, so that its length does not
-    matter. Paths in it are relative to it. Any other source is what `check` takes.
-    Errors: `UsageError` for a manifest that cannot be understood, `TraceError` for a source that is missing.
+    A Parquet or CSV file with a column `log` is a manifest. It may be of any length, and its paths are relative to its folder. All other
+    sources are the same as for `check`.
+    Errors: `UsageError` for an invalid manifest, `TraceError` for a missing source.
     """
     conditions.parse(options.env)
     logs: list[str] = []
@@ -67,11 +68,12 @@ def drives(sources: Sequence[str], options: DriveInput) -> Iterator[AuditDrive]:
 def with_manifests(
     traces: Sequence[str], options: DriveInput, note: Callable[[str], object] = lambda _: None
 ) -> tuple[tuple[str, ...], dict[Path, DriveInput]]:
-    """Return the logs that `check` is to judge, those that manifests among `traces` name in their place, and the options of the latter.
+    """Return the logs that `check` has to judge, and the options of logs that a manifest names. Each manifest in `traces` is replaced by
+    its logs.
 
-    `note` hears of columns that may be misspelt. A manifest is one Parquet or CSV file whose column `log` names a log: a table of states
-    may have any columns. Errors: `UsageError` as of `drives`, and for a log that two rows name with other options: a check has one result
-    of each log.
+    `note` receives warnings about columns that may be misspelt. Here, a manifest is one Parquet or CSV file whose column `log` contains an
+    existing log: a table of states may have any columns. Errors: `UsageError` as in `drives`, and for a log in two rows with different
+    options, because a check has one result per log.
     """
     plain = DriveInput(**{each.name: getattr(options, each.name) for each in fields(DriveInput)})
     logs: list[str] = []
@@ -92,12 +94,12 @@ def with_manifests(
 
 
 def doubtful_tags(names: Sequence[str]) -> Iterator[str]:
-    """Yield warnings about tags with the name of a condition, or nearly that of a column that is no tag."""
+    """Yield warnings about tags whose name is a condition, or is similar to an option column."""
     if of_conditions := listed([f"column {name}" for name in names if name in CONDITION_VALUES]):
         yield f"the manifest's {of_conditions} is only a tag: conditions of a drive stand in the column environment, such as weather=wet"
     for name in names:
         text = name.casefold()
-        # two letters that changed places make a short name less alike than `lap` and `map` are
+        # swapping two letters of a short name lowers the similarity below that of `lap` and `map`
         turned = [each for each in OPTION_COLUMNS if each != text and sorted(each) == sorted(text)]
         for meant in (*turned, *get_close_matches(text, OPTION_COLUMNS, n=1, cutoff=_ALIKE))[:1]:
             yield f"the manifest's column {name} is only a tag: did you mean {meant}?"
@@ -109,13 +111,13 @@ def _names_logs(path: Path) -> bool:
     try:
         first = next(_rows(path), {})
     except UsageError:
-        return False  # its reader says why it is no log either
+        return False  # the reader of logs reports why it is no log either
     name = first.get("log", "")
     return bool(name) and (is_url(name) or _exists(path.parent / name))
 
 
 def _of_store(url: str, options: DriveInput) -> Iterator[AuditDrive]:
-    """Yield the logs of a prefix, or of a manifest in the store."""
+    """Yield the drives below a URL prefix, or of a manifest in the object store."""
     one = look(url) if url.lower().endswith((".parquet", ".csv")) else None
     if one is not None:
         with TemporaryDirectory(prefix="drivelint-manifest-") as home:
@@ -136,9 +138,10 @@ def _of_store(url: str, options: DriveInput) -> Iterator[AuditDrive]:
 
 
 def _is_manifest(path: Path, *, with_mapping: bool) -> bool:
-    """Whether a file is a manifest. Errors: `UsageError` for one without a column `log`, and for what is no table of states either.
+    """Return whether a file is a manifest.
 
-    With a mapping, a table without a column `log` is a log, whatever is empty in it.
+    Errors: `UsageError` for a file that is neither a manifest with a column `log` nor a table of states; `TraceError` for an unreadable
+    file. With a mapping, every table without a column `log` counts as a log, even if cells are empty.
     """
     if not path.is_file() or path.suffix.lower() not in {".parquet", ".csv"}:
         return False
@@ -153,7 +156,7 @@ def _is_manifest(path: Path, *, with_mapping: bool) -> bool:
     if "log" in names:
         return True
     first = _first_row(path) if path.suffix.lower() == ".parquet" else dict(zip(names, cells, strict=False))
-    for name, value in first.items():  # a table of states has numbers and actors, but no places of logs
+    for name, value in first.items():  # a table of states has numbers and actors, but no paths of logs
         text = str(value)
         is_name = "/" in text or text.lower().endswith(tuple(TRACE_SUFFIXES))
         if is_name and name not in OPTION_COLUMNS and (is_url(text) or _exists(path.parent / text)):
@@ -169,7 +172,8 @@ def _is_manifest(path: Path, *, with_mapping: bool) -> bool:
 
 
 def _may_have_states(path: Path) -> bool:
-    """Whether one of the first rows, or the types of Parquet, leave room for a time and a place. A CSV without rows may be anything."""
+    """Return whether a table can contain states: a first row, or the Parquet types, must allow a time and a position. A CSV without rows
+    counts as yes."""
     if path.suffix.lower() == ".parquet":
         types = [field.type for field in pq.read_schema(path)]
         numbers = sum(pa.types.is_primitive(each) and not pa.types.is_boolean(each) for each in types)
@@ -190,12 +194,12 @@ def _is_number(cell: str) -> bool:
 def _exists(path: Path) -> bool:
     try:
         return path.exists()
-    except (OSError, ValueError):  # no name of a file
+    except (OSError, ValueError):  # not a valid file name
         return False
 
 
 def _first_row(path: Path) -> dict[str, Any]:
-    """Return the first row of a Parquet file; empty where there is none, or if it is damaged, which its reader reports."""
+    """Return the first row of a Parquet file; empty if there is no row, or if the file is damaged, which the reader of logs reports."""
     try:
         with pq.ParquetFile(path) as file:
             batch = next(file.iter_batches(1), None)
@@ -229,7 +233,7 @@ def _of_manifest(path: Path, manifest_name: str, options: DriveInput) -> Iterato
 
 
 def _require_values(row: Mapping[str, str], options: DriveInput) -> None:
-    """Refuse options that make judging impossible, before any drive is judged. Errors: `UsageError`."""
+    """Raise `UsageError` for option values of a row that are invalid, before any drive is judged."""
     try:
         conditions.parse((*options.env, *_parts(row.get("environment", ""))))
     except UsageError as error:
@@ -244,7 +248,7 @@ def _parts(environment: str) -> tuple[str, ...]:
 
 
 def _rows(path: Path) -> Iterator[dict[str, str]]:
-    """Yield the rows of a manifest as text, empty for missing cells."""
+    """Yield the rows of a manifest with all cells as text; a missing cell is ''."""
     try:
         if path.suffix.lower() == ".parquet":
             with path.open("rb") as opened, pq.ParquetFile(opened) as file:
@@ -264,7 +268,7 @@ def _as_text(rows: list[dict[str, Any]]) -> Iterator[dict[str, str]]:
 
 
 def _beside(manifest: str, place: str) -> str:
-    """Return a path of a manifest, relative to where the manifest is named; a URL or an absolute path stays as it is."""
+    """Return a path in a manifest, resolved against the manifest's folder; a URL or an absolute path stays unchanged."""
     if is_url(place):
         return place
     if is_url(manifest):

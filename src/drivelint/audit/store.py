@@ -1,4 +1,4 @@
-"""The place of an audit's results: a folder, or a prefix in an object store. A file under its final name is always complete."""
+"""The place of an audit's results: a folder, or a prefix in an object store. A file with its final name is always complete."""
 
 from __future__ import annotations
 
@@ -17,35 +17,36 @@ if TYPE_CHECKING:
 
 
 class ResultStore(Protocol):
-    """Files by name, `/` between folders. Errors of every method: `OutputError` (exit 75) where the store fails."""
+    """Stores files under names, with `/` between folders. Errors of every method: `OutputError` (exit code 75) if the store fails."""
 
     def create(self, name: str, content: bytes) -> bool:
-        """Write a file unless there is one of that name already; return whether it was written. Of several writers one wins."""
+        """Write a file unless a file of that name exists; return whether it was written. Of several concurrent writers, exactly one
+        succeeds."""
         ...
 
     def write(self, name: str, content: bytes) -> None:
-        """Write a file, in place of one of that name."""
+        """Write a file, and replace an existing file of that name."""
         ...
 
     def read(self, name: str) -> bytes | None:
-        """Return the content of a file; None: there is none."""
+        """Return the content of a file; None: the file does not exist."""
         ...
 
     def names(self, prefix: str) -> Iterator[str]:
-        """Yield the names of all files below a folder, in no order."""
+        """Yield the names of all files below a folder, in any order."""
         ...
 
     def delete(self, names: Iterable[str]) -> None:
-        """Remove files; those that are gone already do not matter."""
+        """Remove files; ignore files that do not exist."""
         ...
 
     def fetch(self, name: str, folder: Path) -> Path:
-        """Return a local path of a file: its own, or that of a copy in `folder`."""
+        """Return a local path of a file: the file itself, or a copy in `folder`."""
         ...
 
 
 class LocalFolder:
-    """A folder on a disk of this machine, or on a shared one. Files are synced before they get their name."""
+    """A folder on a local or shared disk. A file is synced to the disk before it gets its final name."""
 
     def __init__(self, root: Path) -> None:
         if root.exists() and not root.is_dir():
@@ -58,7 +59,7 @@ class LocalFolder:
         try:
             temporary = self._staged(path, content)
             try:
-                os.link(temporary, path)  # unlike a rename, this fails where the name is taken
+                os.link(temporary, path)  # unlike a rename, this fails if the name exists
             except FileExistsError:
                 return False
             finally:
@@ -87,7 +88,7 @@ class LocalFolder:
             raise self._failed(error) from error
 
     def names(self, prefix: str) -> Iterator[str]:
-        """See `ResultStore.names`. A file that was never finished is removed where its writer is long gone."""
+        """See `ResultStore.names`. Files that are being written are left out."""
         todo = [self.root / prefix]
         while todo:
             try:
@@ -115,7 +116,7 @@ class LocalFolder:
         return self.root / name
 
     def adopt(self, name: str, finished: Path) -> None:
-        """Take over a finished file of this disk under a name."""
+        """Move a complete local file into the store under a name."""
         path = self.root / name
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -128,7 +129,7 @@ class LocalFolder:
             raise self._failed(error) from error
 
     def sweep(self) -> None:
-        """Remove unfinished files of killed writers. Only while no process writes."""
+        """Remove unfinished files of killed writers. No process may write meanwhile."""
         for file in self.root.rglob(".*.tmp"):
             file.unlink(missing_ok=True)
 
@@ -146,7 +147,7 @@ class LocalFolder:
 
 
 def open_store(dest: str) -> ResultStore:
-    """Return the store that `--out` names: an object store's for a URL, else a folder's. Errors: `UsageError`."""
+    """Return the store that `--out` names: a bucket for a URL, else a folder. Errors: `UsageError`."""
     if is_url(dest):
         return Bucket(dest)
     return LocalFolder(Path(dest))

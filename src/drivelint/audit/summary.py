@@ -28,21 +28,21 @@ MOST_REASONS: Final = 3
 MOST_COPIES: Final = 3
 MOST_LOGS: Final = 3
 _NAMES_IN_FILE: Final = {"n_judged": "judged", "n_refused": "refused"}
-"""Fields with another name in `summary.json`."""
+"""Fields that have another name in `summary.json`."""
 _UNDECIDED: Final = "nothing failed, because nothing could be decided"
 
 
 @dataclass
 class AuditSummary:
-    """The summary of an audit. `digest` is that of all rows; None where the results are not packed (`--shard`, `--claim`).
+    """The summary of an audit. `digest`: hash of all rows; None if the results are not packed (`--shard`, `--claim`).
 
-    `off_map`: drives that their map does not fit. `failed`: severity -> failed verdicts of stable rules; `findings`: severity -> findings.
-    `errors`: verdicts that are errors; `beyond_limits`: of these, those of rules that took too much time or memory.
-    `n_asked`: drives of the sources, `n_absent`: results of others, from earlier runs. `missing_parts`: shards that have not come to
-    their end. `copies`: judged drives whose logs have the content of another judged one's; `copies_not_judged`: those of the drives that
-    were not judged. Of a whole audit, way, time, findings, contacts and unknown verdicts are those of each content once, as on the fleet
-    page. `contacts`: drives with a contact that is sure or was not examined; `contacts_possible`: the others with one. In `findings`, a
-    touch of two egos counts once; `possible`: those that are only possible.
+    `off_map`: drives that their map does not fit. `failed`: severity -> failed verdicts of stable rules. `findings`: severity -> findings.
+    `errors`: verdicts `error`; `beyond_limits`: how many of these exceeded the limits of time or memory.
+    `n_asked`: drives of the sources. `n_absent`: results of other drives, from earlier runs. `missing_parts`: parts that have not ended.
+    `copies`: judged drives whose log has the same content as the log of another judged drive. `copies_not_judged`: the same for drives that
+    were not judged. In the summary of a whole audit, kilometres, hours, findings, contacts and unknown verdicts count each content once.
+    `contacts`: drives with a contact that is certain or was not examined. `contacts_possible`: drives whose contacts are all only possible.
+    `findings` counts a contact of two egos once. `possible`: findings that are only possible.
     """
 
     n_drives: int = 0
@@ -73,19 +73,18 @@ class AuditSummary:
     unknown_for: list[dict[str, Any]] = field(default_factory=list)
     not_judged: list[dict[str, Any]] = field(default_factory=list)
     copied: list[dict[str, Any]] = field(default_factory=list)
-    """The first of each: rules that were broken, reasons for unknown verdicts, drives that were not judged, copies (`log`, `other`,
-    `same_options`)."""
+    """The first rows of each kind: broken rules, reasons for unknown verdicts, drives that were not judged, and copies."""
     lossy_logs: list[str] = field(default_factory=list)
     off_map_logs: list[str] = field(default_factory=list)
-    """The first lossy logs, and of those that are off their map; logs of one content are one."""
+    """The first lossy logs, and the first logs that their map does not fit. Logs with the same content are listed once."""
     undecided: str | None = None
-    """Why nothing at all could be decided; None: something was."""
+    """Why no verdict could be decided; None: at least one was decided."""
     n_broken: int = 0
     n_unknown_for: int = 0
-    """How many rules were broken, and how many reasons for unknown verdicts there are."""
+    """The number of broken rules, and the number of reasons for unknown verdicts."""
 
     def count(self, receipt: Receipt) -> None:
-        """Add a drive."""
+        """Add the drive of a receipt to the sums."""
         self.n_drives += 1
         self.reused += receipt.reused
         self.n_judged += receipt.status == "judged"
@@ -101,11 +100,11 @@ class AuditSummary:
         self.beyond_limits += receipt.beyond_limits
 
     def plain(self) -> dict[str, Any]:
-        """Return name in `summary.json` -> value."""
+        """Return the content of `summary.json`: name -> value."""
         return {_NAMES_IN_FILE.get(name, name): value for name, value in vars(self).items()}
 
     def plus(self, second: AuditSummary) -> AuditSummary:
-        """Return the sums of both, without the counts that only a whole audit has."""
+        """Return the sums of both summaries, without the counts that only a whole audit has."""
         names = (
             "n_drives",
             "n_judged",
@@ -124,13 +123,13 @@ class AuditSummary:
         return replace(self, **both, failed=dict(Counter(self.failed) + Counter(second.failed)))
 
     def exit_code(self, fail_on: str, *, strict: bool) -> ExitCode:
-        """Return the exit code of DESIGN.md, by its precedence 2 > 1 > 4 > 3 > 0."""
+        """Return the exit code: the first that applies of 2 (USAGE), 1 (FAILED), 4 (NOT_JUDGED), 3 (LOSSY), 0 (OK)."""
         gating = SEVERITIES[: SEVERITIES.index(fail_on) + 1] if fail_on != "never" else ()
         if self.errors > self.beyond_limits:
             return ExitCode.USAGE
         if any(self.failed.get(severity) for severity in gating):
             return ExitCode.FAILED
-        nothing = not self.n_drives and self.digest is not None  # of shards and claims, others may have had all
+        nothing = not self.n_drives and self.digest is not None  # another part may have judged all drives
         if (
             self.n_refused
             or self.quarantined
@@ -145,7 +144,7 @@ class AuditSummary:
         return ExitCode.LOSSY if self.lossy else ExitCode.OK
 
     def exit_reason(self, code: ExitCode, fail_on: str) -> str:
-        """Return in one sentence why an audit exits with this code."""
+        """Return one sentence that says why an audit exits with this code."""
         if code is ExitCode.USAGE:
             return f"{plural(self.errors - self.beyond_limits, 'verdict')} in error: could not be run"
         if code is ExitCode.FAILED:
@@ -175,20 +174,21 @@ class AuditSummary:
 
 
 def summed_receipts(con: duckdb.DuckDBPyConnection, of: str) -> AuditSummary:
-    """Return the sums of these receipts; `of`: a relation with the columns of `receipts`."""
+    """Return the sums over receipts. `of`: a relation with the columns of `receipts`."""
     (row,) = con.execute(statement("audit/summed", of=of)).to_arrow_table().to_pylist()
     return AuditSummary(**row, failed=dict(con.execute(statement("audit/failed", of=of)).fetchall()))
 
 
 class LogList(NamedTuple):
-    """The number of some logs, and the first of them."""
+    """A number of logs, and the names of the first of them."""
 
     n: int
     logs: list[str]
 
 
 def logs_that_are(con: duckdb.DuckDBPyConnection, flag: str) -> LogList:
-    """Return the logs that are `lossy` or `off_map`, of one content one; those of an older audit may not say the latter."""
+    """Return the logs with the flag `lossy` or `off_map`; logs with the same content count once. Receipts of older audits may lack
+    `off_map`."""
     if flag not in con.table("receipts").columns:
         return LogList(0, [])
     rows = con.execute(statement("audit/logs_that_are", what=flag)).fetchall()
@@ -196,7 +196,7 @@ def logs_that_are(con: duckdb.DuckDBPyConnection, flag: str) -> LogList:
 
 
 def summed(con: duckdb.DuckDBPyConnection, n_reused: int) -> AuditSummary:
-    """Return the sums of all drives with receipts; `n_reused`: those that had one before."""
+    """Return the summary of all drives with receipts. `n_reused`: drives that had a result before this run."""
     create_counted_views(con)
     event = statement("fleet/event", of=COUNTED_PREFIX, least_share=str(LEAST_SHARE))
     broken, contacts, unknown_for, not_judged = (

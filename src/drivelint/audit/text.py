@@ -1,4 +1,4 @@
-"""The text that `drivelint audit` prints at its end, on one screen."""
+"""The text of one screen that `drivelint audit` prints at its end."""
 
 from __future__ import annotations
 
@@ -23,9 +23,10 @@ def summary_text(
     fail_on: str = "critical",
     why: str = "",
 ) -> str:
-    """Return the lines: drives, findings by severity, broken rules, unknowns, what was not judged, the gate, and what to do next.
+    """Return the text: drives, findings by severity, broken rules, unknown verdicts, drives that were not judged, the gate, and next
+    commands.
 
-    `why`: the reason for the exit code where a gate gives it.
+    `why`: the reason for the exit code if a gate determines it.
     """
     return "\n".join(map(one_line, _lines(audit_summary, out, code, gate, fail_on=fail_on, why=why)))
 
@@ -71,14 +72,14 @@ def _lines(
     yield f"exit {int(code)}: {why or audit_summary.exit_reason(code, fail_on)}"
     yield f"rows     {(audit_summary.digest or '')[:12]} (the same for the same results, see summary.json)"
     if not audit_summary.n_judged:
-        return  # nothing can be looked at, asked or explained
+        return  # without a judged drive, these commands show nothing
     yield f"look     drivelint report {out}"
     yield f'ask      drivelint sql {out} "SELECT rule_id, count(*) FROM counted_events GROUP BY ALL ORDER BY 2 DESC"'
     yield "explain  drivelint check LOG --map MAP --out DIR: its findings have the same ids, for drivelint explain ID --in DIR"
 
 
 def _broken(audit_summary: AuditSummary, out: str) -> Iterator[str]:
-    """Yield the rules that were broken most."""
+    """Yield lines about the rules that were broken most often."""
     for row in audit_summary.broken:
         yield f"  {row['severity']:<8} {row['rule_id']}: {plural(row['n_findings'], 'finding')} in {plural(row['n_drives'], 'drive')}"
     if (more := audit_summary.n_broken - len(audit_summary.broken)) > 0:
@@ -87,7 +88,7 @@ def _broken(audit_summary: AuditSummary, out: str) -> Iterator[str]:
 
 
 def _unknown(audit_summary: AuditSummary, out: str) -> Iterator[str]:
-    """Yield the most frequent reasons of unknown verdicts."""
+    """Yield lines about the most frequent reasons for unknown verdicts."""
     if audit_summary.unknown_for:
         yield f"unknown: {audit_summary.unknown} verdicts of stable rules"
     for row in audit_summary.unknown_for:
@@ -99,7 +100,7 @@ def _unknown(audit_summary: AuditSummary, out: str) -> Iterator[str]:
 
 
 def _not_judged(audit_summary: AuditSummary, out: str) -> Iterator[str]:
-    """Yield drives that could not be judged, and why."""
+    """Yield lines about drives that could not be judged, with the reason."""
     if left := audit_summary.n_refused + audit_summary.quarantined - audit_summary.copies_not_judged:
         yield f"not judged: {plural(left, 'drive')}"
         for row in audit_summary.not_judged:
@@ -113,13 +114,13 @@ def _not_judged(audit_summary: AuditSummary, out: str) -> Iterator[str]:
 
 
 def _log_lines(label: str, logs: list[str], n: int) -> Iterator[str]:
-    """Yield the first logs of which this is said, and how many more there are."""
+    """Yield a line with `label`, the first logs, and how many more there are."""
     if logs:
         yield f"  {label}: {', '.join(logs)}{f' and {n - len(logs)} more' if n > len(logs) else ''}"
 
 
 def _copies(audit_summary: AuditSummary, out: str) -> Iterator[str]:
-    """Yield how many logs have the content of another one, and the first of them."""
+    """Yield how many logs have the same content as another log, and the first of them."""
     n = audit_summary.copies + audit_summary.copies_not_judged
     if not n:
         return
@@ -133,7 +134,7 @@ def _copies(audit_summary: AuditSummary, out: str) -> Iterator[str]:
 
 
 def _repeated(row: dict[str, Any]) -> str:
-    """Return why a result is a repetition: its log has another result before."""
+    """Return a phrase that says how a result repeats an earlier one."""
     if row["log"] != row["other"]:
         return f"a copy of {row['other']}"
     if row["same_options"]:
@@ -142,7 +143,7 @@ def _repeated(row: dict[str, Any]) -> str:
 
 
 def _contacts(audit_summary: AuditSummary) -> str:
-    """Return in how many drives an ego touched something, and in how many others it may have."""
+    """Return in how many drives an ego touched something, and in how many other drives it possibly did."""
     numbers = (("CONTACT", audit_summary.contacts), ("possible contact", audit_summary.contacts_possible))
     return "".join(f"; {words} in {plural(n, 'drive')}" for words, n in numbers if n)
 

@@ -1,4 +1,4 @@
-"""Reads an audit that has not ended, or whose results are not packed yet, like a complete one, with a warning."""
+"""Creates the views of a complete audit over an audit that has not ended or is not packed, and returns a warning."""
 
 from __future__ import annotations
 
@@ -36,9 +36,10 @@ AT_WORK: Final = "an audit is running there and has just packed results: repeat 
 
 
 class Standing(NamedTuple):
-    """How far an audit is. `digest`: the hash of all rows; None: it has not ended. `n_loose`: of `n_results`, what is not packed yet.
+    """The progress of an audit. `digest`: hash of all rows; None: the audit has not ended. `n_loose`: how many of the `n_results` results
+    are not packed yet.
 
-    `n_asked`: drives of the parts that have not ended, or of all; None: not known.
+    `n_asked`: drives of the unfinished parts, or of all parts if none is unfinished; None: not known.
     """
 
     digest: str | None
@@ -49,7 +50,7 @@ class Standing(NamedTuple):
 
     @property
     def warning(self) -> str:
-        """A sentence that says how far the audit is; '' if it has ended."""
+        """A sentence about the progress of the audit; '' if it has ended."""
         if self.digest is not None and not self.n_loose and not self.missing_parts:
             return ""
         of = "" if self.n_asked is None else f" of {self.n_asked}"
@@ -68,9 +69,9 @@ class Standing(NamedTuple):
 
 
 def views_of_all(con: duckdb.DuckDBPyConnection, results: ResultStore, home: Path, prefix: str = "") -> Standing:
-    """Create the views of `create_views` over all results, also those that are not packed. `prefix`: as there.
+    """Create the views of `create_views` over all results, including results that are not packed. `prefix`: as in `create_views`.
 
-    Errors: `UsageError` if they are being packed, or a file was removed.
+    Errors: `UsageError` if the results are being packed, or a file was removed or changed.
     """
     inner = f"packed_{prefix}"
     try:
@@ -100,7 +101,7 @@ def views_of_all(con: duckdb.DuckDBPyConnection, results: ResultStore, home: Pat
 
 
 def n_results(results: ResultStore, home: Path) -> int:
-    """Return how many drives have a result."""
+    """Return the number of drives that have a result."""
     n = sum(1 for _ in results.names("receipts"))
     for each in chunks(results):
         n += pq.read_metadata(results.fetch(chunk_name("receipts", each), home)).num_rows
@@ -108,7 +109,7 @@ def n_results(results: ResultStore, home: Path) -> int:
 
 
 def _unpacked(con: duckdb.DuckDBPyConnection, results: ResultStore, inner: str) -> list[Receipt]:
-    """Return the receipts that are in no chunk, and whose rows are there."""
+    """Return the receipts that are in no chunk and whose rows exist."""
     known = {key for (key,) in con.execute(f"SELECT key FROM {inner}receipts").fetchall()}
     found = [each for some in loose_receipts(results, whole_batches=False) for each in some if each.key not in known]
     there = {name.rpartition("/")[2] for name in results.names(f"batches/{TABLES[-1]}")}
@@ -116,7 +117,7 @@ def _unpacked(con: duckdb.DuckDBPyConnection, results: ResultStore, inner: str) 
 
 
 def _fill(con: duckdb.DuckDBPyConnection, results: ResultStore, home: Path, table: str, loose: list[Receipt]) -> None:
-    """Make the table `_loose` of the rows of these receipts."""
+    """Create the table `_loose` with the rows of these receipts."""
     receipts = pa.Table.from_pylist([receipt_row(each) for each in loose], schema=RECEIPT_SCHEMA)
     if table == "receipts" or not loose:
         con.register("_some", receipts if table == "receipts" else empty_rows()[table])

@@ -1,4 +1,4 @@
-"""A worker: judges the drives of a task in a database that stays open from task to task, and writes their results and receipts."""
+"""A worker: judges the drives of a task and writes their results and receipts. Its database stays open between tasks."""
 
 from __future__ import annotations
 
@@ -42,14 +42,14 @@ if TYPE_CHECKING:
     from drivelint.engine.batch import Drive
 
 TABLES = ("verdicts", "findings", "drives")
-"""The tables of an audit: those of a check, with `key`, and `log` and `tags` in `drives`."""
+"""The tables of an audit: the tables of a check with the additional column `key`; `drives` also has `log` and `tags`."""
 TASKS_PER_RELEASE = 8
-"""After so many tasks a worker gives back the memory that it does not need: of 8 tasks of short drives, less than 1 % of the time."""
+"""After this many tasks a worker frees memory that it does not need. For short drives this takes less than 1 % of the time."""
 _LASTING_TABLES = frozenset({"profile", "environment", "map_quality"})
 
 
 class Judge:
-    """A database with rules and maps that judges task after task. One thread: a machine has one worker per core."""
+    """A database with rules and maps that judges one task after the other. It uses one thread: a machine has one worker per core."""
 
     def __init__(self, settings: JudgeSettings) -> None:
         self._stack = ExitStack()
@@ -72,7 +72,8 @@ class Judge:
         self._folder = self._home
 
     def judge(self, task: Task) -> list[Receipt]:
-        """Judge the drives of a task that have no receipt yet; write tables, then receipts; return the receipts of all."""
+        """Judge the drives of a task that have no receipt yet. Write the tables, then the receipts. Return the receipts of all drives of
+        the task."""
         with TemporaryDirectory(dir=self._home) as folder:
             self._folder = Path(folder)
             receipts = self._judge(task, open_store(task.dest))
@@ -92,7 +93,7 @@ class Judge:
                 continue
             else:
                 read[key] = drive, found
-        # drives of one content judged with other options have one id: they cannot be judged together
+        # drives with the same content but different options have the same id: they cannot be judged together
         while read:
             ids: set[str] = set()
             part: dict[str, tuple[AuditDrive, Drive | RefusedLog]] = {}
@@ -105,23 +106,24 @@ class Judge:
         return receipts
 
     def _read(self, drive: AuditDrive, run_id: str, results: ResultStore) -> tuple[str, Receipt | Drive | RefusedLog]:
-        """Return the drive's key, and its receipt if there is one, else the drive as it was read."""
+        """Return the key of a drive, and its receipt if one exists, else the drive that was read or the refusal of its log."""
         path, key = Path(drive.log), drive.source_id
         try:
             path, options = self._at_hand(drive)
             identity = identify(path)
-            # the name is in it because the id of a drive, and of its findings, begins with it; the tags, because its row has them
+            # includes the file name, with which the ids of the drive and its findings begin, and the tags, which are in the drive's row
             key = digest([run_id, drive.options_id, identity.sha256, identity.file_name, drive.tags])
             if (content := results.read(receipt_name(key))) is not None:
                 return key, replace(Receipt.from_json(content), reused=True)
             trace = read_trace(path, options.ingest_options())
             _require_unchanged(path, identity)
             return key, drive_with_map(trace, self._library(options))
-        except BaseException as error:  # noqa: BLE001 - some readers' libraries raise what is no Exception
+        except BaseException as error:  # noqa: BLE001 - some libraries raise errors that are not an Exception
             return key, refusal_of(path, error)
 
     def _at_hand(self, drive: AuditDrive) -> tuple[Path, DriveInput]:
-        """Return where the log lies on this machine, and the drive's options with a map that does; both copied if they are afar."""
+        """Return the local path of the log, and the drive's options with the local path of the map. Both files are downloaded if they are
+        in a bucket."""
         options = drive.options
         if options.map is not None and (url := bucket.as_url(options.map)) is not None:
             options = replace(options, map=self._maps(url))
@@ -140,7 +142,7 @@ class Judge:
     def _judge_part(
         self, part: Mapping[str, tuple[AuditDrive, Drive | RefusedLog]], results: ResultStore
     ) -> list[Receipt]:
-        """Judge drives with different ids together, and write the results."""
+        """Judge drives that all have different ids together, write the results, and return the receipts."""
         for table in store.tables_of_lifetime("run"):
             if table not in _LASTING_TABLES:
                 store.recreate_empty(self._con, [table])
@@ -196,7 +198,7 @@ _warm: dict[JudgeSettings, Judge] = {}
 
 
 def run_task(task: Task) -> list[Receipt]:
-    """Judge a task in this process, whose database stays for the next one. Errors: `OutputError`, `UsageError`, `RuleError`."""
+    """Judge a task in this process, and keep its database open for the next task. Errors: `OutputError`, `UsageError`, `RuleError`."""
     warm_up(task.settings)
     with ExitStack() as after_error:
         # an error may leave the database in any state, so the next task gets a new one
@@ -207,7 +209,7 @@ def run_task(task: Task) -> list[Receipt]:
 
 
 def warm_up(settings: JudgeSettings) -> None:
-    """Open the database in which this process judges by these settings, if it is not open yet."""
+    """Open the database in which this process judges with these settings, unless it is already open."""
     if settings not in _warm:
         for judge in _warm.values():
             judge.close()
@@ -216,7 +218,8 @@ def warm_up(settings: JudgeSettings) -> None:
 
 
 def with_key(rows: pa.Table, key: str, drive: AuditDrive | None) -> pa.Table:
-    """Return rows of a table of a check as those of an audit: `key` first; with a drive, also its log and tags."""
+    """Return rows of a check's table as rows of an audit's table: with `key` as first column; if `drive` is given, also with its log and
+    tags."""
     own = [pa.field("key", pa.string(), nullable=False)]
     made = rows.add_column(0, own[0], pa.repeat(pa.scalar(key, pa.string()), rows.num_rows))
     if drive is not None:
@@ -227,7 +230,7 @@ def with_key(rows: pa.Table, key: str, drive: AuditDrive | None) -> pa.Table:
 
 
 def said_of_rows(rows: Mapping[str, pa.Table], stable: pa.Array) -> dict[str, Any]:
-    """Return the columns of a receipt about a drive's rows. `stable`: the ids of the stable rules."""
+    """Return the fields of a receipt that follow from a drive's rows. `stable`: the ids of the stable rules."""
     (about,) = rows["drives"].to_pylist()
     verdicts = rows["verdicts"]
     gating = verdicts.filter(pc.is_in(verdicts["rule_id"], value_set=stable))
@@ -251,7 +254,8 @@ def said_of_rows(rows: Mapping[str, pa.Table], stable: pa.Array) -> dict[str, An
 
 
 def rows_sha256(rows: Mapping[str, pa.Table]) -> str:
-    """Return the hash of a drive's rows in all tables, but of where its log lies and its tags, which are not of its content."""
+    """Return the hash of a drive's rows in all tables. The columns `log` and `tags` are left out, because they do not describe the
+    content."""
     whole = hashlib.sha256()
     for table in TABLES:
         kept = [name for name in rows[table].column_names if name not in {"log", "tags"}]
@@ -260,9 +264,10 @@ def rows_sha256(rows: Mapping[str, pa.Table]) -> str:
 
 
 def write_batch(results: ResultStore, rows: Mapping[str, pa.Table], receipts: Sequence[Receipt]) -> list[Receipt]:
-    """Write one file per table, then the receipt of each drive, and return the receipts that count.
+    """Write one file per table, then the receipt of each drive. Return the receipts that are valid.
 
-    Where another worker was first, its receipt counts. Errors: `OutputError`; `DriveLintError` where its rows are others.
+    If another worker has already written the receipt of a drive, that receipt is valid. Errors: `OutputError`; `DriveLintError` if its rows
+    differ.
     """
     batch = digest(sorted(receipt.key for receipt in receipts))[:32]
     files = {batch_name(table, batch): _parquet(rows[table]) for table in TABLES}
@@ -281,24 +286,24 @@ def write_batch(results: ResultStore, rows: Mapping[str, pa.Table], receipts: Se
             )
         counted.append(replace(there, reused=True))
     if results.read(next(reversed(files))) is None:
-        # An audit that began before there were receipts has taken the files for those of a killed worker.
+        # Another audit has begun before the receipts existed, and has removed the files as leftovers of a killed worker.
         for name, content in files.items():
             results.write(name, content)
     return counted
 
 
 def batch_name(table: str, batch: str) -> str:
-    """Return the name of a batch's file of a table."""
+    """Return the file name of a batch in one table."""
     return f"batches/{table}/{batch}.parquet"
 
 
 def receipt_name(key: str) -> str:
-    """Return the name of a receipt."""
+    """Return the file name of the receipt with this key."""
     return f"receipts/{key[:2]}/{key}.json"
 
 
 def _sha256(log: Path) -> str | None:
-    """Return the hash of a log that was refused, by which its copies are known; None where it cannot be read."""
+    """Return the hash of a refused log, which identifies copies of the log; None if the log cannot be read."""
     try:
         return identify(log).sha256
     except TraceError:

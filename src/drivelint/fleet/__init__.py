@@ -1,9 +1,10 @@
-"""The results of a fleet: rates, coverage, missing signals, the difference of two audits, and other values of a parameter.
+"""Statistics of a fleet: rates, coverage, missing signals, the difference of two audits, and results for other parameter values.
 
-Each function takes a DuckDB connection with the views of an audit and runs SQL of `queries/fleet`; Python gets grouped rows only.
+Each function takes a DuckDB connection with the following views of an audit, and runs SQL of `queries/fleet`. Python only receives grouped
+rows.
 
-* `drives`: the columns of the table `drive`; `key`, which identifies log, map, rules and tool; `log`, its path or URL;
-  `tags MAP(VARCHAR, VARCHAR)`, what the manifest says of it: release, site, vehicle, weather.
+* `drives`: the columns of the table `drive`; `key`, which identifies log, map, rules and tool; `log`, its path or URL; `tags MAP(VARCHAR,
+  VARCHAR)`, the tags in the manifest: release, site, vehicle, weather.
 * `verdicts`, `findings`: the columns of the tables `verdict` and `finding`, and `key`.
 * `rules`: the columns of the table `rule`.
 """
@@ -21,7 +22,7 @@ _EARLIER_NAMES: Final = {"counted": "distinct_logs", "missing": "missing_signals
 
 
 def __getattr__(name: str) -> ModuleType:
-    """Return a module under its earlier name, with a note that the name is deprecated."""
+    """Return a module by its earlier name, and warn that the name is deprecated."""
     if name not in _EARLIER_NAMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     module = _EARLIER_NAMES[name]

@@ -1,7 +1,7 @@
-"""Compares two audits of any size: which findings are new, fixed, changed, unchanged, failing elsewhere, unknown now or lost.
+"""Compares two audits of any size: which findings are new, fixed, changed, unchanged, failing elsewhere, unknown or lost in the second one.
 
-The words and the rules of matching are those of `drivelint.gate`, which compares two results in memory; here all of it is SQL. Only
-drives are matched otherwise: by the content of the log first, since in a fleet many logs have the same name.
+The terms and the matching rules are those of `drivelint.gate`, which compares two results in memory; this module does it in SQL. Only
+drives are matched differently: by the content of the log first, because many logs of a fleet have the same name.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ NEAR_S: Final = 1.0
 NEAR_M: Final = 5.0
 MARGIN_TOLERANCE: Final = 0.01
 INTERVAL_TOLERANCE_S: Final = 0.1
-"""The numbers of `drivelint.gate`, which stands beside this package; a test holds them equal."""
+"""Copies of the constants in `drivelint.gate`, which this package must not import. A test checks that they are equal."""
 CAUSES: Final = ("drive", "software", "rule", "parameters", "data", "map", "tool")
-"""What may differ between two audits where a finding does: only one has the drive; the tag `release`, the rule's version, its
-parameters, the log's content, the map's, and the version of drivelint."""
+"""The possible causes of a difference between two audits. In order: only one audit has the drive; the tag `release`, the version of the
+rule, its parameters, the content of the log, the map, or the version of drivelint differs."""
 
 
 class DifferenceCount(NamedTuple):
-    """Number of findings of a rule with one standing, and what differs there between the audits.
+    """The number of findings of a rule with the same standing (new, fixed, …) and the same causes.
 
-    `causes`: what is known to differ; a difference with a single one is due to it, if nothing is in `causes_not_known`.
+    `causes`: what is known to differ. If it has one cause and `causes_not_known` is empty, that cause explains the difference.
     """
 
     rule_id: str
@@ -40,7 +40,7 @@ class DifferenceCount(NamedTuple):
 
 
 class Comparison(NamedTuple):
-    """The findings of two audits by standing. The temporary table `difference` has one row for each."""
+    """The counts of findings of two audits by standing, and of their drives. The temporary table `difference` has one row per finding."""
 
     differences: tuple[DifferenceCount, ...]
     drives_both: int
@@ -62,13 +62,12 @@ def compare(
     new: str = "other_",
     tools: tuple[str | None, str | None] = (None, None),
 ) -> Comparison:
-    """Return the difference of two audits. `base`, `new`: prefixes of the names of their views.
+    """Return the difference of two audits. `base`, `new`: prefixes of their views' names.
 
-    A log that is there twice counts once in the views of `drivelint.fleet.distinct_logs`.
-
-    Errors: `UsageError` for an audit whose tables do not say when actors were recorded.
-    `tools`: the versions of drivelint that made them; None: not known. Makes the temporary table `difference`: the columns of
-    `drivelint.result.gate.ComparedFinding` but `stable`, the keys of both drives, and `causes` and `causes_not_known`.
+    In the views of `drivelint.fleet.distinct_logs`, several results of the same log count once.
+    `tools`: the versions of drivelint that made the audits; None: not known. The temporary table `difference` gets the columns of
+    `drivelint.result.gate.ComparedFinding` without `stable`, the keys of both drives, `causes` and `causes_not_known`. Errors: `UsageError`
+    for an audit whose tables lack the times in which actors were recorded.
     """
     if any("recorded" not in con.table(f"{of}drives").columns for of in (base, new)):
         raise UsageError(
@@ -93,7 +92,8 @@ def compare(
 
 
 def _take_pairs(con: duckdb.DuckDBPyConnection) -> None:
-    """Fill the table `pair` from `candidate`, until no candidate is left. Each round takes one at least; one or two do mostly."""
+    """Fill the table `pair` from `candidate`, until no candidate is left. Each round takes at least one pair; usually one or two rounds
+    suffice."""
     con.execute("CREATE OR REPLACE TEMP TABLE pair (drive VARCHAR, new_no BIGINT, base_no BIGINT)")
     while _number(con, "candidate"):
         con.execute(statement("fleet/pair"))

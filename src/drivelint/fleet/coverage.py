@@ -1,4 +1,4 @@
-"""The coverage of a fleet: the rules that were decided, and the situations that occurred."""
+"""Computes the coverage of a fleet: which rules were decided, and which situations occurred."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ if TYPE_CHECKING:
     import duckdb
 
 STANDINGS: Final = ("decided", "never_decided", "never_triggered", "never_in_force", "not_run")
-"""What a fleet says about a rule. never_decided: it applied, or may have, and each time it was unknown; never_triggered: what it is about
-never happened; never_in_force: every drive was in another nation, in other conditions, or without the automated driver."""
+"""The possible results of a rule in a fleet. never_decided: it applied, or may have applied, but was always unknown. never_triggered: its
+occasion never occurred. never_in_force: every drive was in another nation, under other conditions, or without the automated driver."""
 
 
 @dataclass(frozen=True)
 class RuleCoverage:
-    """In how many drives a rule was decided; a log that is there twice is one drive.
+    """The number of drives in which a rule was decided. Several results of the same log count as one drive.
 
-    A drive in which it was decided once and unknown once counts for both.
+    A drive in which the rule was decided once and unknown once counts as both.
     """
 
     rule_id: str
@@ -39,10 +39,10 @@ class RuleCoverage:
 
 @dataclass(frozen=True)
 class SituationCoverage:
-    """What happened at one value of a situation, over all rules; `value` None: of drives of which it is not known.
+    """What happened at one value of a situation, over all rules. `value` None: drives in which the value is not known.
 
-    A value with no ego never occurred in a drive of which it is known; if there are drives of which it is not, it may have.
-    `km`, `hours`: all of the way, also what no rule judged. `occasions`: verdicts that passed or failed.
+    If a value has no ego, it did not occur in any drive whose value is known. It may have occurred in a drive whose value is not known.
+    `km`, `hours`: all driving, including parts that no rule judged. `occasions`: verdicts that passed or failed.
     """
 
     situation: str
@@ -58,31 +58,32 @@ class SituationCoverage:
 
 @dataclass(frozen=True)
 class Coverage:
-    """The rules by their results in the fleet; the situations, with those that never occurred; and what the tables do not show."""
+    """The rules with their results in the fleet; the situations, including those that never occurred; and the questions that the tables
+    cannot answer."""
 
     rules: tuple[RuleCoverage, ...]
     situations: tuple[SituationCoverage, ...]
     cannot_tell: Mapping[str, str]
 
     def with_standing(self, standing: str) -> list[RuleCoverage]:
-        """Return the rules of one of `STANDINGS`."""
+        """Return the rules with a standing, one of `STANDINGS`."""
         return [rule for rule in self.rules if rule.standing == standing]
 
     def never_occurred(self) -> list[SituationCoverage]:
-        """Return the situations in which no drive is known to have been, of those that are known of some drive."""
+        """Return the situations in which no drive is known to have been. Situations that are not known for any drive are left out."""
         untold = set(self.untold())
         return [s for s in self.situations if not s.egos and s.value is not None and s.situation not in untold]
 
     def untold(self) -> list[str]:
-        """Return the situations, such as `weather`, that are known of no drive."""
+        """Return the names of situations, such as `weather`, whose value is not known for any drive."""
         told = {each.situation for each in self.situations if each.egos and each.value is not None}
         return sorted({each.situation for each in self.situations} - told)
 
 
 def coverage(con: duckdb.DuckDBPyConnection, *, of: str = "") -> Coverage:
-    """Return the coverage of the drives, by the views whose names begin with `of`.
+    """Return the coverage of the drives. `of`: prefix of the views' names.
 
-    Failures of one rule by situation are `rates(con, by=SITUATION)`.
+    `rates(con, by=SITUATION)` returns failures of single rules by situation.
     """
     parts = {"subject": subject(of)}
     parts["profiled"] = statement("fleet/profiled", of=of)
@@ -92,7 +93,7 @@ def coverage(con: duckdb.DuckDBPyConnection, *, of: str = "") -> Coverage:
 
 
 def _situation(con: duckdb.DuckDBPyConnection, of: str, name: str, values: tuple[str, ...]) -> list[SituationCoverage]:
-    """Return one row per value that is known or occurred, in the order of `values`; last that of drives of which it is not known."""
+    """Return one row per value of a situation, in the order of `values`; the row of drives whose value is not known is last."""
     rows: list[tuple[Any, ...]] = con.execute(
         statement("fleet/situation", of=of, subject=subject(of, name)), bound_tag(name)
     ).fetchall()

@@ -1,13 +1,13 @@
-"""Defines the counted rows of an audit in which a log was judged several times. Every count of a fleet follows it.
+"""Defines which rows of an audit count if a log was judged several times. Every count of a fleet follows these rules.
 
 Logs with the same content are one log, whatever their names are.
 
 * A log counts as one drive.
-* An ego of a log counts once, and its distance and time count once. Other egos of the log count each.
-* A verdict or finding that several results of the log have counts once. One that a single result has counts too, such as one under
-  other conditions: a copy hides nothing.
-* A rate takes the verdicts of an ego from the first result that has it; with a tag, from the first at each value of the tag. The first
-  is that with the least `log`; see `queries/fleet/first_result.sql`.
+* An ego of a log counts once, and so do its distance and time. Different egos of a log count separately.
+* A verdict or finding that occurs in several results of the log counts once. A verdict or finding that occurs in only one result counts
+  too, such as one under other conditions.
+* A rate takes the verdicts of an ego from the first result that has the ego; with a tag, from the first result at each value of the tag.
+  The first result is the one with the smallest `log`; see `queries/fleet/first_result.sql`.
 """
 
 from __future__ import annotations
@@ -21,19 +21,20 @@ if TYPE_CHECKING:
     import duckdb
 
 COUNTED_PREFIX: Final = "counted_"
-"""What the names of these views begin with."""
+"""The prefix of these views' names."""
 _SAME: Final = {
     "verdicts": "t.ego_id, t.rule_id, t.profile, t.object_id, t.occurrence, t.ref_id, t.t_start_ns, t.verdict",
     "findings": "t.ego_id, t.rule_id, t.profile, t.object_id, t.t_start_ns, t.t_end_ns",
 }
-"""Table -> columns that make two rows of one log the same."""
+"""Table -> columns. Rows of the same log that are equal in these columns count once."""
 
 
 def create_counted_views(con: duckdb.DuckDBPyConnection, of: str = "") -> str:
     """Create views of an audit in which each log is one drive; return the prefix of their names.
 
-    `of`: what the names of the audit's views begin with. `drives` has the first result of each log, with the egos of all its results; a tag
-    with several values is left out. In `verdicts` and `findings`, `key` is that of the row in `drives`, `result_key` that of the result.
+    `of`: prefix of the audit's own views. `drives` has the first result of each log, with the egos of all its results, and without tags
+    that have several values. In `verdicts` and `findings`, `key` is the key of the row in `drives`, and `result_key` the key of the
+    original result.
     """
     counted = f"{COUNTED_PREFIX}{of}"
     first = statement("fleet/first_result")
@@ -46,8 +47,8 @@ def create_counted_views(con: duckdb.DuckDBPyConnection, of: str = "") -> str:
 
 
 def subject(of: str = "", by: str | None = None, without: str = "") -> str:
-    """Return the part `subject` of a statement: one row per ego that counts, with its distance and time.
+    """Return the SQL fragment `subject` of a statement: one row per ego that counts, with its distance and time.
 
-    `of`: what the names of the audit's views begin with. `by`: a tag or a situation. `without`: a join that leaves drives `d` out.
+    `of`: prefix of the audit's views. `by`: a tag or a situation. `without`: a join that removes drives `d`.
     """
     return statement("fleet/subject", of=of, value=value_of(by), without=without, first=statement("fleet/first_result"))

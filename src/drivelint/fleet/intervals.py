@@ -1,4 +1,4 @@
-"""Rates with exact 95 % confidence intervals, and how to correct several p-values at once."""
+"""Computes rates with exact 95 % confidence intervals, and corrects p-values of several tests."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ CONFIDENCE: Final = 0.95
 
 
 class Estimate(NamedTuple):
-    """A rate and the ends of its interval; `rate` is None where there was no exposure: then nothing is known of it."""
+    """A rate and the bounds of its confidence interval. `rate` is None without exposure."""
 
     rate: float | None
     low: float
@@ -22,8 +22,8 @@ class Estimate(NamedTuple):
 def poisson(events: int, exposure: float) -> Estimate:
     """Return events per unit of exposure, with Garwood's exact interval (1936).
 
-    The interval holds if events occur independently of each other. Where one failure leads to several findings in a drive, it is too
-    narrow; the share of the egos that failed does not have that weakness.
+    The interval is valid if events are independent. It is too narrow if one failure causes several findings in a drive; the share of egos
+    that failed does not have this weakness.
     """
     from scipy.special import gammaincinv
 
@@ -47,11 +47,11 @@ def binomial(events: int, trials: int) -> Estimate:
 
 
 def holm(p_values: Sequence[float]) -> list[float]:
-    """Return the p-values as corrected by Holm (1979), in the same order.
+    """Return the p-values corrected by Holm's method (1979), in the same order.
 
-    If none of the differences exists, the chance that any corrected value is below 0.05 is at most 5 %, however the rules depend on
-    each other. That is needed here: one event fails several rules. Benjamini and Hochberg's correction allows more false calls, the more
-    true differences there are, and assumes that the tests do not depend negatively on each other.
+    If no real difference exists, the probability of a corrected value below 0.05 is at most 5 %, even if the rules depend on each other.
+    This matters because one event can fail several rules. The method of Benjamini and Hochberg allows more false positives if there are
+    more real differences, and assumes no negative dependence between tests.
     """
     corrected = [1.0] * len(p_values)
     least = 0.0

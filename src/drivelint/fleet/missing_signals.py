@@ -1,4 +1,4 @@
-"""The signals that a fleet's logs and maps lack, and how much could be judged with them."""
+"""Finds the signals that a fleet's logs and maps lack, and how much could be judged with each signal."""
 
 from __future__ import annotations
 
@@ -17,10 +17,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class MissingSignal:
-    """A signal that rules require and drives lack: how much recording it would decide, at most.
+    """A signal that rules require and drives lack, with an upper bound of what the signal would decide.
 
-    `*_alone`: where nothing else that the rule requires is missing; the others need further signals, too. Where the signal is there, a rule
-    may still be unknown for another reason, or not apply. `judgements`: pairs of a rule and an ego of a drive. `formats`: of the logs.
+    `*_alone`: counts where this signal is the only missing one. The other counts include rules that lack further signals. Even with the
+    signal, a rule may be unknown for another reason, or not apply. `judgements`: pairs of a rule and an ego of a drive. `formats`: formats
+    of the logs.
     """
 
     signal: str
@@ -37,9 +38,10 @@ class MissingSignal:
 
 @dataclass(frozen=True)
 class Undecided:
-    """A reason of unknown verdicts though all required signals are there, such as an ego that is not placed for a while.
+    """A reason for unknown verdicts although all required signals are present, such as an ego that could not be placed in a lane for a
+    while.
 
-    `rule_id`, `reason`: one of the rules, and what one of its verdicts says.
+    `rule_id`, `reason`: an example: one of the rules, and the text of one of its verdicts.
     """
 
     reason_code: str
@@ -53,14 +55,14 @@ class Undecided:
 
 @dataclass(frozen=True)
 class SignalGaps:
-    """The undecided verdicts: those that lack a signal, and those with another reason. The most frequent come first."""
+    """The causes of undecided verdicts: missing signals, and other reasons. The most frequent come first."""
 
     signals: tuple[MissingSignal, ...]
     other_reasons: tuple[Undecided, ...]
 
 
 def missing_signals(con: duckdb.DuckDBPyConnection, *, of: str = "") -> SignalGaps:
-    """Return the signals that the drives lack, by the views whose names begin with `of`; a log that is there twice counts once."""
+    """Return the signals that the drives lack. `of`: prefix of the views' names. Several results of the same log count once."""
     egos = subject(of)
     signals = con.execute(statement("fleet/missing", of=of, subject=egos)).fetchall()
     other_reasons = con.execute(statement("fleet/undecided", of=of, subject=egos)).fetchall()
@@ -71,7 +73,7 @@ def missing_signals(con: duckdb.DuckDBPyConnection, *, of: str = "") -> SignalGa
 
 
 def __getattr__(name: str) -> Callable[..., SignalGaps]:
-    """Return `missing_signals` under its earlier name `missing`, with a note that the name is deprecated."""
+    """Return `missing_signals` by its earlier name `missing`, and warn that the name is deprecated."""
     if name != "missing":
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     warnings.warn(f"{__name__}.missing is deprecated: use {__name__}.missing_signals", DeprecationWarning, stacklevel=2)

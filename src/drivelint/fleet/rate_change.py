@@ -1,4 +1,4 @@
-"""Tests whether the rates of two audits differ, per km and per occasion, by exact tests and a correction for many rules."""
+"""Tests whether the rates of two audits differ, per km and per occasion, with exact tests and a correction for many tests."""
 
 from __future__ import annotations
 
@@ -18,14 +18,15 @@ if TYPE_CHECKING:
     from drivelint.fleet.rates import Rate
 
 ALLOWED_FALSE_CALLS: Final = 0.05
-"""The chance that any rule is called if the rates of no rule differ."""
+"""The allowed probability that any rule is reported although no rate differs."""
 
 
 class RateTest(NamedTuple):
-    """One test of a rule's rates: per 100 km or per occasion. `events`, `rates`: of both audits, the base's first.
+    """One test of a rule's rates, per 100 km or per occasion. `events`, `of`, `rates`: the events, exposures and rates of both audits, the
+    base's first.
 
-    `p_value`: the chance of a difference like this or a rarer one, if the rates are the same; `corrected`: for all tests that could
-    call a difference.
+    `p_value`: the probability of this difference or a less likely one, if the rates are equal. `corrected`: the p-value corrected for all
+    tests that could report a difference.
     """
 
     per: str
@@ -37,22 +38,23 @@ class RateTest(NamedTuple):
 
     @property
     def ratio(self) -> float | None:
-        """How many times the base's rate the new one is; infinite where the base has no event."""
+        """The new rate divided by the base's rate; infinite if the base has no event."""
         base, new = (each.rate or 0.0 for each in self.rates)
         return inf if base == 0 else new / base
 
     @property
     def is_called(self) -> bool:
-        """Whether the rates differ, as far as 5 % of false calls in all tests together are allowed."""
+        """Whether the test reports a difference. The probability of any false report in all tests together is at most 5 %."""
         return self.corrected <= ALLOWED_FALSE_CALLS
 
 
 @dataclass(frozen=True)
 class RateChange:
-    """The rates of a rule in two audits. `base`, `new`: of the logs that only one of the audits has; None: it has none of them.
+    """The rates of a rule in two audits. `base`, `new`: rates over the logs that only one audit has; None: there are no such logs.
 
-    `p_value`: of findings per km, `occasion_p_value`: of failed occasions; None: one audit has no exposure, or no occasion.
-    `corrected`, `occasion_corrected`: the same, corrected for all tests; None: without an event on either side no test can call it.
+    `p_value`: of findings per km. `occasion_p_value`: of failed occasions. None: one audit has no exposure, or no occasion.
+    `corrected`, `occasion_corrected`: the same, corrected for all tests; None: neither audit has an event, so no test can report a
+    difference.
     """
 
     rule_id: str
@@ -67,12 +69,12 @@ class RateChange:
 
     @property
     def is_called(self) -> bool:
-        """Whether the rates differ, as far as 5 % of false calls in all rules together are allowed."""
+        """Whether any test reports a difference. The probability of any false report for all rules together is at most 5 %."""
         return any(each.is_called for each in self.tests)
 
     @property
     def tests(self) -> list[RateTest]:
-        """The tests that could call a difference."""
+        """The tests of this rule that could report a difference."""
         if self.base is None or self.new is None:
             return []
         sides = (self.base, self.new)
@@ -94,21 +96,22 @@ def _test(per: str, sides: list[tuple[int, float, Estimate]], p_value: float, co
 def compare_rates(
     con: duckdb.DuckDBPyConnection, by: str | None = None, *, base: str = "", new: str = OTHER_PREFIX
 ) -> list[RateChange]:
-    """Return for each rule, profile and value of a tag whether its rate differs between two audits.
+    """Return, for each rule, profile and value of a tag, whether its rate differs between two audits.
 
-    Only logs that one of the audits has are counted. Where both have a log, chance has no part in the difference: the findings of
-    `compare` are all there is to say, and a test of independent samples would be wrong.
+    Only logs that just one audit has are counted. For logs in both audits, `compare` already gives every difference of findings: chance
+    plays no part, and a test for independent samples would be wrong.
     """
     sides = rates(con, by, of=base, without=new), rates(con, by, of=new, without=base)
     return rate_changes(*sides)
 
 
 def rate_changes(base: Sequence[Rate], new: Sequence[Rate]) -> list[RateChange]:
-    """Return the changes of these rates, whose exposures are independent of each other, in the order of their names.
+    """Return the changes of these rates in the order of their names. The exposures of both sides must be independent.
 
-    The tests are exact, given the sum of the events: if findings per km are the same, each of them falls into the new audit with the new
-    audit's share of the exposure; if the shares of failed occasions are, Fisher's test holds. Like the intervals, they assume that
-    events occur independently of each other. Where neither audit has an event, no test can call a difference, so none is corrected for.
+    The tests are exact, conditional on the total number of events. If findings per km are equal, each finding falls into the new audit with
+    the probability of the new audit's share of the exposure. For the shares of failed occasions, Fisher's test is used. Like the intervals,
+    the tests assume that events occur independently. Where neither audit has an event, no test can report a difference, so the correction
+    leaves these tests out.
     """
     had, has = ({(rate.rule_id, rate.profile, rate.tag_value): rate for rate in side} for side in (base, new))
     names = sorted(had.keys() | has.keys(), key=lambda name: tuple((part is not None, part or "") for part in name))

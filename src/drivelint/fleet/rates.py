@@ -1,19 +1,19 @@
-"""Rates of a fleet: findings per 100 km and per hour, failures per occasion and per ego, each with its interval.
+"""Computes rates of a fleet: findings per 100 km and per hour, failures per occasion and per ego, each with its confidence interval.
 
-**Which denominator.** A rate counts only subjects that were wholly judged. A subject (an ego in a drive) whose verdicts of a rule have an
-unknown or an error, or that was judged at a part of its steps only, gives neither its findings nor its exposure to the rate of this rule:
-both stand beside it. Three other ways would be wrong:
+**Which denominator.** A subject is an ego in a drive. A rate of a rule counts only subjects that were completely judged. A subject is left
+out, with its findings and exposure, if the rule has an unknown or error verdict or judged only some steps. These findings and this exposure
+are reported beside the rate. Three other methods would be wrong:
 
-* to count its exposure: what was not seen would count as kept, and the rate would be too low;
-* to count its findings alone: the rate would be too high;
-* to leave it out only if it has no finding: one finding is enough to fail, while a pass needs every step. The outcome would decide what
-  is counted, and the rate would be too high.
+* Counting the exposure of such a subject: what was not judged would count as kept, and the rate would be too low.
+* Counting only the findings of such a subject: the rate would be too high.
+* Leaving the subject out only if it has no finding: one finding is enough to fail, while a pass needs every step. The outcome would then
+  determine what is counted, and the rate would be too high.
 
-The rate is then that of the subjects that could be judged. It is the rate of the whole fleet if subjects that could not be judged behaved
-like the others. Nothing in the tables can show that; `at_least_per_100km` needs no such assumption.
+The result is the rate of the subjects that could be judged. It equals the rate of the whole fleet if the other subjects behaved the same.
+The tables cannot show that; `at_least_per_100km` needs no such assumption.
 
-Exposure is the way and time with the automated driver, as rules judge nothing else. Of subjects that are not wholly judged it is all of
-their way: where it is not known who drove, all of it may count.
+Exposure is the distance and time driven by the automated driver, as rules judge nothing else. For subjects that were not completely judged,
+it is their whole distance and time, because the driver may be unknown.
 """
 
 from __future__ import annotations
@@ -35,18 +35,20 @@ if TYPE_CHECKING:
     from drivelint.fleet.intervals import Estimate
 
 OTHER_PREFIX: Final = "other_"
-"""What the names of the second audit's views begin with."""
+"""The prefix of the second audit's views."""
 
 
 @dataclass(frozen=True)
 class Rate:
-    """The results of a rule at one value of a tag. `tag_value` is None for drives that do not have the tag, and without a tag.
+    """The results of a rule at one value of a tag. `tag_value` is None for drives without the tag, and if no tag was given.
 
-    `egos_*`: subjects that were wholly judged; of these, with a failed verdict; not wholly judged; where the rule was never in force
-    (another nation, other conditions, or the automated driver never drove). `drives_not_judged`: their way is not known at all.
-    `km`, `hours`, `findings`: of the subjects that were wholly judged. `findings_possible`: of all findings those that are not sure.
-    `events_sure`: all the others, where a touch of two egos, which is a finding of each, counts once.
-    `occasions`: verdicts that passed or failed, judged at each of their steps, in whatever subject; `occasions_partly`: at a part of them.
+    `egos_judged`: completely judged subjects; `egos_failed`: how many of these have a failed verdict; `egos_unknown`: subjects that were
+    not completely judged. `egos_outside`: subjects for which the rule was never in force (another nation, other conditions, or no automated
+    driver). `drives_not_judged`: their distance is unknown.
+    `km`, `hours`, `findings`: of completely judged subjects. `findings_possible`: how many of all findings are only possible.
+    `events_sure`: number of all other findings; a contact of two egos, which is a finding of each, counts once.
+    `occasions`: verdicts that passed or failed and were judged at all their steps, of all subjects. `occasions_partly`: those that were
+    judged at some of their steps.
     """
 
     rule_id: str
@@ -76,29 +78,29 @@ class Rate:
 
     @property
     def per_100km(self) -> Estimate:
-        """Findings per 100 km."""
+        """The rate of findings per 100 km."""
         return intervals.poisson(self.findings, self.km / 100)
 
     @property
     def per_hour(self) -> Estimate:
-        """Findings per hour."""
+        """The rate of findings per hour."""
         return intervals.poisson(self.findings, self.hours)
 
     @property
     def per_occasion(self) -> Estimate:
-        """Failed occasions per occasion."""
+        """The share of occasions that failed."""
         return intervals.binomial(self.occasions_failed, self.occasions)
 
     @property
     def per_ego(self) -> Estimate:
-        """Egos that failed, of those wholly judged: several findings of one ego count once, so they need not be independent."""
+        """The share of completely judged egos that failed. Several findings of an ego count once, so they need not be independent."""
         return intervals.binomial(self.egos_failed, self.egos_judged)
 
     @property
     def at_least_per_100km(self) -> float | None:
-        """The lower end of the rate over all exposure, if nothing more happened where it was not judged; None: there is no exposure.
+        """The lower bound of the rate over all exposure, if nothing more happened where nothing was judged; None: there is no exposure.
 
-        It stands on `events_sure`: what is only possible may not have happened, and one touch is no two.
+        It uses `events_sure`: a possible finding may not have happened, and one contact must not count twice.
         """
         found = intervals.poisson(self.events_sure, (self.km + self.km_unknown) / 100)
         return None if found.rate is None else found.low
@@ -107,10 +109,10 @@ class Rate:
 def rates(
     con: duckdb.DuckDBPyConnection, by: str | None = None, *, of: str = "", without: str | None = None
 ) -> list[Rate]:
-    """Return one rate per rule, profile and value of `by`, in that order; a rule that a drive was not judged by counts nothing of it.
+    """Return one rate per rule, profile and value of `by`, in that order. A drive counts for a rule only if it was judged by this rule.
 
-    `by`: a tag, or a situation of `situations.SITUATIONS`. `of`: what the names of the audit's views begin with. `without`: the same of
-    another audit; logs that are in it, too, are left out. Errors: `UsageError` if no drive has that tag.
+    `by`: a tag, or a situation of `situations.SITUATIONS`. `of`: prefix of the audit's views. `without`: prefix of another audit's views,
+    whose logs are left out. Errors: `UsageError` if no drive has that tag.
     """
     check_tag(con, by, of)
     left_out = "" if without is None else f"ANTI JOIN {without}drives o ON o.sha256 = d.sha256"
@@ -123,8 +125,8 @@ def rates(
 
 
 def check_tag(con: duckdb.DuckDBPyConnection, by: str | None, of: str) -> None:
-    """Refuse a tag that no drive has: all would be of unknown value."""
-    if by is None or by in SITUATIONS:  # that no drive has one is an answer
+    """Raise `UsageError` if no drive has the tag: every value would be None."""
+    if by is None or by in SITUATIONS:  # situations that no drive has are a valid result
         return
     if (
         con.execute(f"SELECT 1 FROM {of}drives d WHERE {value_of(by)} IS NOT NULL LIMIT 1", {"by": by}).fetchone()

@@ -1,4 +1,4 @@
-"""The situations by which a fleet's drives are divided, as far as the tables of an audit have them."""
+"""The situations by which a fleet's drives are divided, if the tables of an audit contain them."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ MEASURED_SITUATIONS: Final = {
     "speed_band": ("0 to 15 km/h", "15 to 30 km/h", "30 to 60 km/h", "60 to 90 km/h", "90 km/h and more"),
     "traffic": ("less than 1 other", "1 to 5 others", "5 to 20 others", "20 others and more"),
 }
-"""Situation that is computed from a drive's exposure and states -> its values, in order."""
+"""Situations that are computed from a drive's exposure and states: name -> values in order."""
 _STATEMENTS: Final = {"speed_band": "value_of_speed_band", "traffic": "value_of_traffic"}
 SITUATIONS: Final = {**CONDITION_VALUES, **MEASURED_SITUATIONS}
-"""Situation -> its values. Those that are no measured ones are tags, conditions given to `check`, or what the log says."""
+"""All situations: name -> values. Situations that are not measured come from tags, from conditions given to `check`, or from the log."""
 CANNOT_TELL: Final = {
     "junction kind": "the tables say which rules applied, not at which junction: see the rules of junctions",
     "road type, as the map has it": "only a road type that was set for the whole drive is known",
     "speed at each moment": "the band is that of the mean speed of a drive",
     "density of the traffic": "the number of recorded actors depends on the range of the sensors",
 }
-"""The situations that the tables of an audit do not show -> why, or what to use instead."""
+"""The situations that an audit's tables do not contain -> why not, or what to use instead."""
 
 
 def value_of(by: str | None) -> str:
-    """Return the SQL of a drive's value of a tag or situation; it reads `d`, the drive, and `ego`, the exposure of an ego."""
+    """Return the SQL expression for a drive's value of a tag or situation. It reads `d`, the drive, and `ego`, the exposure of an ego."""
     if by is None:
         return "NULL::VARCHAR"
     name = _STATEMENTS.get(by, "value_of_tag")
@@ -34,5 +34,5 @@ def value_of(by: str | None) -> str:
 
 
 def bound_tag(by: str | None) -> dict[str, str]:
-    """Return what `value_of(by)` binds."""
+    """Return the parameters that the SQL of `value_of(by)` needs."""
     return {} if by is None or by in MEASURED_SITUATIONS else {"by": by}

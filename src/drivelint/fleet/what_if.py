@@ -1,7 +1,7 @@
-"""The verdicts of a fleet that change with another value of a rule's parameter, from their stored values.
+"""Computes which verdicts of a fleet change with another value of a rule's parameter, from the stored observed values.
 
-A verdict stores the observed value of its worst step only. That is enough where the rule compares an observed value, which the parameter
-has no part in, with the parameter itself. Every other rule or parameter needs a new check.
+A verdict only stores the observed value of its worst step. That is enough if the rule compares the observed value with the parameter
+itself, and the parameter does not affect the observed value. Every other rule or parameter needs a new check.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Flip(NamedTuple):
-    """Number of verdicts of a profile and value of a tag that change or stay; `becomes` None: they need a new check."""
+    """The number of verdicts, of one profile and value of a tag, that change or stay the same. `becomes` None: they need a new check."""
 
     profile: str | None
     tag_value: str | None
@@ -32,7 +32,7 @@ class Flip(NamedTuple):
 
 
 class Flipped(NamedTuple):
-    """One verdict that changes; `becomes` None: it needs a new check."""
+    """One verdict that changes. `becomes` None: it needs a new check."""
 
     log: str
     ego_id: str
@@ -44,7 +44,8 @@ class Flipped(NamedTuple):
 
 
 class WhatIf(NamedTuple):
-    """What another value of a parameter does to the verdicts; `needs_check`: why every verdict needs a new check; None: they do not."""
+    """The effect of another value of a parameter on the verdicts. `needs_check`: why every verdict needs a new check; None: stored values
+    are enough."""
 
     rule_id: str
     param: str
@@ -54,12 +55,12 @@ class WhatIf(NamedTuple):
 
     @property
     def flips(self) -> tuple[Flip, ...]:
-        """The verdicts that are known to become another one."""
+        """The counts of verdicts that are known to change."""
         return tuple(each for each in self.verdicts if each.becomes not in {None, each.was})
 
     @property
     def not_known(self) -> int:
-        """Number of verdicts that need a new check."""
+        """The number of verdicts that need a new check."""
         return sum(each.n for each in self.verdicts if each.becomes is None)
 
 
@@ -68,12 +69,12 @@ def what_if(
 ) -> WhatIf:
     """Return the verdicts of a rule with another value of a parameter, by profile and value of a tag.
 
-    Makes the temporary table `what_if`, with one row per verdict, unless a new check is needed. Findings are not predicted: a failed
-    verdict may have several, whose ends depend on every step. Errors: `UsageError` for a parameter that the rule does not have.
+    The temporary table `what_if` gets one row per verdict, unless a new check is needed. Findings are not predicted: a failed verdict may
+    have several, and their start and end depend on every step. Errors: `UsageError` for a parameter that the rule does not have.
     """
     if why := needs_check(rule, param):
         return WhatIf(rule.id, param, value, why)
-    # as an evaluation rounds them
+    # rounded as in an evaluation
     required = round(value, 9) if rule.sense in {">=", "<="} else value
     bound = {
         "rule_id": rule.id,
@@ -88,14 +89,14 @@ def what_if(
 
 
 def flipped(con: duckdb.DuckDBPyConnection, max_verdicts: int, *, of: str = "") -> tuple[Flipped, ...]:
-    """Return the first verdicts of the table `what_if` that change, or that need a new check."""
+    """Return the first verdicts of the table `what_if` that change or need a new check."""
     return tuple(
         Flipped(*row) for row in con.execute(statement("fleet/flipped", of=of), {"most": max_verdicts}).fetchall()
     )
 
 
 def needs_check(rule: Rule, param: str) -> str | None:
-    """Return why stored verdicts are not enough for another value of a parameter; None: they are enough."""
+    """Return why stored verdicts are not enough to apply another value of a parameter; None: they are enough."""
     if param not in rule.params:
         raise UsageError(f"rule {rule.id} has no parameter {param!r}; {hint(param, rule.params)}")
     default = rule.params[param].default

@@ -1,4 +1,4 @@
-"""Opens one or two audits as views of one database."""
+"""Opens one or two audits as views in one database."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from drivelint.audit.unpacked import Standing
 
 BASE: Final = "base_"
-"""What the names of the views of the earlier audit begin with; those of the other begin with nothing."""
+"""The prefix of the earlier audit's views; the views of the other audit have no prefix."""
 
 
 _WHOLE: Final = "whole_"
@@ -36,7 +36,7 @@ _WHOLE: Final = "whole_"
 
 @dataclass(frozen=True)
 class Audit:
-    """An audit that was opened: where it lies, what `audit.json` says, and how far it is."""
+    """An open audit: its place, the content of `audit.json`, and its progress."""
 
     dest: str
     results: ResultStore
@@ -50,42 +50,42 @@ class Audit:
 
     @property
     def name(self) -> str:
-        """The last part of where it lies."""
+        """The last part of the audit's path or URL."""
         return self.dest.rstrip("/").rpartition("/")[2] if "://" in self.dest else Path(self.dest).resolve().name
 
     @property
     def settings(self) -> dict[str, Any]:
-        """What decided the verdicts: the fields of `JudgeSettings` but `memory`."""
+        """The settings that determined the verdicts: the fields of `JudgeSettings` without `memory`."""
         found: dict[str, Any] = self.audit_json["settings"]
         return found
 
     @property
     def version(self) -> str | None:
-        """The version of drivelint that made it."""
+        """The version of drivelint that made the audit; None: not known."""
         found: str | None = self.audit_json.get("versions", {}).get("drivelint")
         return found
 
     @property
     def warning(self) -> str:
-        """That it has not ended; '' where it has."""
+        """A sentence that the audit has not ended; '' if it has ended."""
         return self.standing.warning and f"{self.dest}: {self.standing.warning}"
 
 
 def destination(path: Path) -> str:
-    """Return the given place of results: a URL, or a path."""
+    """Return the place of results, a URL or a path, as text."""
     return as_url(path) or str(path)
 
 
 def is_audit(dest: str) -> bool:
-    """Whether `audit --out` wrote there."""
+    """Return whether `audit --out` wrote to this place."""
     return open_store(dest).read(AUDIT_FILE) is not None
 
 
 @contextmanager
 def open_audits(dest: str, base: str | None = None) -> Iterator[tuple[duckdb.DuckDBPyConnection, Audit, Audit | None]]:
-    """Open an audit, and an earlier one under the names that begin with `BASE`.
+    """Open an audit, and optionally an earlier one, whose views have the prefix `BASE`.
 
-    Errors: `UsageError` where there is none, or one whose files were changed since.
+    Errors: `UsageError` if there is no audit, or if its files were changed.
     """
     with database() as con, TemporaryDirectory(prefix="drivelint-views-") as home:
         audit = _open(con, dest, Path(home) / "new", "")
@@ -113,14 +113,15 @@ def opened_without(dest: str, sha256s: Sequence[str]) -> Iterator[tuple[duckdb.D
 
 @contextmanager
 def opened_packed(folder: Path) -> Iterator[tuple[duckdb.DuckDBPyConnection, Audit]]:
-    """Open the audit of an evidence pack, which lists its files and compares rows and receipts by itself. Errors: as `open_audits`."""
+    """Open the audit in an evidence pack. Changed files are not detected here, because `verify` checks them itself. Errors: as
+    `open_audits`."""
     with database() as con, TemporaryDirectory(prefix="drivelint-views-") as home:
         yield con, _open(con, str(folder), Path(home) / "new", "", is_packed=True)
 
 
 @contextmanager
 def opened_both(base: str, new: str) -> Iterator[tuple[duckdb.DuckDBPyConnection, Audit, Audit]]:
-    """Open two audits, the earlier one under the names that begin with `BASE`. Errors: as `open_audits`."""
+    """Open two audits; the views of the earlier one have the prefix `BASE`. Errors: as `open_audits`."""
     with open_audits(new, base) as (con, later, earlier):
         if earlier is None:
             raise UsageError(f"{base}: no audit is here")

@@ -1,4 +1,4 @@
-"""Rates of an audit by the values of a tag, for the values that most drives have."""
+"""Computes rates of an audit by the values of a tag, for the values that most drives have."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _SHOWN_PREFIX: Final = "shown_"
 
 
 class RuleByTag(NamedTuple):
-    """The rates of one rule and profile, one per value of the tag; drives that do not have the tag last."""
+    """The rates of one rule and profile, one per value of the tag. The rate of drives without the tag is last."""
 
     rule_id: str
     profile: str | None
@@ -32,9 +32,10 @@ class RuleByTag(NamedTuple):
 
 @dataclass(frozen=True)
 class RatesByTag:
-    """The gravest rules, and of these the ones with most findings, by one tag, on one axis of findings per 100 km.
+    """The rates of the most severe and most frequently broken rules by one tag, on a common axis of findings per 100 km.
 
-    `n_values_left_out`: values that fewer drives have; `n_rules_left_out`: the other rules, `n_findings_left_out`: theirs.
+    `n_values_left_out`: number of less frequent values. `n_rules_left_out`: number of other rules with findings; `n_findings_left_out`:
+    number of their findings.
     """
 
     tag: str
@@ -48,7 +49,7 @@ class RatesByTag:
 def rates_by_tag(con: duckdb.DuckDBPyConnection, tag: str) -> RatesByTag:
     """Return the rates by a tag or a situation. Errors: `UsageError` if no drive has that tag."""
     n_values, of = 0, ""
-    if tag not in MEASURED_SITUATIONS:  # those have few values, and they are of an ego
+    if tag not in MEASURED_SITUATIONS:  # measured situations have few values, and belong to an ego
         con.execute(statement("fleet_report/tag_values", value=value_of(tag)), {**bound_tag(tag), "most": MAX_VALUES})
         n_values = con.execute("SELECT max(n_values) FROM shown_value").fetchall()[0][0] or 0
         if n_values > MAX_VALUES:

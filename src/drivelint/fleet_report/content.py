@@ -1,4 +1,4 @@
-"""The content of the fleet page of an audit, for every format: gathered from SQL, each table as long as it is shown."""
+"""Collects the content of an audit's fleet page for every format. Each table has only the rows that are shown."""
 
 from __future__ import annotations
 
@@ -33,21 +33,22 @@ if TYPE_CHECKING:
     from drivelint.fleet_report.rows import Row
 
 MAX_DRIVES: Final = 50
-"""Drives in a table."""
+"""Largest number of drives in a table."""
 MAX_CHANGES: Final = 50
-"""Findings of each standing against a baseline."""
+"""Largest number of findings per standing (new, fixed, …) in the comparison with a baseline."""
 
 
 @dataclass(frozen=True)
 class FleetContent:
-    """An audit as the fleet page shows it.
+    """The content of the fleet page about an audit.
 
     `totals`: the row of `totals.sql`. `severities`: severity -> row of `severities.sql`. `rules`: rule_id -> row of the table `rule`.
-    `rates`: the gravest and most frequent first. `worst`: rows of `worst.sql` with `command` and `explain`. `not_judged`: some of the
-    drives. `lossy`, `off_map`: the logs of which parts were lost, and those that their map does not fit. `contacts`: in how many drives an
-    ego touched something, in how many others it may have. `worst_value`: the value of a tag whose rate differs most from the others. Logs
-    of one content are one drive; `n_without_rate`: findings of such a log that another one stands for in the rates, as it was judged
-    otherwise.
+    `rates`: the most severe and most frequent first. `worst`: rows of `worst.sql` with `command` and `explain`. `not_judged`: some of the
+    drives that were not judged. `lossy`: logs of which parts were lost. `off_map`: logs that their map does not fit.
+    `contacts`: number of drives in which an ego touched something, and number of drives in which an ego possibly did. `worst_value`: the
+    value of a tag whose rate differs most from the others.
+    Logs with the same content are one drive. `n_without_rate`: findings that are missing from the rates, because another result of the same
+    log is used there.
     """
 
     audit: Audit
@@ -73,23 +74,23 @@ class FleetContent:
 
     @property
     def keys(self) -> list[str | None]:
-        """The drives that the page names; None for drives of the baseline alone."""
+        """The keys of the drives that the page names; None for drives that only the baseline has."""
         since = [] if self.baseline is None else [e.new_key for of in self.baseline.entries.values() for e in of]
         return [*(row["key"] for row in self.worst), *(row["key"] for row in self.not_judged), *since]
 
     @property
     def n_findings(self) -> int:
-        """Number of all findings."""
+        """The number of all findings."""
         return sum(row["findings"] for row in self.severities.values())
 
     @property
     def n_not_judged(self) -> int:
-        """Number of drives that could not be judged."""
+        """The number of drives that could not be judged."""
         return int(self.totals["drives"] - self.totals["judged"])
 
     @property
     def sureness(self) -> str:
-        """In how many drives the egos touched something, and how sure the findings are; '' without a finding."""
+        """A sentence about contacts and the certainty of findings; '' if there is no finding."""
         if not self.n_findings:
             return ""
         numbers = zip(("CONTACT", "possible contact"), self.contacts, strict=True)
@@ -105,13 +106,13 @@ class FleetContent:
 
     @property
     def is_all_decided(self) -> bool:
-        """Whether the audit has ended, drives were judged, and none of their verdicts is open."""
+        """Whether the audit has ended, all drives were judged, and no verdict is unknown or in error."""
         left = self.verdicts["unknown"] or self.verdicts["error"] or self.n_not_judged or self.audit.warning
         return bool(self.totals["judged"]) and not left
 
     @property
     def headline(self) -> tuple[str, str]:
-        """The outcome (fail, unknown or pass), and the sentence at the top."""
+        """The outcome (fail, unknown or pass), and the sentence at the top of the page."""
         if self.n_findings:
             said = ", ".join(
                 f"{self.severities[name]['findings']:,} {name}" for name in SEVERITIES if name in self.severities
@@ -126,7 +127,7 @@ class FleetContent:
 
 
 def content(con: duckdb.DuckDBPyConnection, audit: Audit, base: Audit | None, by: Sequence[str]) -> FleetContent:
-    """Return the content of the page about an audit of `opened`. Errors: `UsageError` for a tag in `by` that no drive has."""
+    """Return the content of the page about an audit from `open_audits`. Errors: `UsageError` for a tag in `by` that no drive has."""
     share = str(LEAST_SHARE)
     create_counted_views(con)
     event = statement("fleet/event", of=COUNTED_PREFIX, least_share=share)

@@ -1,4 +1,4 @@
-"""The difference of two audits in the words of `drivelint diff`: counts of all, and the gravest findings of each kind."""
+"""The difference of two audits in the terms of `drivelint diff`: all counts, and the most severe findings of each standing."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 NOTHING_IN_COMMON: Final = "the two audits have no drive in common: findings cannot be matched"
 NEAREST: Final = 5
-"""Tests of rates that are shown where fewer call a difference."""
+"""The smallest number of shown tests of rates, even if fewer tests report a difference."""
 _WHY: Final = {
     "drive_not_checked": "the drive was not checked",
     "drive_not_judged": "the drive could not be judged",
@@ -45,20 +45,21 @@ _WHY: Final = {
     "object_not_there": "the object is not in this log, or has another id",
     "not_applicable": "the rule does not apply there",
 }
-"""Why `drivelint.fleet.compare` says what it says -> the same for a person."""
+"""Reason code of `drivelint.fleet.compare` -> the reason as text."""
 _VERDICT_SENTENCES: Final = {
     "pass": "the rule is kept there",
     "fail": "the rule fails there still, at another step or place",
     "unknown": "the rule is unknown there",
     "error": "the rule could not be run there",
 }
-"""The verdict there -> the same in words, where the rule was judged."""
+"""Verdict of the other audit -> the verdict as text, if the rule was judged there."""
 
 
 class Entry(NamedTuple):
-    """A finding of one of two audits. `causes`: what else is known to differ there; `causes_not_known`: of what it is not known.
+    """A finding in the difference of two audits. `causes`: what else is known to differ; `causes_not_known`: what may differ but is not
+    known.
 
-    `new_key`: its drive in the newer audit; None: it is not there.
+    `new_key`: the drive's key in the newer audit; None: the newer audit does not have the drive.
     """
 
     finding: ComparedFinding
@@ -69,7 +70,8 @@ class Entry(NamedTuple):
 
 
 class NoMoreJudged(NamedTuple):
-    """A drive that the base judged and the newer audit could not. `log`, `new_key`: there; `base_log`: the base's; `reason`: why not."""
+    """A drive that the base judged and the newer audit could not judge. `log`, `new_key`: in the newer audit. `base_log`: in the base.
+    `reason`: why it could not be judged."""
 
     log: str
     new_key: str
@@ -78,12 +80,12 @@ class NoMoreJudged(NamedTuple):
 
     @property
     def line(self) -> str:
-        """The log and the reason, which mostly begins with it."""
+        """The log and the reason. A reason that already begins with the log stays as it is."""
         return self.reason if self.reason.startswith(self.log) else f"{self.log}: {self.reason}"
 
 
 class NewUnknowns(NamedTuple):
-    """Verdicts that are unknown or errors now and were not, in drives that both audits have; `reason`: that of one of them."""
+    """Verdicts that are unknown or errors only in the newer audit, in drives that both audits have. `reason`: an example."""
 
     reason_code: str
     cause_code: str | None
@@ -95,12 +97,12 @@ class NewUnknowns(NamedTuple):
 
 @dataclass(frozen=True)
 class AuditDifference:
-    """Two audits side by side. `entries`: standing -> at most `most` of its findings, the gravest first.
+    """The difference of two audits. `entries`: standing -> its most severe findings, a limited number.
 
-    `of_new_drives`: new findings of drives that the base does not have. `gating`: severity -> new findings of stable rules.
-    `gone_by_severity`: the same of findings of the base that the newer audit did not judge or cannot decide.
+    `of_new_drives`: new findings in drives that the base does not have. `gating`: severity -> number of new findings of stable rules.
+    `gone_by_severity`: severity -> number of the base's findings of stable rules that the newer audit did not judge or cannot decide.
     `causes`: what else differs -> standing -> number of findings.
-    `base_only`, `new_only`: at most `most` logs that the other has not.
+    `base_only`, `new_only`: some of the logs that only one audit has.
     """
 
     base: Audit
@@ -122,11 +124,11 @@ class AuditDifference:
     new_unknowns: list[NewUnknowns]
     rates: list[RateChange]
     gating_rules: dict[str, str]
-    """Stable rule of the newer audit -> its severity."""
+    """Id of a stable rule in the newer audit -> severity."""
 
     @property
     def headline(self) -> str:
-        """The counts in one sentence; of audits without a common drive, that there is nothing to count."""
+        """One sentence with the counts, or that the audits have no drive in common."""
         if self.is_disjoint:
             return f"{NOTHING_IN_COMMON}; compare rates"
         added = f" ({self.of_new_drives} in drives that the base does not have)" if self.of_new_drives else ""
@@ -134,20 +136,20 @@ class AuditDifference:
 
     @property
     def is_disjoint(self) -> bool:
-        """Whether no drive is in both, so that no finding of one can be compared with the other."""
+        """Whether no drive is in both audits, so that findings cannot be compared."""
         told = self.comparison
         return not told.drives_both and bool(told.drives_base_only and told.drives_new_only)
 
     def n_failing(self, fail_on: str) -> int:
-        """Return how many new findings of stable rules are at or above a severity."""
+        """Return the number of new findings of stable rules at or above a severity."""
         return _at_or_above(self.gating, fail_on)
 
     def n_gone(self, fail_on: str) -> int:
-        """Return how many such findings of the base are gone but not fixed."""
+        """Return the number of the base's findings of stable rules, at or above a severity, that are gone but not fixed."""
         return _at_or_above(self.gone_by_severity, fail_on)
 
     def risen(self, fail_on: str) -> list[tuple[RateChange, RateTest]]:
-        """Return the tests by which a rate of a stable rule at or above a severity is higher than chance explains."""
+        """Return the tests that report a higher rate of a stable rule at or above a severity."""
         severe = () if fail_on == "never" else SEVERITIES[: SEVERITIES.index(fail_on) + 1]
         return [
             (change, test)
@@ -157,23 +159,23 @@ class AuditDifference:
 
     @property
     def has_rates(self) -> bool:
-        """Whether a rule has a rate in both audits, so that they can be compared at all."""
+        """Whether any rule has a rate in both audits, so that rates can be compared."""
         return any(each.p_value is not None or each.occasion_p_value is not None for each in self.rates)
 
     @property
     def significant_changes(self) -> list[RateChange]:
-        """The rates that differ."""
+        """The changes of rates that are statistically significant."""
         return [each for each in self.rates if each.is_called]
 
     @property
     def tested(self) -> list[tuple[RateChange, RateTest]]:
-        """The tests that could call a difference, the nearest to one first."""
+        """The tests that could report a difference, sorted by p-value."""
         found = [(change, test) for change in self.rates for test in change.tests]
         return sorted(found, key=lambda each: (each[1].p_value, each[0].rule_id, each[0].profile or "", each[1].per))
 
     @property
     def shown_tests(self) -> list[tuple[RateChange, RateTest]]:
-        """The tests that call a difference; at least the nearest ones."""
+        """The tests that report a difference; if these are fewer than `NEAREST`, also the next ones by p-value."""
         return self.tested[: max(NEAREST, sum(test.is_called for _, test in self.tested))]
 
 
@@ -183,7 +185,7 @@ def _at_or_above(counts: dict[str, int], least: str) -> int:
 
 
 def difference(con: duckdb.DuckDBPyConnection, new: Audit, base: Audit, max_entries: int) -> AuditDifference:
-    """Return the difference of the audits of `open_audits`, with at most `max_entries` findings of each standing."""
+    """Return the difference of the audits from `open_audits`, with at most `max_entries` findings per standing."""
     sides = {"base": create_counted_views(con, BASE), "new": create_counted_views(con)}
     comparison = compare(con, base=sides["base"], new=sides["new"], tools=(base.version, new.version))
     (gating,) = rows(con, "gating", None, **sides)
@@ -219,13 +221,14 @@ def difference(con: duckdb.DuckDBPyConnection, new: Audit, base: Audit, max_entr
 
 
 def verdict_counts(con: duckdb.DuckDBPyConnection, of: str) -> dict[str, int]:
-    """Return verdict -> number of rows, zeros included."""
+    """Return verdict -> number of rows, including zeros."""
     found = {row["verdict"]: row["n"] for row in rows(con, "verdicts", of=of)}
     return {verdict: found.get(verdict, 0) for verdict in VERDICTS}
 
 
 def write_rows(con: duckdb.DuckDBPyConnection, path: Path) -> None:
-    """Write a row per finding of either audit as Parquet, after `difference`. Errors: `UsageError` where it cannot be written."""
+    """Write one row per finding of either audit as Parquet. `difference` must run before. Errors: `UsageError` if the file cannot be
+    written."""
     entries = statement("fleet_report/all_entries")
     try:
         con.execute(f"COPY ({entries}) TO {quoted(path)} (FORMAT parquet, COMPRESSION zstd)")
@@ -250,7 +253,7 @@ def _finding(row: Row) -> ComparedFinding:
 
 
 def _why(row: Row) -> str:
-    """Return how a finding changed, or why the other audit does not have it."""
+    """Return how a finding changed, or why the other audit does not have the finding."""
     if row["standing"] != "changed":
         return _VERDICT_SENTENCES[row["there"]] if row["why_code"] == "judged" else _WHY[row["why_code"]]
     if row["is_part"]:

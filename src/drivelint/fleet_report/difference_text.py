@@ -1,4 +1,4 @@
-"""A difference of two audits as text, Markdown and JSON, and all its rows as Parquet."""
+"""Renders a difference of two audits as text, Markdown and JSON."""
 
 from __future__ import annotations
 
@@ -25,26 +25,28 @@ if TYPE_CHECKING:
     from drivelint.fleet_report.difference import AuditDifference
 
 AUDIT_DIFF_SCHEMA: Final = 1
-"""Version of the JSON: raised when a key changes its meaning or goes."""
+"""Version of the JSON format: raised when a key is removed or changes its meaning."""
 _MOST_RISEN: Final = 3
 JSON_ENTRIES: Final = 1_000
-"""Findings of each standing that the JSON has."""
+"""Largest number of findings per standing in the JSON."""
 
 
 def rate_name(of: RateChange | RuleCoverage | Trend) -> str:
-    """Return rule and profile."""
+    """Return the rule's id and the profile as text."""
     return of.rule_id if of.profile is None else f"{of.rule_id} [{of.profile}]"
 
 
 def least_severity(difference: AuditDifference, fail_on: str | None) -> str | None:
-    """Return the severity that gates: the requested one, else the audit's own; None if no finding can be matched and none was requested."""
+    """Return the severity that gates: the requested one, else the audit's own; None if none was requested and the audits have no common
+    drive."""
     return fail_on or (None if difference.is_disjoint else _own_severity(difference))
 
 
 def exit_code(difference: AuditDifference, fail_on: str | None) -> ExitCode:
-    """FAILED for new findings that gate; NOT_JUDGED where more may come, or findings are gone but not fixed, or nothing can be compared.
+    """Return FAILED for new findings that gate; NOT_JUDGED if an audit has not ended, findings are gone but not fixed, or nothing can be
+    compared.
 
-    `fail_on` None: of two audits without a common drive, rates that are higher than chance explains gate in the place of findings.
+    `fail_on` None: the two audits have no common drive. Then significantly higher rates gate instead of findings.
     """
     if fail_on is None:
         if difference.risen(_own_severity(difference)):
@@ -56,7 +58,7 @@ def exit_code(difference: AuditDifference, fail_on: str | None) -> ExitCode:
 
 
 def _own_severity(difference: AuditDifference) -> str:
-    """Return the severity by which the newer audit gates."""
+    """Return the severity from which on findings of the newer audit gate."""
     return str(difference.new.audit_json.get("fail_on", "critical"))
 
 
@@ -65,7 +67,7 @@ def _warnings(difference: AuditDifference) -> list[str]:
 
 
 def _exit(difference: AuditDifference, fail_on: str | None) -> str:
-    """Return the exit code and its reason, and that fewer drives were judged, in one line."""
+    """Return one line with the exit code, its reason, and how many drives were not judged any more."""
     n = len(difference.no_more_judged)
     less = f"; judged less than the baseline: {plural(n, 'drive')} of it not judged" if n else ""
     return f"{_code_and_reason(difference, fail_on)}{less}"
@@ -83,7 +85,7 @@ def _code_and_reason(difference: AuditDifference, fail_on: str | None) -> str:
 
 
 def _rates_sentence(difference: AuditDifference) -> str:
-    """Return the result of comparing the rates of two audits without a common drive."""
+    """Return a phrase about the comparison of rates of two audits without a common drive."""
     least = _own_severity(difference)
     if risen := difference.risen(least):
         rates_text = ", ".join(
@@ -99,7 +101,7 @@ def _rates_sentence(difference: AuditDifference) -> str:
 
 
 def since(difference: AuditDifference) -> str:
-    """Return the changes since the base, in one sentence for a headline."""
+    """Return one sentence about the changes since the base, for a headline."""
     if not difference.is_disjoint:
         return difference.headline
     rate_texts = [
@@ -112,7 +114,7 @@ def since(difference: AuditDifference) -> str:
 
 
 def rate_line(of: tuple[RateChange, RateTest]) -> str:
-    """Return the rates of a test, how many times the earlier one the later one is, and the chance of it."""
+    """Return one line with both rates of a test, their ratio, and the p-values."""
     change, test = of
     was, now = rate_sides(test)
     name = f"{rate_name(change)} per {test.per}"
@@ -120,12 +122,12 @@ def rate_line(of: tuple[RateChange, RateTest]) -> str:
 
 
 def times(test: RateTest) -> str:
-    """Return how many times the earlier rate the later one is."""
+    """Return the ratio of the later rate to the earlier one as text."""
     return "there was none" if test.ratio == math.inf else f"{figure(test.ratio)} times"
 
 
 def rate_sides(test: RateTest) -> list[str]:
-    """Return both rates of a test in words, the earlier first."""
+    """Return both rates of a test as text, the earlier first."""
     if test.per == "occasion":
         told = zip(test.events, test.of, test.rates, strict=True)
         return [f"{n} of {of:.0f}, {share(rate)}" for n, of, rate in told]
@@ -133,7 +135,7 @@ def rate_sides(test: RateTest) -> list[str]:
 
 
 def to_text(difference: AuditDifference, fail_on: str | None, *, markdown: bool = False) -> str:
-    """Return a difference as text for a person, or as Markdown."""
+    """Return a difference as text for a terminal, or as Markdown."""
     filters: dict[str, Any] = {
         "finding_line": finding_line,
         "rate_line": rate_line,
@@ -157,7 +159,7 @@ def _one_line(value: Any) -> Any:
 
 
 def to_json(difference: AuditDifference, fail_on: str | None) -> str:
-    """Return a difference as JSON: all counts, and the first entries of each standing with the number of those left out."""
+    """Return a difference as JSON: all counts, the first entries of each standing, and how many entries are left out."""
     content = {
         "audit_diff_schema": AUDIT_DIFF_SCHEMA,
         "exit": {"code": int(exit_code(difference, fail_on)), "why": _exit(difference, fail_on).partition(": ")[2]},

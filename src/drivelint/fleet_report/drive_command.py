@@ -1,4 +1,4 @@
-"""The command that judges one drive of an audit again, with a report to look at."""
+"""Builds the command that judges one drive of an audit again and writes a report."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ _OPTION_OF_SETTING: Final = {
 
 
 def check_command(log: str, options: str | None, settings: Mapping[str, Any], drive_id: str) -> list[str]:
-    """Return `drivelint check` of a drive, an option and its value as one part.
+    """Return the words of the command `drivelint check` for a drive. An option and its value are one item of the list.
 
-    `options`: those of `DriveInput` as JSON; `settings`: those of the audit. `check` reads files of this machine: of a log in an
-    object store its name stands there, as of a copy.
+    `options`: the drive's options (`DriveInput`) as JSON. `settings`: the audit's settings. `check` only reads local files: for a log in an
+    object store, the command has the file name of a local copy.
     """
     parts = [["drivelint", "check"], [_local(log)]]
     for name, value in json.loads(options or "{}").items():
@@ -45,7 +45,7 @@ def _words(name: str, value: Any) -> list[list[str]]:
     option = _OPTION_OF_FIELD.get(name, f"--{name.replace('_', '-')}")
     if name == "env":
         return [[option, each] for each in value]
-    if isinstance(value, list):  # with '=', since a negative number looks like an option
+    if isinstance(value, list):  # with '=', because a negative number looks like an option
         return [[f"{option}={','.join(f'{each:.12g}' for each in value)}"]]
     return [[option, _local(str(value)) if name in {"map", "map_dir", "mapping"} else str(value)]]
 

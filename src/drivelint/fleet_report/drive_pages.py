@@ -1,7 +1,7 @@
-"""Pages about single drives of an audit, one file each beside the fleet page: facts, findings, unknown verdicts and their reasons.
+"""Writes pages about single drives of an audit, one file each: facts, findings, unknown verdicts and their reasons.
 
-The rows of all chosen drives are put into tables by one statement per table of the audit, and read from there some drives at a time:
-neither the number of scans nor the memory of this process grows with the drives.
+One statement per table of the audit copies the rows of all chosen drives into temporary tables, which are read in groups of drives. Neither
+the number of scans nor the memory of this process grows with the number of drives.
 """
 
 from __future__ import annotations
@@ -38,11 +38,11 @@ if TYPE_CHECKING:
 
 FOLDER: Final = "drives"
 MOST_DRIVES: Final = 100
-"""Number of drives that get a page by default."""
+"""Default number of drives that get a page."""
 MAX_FINDINGS: Final = 200
-"""Findings on a page."""
+"""Largest number of findings on a page."""
 MAX_NOTES: Final = 40
-"""Reasons of unknown verdicts on a page, and notes on the data."""
+"""Largest number of reasons for unknown verdicts on a page, and of notes on the data."""
 _AT_A_TIME: Final = 100
 _PLAIN: Final = re.compile(r"[0-9a-f]{64}")
 _FILE: Final = re.compile(rf"{_PLAIN.pattern}(-moments)?\.html")
@@ -60,28 +60,28 @@ NO_MOMENTS: Final[Mapping[str, MomentsLink]] = MappingProxyType({})
 
 
 def page_name(key: str) -> str:
-    """Return the name of a drive's page by its key; a key that is no SHA-256 may hold anything, so its hash stands for it."""
+    """Return the file name of a drive's page. A key that is not a SHA-256 may contain anything, so its hash is used instead."""
     plain = key if _PLAIN.fullmatch(key) else hashlib.sha256(key.encode("utf-8", "surrogatepass")).hexdigest()
     return f"{FOLDER}/{plain}.html"
 
 
 def is_page_name(name: str) -> bool:
-    """Whether a name is that of a drive's page, or of the page with its moments."""
+    """Return whether a name is that of a drive's page, or of the page with its moments."""
     folder, _, file = name.rpartition("/")
     return folder == FOLDER and _FILE.fullmatch(file) is not None
 
 
 def choose(con: duckdb.DuckDBPyConnection, max_drives: int | None) -> list[str]:
-    """Choose the drives that get a page, after `content`; return the names of the pages.
+    """Choose the drives that get a page, and return the names of the pages. `content` must run before.
 
-    `max_drives`: so many of the drives with findings, the worst first; None: all drives of the audit.
+    `max_drives`: the number of drives with findings, the worst first; None: all drives of the audit.
     """
     con.execute(statement("fleet_report/page_drives", ranked=ranked()), {"most": max_drives})
     return [page_name(key) for (key,) in con.execute("SELECT key FROM page_drive ORDER BY no").fetchall()]
 
 
 def links(con: duckdb.DuckDBPyConnection, keys: Iterable[str | None]) -> dict[str, str]:
-    """Return key -> address, for a link from the fleet page, of those of these drives that were chosen to have a page."""
+    """Return key -> relative URL of the page, for those of the given drives that have a page."""
     asked = sorted({key for key in keys if key is not None})
     found = con.execute("SELECT key FROM page_drive WHERE list_contains($keys, key) ORDER BY no", {"keys": asked})
     return {key: page_name(key) for (key,) in found.fetchall()}
@@ -93,9 +93,9 @@ def pages(
     rules: Mapping[str, Row],
     moments: Mapping[str, MomentsLink] = NO_MOMENTS,
 ) -> Iterator[tuple[str, bytes]]:
-    """Yield name and content of the page of each chosen drive.
+    """Yield the name and content of each chosen drive's page.
 
-    `rules`: rule_id -> row of the table `rule`. `moments`: a drive's key -> the page with its moments, of the drives that were tried.
+    `rules`: rule_id -> row of the table `rule`. `moments`: key of a drive -> the page with its moments.
     """
     con.execute(statement("fleet_report/page_facts", options=options_column(con)))
     con.execute(
@@ -121,7 +121,7 @@ def pages(
 
 
 def _some(con: duckdb.DuckDBPyConnection, audit: Audit, first: int, last: int) -> Iterator[Row]:
-    """Yield the template's values for each of the drives with these numbers."""
+    """Yield the values of the template for each drive with a number from `first` to `last`."""
     bound = {"first": first, "last": last}
     facts = rows(con, "page_some", bound, table="page_facts", order="no")
     findings = rows(con, "page_some", bound, table="page_finding", order="no, nth")
@@ -162,7 +162,7 @@ def _page_content(
 
 
 def _headline(drive: Row, by_severity: Mapping[str, int], counts: Mapping[str, int]) -> tuple[str, str]:
-    """Return the outcome (fail, unknown or pass) of a drive, and the sentence at the top."""
+    """Return the outcome (fail, unknown or pass) of a drive, and the sentence at the top of its page."""
     if drive["status"] != "judged":
         return "unknown", "Could not be judged"
     if n := sum(by_severity.values()):

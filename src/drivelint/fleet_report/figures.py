@@ -1,4 +1,4 @@
-"""Rates, intervals and large numbers as words, and the bars that show intervals."""
+"""Formats rates, intervals and large numbers as text, and computes the bars that show intervals."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def figure(value: float | None) -> str:
-    """Return a number with three digits that count; a dash for none."""
+    """Return a number with three significant digits; a dash for None."""
     if value is None:
         return NO_VALUE
     if value == 0 or not math.isfinite(value):
@@ -28,16 +28,17 @@ def figure(value: float | None) -> str:
 
 
 def interval(estimate: Estimate) -> str:
-    """Return a rate with the ends of its interval, or that nothing is known."""
+    """Return a rate with the bounds of its interval as text; a dash if the rate is not known."""
     if estimate.rate is None:
         return NO_VALUE
     return f"{figure(estimate.rate)} ({figure(estimate.low)} to {figure(estimate.high)})"
 
 
 def least_rate(rate: Rate) -> tuple[str, str] | None:
-    """Return the lower bound that stands in place of a rate of 0 which leaves findings out, and what stands below it; None: no such rate.
+    """Return a lower bound and an explanation, to show instead of a rate of 0 that leaves findings out; None: for any other rate.
 
-    Their drives were not wholly judged, so they do not count for the rate; a 0 beside them would read as that nothing happened.
+    The drives with these findings were not completely judged, so they do not count for the rate. A rate of 0 would look as if nothing had
+    happened.
     """
     if rate.findings or not rate.findings_of_unknown or not rate.at_least_per_100km:
         return None
@@ -45,31 +46,31 @@ def least_rate(rate: Rate) -> tuple[str, str] | None:
 
 
 def share(estimate: Estimate) -> str:
-    """Return a share and its interval in percent, or a dash."""
+    """Return a share and its interval in percent as text; a dash if the share is not known."""
     if estimate.rate is None:
         return NO_VALUE
     return f"{figure(100 * estimate.rate)} % ({figure(100 * estimate.low)} to {figure(100 * estimate.high)})"
 
 
 class LogAxis(NamedTuple):
-    """Rates from `low` to `high`, both powers of ten, laid out from 0 % to 100 %."""
+    """A logarithmic axis of rates, from 10^`low` at 0 % to 10^`high` at 100 %."""
 
     low: int
     high: int
 
     @property
     def words(self) -> str:
-        """The first and the last value."""
+        """The first and the last value of the axis as text."""
         return f"{10.0**self.low:g} to {10.0**self.high:g}"
 
     def at(self, value: float) -> float:
-        """Return where a rate lies, in percent; one of 0 at the left end."""
+        """Return the position of a rate on the axis in percent; a rate of 0 is at the left end."""
         if value <= 0:
             return 0.0
         return min(100.0, max(0.0, 100 * (math.log10(value) - self.low) / (self.high - self.low)))
 
     def bar(self, estimate: Estimate) -> dict[str, str] | None:
-        """Return place and width of an interval's bar, and the place of the rate; None: nothing is known."""
+        """Return the position and width of an interval's bar, and the position of the rate; None: the rate is not known."""
         if estimate.rate is None:
             return None
         low, high = self.at(estimate.low), self.at(estimate.high)
@@ -77,7 +78,7 @@ class LogAxis(NamedTuple):
 
 
 def log_axis(estimates: Iterable[Estimate]) -> LogAxis:
-    """Return the axis that shows these rates and the finite ends of their intervals."""
+    """Return an axis that includes these rates and the finite bounds of their intervals."""
     known = [each for each in estimates if each.rate is not None]
     ends = [end for each in known for end in (each.low, each.rate, each.high) if end and math.isfinite(end)]
     if not ends:

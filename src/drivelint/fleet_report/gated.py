@@ -1,6 +1,7 @@
-"""The gate of an audit: it is read as the result of a check, so that baseline, waivers, exit codes, JUnit and SARIF are those of `check`.
+"""Applies the gate to an audit. The audit is read as a check's result, so baseline, waivers, exit codes, JUnit and SARIF work as for
+`check`.
 
-Logs of one content are one drive, as in every count of an audit. All rows are in memory: some 0.3 MB per drive of some 60 rules.
+Logs with the same content are one drive, as in every count of an audit. All rows are in memory: about 0.3 MB per drive with 60 rules.
 """
 
 from __future__ import annotations
@@ -40,25 +41,26 @@ if TYPE_CHECKING:
     from drivelint.gate import GateInputs
 
 FORMATS: Final = ("junit", "sarif")
-"""Reports of a check that an audit has, too."""
+"""The formats of reports that both a check and an audit can write."""
 _WEIGHT: Final = (ExitCode.USAGE, ExitCode.FAILED, ExitCode.NOT_JUDGED, ExitCode.LOSSY, ExitCode.OK)
-"""Exit codes, the one that counts first."""
+"""Exit codes in the order of precedence."""
 
 
 def audit_result(dest: str) -> Result:
-    """Return an audit as the result of a check, with its gate. Errors: as `opened`."""
+    """Return an audit as the result of a check, with its gate. Errors: as `open_audits`."""
     with open_audits(dest) as (con, audit, _):
         return _result(con, audit)
 
 
 def load(path: Path) -> Result:
-    """Return what `check --out` or `audit --out` wrote there. Errors: `UsageError`."""
+    """Return the result that `check --out` or `audit --out` wrote to `path`. Errors: `UsageError`."""
     dest = destination(path)
     return audit_result(dest) if is_audit(dest) else load_result(path)
 
 
 def apply_gate(dest: str, inputs: GateInputs | None) -> Result:
-    """Hold an audit that has ended against its baseline and waivers; write `gate.json` into it; return it with its gate."""
+    """Compare an audit that has ended with its baseline and waivers. Write `gate.json` into the audit, and return the result with its
+    gate."""
     with open_audits(dest) as (con, audit, _):
         result = _result(con, audit)
         result = result if inputs is None else inputs.apply_to(result)
@@ -69,19 +71,19 @@ def apply_gate(dest: str, inputs: GateInputs | None) -> Result:
 
 
 def exit_code(result: Result, summary: AuditSummary) -> ExitCode:
-    """Return the exit code that takes precedence: that of the findings by the gate, or that of the audit."""
+    """Return the exit code with the higher precedence: from the gated findings, or from the audit's summary."""
     other_exit = replace(summary, failed={}).exit_code("never", strict=result.strict)
     return min((exit_status(result).code, other_exit), key=_WEIGHT.index)
 
 
 def exit_reason(result: Result, code: ExitCode) -> str:
-    """Return why an audit exits with this code, if it is the gate's; '' if the audit gives it."""
+    """Return why an audit exits with this code if the gate determines it; '' if the audit's summary does."""
     status = exit_status(result)
     return status.why if status.code is code else ""
 
 
 def lines(result: Result) -> Iterator[str]:
-    """Yield the result of the gate in words: the findings by their standing, the reason of the exit code, and doubtful waivers."""
+    """Yield lines about the gate: the findings by standing, the reason for the exit code, and doubtful waivers."""
     yield f"gate: {headline(result).sentence}"
     yield f"  {exit_status(result).why}"
     if result.gate is not None:
@@ -89,7 +91,7 @@ def lines(result: Result) -> Iterator[str]:
 
 
 def write_report(dest: str, to: str) -> tuple[str, Audit]:
-    """Write a report of `FORMATS` into the audit; return its name, and the audit. Errors: as `opened`; `OutputError`."""
+    """Write a report in one of `FORMATS` into the audit; return its file name, and the audit. Errors: as `open_audits`; `OutputError`."""
     name, render = REPORT_FORMATS[to]
     with open_audits(dest) as (con, audit, _):
         audit.results.write(name, render(_result(con, audit)))
@@ -111,7 +113,7 @@ def _result(con: duckdb.DuckDBPyConnection, audit: Audit) -> Result:
         drives=drives.drop_columns(["log"]),
         rules=con.execute("FROM rules ORDER BY rule_id").to_arrow_table(),
         fail_on=audit.audit_json["fail_on"],
-        strict=audit.audit_json.get("strict", False),  # older audits say neither
+        strict=audit.audit_json.get("strict", False),  # older audits lack both keys
         min_judged=audit.audit_json.get("min_judged"),
         gate=_gate(audit.results),
         run_options=RunRequest.from_options(CheckOptions(()), here),
@@ -119,7 +121,7 @@ def _result(con: duckdb.DuckDBPyConnection, audit: Audit) -> Result:
 
 
 def _gate(results: ResultStore) -> gate.Gate | None:
-    """Return the gate of the audit's last run; None: there was none."""
+    """Return the gate that the audit's last run stored; None: it stored none."""
     content = results.read(GATE_FILE)
     if content is None:
         return None

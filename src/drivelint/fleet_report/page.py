@@ -1,4 +1,4 @@
-"""`fleet.html` and `fleet.md`: one page about an audit of any size. The HTML opens offline, in the style of `report.html`."""
+"""Writes `fleet.html` and `fleet.md`: one page about an audit of any size. The HTML works offline, in the style of `report.html`."""
 
 from __future__ import annotations
 
@@ -56,11 +56,11 @@ def write(
     most_moments: int | None = None,
     progress: Progress | None = None,
 ) -> tuple[str, Audit]:
-    """Write the page of an audit into it, and with HTML those of its worst drives; return the fleet page's name and the audit.
+    """Write the fleet page into an audit, and with HTML also pages of its worst drives. Return the fleet page's name, and the audit.
 
-    `by`: tags by which rates are divided. `most_drives`: that get a page of their own; None: all drives of the audit. `most_moments`: of
-    these, how many are judged again to draw their moments; None: see `moment_pages`. Errors: `UsageError` for an audit or tag that is not
-    there; `OutputError`.
+    `by`: tags by which rates are divided. `most_drives`: number of drives that get their own page; None: all drives. `most_moments`:
+    number of these drives whose moments are drawn; None: the default of `moment_pages`. Errors: `UsageError` for an audit or tag that does
+    not exist; `OutputError`.
     """
     with open_audits(dest, baseline) as (con, audit, base):
         fleet = content(con, audit, base, by)
@@ -98,13 +98,13 @@ def _write_html(
 
 
 def html(fleet: FleetContent, links: Mapping[str, str] = NO_LINKS) -> bytes:
-    """Return the page as UTF-8; the same audit gives the same bytes. `links`: a drive's key -> the address of its page."""
+    """Return the page as HTML in UTF-8. The same audit gives the same bytes. `links`: key of a drive -> relative URL of its page."""
     text = _environment().get_template("fleet.html.j2").render(_words(fleet), links=links)
     return text.encode("utf-8", "replace")
 
 
 def markdown(fleet: FleetContent) -> bytes:
-    """Return the same as Markdown, without pictures."""
+    """Return the page as Markdown in UTF-8, without pictures."""
     text = text_template(__file__, "templates/fleet.md.j2", **_FILTERS, escaped=escaped, code=code).render(
         _words(fleet)
     )
@@ -112,8 +112,8 @@ def markdown(fleet: FleetContent) -> bytes:
 
 
 def _words(fleet: FleetContent) -> dict[str, Any]:
-    """Return the values of the templates."""
-    assert set(_STANDING_TITLES) == set(STANDINGS) - {"decided"}  # noqa: S101 - a standing without words would be left out
+    """Return the values for the templates."""
+    assert set(_STANDING_TITLES) == set(STANDINGS) - {"decided"}  # noqa: S101 - a standing without a title would be left out
     return {
         "fleet": fleet,
         "severities": SEVERITIES,
@@ -126,7 +126,7 @@ def _words(fleet: FleetContent) -> dict[str, Any]:
 
 
 def _beside(rate: Rate) -> str:
-    """Return the note beside a rate about findings of egos that were not wholly judged."""
+    """Return the note beside a rate about findings of egos that were not completely judged."""
     if not rate.findings_of_unknown:
         return ""
     least = rate.at_least_per_100km
@@ -134,7 +134,7 @@ def _beside(rate: Rate) -> str:
 
 
 def _provide(missing_signal: MissingSignal) -> str:
-    """Return how to provide a signal in the formats of the logs that lack it."""
+    """Return advice how to provide a signal in the formats of the logs that lack it."""
     formats_by_text: dict[str, list[str]] = {}
     for log_format in missing_signal.formats:
         formats_by_text.setdefault(how_to_provide(missing_signal.signal, log_format), []).append(log_format)
@@ -144,7 +144,7 @@ def _provide(missing_signal: MissingSignal) -> str:
 
 
 def _mend(undecided: Undecided) -> str:
-    """Return the remedy for verdicts that are unknown for a reason, and the sentence of one of them."""
+    """Return the remedy for a reason of unknown verdicts, with the text of one verdict as an example."""
     advice = remedy(undecided.reason_code, None, "mapped")
     example = f"{undecided.rule_id}: {undecided.reason}"
     return example if advice == WHAT_IS_NULL else f"{advice} ({example})"

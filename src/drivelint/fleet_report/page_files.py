@@ -1,4 +1,4 @@
-"""The list of the drive pages beside the fleet page, by which a later report removes those that it does not write again."""
+"""Maintains the list of the drive pages beside the fleet page. A later report uses it to remove pages that it does not write again."""
 
 from __future__ import annotations
 
@@ -20,10 +20,11 @@ _KEY: Final = "written_by_drivelint"
 
 @contextmanager
 def listed(results: ResultStore, names: Collection[str]) -> Iterator[set[str]]:
-    """List the pages that are written meanwhile; afterwards, remove those of an earlier report that are not among them.
+    """List the pages in `pages.json`; after the block, remove the pages of an earlier report that are not among `names`.
 
-    Yields the set of the names: a caller that does not write one of them discards it. While they are written, the list has the earlier
-    ones too: if this report is killed, the next one knows of both. Files that are not listed are never removed. Errors: `OutputError`.
+    Yields the set of the names: a caller that does not write one of the pages discards its name. During the block, the list also has the
+    earlier pages: if this report is killed, the next one knows all of them. Files that are not listed are never removed.
+    Errors: `OutputError`.
     """
     earlier = _listed(results)
     if earlier or names:
@@ -39,7 +40,7 @@ def listed(results: ResultStore, names: Collection[str]) -> Iterator[set[str]]:
 
 
 def _listed(results: ResultStore) -> set[str]:
-    """Return the pages of an earlier report. Other names in the list are not ours: nothing may be removed by them."""
+    """Return the pages of an earlier report. Other names in the list are ignored, because no foreign file may be removed."""
     try:
         told = msgspec.json.decode(results.read(LIST_FILE) or b"{}", type=dict[str, list[str]])
     except msgspec.MsgspecError:

@@ -1,4 +1,4 @@
-"""The map of findings: where on the earth they are, as a plan in metres around their middle, and the places with most of them."""
+"""Draws the map of findings: their places on the earth, as a plan in metres around their centre, and the places with most findings."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ _WIDTH: Final = 900
 _MOST_HEIGHT: Final = 620
 _CELL_PX: Final = 6
 _M_PER_DEGREE: Final = 111_320.0
-"""Of latitude, and of longitude at the equator, on a sphere of the earth's mean radius: enough to see where."""
+"""Metres per degree of latitude, and of longitude at the equator, on a sphere with the earth's mean radius."""
 _LEAST_DEGREES: Final = 0.002
 
 
 @dataclass(frozen=True)
 class FindingMap:
-    """Marks of findings on a grid, and the numbers of those that it shows and does not.
+    """Marks of findings on a grid, and the numbers of findings that are shown or left out.
 
     `marks`: kind (severity), x, y and radius in pixels, number of findings. `places`: rows of `places.sql`.
-    `n_placed`: findings that have a place; `n_left_out`: those of them in cells that are not drawn.
+    `n_placed`: findings that have a place. `n_left_out`: how many of these are in cells that are not drawn.
     """
 
     width: int

@@ -1,4 +1,4 @@
-"""Runs the statements of `queries/fleet_report`, with the parts that several of them share."""
+"""Runs the statements of `queries/fleet_report`, and returns SQL fragments that several of them share."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def rows(con: duckdb.DuckDBPyConnection, name: str, bound: Row | None = None, **fragments: str) -> list[Row]:
-    """Return the rows of a statement."""
+    """Return the rows of a statement. `bound`: its parameters."""
     found: list[Row] = (
         con.execute(statement(f"fleet_report/{name}", **fragments), bound or {}).to_arrow_table().to_pylist()
     )
@@ -23,21 +23,21 @@ def rows(con: duckdb.DuckDBPyConnection, name: str, bound: Row | None = None, **
 
 
 def ranked() -> str:
-    """Return the SELECT of the drives with findings, the worst first."""
+    """Return the SELECT of the drives with findings, the worst drives first."""
     return statement("fleet_report/ranked", least_share=str(LEAST_SHARE), event=one_per_event(COUNTED_PREFIX))
 
 
 def one_per_event(of: str) -> str:
-    """Return the SELECT of one finding of each event. `of`: what stands before the name `findings` of their table."""
+    """Return the SELECT of one finding per event. `of`: prefix of the table `findings`."""
     return statement("fleet/event", of=of, least_share=str(LEAST_SHARE))
 
 
 def gravest_first() -> str:
-    """Return the order of the findings `f` of the rules `r`, to stand behind ORDER BY."""
+    """Return the ORDER BY expressions that sort the findings `f` of the rules `r` from most to least severe."""
     return statement("fleet_report/gravest_first", least_share=str(LEAST_SHARE))
 
 
 def options_column(con: duckdb.DuckDBPyConnection) -> str:
-    """Return the SQL of a drive's options in its receipt `r`; receipts of older audits do not have them."""
+    """Return the SQL of a drive's options in its receipt `r`; receipts of older audits lack this column."""
     columns = {row[0] for row in con.execute("DESCRIBE receipts").fetchall()}
     return "r.options" if "options" in columns else "NULL"

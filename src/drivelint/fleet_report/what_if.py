@@ -1,4 +1,4 @@
-"""`drivelint what-if`: the verdicts of an audit that change with another value of a parameter."""
+"""`drivelint what-if`: shows which verdicts of an audit change with another value of a parameter."""
 
 from __future__ import annotations
 
@@ -27,19 +27,19 @@ if TYPE_CHECKING:
     from drivelint.fleet_report.audit_views import Audit
 
 WHAT_IF_SCHEMA: Final = 1
-"""Version of the JSON: raised when a key changes its meaning or goes."""
+"""Version of the JSON format: raised when a key is removed or changes its meaning."""
 MAX_VALUES: Final = 50
-"""Values of a tag, and verdicts, that the text shows; the JSON has all values."""
+"""Largest number of tag values, and of verdicts, in the text; the JSON has all values."""
 MAX_FLIPPED: Final = 10_000
-"""Verdicts that become others which the JSON has."""
+"""Largest number of changed verdicts in the JSON."""
 
 
 @dataclass(frozen=True)
 class AskedWhatIf:
-    """The answer, and the request. `was`: the value that the audit used. `by`: the tag by which verdicts are divided.
+    """The request and its result. `was`: the value in the audit. `by`: the tag by which verdicts are divided.
 
-    `by_value`: the verdicts by profile and value of that tag. One of a log that is there with several values counts for each, and once
-    in `answer`.
+    `by_value`: the verdicts by profile and value of that tag. If a log has several values of the tag, its verdicts count for each value,
+    but only once in `answer`.
     """
 
     audit: Audit
@@ -52,7 +52,7 @@ class AskedWhatIf:
 
     @property
     def exit_code(self) -> ExitCode:
-        """OK; NOT_JUDGED if a new audit is needed, if the audit has not ended, or has no verdict of the rule."""
+        """The exit code: NOT_JUDGED if a new audit is needed, the audit has not ended, or it has no verdict of the rule; else OK."""
         left = self.answer.needs_check or self.answer.not_known or self.audit.warning or not self.answer.verdicts
         return ExitCode.NOT_JUDGED if left else ExitCode.OK
 
@@ -60,7 +60,7 @@ class AskedWhatIf:
 def ask_what_if(dest: str, setting: str, by: str | None) -> AskedWhatIf:
     """Return the effect of `RULE.PARAM=VALUE` on the verdicts of an audit, by the values of a tag.
 
-    Errors: `UsageError` for an audit, rule, parameter, value or tag that is not there.
+    Errors: `UsageError` for an audit, rule, parameter, value or tag that does not exist.
     """
     with open_audits(dest) as (con, audit, _):
         check_tag(con, by, "")
@@ -99,7 +99,7 @@ def _used(con: duckdb.DuckDBPyConnection, rule_id: str, param: str) -> tuple[str
 
 
 def to_text(analysis: AskedWhatIf) -> str:
-    """Return the answer for a person: the changes of verdicts, by the values of the tag."""
+    """Return the result as text: the changes of verdicts, by the values of the tag."""
     answer = analysis.answer
     lines = [f"{analysis.setting} instead of {analysis.was}, by the verdicts that {analysis.audit.dest} stores"]
     if analysis.audit.warning:
@@ -145,7 +145,7 @@ def _table(analysis: AskedWhatIf) -> list[str]:
 
 
 def _flipped_verdict_lines(verdicts: Sequence[Flipped], n: int) -> list[str]:
-    """Return a line per verdict of `n` that becomes another, with its log."""
+    """Return one line with the log for each changed verdict. `n`: the number of all changed verdicts."""
     lines = ["which:"] if verdicts else []
     for each in verdicts[:MAX_VALUES]:
         whom = f" for object {each.object_id}" if each.object_id else ""
@@ -174,7 +174,7 @@ def _command(analysis: AskedWhatIf) -> str:
 
 
 def to_json(analysis: AskedWhatIf) -> str:
-    """Return the answer as JSON."""
+    """Return the result as JSON."""
     answer = analysis.answer
     content: dict[str, Any] = {
         "what_if_schema": WHAT_IF_SCHEMA,

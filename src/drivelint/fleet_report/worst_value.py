@@ -1,4 +1,4 @@
-"""The value of a tag at which a rule has more findings per km than at the others: of all tags the one that stands out most."""
+"""Finds the value of a tag at which a rule's findings per km exceed the other values most, over all tags."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ if TYPE_CHECKING:
 MAX_TAGS: Final = 6
 MAX_RULES: Final = 6
 _COMPARED: Final = "compared_"
-"""What the names of the views of the compared rules begin with."""
+"""The prefix of the views of the compared rules."""
 
 
 class WorstValue(NamedTuple):
-    """A rule's rates by a tag, the highest first, of values at which something was wholly judged; `rest`: of all but the first value.
+    """A rule's rates by a tag, the highest first, for values with completely judged drives. `rest`: the rate of all values but the first.
 
-    `corrected`: the chance of a difference like this one or a rarer one if no rate differs, corrected for all `n_tests` comparisons of the
-    values of `n_tags` tags; `n_tags_left_out`: tags that have more values, or that come behind the first tags.
+    `corrected`: the p-value of the difference, corrected for all `n_tests` comparisons of the values of `n_tags` tags. `n_tags_left_out`:
+    number of tags that were not compared, because they have too many values or come after the first tags.
     """
 
     tag: str
@@ -45,17 +45,17 @@ class WorstValue(NamedTuple):
 
     @property
     def worst(self) -> Rate:
-        """The rate at the value that stands out."""
+        """The highest rate."""
         return self.rates[0]
 
     @property
     def option(self) -> str:
-        """The option of `report` that shows all rules by the tag, as a shell reads it."""
+        """The option of `report` that shows all rules by the tag, quoted for a shell."""
         return shlex.join(["--by", self.tag])
 
     @property
     def is_called(self) -> bool:
-        """Whether the difference is more than chance, as far as 5 % of false calls in all comparisons together are allowed."""
+        """Whether the difference is significant. The probability of any false report in all comparisons together is at most 5 %."""
         return self.corrected <= ALLOWED_FALSE_CALLS
 
 
@@ -66,10 +66,10 @@ class _Compared(NamedTuple):
 
 
 def worst_value(con: duckdb.DuckDBPyConnection, all_rates: Sequence[Rate]) -> WorstValue | None:
-    """Return the value of a tag that stands out most; None: no tag has values that differ.
+    """Return the value of a tag whose rate exceeds the others most; None: no tag can be compared.
 
-    `all_rates`: the rates of all drives, the gravest first; the first rules with findings are compared. Only the highest rate of a tag
-    and rule can be reported as the worst, but each value is a comparison that chance may win.
+    `all_rates`: the rates of all drives, the most severe first; the first rules with findings are compared. Only the highest rate of a tag
+    and rule can be reported, but the correction counts each value, because each could be the highest by chance.
     """
     ids = list(dict.fromkeys(rate.rule_id for rate in all_rates if rate.findings))[:MAX_RULES]
     all_tags = rows(con, "tags")
@@ -109,7 +109,8 @@ def worst_value(con: duckdb.DuckDBPyConnection, all_rates: Sequence[Rate]) -> Wo
 
 
 def _compared(tag: str, tag_rates: Sequence[Rate]) -> _Compared:
-    """Compare the highest rate with all others: given the sum of the findings, each falls there with the value's share of the way."""
+    """Compare the highest rate with all others by a binomial test: a finding falls on a value with the probability of the value's share of
+    the distance."""
     from scipy.stats import binomtest
 
     ranked = sorted(tag_rates, key=lambda rate: (-(rate.per_100km.rate or 0.0), -rate.findings, rate.tag_value or ""))

@@ -1,6 +1,7 @@
-"""The gate decides which findings fail a run: those that neither the baseline has nor a waiver covers.
+"""The gate decides which findings fail a run: findings that are not in the baseline and that no waiver covers.
 
-Both only change the effect of a finding: verdicts and findings stay as they are, and no clock is in them.
+Baseline and waivers only change the effect of a finding on the exit code. Verdicts and findings stay unchanged, and do not depend on a
+clock.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ __all__ = ["ComparedFinding", "Difference", "Gate", "GateInputs", "Waiver", "com
 
 @dataclass(frozen=True)
 class GateInputs:
-    """The baseline, the waivers and the day that a run is compared with."""
+    """The inputs of the gate: the baseline, the waivers, and the day on which waivers must be valid."""
 
     today: date
     baseline: Result | None = None
@@ -48,10 +49,10 @@ class GateInputs:
         confidence: float | None = None,
         load: Callable[[Path], Result] = load_result,
     ) -> GateInputs | None:
-        """Return the gate inputs that these files hold; None if no file gives any.
+        """Return the gate inputs in these files; None if the files contain none.
 
-        `settings_file` may hold waivers beside other settings; None: there is none. `load`: what reads a baseline. Errors: `UsageError`
-        for a file or folder that cannot be used, or a baseline that this run would overwrite.
+        `settings_file` may contain waivers besides other settings; it may be None or missing. `load`: function that reads a baseline.
+        Errors: `UsageError` for an unusable file or folder, or a baseline that this run would overwrite.
         """
         said = waivers.read(waiver_file) if waiver_file else []
         if settings_file and settings_file.is_file():
@@ -64,7 +65,8 @@ class GateInputs:
         return cls(today, load(baseline), baseline.resolve().name, tuple(said), confidence)
 
     def apply_to(self, result: Result) -> Result:
-        """Return the result with its gate: difference to the baseline, applied waivers, and findings that are only possible."""
+        """Return the result with its gate: the difference from the baseline, the applied waivers, and the findings that are only
+        possible."""
         stated, waived = waivers.apply(self.waivers, result, self.today)
         difference = None
         if self.baseline is not None:
@@ -78,7 +80,7 @@ class GateInputs:
 
 
 def refuse_own_baseline(baseline: Path | None, out: Path | None) -> None:
-    """Refuse a baseline that the run would replace. Errors: `UsageError`."""
+    """Raise `UsageError` if the run would overwrite its own baseline."""
     if baseline is not None and out is not None and baseline.resolve() == out.resolve():
         raise UsageError(
             f"--baseline {baseline}: is also --out: findings that are new now would be known in the next run; "
@@ -89,6 +91,6 @@ def refuse_own_baseline(baseline: Path | None, out: Path | None) -> None:
 def compare_results(
     base: Result, new: Result, names: tuple[str, str], fail_on: str
 ) -> tuple[Difference, list[ComparedFinding]]:
-    """Return the difference of two results and its new findings that fail the run."""
+    """Return the difference of two results, and its new findings that fail the run."""
     difference = msgspec.structs.replace(diff.compare(base, new, *names), is_partial=new.interrupted)
     return difference, descriptions.gating_findings(difference, fail_on, new.gate)

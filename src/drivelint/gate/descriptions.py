@@ -1,5 +1,5 @@
-"""Differences, waivers and the gate as text for a terminal and as JSON for programs. Unknown and not applicable always stand beside the
-rest."""
+"""Renders differences, waivers and the gate as text for a terminal and as JSON for programs. Counts of unknown and not applicable verdicts
+are always included."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ if TYPE_CHECKING:
     from drivelint.result.text import Row
 
 MAX_LINES: Final = 50
-"""Findings or reasons that a terminal shows of each kind; JSON has them all."""
+"""Largest number of findings or reasons per kind on a terminal; JSON has all of them."""
 
 DIFF_SCHEMA: Final = 1
-"""Version of the JSON: raised when a key changes its meaning or goes."""
+"""Version of the JSON format: raised when a key is removed or changes its meaning."""
 
 DIFF_STATUS_TITLES: Final = {
     "new": "New",
@@ -36,11 +36,11 @@ DIFF_STATUS_TITLES: Final = {
     "lost": "Not fixed: not judged any more",
     "fixed": "Fixed",
 }
-"""Diff status -> heading, in the order shown; unchanged findings are counted only."""
+"""Diff status -> heading, in the order of the text. Unchanged findings are only counted."""
 
 
 def gating_findings(difference: Difference, fail_on: str, gate: Gate | None = None) -> list[ComparedFinding]:
-    """Return the new findings of stable rules at or above a severity, without those that the newer result waives."""
+    """Return the new findings of stable rules at or above a severity that no waiver in the newer result covers."""
     if fail_on == "never":
         return []
     severe = counts.SEVERITIES[: counts.SEVERITIES.index(fail_on) + 1]
@@ -53,12 +53,12 @@ def gating_findings(difference: Difference, fail_on: str, gate: Gate | None = No
 
 
 def headline(difference: Difference) -> str:
-    """Return the counts in one sentence: new, fixed, and gone but not fixed findings."""
+    """Return one sentence with the counts of new, changed, unchanged, fixed, and gone but not fixed findings."""
     return f"{difference.event_counts()['new']} new, {since_baseline(difference)}"
 
 
 def since_baseline(difference: Difference) -> str:
-    """Return the standing of the earlier result's findings. New findings are not counted: a waiver may cover them."""
+    """Return a sentence about what became of the earlier result's findings. New findings are not counted: a waiver may cover them."""
     n = difference.event_counts()
     passes = n_findings(entry for entry in difference.with_diff_status("fixed") if entry.there == "pass")
     worse = n_findings(entry for entry in difference.entries if entry.worse)
@@ -66,9 +66,10 @@ def since_baseline(difference: Difference) -> str:
 
 
 def counts_sentence(n: Mapping[str, int], worse: int, fixed: tuple[int, int]) -> str:
-    """Return diff status -> number of an earlier result's findings as a sentence without zeros.
+    """Return a sentence with the non-zero counts of an earlier result's findings. `n`: diff status -> number.
 
-    `worse`: of the changed; `fixed`: those that pass now, and those whose rule does not apply any more.
+    `worse`: how many of the changed findings are worse. `fixed`: how many findings pass now, and how many have a rule that does not apply
+    any more.
     """
     passes, idle = (f"{k} now {words}" if k else "" for k, words in zip(fixed, ("pass", "not applicable"), strict=True))
     said = [f"{n['changed']} changed{f' ({worse} worse)' if worse else ''}"] if n["changed"] else []
@@ -81,7 +82,7 @@ def counts_sentence(n: Mapping[str, int], worse: int, fixed: tuple[int, int]) ->
 
 
 def judged_otherwise(difference: Difference) -> str:
-    """Return in words what the newer result judged less than the earlier one, and on another map; '' for nothing."""
+    """Return a sentence about what the newer result judged less than the earlier one, or on another map; '' if there is nothing."""
     n, critical = sum(difference.undecided.values()), difference.undecided.get("critical", 0)
     more = f" ({critical} critical)" if critical else ""
     parts = [f"{plural(n, 'verdict')} unknown that had been pass or fail{more}"] if n else []
@@ -100,7 +101,7 @@ def judged_otherwise(difference: Difference) -> str:
 def difference_text(
     difference: Difference, failing: Sequence[ComparedFinding], fail_on: str, gate: Gate | None = None
 ) -> str:
-    """Return a difference as text for a person."""
+    """Return a difference as text for a terminal."""
     text = text_template(__file__, "difference.txt.j2", finding_line=finding_line).render(
         diff=difference,
         verdicts=counts.VERDICTS,
@@ -123,14 +124,14 @@ def exit_summary(difference: Difference, failing: Sequence[ComparedFinding], fai
 
 
 def exit_code(difference: Difference, failing: Sequence[ComparedFinding], fail_on: str) -> ExitCode:
-    """Return FAILED for new findings that gate; NOT_JUDGED if the newer result did not judge a finding of the earlier one again."""
+    """Return FAILED for new findings that gate; NOT_JUDGED if the newer result did not judge an earlier finding again; else OK."""
     if failing:
         return ExitCode.FAILED
     return ExitCode.NOT_JUDGED if not_looked_at(difference, fail_on) else ExitCode.OK
 
 
 def not_looked_at(difference: Difference, fail_on: str) -> str:
-    """Return in words the findings of the earlier result that the newer one did not judge or cannot decide; '' if none gates."""
+    """Return a phrase that counts the earlier findings that the newer result did not judge or cannot decide; '' if none of these gates."""
     if fail_on == "never":
         return ""
     severe = counts.SEVERITIES[: counts.SEVERITIES.index(fail_on) + 1]
@@ -141,7 +142,7 @@ def not_looked_at(difference: Difference, fail_on: str) -> str:
 
 
 def exit_sentence(n_failing: int, fail_on: str, not_looked_at: str = "") -> str:
-    """Return the exit code for a number of findings that gate and its reason, in one line."""
+    """Return the exit code and its reason in one line. `n_failing`: number of new findings that gate."""
     if fail_on == "never":
         return "exit 0: new findings do not gate (--fail-on never)"
     what = f"at or above severity {fail_on}"
@@ -169,7 +170,7 @@ def to_json(difference: Difference, failing: Sequence[ComparedFinding], fail_on:
 
 
 def finding_line(entry: ComparedFinding) -> str:
-    """Return a finding in one line: its severity, place, rule, and the result of the other side there."""
+    """Return a finding in one line: severity, place, rule, and the verdict of the other result there."""
     profile = "" if entry.profile is None else f" [{entry.profile}]"
     who = ego_name(entry.ego_id) + ("" if entry.object_id is None else f", object {entry.object_id}")
     draft = "" if entry.stable else ", draft"
@@ -179,7 +180,7 @@ def finding_line(entry: ComparedFinding) -> str:
 
 
 def rows_of_entries(entries: Sequence[ComparedFinding]) -> str:
-    """Return why there are more of these rows than findings; '' where there are not."""
+    """Return a sentence that explains why there are more rows than findings; '' if there are not."""
     left_out = [entry for entry in entries if entry.counted_id != entry.finding_id]
     is_of_profiles = any(entry.profile is not None for entry in left_out)
     return counts.rows_sentence(len(entries), n_findings(entries), is_of_profiles=is_of_profiles)
@@ -192,7 +193,7 @@ def _there(entry: ComparedFinding) -> str:
 
 
 def verdict_there(entry: ComparedFinding) -> str:
-    """Return the verdict of the other result where a finding is, in words."""
+    """Return, in words, the verdict of the other result at the time and place of a finding."""
     return {"not_applicable": "not applicable", "none": "nothing"}.get(entry.there, entry.there)
 
 
@@ -211,7 +212,7 @@ def waiver_warnings(gate: Gate) -> Iterator[str]:
 
 
 def waiver_scope(waiver: Waiver) -> str:
-    """Return the rule, drive, ego, object, profile and times that a waiver covers."""
+    """Return a phrase with the rule, drive, ego, object, profile and times that a waiver covers."""
     parts = [("drive", waiver.drive), ("ego", waiver.ego), ("object", waiver.object), ("profile", waiver.profile)]
     said = "".join(f", {name} {value}" for name, value in parts if value is not None)
     since = "" if waiver.from_s is None else f", from {waiver.from_s:g} s"
@@ -219,12 +220,12 @@ def waiver_scope(waiver: Waiver) -> str:
 
 
 def waiver_reason(waiver: Waiver) -> str:
-    """Return why a finding does not gate."""
+    """Return a phrase about the waiver: until when, by whom and why a finding does not gate."""
     return f"waived until {waiver.expires} by {waiver.owner}: {waiver.reason}"
 
 
 def reason_not_gating(gate: Gate | None, finding_id: str) -> str:
-    """Return why a gate lets a finding through, its waiver before the baseline; '' where it does not."""
+    """Return why a finding does not gate: its waiver, else the baseline, else its low confidence; '' if the gate has no reason."""
     waiver = gate.waiver(finding_id) if gate else None
     if waiver is not None:
         return waiver_reason(waiver)
@@ -237,7 +238,7 @@ def reason_not_gating(gate: Gate | None, finding_id: str) -> str:
 
 
 def excuse(result: Result, row: Row, rule: Row | None) -> str:
-    """Return why a finding, or a failed verdict, does not gate; '' where it does. `rule`: its row of the table `rule`."""
+    """Return why a finding or a failed verdict does not gate; '' if it gates. `rule`: its row of the table `rule`."""
     if "finding_id" in row and (reason := reason_not_gating(result.gate, row["finding_id"])):
         return reason
     is_new = "finding_id" in row and result.gate is not None and result.gate.standing(row["finding_id"]) == "new"
@@ -249,7 +250,7 @@ def excuse(result: Result, row: Row, rule: Row | None) -> str:
 
 
 def gate_counts(gate: Gate) -> dict[str, Any]:
-    """Return a gate's counts as plain data."""
+    """Return a gate's counts as data for JSON."""
     states = Counter(waiver.state for waiver in gate.waivers)
     return {
         "today": gate.today,
@@ -263,7 +264,7 @@ def gate_counts(gate: Gate) -> dict[str, Any]:
 
 
 def group_by_reason(new_unknowns: Iterable[NewUnknowns]) -> list[tuple[str, list[str], int]]:
-    """Return each reason with its rules and the number of additional unknown verdicts, most first."""
+    """Return (reason, its rules, number of additional unknown verdicts) for each reason, the most frequent first."""
     found = [
         (reason, sorted({each.rule_id for each in alike}), sum(each.n - each.base_n for each in alike))
         for reason, alike in counts.group_rows(new_unknowns, lambda each: each.reason).items()

@@ -1,4 +1,4 @@
-"""Compares two results: which findings are new, fixed, changed, unchanged, failing elsewhere, unknown now or lost."""
+"""Compares two results: which findings are new, fixed, changed, unchanged, failing elsewhere, unknown or lost in the second one."""
 
 from __future__ import annotations
 
@@ -24,23 +24,24 @@ if TYPE_CHECKING:
     Row = Mapping[str, Any]
 
 MARGIN_TOLERANCE: Final = 0.01
-"""A margin has changed by more than this, in its unit, and by more than this part of the required value."""
+"""A margin counts as changed if it differs by more than this in its unit, and by more than this fraction of the required value."""
 INTERVAL_TOLERANCE_S: Final = 0.1
-"""A failing stretch has changed if one of its ends moved by more."""
+"""A failing stretch counts as changed if its start or end moved by more than this, in seconds."""
 
 LEAST_SHARE: Final = 0.9
-"""A drive that lasts less of what it lasted in BASE was perhaps cut off."""
+"""A drive may have been cut off if it lasts less than this fraction of its duration in the base result."""
 
 _WEIGHT = ("error", "fail", "unknown", "pass")
-"""Of several verdicts at one moment, the first of these is reported."""
+"""If several verdicts apply at the same time, the first of this order is reported."""
 _WHERE = ("drive_id", "ego_id", "rule_id", "profile")
 _FIXED_VERDICTS = ("pass", "not_applicable")
 
 
 def compare(base: Result, new: Result, base_name: str = "base", name: str = "new") -> Difference:
-    """Return the difference of two results; names are for the reader.
+    """Return the difference of two results. `base_name` and `name` are shown to the reader.
 
-    Drives are the same by `match.match_drives`. NEW's findings come in their order, then what BASE had.
+    `match.match_drives` finds the drives that both results have. Findings of `new` come first, in its order, then findings that only `base`
+    has.
     """
     had, has = ResultLookup(base), ResultLookup(new)
     same = match.match_drives(list(had.drives.values()), list(has.drives.values()))
@@ -80,7 +81,7 @@ def _is_much_shorter(now: Row, was: Row) -> bool:
 def _drive(
     had: ResultLookup, has: ResultLookup, base_id: str | None, drive_id: str
 ) -> tuple[list[ComparedFinding], list[ComparedFinding]]:
-    """Return the entries of one drive: of NEW's findings, and of those that BASE had and NEW has not."""
+    """Return the entries of one drive: for the findings of the new result, and for the findings that only the base result has."""
     theirs = [] if base_id is None else had.findings.get(base_id, [])
     ours = has.findings.get(drive_id, [])
     same_log = base_id is not None and had.drives[base_id]["sha256"] == has.drives[drive_id]["sha256"]
@@ -111,7 +112,7 @@ def _drive(
 
 
 def _noting_rule(outcome: LookupResult, at: TimedFinding, had: ResultLookup, has: ResultLookup) -> LookupResult:
-    """Add a possible cause: the two results did not have the same rule."""
+    """Return the outcome, with a note added if the rule or its parameters differ between the results."""
     a, b = (lookup.rules.get(at.row["rule_id"]) for lookup in (had, has))
     if a is None or b is None or (a["rule_version"], a["params"]) == (b["rule_version"], b["params"]):
         return outcome
@@ -119,7 +120,7 @@ def _noting_rule(outcome: LookupResult, at: TimedFinding, had: ResultLookup, has
 
 
 def _matched_finding(now: TimedFinding, was: TimedFinding, has: ResultLookup) -> ComparedFinding:
-    """Return a finding that both results have, and how it changed."""
+    """Return the entry of a finding that both results have, with notes on how it changed."""
     notes = []
     if now.row["severity"] != was.row["severity"]:
         notes.append(f"severity {now.row['severity']}, was {was.row['severity']}")
@@ -132,7 +133,7 @@ def _matched_finding(now: TimedFinding, was: TimedFinding, has: ResultLookup) ->
 
 
 def _differs(now: Row, was: Row) -> bool:
-    """Return whether two margins differ by more than can be overlooked."""
+    """Return whether two margins differ by more than the tolerance."""
     a, b = now["margin"], was["margin"]
     if a is None or b is None or a == b:
         return bool(a != b)
@@ -145,7 +146,8 @@ def _is_less(now: float | None, was: float | None) -> bool:
 
 
 def _base_only_finding(was: TimedFinding, drive_id: str, outcome: LookupResult, had: ResultLookup) -> ComparedFinding:
-    """Return a finding that only BASE has: fixed only if NEW looked there and found the rule kept, or not applicable."""
+    """Return the entry of a finding that only the base result has. Its status is `fixed` only if the new result judged the rule there as
+    kept or not applicable."""
     standing = {"pass": "fixed", "not_applicable": "fixed", "none": "lost", "fail": "elsewhere"}.get(
         outcome.verdict, "unknown"
     )
@@ -171,7 +173,7 @@ def _entry(
 
 
 def _new_unknowns(base: Result, new: Result, same: Mapping[str, str], has: ResultLookup) -> list[NewUnknowns]:
-    """Return where more verdicts of a drive that both have are unknown or in error than were."""
+    """Return where the new result has more verdicts that are unknown or in error than the base result, for drives that both have."""
     was, now = _unknown(base), _unknown(new)
     new_unknowns = []
     for (drive_id, ego_id, rule_id, profile), (n, reason) in now.items():
@@ -186,7 +188,7 @@ def _new_unknowns(base: Result, new: Result, same: Mapping[str, str], has: Resul
 
 
 def _unknown(result: Result) -> dict[Any, tuple[int, str]]:
-    """Return (drive, ego, rule, profile) -> rows that are unknown or in error, and the reason given most often."""
+    """Return (drive, ego, rule, profile) -> number of rows that are unknown or in error, and their most frequent reason."""
     open_rows = pa.concat_tables([counts.undecided(result.verdicts), counts.unrecorded(result.verdicts)])
     rows = counts.distinct_rows(open_rows, [*_WHERE, "reason"])
     return {
@@ -196,7 +198,7 @@ def _unknown(result: Result) -> dict[Any, tuple[int, str]]:
 
 
 def _undecided(base: Result, new: Result, same: Mapping[str, str], had: ResultLookup) -> dict[str, int]:
-    """Return severity -> verdicts that were pass or fail and are unknown or in error now, in drives that both have."""
+    """Return severity -> number of verdicts that changed from pass or fail to unknown or error, in drives that both have."""
     was, now = _verdict_counts(base), _verdict_counts(new)
     found: Counter[str] = Counter()
     for (drive_id, ego_id, rule_id, profile), here in now.items():
@@ -218,14 +220,14 @@ def _verdict_counts(result: Result) -> dict[Any, Counter[str]]:
 
 
 class LookupResult(NamedTuple):
-    """The verdict of a result at a time, or `none` if the rule was not judged there, and the reason."""
+    """The verdict of a result at a time, and its reason. The verdict is `none` if the rule was not judged there."""
 
     verdict: str
     why: str
 
 
 class ResultLookup:
-    """Verdicts and findings of one result, indexed by drive, ego and rule."""
+    """Looks up verdicts and findings of one result by drive, ego and rule."""
 
     def __init__(self, result: Result) -> None:
         self.drives: dict[str, Row] = {}
@@ -260,18 +262,19 @@ class ResultLookup:
             self.findings[row["drive_id"]].append(match.TimedFinding(row, *times))
 
     def is_stable(self, rule_id: str) -> bool:
-        """Return whether this result's rule of that id is stable."""
+        """Return whether a rule is stable in this result."""
         return rule_id in self.rules and self.rules[rule_id]["status"] == "stable"
 
     def verdict_at(self, drive_id: str | None, at: TimedFinding) -> LookupResult:
-        """Return the verdict of this result where another result has the finding `at`; `drive_id` is the drive's id in this result.
+        """Return the verdict of this result at the time and place of the finding `at` of another result. `drive_id`: the drive's id in this
+        result.
 
-        That the rule is kept, or does not apply, counts only where ego and object are recorded.
+        The verdicts pass and not applicable count only where ego and object are recorded.
         """
         row = at.row
         if gap := self._not_looked(drive_id, row):
             return gap
-        assert drive_id is not None  # noqa: S101 - for the type checker: without the drive, _not_looked returned a result above
+        assert drive_id is not None  # noqa: S101 - for the type checker: without a drive, _not_looked has returned a result
         drive = self.drives[drive_id]
         if drive["duration_s"] is not None and at.worst > drive["duration_s"] + match.NEAR_S:
             return LookupResult("none", "the log ends before it")
@@ -290,7 +293,7 @@ class ResultLookup:
         return found
 
     def _not_recorded(self, drive_id: str, at: TimedFinding) -> LookupResult | None:
-        """Return which of ego and object is not recorded at the finding; None: both are."""
+        """Return an outcome if the ego or the object is not recorded at the finding; None: both are recorded."""
         for what in ("ego", "object"):
             actor = at.row[f"{what}_id"]
             stretches = self._recorded.get((drive_id, actor), ())
@@ -304,7 +307,7 @@ class ResultLookup:
         return None
 
     def _outcome_of(self, verdict: Row, at: TimedFinding) -> LookupResult:
-        """Return the meaning of a verdict for the moment: a fail applies only in its failing stretches."""
+        """Return what a verdict means at the time of the finding. A verdict `fail` means a failure only in its failing stretches."""
         if verdict["reason_code"].startswith(UNRECORDED_PREFIX):
             return LookupResult("unknown", verdict["reason"])
         if verdict["verdict"] != "fail":
@@ -320,7 +323,7 @@ class ResultLookup:
         return LookupResult("unknown", why)
 
     def _not_looked(self, drive_id: str | None, row: Row) -> LookupResult | None:
-        """Return why the rule was not judged in the drive at all; None: it was."""
+        """Return an outcome that says why the rule was not judged in the drive at all; None: it was judged."""
         if drive_id is None:
             return LookupResult("none", "the drive was not checked")
         drive, rule = self.drives[drive_id], self.rules.get(row["rule_id"])
@@ -336,14 +339,15 @@ class ResultLookup:
         return None
 
     def _about(self, verdict: Row, row: Row, drive_id: str) -> bool:
-        """Return whether a verdict concerns the object of a finding; if that is gone here, any object that is not judged."""
+        """Return whether a verdict concerns the object of a finding. If this result lacks the object, an undecided verdict about any object
+        counts."""
         if verdict["object_id"] is None or row["object_id"] is None or verdict["object_id"] == row["object_id"]:
             return True
         return verdict["verdict"] in {"unknown", "error"} and row["object_id"] not in self._objects[drive_id]
 
 
 def _overlaps(verdict: Row, at: TimedFinding, drive: Row) -> bool:
-    """Return whether a verdict covers a finding's time; one without times covers the drive."""
+    """Return whether a verdict covers a finding's time. A verdict without times covers the whole drive."""
     times = [t for name in ("t_ref_ns", "t_start_ns", "t_end_ns", "t_worst_ns") if (t := verdict[name]) is not None]
     if not times:
         return True

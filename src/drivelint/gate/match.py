@@ -15,13 +15,13 @@ if TYPE_CHECKING:
     Row = Mapping[str, Any]
 
 NEAR_S: Final = 1.0
-"""Failing stretches so close in time are the same, where the place agrees."""
+"""Failing stretches at most this far apart in time are the same if their place agrees."""
 NEAR_M: Final = 5.0
-"""So far may the ego have been elsewhere at the worst step, if the log is another."""
+"""In different logs, the ego's positions at the worst steps of the same finding may be this far apart."""
 
 FindingKey = tuple[str, str, str | None, str | None]
 finding_key: Final[Callable[[Row], FindingKey]] = itemgetter("ego_id", "rule_id", "profile", "object_id")
-"""The columns that must agree: they identify a finding within a drive."""
+"""Return the columns of a finding that must be equal for a match. They identify a rule's violation within a drive."""
 
 
 class TimedFinding(NamedTuple):
@@ -34,14 +34,15 @@ class TimedFinding(NamedTuple):
 
 
 def seconds_since_start(t_ns: int, drive: Row) -> float:
-    """Return a time of a drive as seconds since its first time stamp."""
+    """Return a time stamp of a drive as seconds since the drive's first time stamp."""
     return (t_ns - (drive["t_start_ns"] or 0)) / 1e9
 
 
 def match_drives(base: Sequence[Row], new: Sequence[Row]) -> dict[str, str]:
-    """Return drive_id in NEW -> drive_id in BASE: the same id, else the same content, else the only one of both with that file stem.
+    """Return drive_id in `new` -> drive_id in `base`. Drives match by the same id, else by content, else by a file stem that is unique in
+    both.
 
-    Of several drives with one content, the first is the same as the first, and so on.
+    If several drives have the same content, they match in the order of their ids.
     """
     ids = {row["drive_id"] for row in base}
     same = {row["drive_id"]: row["drive_id"] for row in new if row["drive_id"] in ids}
@@ -57,16 +58,16 @@ def match_drives(base: Sequence[Row], new: Sequence[Row]) -> dict[str, str]:
 
 
 def _drive_ids_by_column(drives: Iterable[Row], column: str | None) -> dict[str, list[str]]:
-    """Return value of a column, or file stem -> ids of the drives that have it, sorted."""
+    """Return value of a column, or file stem -> sorted ids of the drives with that value."""
     groups = counts.group_rows(drives, lambda row: row[column] if column else PurePath(row["file_name"]).stem)
     return {key: sorted(row["drive_id"] for row in rows) for key, rows in groups.items() if key is not None}
 
 
 def match_findings(base: Sequence[TimedFinding], new: Sequence[TimedFinding], *, same_log: bool) -> dict[int, int]:
-    """Return index in `new` -> index in `base` of findings of one drive that are the same; each is taken once.
+    """Return index in `new` -> index in `base` for the findings of one drive that are the same. Each finding is matched at most once.
 
-    The same: ego, rule, profile and object agree, and `may_match`. Equal ids go first, then the closest in time. An id alone
-    does not do: ids number the findings of a drive, so an earlier one moves all that follow.
+    Two findings can match if ego, rule, profile and object are equal and `may_match` agrees. Pairs with equal ids go first, then the
+    closest in time. The id alone is not enough: ids number the findings of a drive, so an additional earlier finding changes all later ids.
     """
     groups: dict[FindingKey, list[int]] = defaultdict(list)
     for j, had in enumerate(base):
@@ -90,8 +91,8 @@ def match_findings(base: Sequence[TimedFinding], new: Sequence[TimedFinding], *,
 def may_match(had: TimedFinding, now: TimedFinding, *, same_log: bool) -> bool:
     """Return whether two findings are close enough in time and place to be the same.
 
-    In the same log: less than `NEAR_S` apart. In another one, a repetition: so close at their worst and less than `NEAR_M`
-    apart in place; or, since the worst step of a long stretch may be anywhere in it, for at least half of the time the same.
+    In the same log: at most `NEAR_S` apart. In another log, such as a repeated run: the worst steps are at most `NEAR_S` and `NEAR_M`
+    apart, or the findings share at least half of their total time. The worst step can be anywhere in a long stretch.
     """
     if same_log:
         return gap_s(had, now) <= NEAR_S
@@ -103,16 +104,16 @@ def may_match(had: TimedFinding, now: TimedFinding, *, same_log: bool) -> bool:
 
 
 def is_part_of(part: TimedFinding, whole: TimedFinding, *, same_log: bool) -> bool:
-    """Return whether a finding is a part of a longer one of the other result."""
+    """Return whether a finding is a part of a longer finding of the other result."""
     slack = NEAR_S if same_log else 0.0
     longer = finding_key(part.row) == finding_key(whole.row) and part.end - part.start < whole.end - whole.start
     return longer and part.start >= whole.start - slack and part.end <= whole.end + slack
 
 
 def is_recorded(stretches: Iterable[tuple[float, float]], at: TimedFinding) -> bool:
-    """Return whether an actor is recorded where a finding is: at its worst step, and nowhere in it missing for more than `NEAR_S`.
+    """Return whether an actor is recorded at a finding: at its worst step, and without a gap of more than `NEAR_S` during the finding.
 
-    `stretches`: in seconds, in time order.
+    `stretches`: (start, end) in seconds, in time order.
     """
     seen_to, at_worst = at.start, False
     for start, end in stretches:
@@ -125,12 +126,12 @@ def is_recorded(stretches: Iterable[tuple[float, float]], at: TimedFinding) -> b
 
 
 def gap_s(a: TimedFinding, b: TimedFinding) -> float:
-    """Return the seconds between two stretches; 0 where they overlap."""
+    """Return the seconds between two findings; 0 if they overlap."""
     return max(0.0, max(a.start, b.start) - min(a.end, b.end))
 
 
 def _distance(a: Row, b: Row) -> float:
-    """Return metres between the places of two findings; 0 where one of them has none: time must do."""
+    """Return the distance in metres between two findings; 0 if one has no place, so that only the time decides."""
     if None in {a["x_m"], a["y_m"], b["x_m"], b["y_m"]}:
         return 0.0
     return float(((a["x_m"] - b["x_m"]) ** 2 + (a["y_m"] - b["y_m"]) ** 2) ** 0.5)

@@ -1,18 +1,18 @@
-"""Waivers: findings that a named owner accepts until a day.
+"""Reads and applies waivers: findings that a named owner accepts until a given day. An example:
 
     [[waiver]]
     rule = "ukhc.r162.*"           # a rule's id, or a glob over ids
     drive = "near-miss-*"          # optional globs: drive_id, ego, object, profile
     object = "3"
-    from_s = 8.0                   # optional: the failing stretch lies within, in seconds since the drive's first time stamp
+    from_s = 8.0                   # optional: limits of the failing stretch, in seconds since the drive's first time stamp
     to_s = 9.5
     reason = "the test track's lane is wider than the map says: ticket 17"
     owner = "jo@example.org"
     expires = 2027-03-31           # the last day on which it counts
 
-They stand in a file of their own (`--waivers FILE`), in `drivelint.toml`, or in `pyproject.toml` as [[tool.drivelint.waiver]]. A waived
-finding is shown, with the reason, and does not gate. A waiver that expired waives nothing; one that no finding matches is reported: it
-may be a slip of the pen.
+Waivers are in a separate file (`--waivers FILE`), in `drivelint.toml`, or in `pyproject.toml` as [[tool.drivelint.waiver]]. A waived
+finding is shown with the reason, and does not gate. A waiver that has expired has no effect. A waiver that matches no finding is
+reported, because it may have a spelling mistake.
 """
 
 from __future__ import annotations
@@ -51,10 +51,10 @@ _HEAD: Final = re.compile(r"\s*\[\[\s*(?:tool\.drivelint\.)?(waiver|\"waiver\"|'
 
 
 def read(file: Path, *, only_waivers: bool = True) -> list[Waiver]:
-    """Return the waivers of a TOML file, in its order.
+    """Return the waivers of a TOML file, in the order of the file.
 
-    `only_waivers`: the file is for waivers only, else they stand beside other settings. Errors: `UsageError` with file and line for
-    bad TOML, an unknown key (with the nearest), a missing rule, reason, owner or expiry, or a value of another kind.
+    `only_waivers`: the file has nothing but waivers; False: it also has other settings. Errors: `UsageError` with file and line for invalid
+    TOML, an unknown key (with the most similar known key), a missing rule, reason, owner or expiry, or a value of the wrong type.
     """
     if file.exists() and not file.is_file():
         raise UsageError(f"{file}: waivers must be in a file, but this is not one")
@@ -79,7 +79,7 @@ def read(file: Path, *, only_waivers: bool = True) -> list[Waiver]:
 
 
 def apply(waivers: Sequence[Waiver], result: Result, today: date) -> tuple[tuple[Waiver, ...], dict[str, int]]:
-    """Return the waivers with their state on that day, and finding_id -> index of the waiver that waives it."""
+    """Return the waivers with their state on the day `today`, and finding_id -> index of the waiver that covers the finding."""
     drives = {row["drive_id"]: row for row in result.drives.to_pylist()}
     found: Counter[int] = Counter()
     waived: dict[str, int] = {}
@@ -103,7 +103,7 @@ def apply(waivers: Sequence[Waiver], result: Result, today: date) -> tuple[tuple
 
 
 def _unknown_rule(rule_id: str, result: Result) -> str:
-    """Return that no rule has this id, and the nearest; '' if one has, or if it is a pattern."""
+    """Return a sentence that no rule has this id, with the most similar id; '' if the rule exists, or the id is a pattern."""
     run_rules = result.rules["rule_id"].to_pylist()
     if rule_id in run_rules or any(sign in rule_id for sign in "*?["):
         return ""
@@ -161,7 +161,7 @@ def _waiver(table: Row, file: Path, place: tuple[int, Mapping[str, int]]) -> Wai
 
 
 def parse_date(value: object) -> date:
-    """Return a day that is written as a TOML date or as text. Errors: `ValueError`."""
+    """Return a day from a TOML date or a text such as 2027-03-31. Errors: `ValueError`."""
     if isinstance(value, date) and not isinstance(value, datetime):
         return value
     if isinstance(value, str) and re.fullmatch(r"\d{4}-\d{2}-\d{2}", value):
@@ -170,10 +170,10 @@ def parse_date(value: object) -> date:
 
 
 def _places(text: str, n: int) -> list[tuple[int, dict[str, int]]]:
-    """Return for each waiver the line of its head, and of each of its keys; line 1 if the heads cannot be distinguished."""
+    """Return, for each waiver, the line of its head and of each key; line 1 if the heads cannot be found."""
     lines = text.splitlines()
     heads = [number for number, line in enumerate(lines, 1) if _HEAD.match(line)]
-    if len(heads) != n:  # an inline array, or a head inside a text of several lines
+    if len(heads) != n:  # an inline array, or a head inside a multi-line string
         return [(1, {})] * n
     places = []
     for head, end in pairwise([*heads, len(lines) + 1]):

@@ -1,4 +1,4 @@
-"""The evidence pack: a result with its basis, hashed and signed, so that others can check it."""
+"""The evidence pack: a result with its rules and data, hashed and signed, so that others can verify it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Judges the drives of a result again: all of it, and the evidence of each finding."""
+"""Judges the drives of a result again: reproduces the whole result, and the evidence of each finding."""
 
 from __future__ import annotations
 
@@ -38,16 +38,16 @@ if TYPE_CHECKING:
     from drivelint.result.request import RunRequest
 
 Evidence = dict[str, dict[str, bytes] | str]
-"""Finding -> the files that give its numbers again, or why there are none."""
+"""Id of a finding -> the files that reproduce its numbers (name -> content), or the reason why there are none."""
 
 
 def rules_of(result: Result, check_request: RunRequest) -> list[Rule]:
-    """Return the rules of a result. Errors: `UsageError` for one that is gone or was changed since."""
+    """Return the rules of a result. Errors: `UsageError` for a rule that is not in the catalogue or was changed since."""
     return rules_of_table(result.rules, check_request.rules_dirs)
 
 
 def rules_of_table(rules: pa.Table, rules_dirs: Sequence[Path]) -> list[Rule]:
-    """Return the rules of a table `rule`. Errors: `UsageError` for one that is gone or was changed since."""
+    """Return the rules of a table `rule`. Errors: `UsageError` for a rule that is not in the catalogue or was changed since."""
     known = catalogue.load_rules(rules_dirs)
     found = []
     for row in rules.to_pylist():
@@ -60,9 +60,10 @@ def rules_of_table(rules: pa.Table, rules_dirs: Sequence[Path]) -> list[Rule]:
 
 
 def check_again(result: Result, check_request: RunRequest, work: Path | None, *, evidence: bool = True) -> Result:
-    """Return the result of the same check. `work`: where its margins go; None: they are not asked for. `evidence`: with its pictures.
+    """Run the check of a result again, and return the new result. `work`: folder for the margins; None: margins are not computed.
+    `evidence`: also gather what reports show.
 
-    Errors: `UsageError` for a rule that is gone or was changed since, and those of a check.
+    Errors: `UsageError` for a rule that is not in the catalogue or was changed since, and the errors of a check.
     """
     rules = rules_of(result, check_request)
     given = {
@@ -86,7 +87,7 @@ def check_again(result: Result, check_request: RunRequest, work: Path | None, *,
 
 
 def params_of(rules: Iterable[Rule], check_request: RunRequest) -> dict[str, dict[str, object]]:
-    """Return rule -> the values of its parameters in a check, of these rules of it."""
+    """Return rule -> parameter -> value, for the given rules of a check."""
     mine = list(rules)
     names = {rule.id for rule in mine}
     given = catalogue.parse_params(
@@ -101,7 +102,8 @@ def params_of(rules: Iterable[Rule], check_request: RunRequest) -> dict[str, dic
 def finding_evidence(
     result: Result, check_request: RunRequest, memory: int | None = DEFAULT_MEMORY, loaded_rules: Sequence[Rule] = ()
 ) -> Evidence:
-    """Return the data that reproduce the numbers of each finding. `check_request`: where the logs are; `loaded_rules`: if read."""
+    """Return the data that reproduce the numbers of each finding. `check_request` has the paths of the logs. `loaded_rules`: the rules of
+    the result, if already loaded."""
     rules = {rule.id: rule for rule in loaded_rules or rules_of(result, check_request)}
     found: Evidence = {}
     findings = result.findings.to_pylist()
@@ -136,7 +138,7 @@ def _of_drive(
 def _of_rule(
     con: duckdb.DuckDBPyConnection, rule: Rule, params: Mapping[str, object], findings: Sequence[Row]
 ) -> Evidence:
-    """Return the evidence of the findings of one rule, while the database has the rows that it reads."""
+    """Return the evidence of the findings of one rule. The database must still have the rows of the drive."""
     first = findings[0]
     try:
         references: dict[int, int] = {}
@@ -145,7 +147,7 @@ def _of_rule(
             evaluation = Evaluation(con, [binding], margins=True)
             evaluation.prepare()
             evaluation.judge_rule(binding)
-            # as the condition sees it
+            # the reference steps as the condition reads them
             con.execute("CREATE OR REPLACE TEMP VIEW reference_step AS SELECT * EXCLUDE (rule_no) FROM _reference_step")
             references = dict(con.execute("SELECT DISTINCT ref_no, ref_id FROM reference_step").fetchall())
         tables = {
@@ -164,9 +166,10 @@ def _of_rule(
 def compared(
     folder: Path, files: Mapping[str, bytes], packed: Mapping[str, bytes], *, other_libraries: bool
 ) -> tuple[list[Problem], bool]:
-    """Return which files came out otherwise than they are in the pack, and whether some have other bytes.
+    """Return the files that differ from those in the pack, and whether any has other bytes.
 
-    `packed`: the bytes of those that are not compared with the file itself. `other_libraries`: others wrote the pack.
+    `files`: path -> reproduced content. `packed`: path -> content to compare with instead of the file in the pack. `other_libraries`: the
+    pack was written with other versions of libraries.
     """
     wrong, other_bytes = [], False
     for path, content in files.items():
@@ -176,13 +179,13 @@ def compared(
         there = packed[path] if path in packed else (folder / path).read_bytes()
         if there != content:
             other_bytes = True
-            # the same libraries write the same bytes: a difference was then made by a person
+            # the same libraries write the same bytes: any other difference is a change of the pack
             if not (other_libraries and path.endswith(".parquet") and same_rows(there, content)):
                 wrong.append(Problem("result not reproduced", path))
     return wrong, other_bytes
 
 
 def same_rows(a: bytes, b: bytes) -> bool:
-    """Return whether two Parquet files have the same rows and comments, whatever wrote them."""
+    """Return whether two Parquet files have the same rows and column comments, even if their bytes differ."""
     one, other = (pq.read_table(io.BytesIO(content)) for content in (a, b))
     return bool(one.schema.equals(other.schema, check_metadata=True) and one.equals(other))

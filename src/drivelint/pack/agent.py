@@ -1,4 +1,4 @@
-"""Signs with an Ed25519 key that `ssh-agent` holds: the private key never leaves the agent.
+"""Signs with an Ed25519 key in `ssh-agent`. The private key never leaves the agent.
 
 https://datatracker.ietf.org/doc/html/draft-ietf-sshm-ssh-agent
 """
@@ -23,21 +23,21 @@ if TYPE_CHECKING:
 
 _IDENTITIES, _IDENTITIES_ANSWER, _SIGN, _SIGN_ANSWER = 11, 12, 13, 14
 _KIND: Final = b"ssh-ed25519"
-_LONGEST: Final = 1 << 18  # OpenSSH's own limit of a message
+_LONGEST: Final = 1 << 18  # OpenSSH's limit for the length of a message
 _PATIENCE_S: Final = 300.0
-"""An agent may ask a person before it signs (ssh-add -c)."""
+"""Timeout of the agent in seconds: an agent may ask the user to confirm (ssh-add -c)."""
 
 
 class AgentKey:
-    """A key in the agent at `SSH_AUTH_SOCK`; it signs as `Ed25519PrivateKey` does."""
+    """A key in the agent at `SSH_AUTH_SOCK`. It has the same methods for signing as `Ed25519PrivateKey`."""
 
     def __init__(self, public: Ed25519PublicKey) -> None:
-        """Errors: `UsageError` where there is no agent, or it does not hold the key."""
+        """Find the key in the agent. Errors: `UsageError` if there is no agent, or the agent does not have the key."""
         self._public = public
         self._blob = _string(_KIND) + _string(public.public_bytes(Encoding.Raw, PublicFormat.Raw))
         answer = _ask(bytes([_IDENTITIES]), _IDENTITIES_ANSWER)
         try:
-            blobs = list(_strings(answer[4:]))[::2]  # each is followed by its comment
+            blobs = list(_strings(answer[4:]))[::2]  # each key is followed by its comment
         except ValueError as error:
             raise UsageError("--sign: the list of keys from ssh-agent is cut off") from error
         if self._blob not in blobs:
@@ -50,7 +50,7 @@ class AgentKey:
         return self._public
 
     def sign(self, content: bytes) -> bytes:
-        """Return the signature, 64 bytes. Errors: `UsageError` if the agent refuses, or its answer is no signature of the key."""
+        """Return the signature of 64 bytes. Errors: `UsageError` if the agent refuses, or its answer is not a signature by this key."""
         request = bytes([_SIGN]) + _string(self._blob) + _string(content) + struct.pack(">I", 0)
         try:
             (whole,) = _strings(_ask(request, _SIGN_ANSWER))
@@ -66,7 +66,7 @@ class AgentKey:
 
 
 def _ask(request: bytes, answer_type: int) -> bytes:
-    """Send a message and return the answer without its type."""
+    """Send a message to the agent, and return the answer without its type byte. Errors: `UsageError`."""
     path = os.environ.get("SSH_AUTH_SOCK")
     if not path or not hasattr(socket, "AF_UNIX"):
         raise UsageError(
@@ -99,12 +99,12 @@ def _received(agent: socket.socket, n: int) -> bytes:
 
 
 def _string(content: bytes) -> bytes:
-    """Return bytes as the protocol has them: after their length."""
+    """Return bytes with their length in front, as in the protocol."""
     return struct.pack(">I", len(content)) + content
 
 
 def _strings(content: bytes) -> Iterator[bytes]:
-    """Return the bytes that follow each other, without their lengths. Errors: `ValueError` where they end too early."""
+    """Yield the byte strings of a message, without their lengths. Errors: `ValueError` if the message is cut off."""
     while content:
         n = int.from_bytes(content[:4], "big")
         if len(content) < 4 + n:

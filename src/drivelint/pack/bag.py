@@ -1,4 +1,4 @@
-"""A folder in BagIt form (RFC 8493): its manifests, and the files that do not match them."""
+"""A folder in BagIt format (RFC 8493): writes its manifests, and finds the files that do not match them."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _UNFIT: Final = re.compile(r"[\r\n%\\\ud800-\udfff]")
 
 
 class Problem(NamedTuple):
-    """A problem of a pack: its kind and its subject."""
+    """A problem of a pack: its kind and its subject, such as a file."""
 
     kind: str
     subject: str
@@ -41,7 +41,7 @@ def sha256_of(path: Path) -> str:
 def begin(folder: Path, info: Mapping[str, str]) -> None:
     """Write the declaration, the information about the bag, and the manifest of its complete payload.
 
-    Errors: `UsageError` for a file name that `sha256sum -c` would not find.
+    Errors: `UsageError` for a file name that `sha256sum -c` cannot read.
     """
     payload = [path for path in sorted((folder / DATA).rglob("*")) if path.is_file()]
     size = sum(path.stat().st_size for path in payload)
@@ -52,7 +52,7 @@ def begin(folder: Path, info: Mapping[str, str]) -> None:
 
 
 def finish(folder: Path) -> None:
-    """Write the manifest of the tag files: of all but the payload."""
+    """Write the manifest of the tag files: all files outside the payload."""
     _write_manifest(folder, TAG_MANIFEST, [folder / name for name in sorted(_tag_files(folder) - {TAG_MANIFEST})])
 
 
@@ -69,8 +69,8 @@ def _write_manifest(folder: Path, name: str, files: Iterable[Path]) -> None:
 def problems(folder: Path, tags: Collection[str]) -> list[Problem]:
     """Return the differences from the manifests, sorted by file: changed, removed and added files, and changed manifests.
 
-    `tags`: the tag files that it may have beside those of BagIt. No signature names them all, so any other is one that was added.
-    Links are not followed. Errors: `UsageError` where it is no bag.
+    `tags`: the tag files that a pack may have besides those of BagIt. Any other tag file counts as added, because no signature covers it.
+    Links are not followed. Errors: `UsageError` if the folder is not a bag.
     """
     if not (folder / DECLARATION).is_file() and not (folder / MANIFEST).is_file():
         raise UsageError(f"{folder}: no evidence pack: name the folder that drivelint pack --out wrote")
@@ -104,14 +104,14 @@ def problems(folder: Path, tags: Collection[str]) -> list[Problem]:
 
 
 def date_of(folder: Path) -> str | None:
-    """Return the day that `bag-info.txt` says, as 2026-11-26; None: it says none, or cannot be read."""
+    """Return the day in `bag-info.txt`, such as 2026-11-26; None: the file has no day, or cannot be read."""
     path = folder / INFO
     match = _BAG_INFO_PATTERN.fullmatch(path.read_text("utf-8", "replace")) if path.is_file() else None
     return match[1] if match else None
 
 
 def _of_info(folder: Path, payload: Iterable[str]) -> list[Problem]:
-    """Return the differences between `bag-info.txt` and the text that `begin` writes for such a payload."""
+    """Return the differences between `bag-info.txt` and the text that `begin` writes for this payload."""
     text = (folder / INFO).read_text("utf-8", "replace")
     match = _BAG_INFO_PATTERN.fullmatch(text)
     if match is None:
@@ -122,10 +122,10 @@ def _of_info(folder: Path, payload: Iterable[str]) -> list[Problem]:
 
 
 def _read_manifest(path: Path, *, payload: bool) -> tuple[dict[str, str], list[Problem]]:
-    """Return file -> hash as a manifest says, and its lines that are none of a manifest."""
+    """Return file -> hash of a manifest, and its invalid lines as problems."""
     listed: dict[str, str] = {}
     wrong = []
-    # not splitlines: that cuts at other characters, too, which a name may have
+    # not splitlines, which also splits at other characters that a file name may contain
     lines = path.read_text("utf-8", "replace").removesuffix("\n").split("\n")
     for no, line in enumerate(lines, 1):
         match = _LINE.fullmatch(line)

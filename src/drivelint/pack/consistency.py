@@ -32,13 +32,13 @@ if TYPE_CHECKING:
     from drivelint.result.request import RunRequest
 
 UNREADABLE: Final = (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError, pa.ArrowException)
-"""The errors of reading files that drivelint did not write. A signer can put anything into a pack."""
+"""The errors that reading an untrusted file can raise. A signer can put anything into a pack."""
 _NOT_FACTS: Final = ("evidence", "packed_with", "mapping", "rules_dirs", "inputs", "incidents", "findings", "left_out")
 _REFERENCE: Final = re.compile(r"\bref_id = (\d+);\n\Z")
 
 
 class Stated(NamedTuple):
-    """The content of a pack: the result, `evidence.json`, the statement's result in a word."""
+    """The content of a pack: the result, `evidence.json`, and the one-word result of the statement."""
 
     result: Result
     evidence: dict[str, Any]
@@ -46,7 +46,7 @@ class Stated(NamedTuple):
 
 
 def of_statement(folder: Path) -> tuple[list[Problem], Stated | None]:
-    """Return the contradictions, and the content of the pack; None: it cannot be read."""
+    """Return the contradictions in a pack, and the pack's content; None: the content cannot be read."""
     name = ENVELOPE if (folder / ENVELOPE).is_file() else FILE
     try:
         evidence = evidence_of(folder)
@@ -65,7 +65,7 @@ def of_statement(folder: Path) -> tuple[list[Problem], Stated | None]:
 
 
 def evidence_of(folder: Path) -> dict[str, Any]:
-    """Return `evidence.json`. Errors: `ValueError` where a name stands twice, or for one of another form."""
+    """Return the content of `evidence.json`. Errors: `ValueError` if a key occurs twice, or for another version of the format."""
 
     def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         found = dict(pairs)
@@ -95,7 +95,7 @@ def _of_evidence(folder: Path, result: Result, evidence: dict[str, Any]) -> list
 def differing(
     evidence: dict[str, Any], facts: dict[str, Any], findings: list[dict[str, Any]], rules: Iterable[dict[str, Any]]
 ) -> list[str]:
-    """Return the keys of `evidence.json` that do not say these facts, findings and versions of rules, or where the SQL is."""
+    """Return the keys of `evidence.json` that differ from these facts, findings, versions of rules, or the paths of the SQL."""
     due: dict[str, Any] = {**facts, "findings": findings}
     said = findings[0].keys() if findings else ()
     told = {**evidence, "findings": [{key: row.get(key) for key in said} for row in evidence["findings"]]}
@@ -107,14 +107,14 @@ def differing(
 
 
 def _place_of_sql(finding: dict[str, Any], *, by_drive: bool) -> str | None:
-    """Return where the SQL of a finding must be; None: there is none, and its reason is in the pack."""
+    """Return the path where the SQL of a finding must be; None: the pack has a reason instead of the SQL."""
     said = finding["without_sql_because"]
     place = f"{FINDINGS}/{finding['key']}" if by_drive else FINDINGS
     return None if isinstance(said, str) and said else f"{place}/{finding['finding_id']}/{finding_rows.SQL_FILE}"
 
 
 def _misplaced(run: dict[str, Any], evidence: dict[str, Any]) -> list[str]:
-    """Return the inputs of the check for which `evidence.json` has no path in the pack."""
+    """Return the inputs of the check for which `evidence.json` lacks a path in the pack, or has an unexpected one."""
     wrong = [] if isinstance(run["mapping"], dict) == (evidence["mapping"] is not None) else ["mapping"]
     if len(run["rules_dirs"]) != len(evidence["rules_dirs"]):
         wrong.append("rules_dirs")
@@ -127,7 +127,7 @@ def _misplaced(run: dict[str, Any], evidence: dict[str, Any]) -> list[str]:
 
 
 def _of_files(folder: Path, evidence: dict[str, Any]) -> list[Problem]:
-    """Return the files of the payload that nothing in `evidence.json` names: they are not evidence of anything."""
+    """Return the files of the payload that `evidence.json` does not name."""
     named_files = {EVIDENCE, *(f"{RESULT}/{name}" for name in OUTPUTS), *(rule["file"] for rule in evidence["rules"])}
     named_files |= set(sheets.sheet_files(evidence))
     inside = evidence["inputs"] or {"traces": {}}
@@ -140,7 +140,7 @@ def _of_files(folder: Path, evidence: dict[str, Any]) -> list[Problem]:
 
 
 def unnamed(folder: Path, evidence: dict[str, Any], named_files: set[str], roots: Iterable[str]) -> list[Problem]:
-    """Return the files of the payload but those named, those below `roots`, and those of findings."""
+    """Return the files of the payload that are not in `named_files`, not below `roots`, and not data of a finding."""
     known = {
         *roots,
         *(row["sql"].removesuffix(f"/{finding_rows.SQL_FILE}") for row in evidence["findings"] if row["sql"]),
@@ -151,7 +151,7 @@ def unnamed(folder: Path, evidence: dict[str, Any], named_files: set[str], roots
 
 
 def _of_reports(folder: Path, result: Result, evidence: dict[str, Any]) -> list[Problem]:
-    """Return the reports that differ from those that this drivelint writes from the tables, if it packed them itself."""
+    """Return the reports that differ from those that drivelint writes from the tables. Compare only if the same version wrote the pack."""
     if packed_by(evidence) != __version__:
         return []
     return [
@@ -167,10 +167,10 @@ def packed_by(evidence: dict[str, Any]) -> str:
 
 
 def of_findings(folder: Path, result: Result, check_request: RunRequest) -> tuple[list[Problem], str]:
-    """Run the SQL of each finding on the rows in the pack; return those with other numbers, and in words how many were run.
+    """Run the SQL of each finding on the rows in the pack. Return the findings with other numbers, and a phrase about how many were run.
 
-    The SQL that runs is made here of the rule; the one in the pack must be the same text. Whether the rows follow from the log,
-    only the log tells.
+    The SQL that runs is generated from the rule; the SQL in the pack must be the same text. Only the log can show whether the rows are
+    right.
     """
     try:
         rules = {rule.id: rule for rule in again.rules_of(result, check_request)}
@@ -196,7 +196,7 @@ def unlike_rules(rules: list[Rule], table: pa.Table, check_request: RunRequest) 
 def of_sql(
     folder: Path, findings: Mapping[str, finding_sql.Row], rules: Mapping[str, Rule], check_request: RunRequest
 ) -> tuple[list[Problem], int]:
-    """Return the findings whose SQL returns other numbers, and the number of findings that were run. `findings`: folder -> finding."""
+    """Return the findings whose SQL returns other numbers, and how many findings were run. `findings`: folder -> finding."""
     params = again.params_of(rules.values(), check_request)
     wrong, n = [], 0
     for inner, row in findings.items():

@@ -1,4 +1,4 @@
-"""The content of `evidence.json`: the logs, rules, outputs and findings of a pack."""
+"""Builds the content of `evidence.json`: the logs, rules, outputs and findings of a pack."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ EVIDENCE: Final = "data/evidence.json"
 RESULT: Final = "data/result"
 FINDINGS: Final = "data/findings"
 FORM: Final = 1
-"""What `evidence` says in `evidence.json`: raised when a key changes its meaning or goes."""
+"""Version of the format, the value of `evidence` in `evidence.json`: raised when a key is removed or changes its meaning."""
 OUTPUTS: Final = frozenset(name for name in RESULT_FILES if not ("*" in name or "/" in name)) - {
     "drivelint.duckdb",
     MANIFEST,
 }
-"""Of the files of a result those that a pack has. The bag has manifests of its own."""
+"""The files of a result that are copied into a pack. The manifest is left out, because the bag has its own."""
 SAID_OF_FINDINGS: Final = ("finding_id", "rule_id", "drive_id", "observed", "required", "margin", "unit")
 _SAID_OF_DRIVES: Final = ("drive_id", "file_name", "sha256", "format", "map_name", "map_sha256")
 _LIBRARIES: Final = ("duckdb", "duckdb-extension-spatial", "pyarrow", "numpy", "shapely", "polars")
@@ -47,7 +47,7 @@ def summary_of(folder: Path) -> dict[str, Any]:
 
 
 def facts(folder: Path, result: Result, check_request: RunRequest) -> dict[str, Any]:
-    """Return the values that follow from the result and the rules in the pack `folder`."""
+    """Return the values of `evidence.json` that follow from the result and the rules in the pack `folder`."""
     drives, rules = result.drives.to_pylist(), result.rules.to_pylist()
     return {
         "tool": summary_of(folder)["tool"],
@@ -68,13 +68,13 @@ def facts_of_rules(folder: Path, rules: Sequence[Row]) -> dict[str, Any]:
 
 
 def hashes(folder: Path, inner: str) -> dict[str, str]:
-    """Return file -> hash of all files below a folder of the pack."""
+    """Return file -> hash for all files below a folder of the pack."""
     files = sorted(path for path in (folder / inner).rglob("*") if path.is_file())
     return {path.relative_to(folder).as_posix(): sha256_of(path) for path in files}
 
 
 def _rule(folder: Path, rule_id: str) -> dict[str, str]:
-    """Return the file of a rule in the pack, its hash and the version that follows from that."""
+    """Return the entry of a rule: its file in the pack, the file's hash, and the version, which is the start of the hash."""
     pack, _, name = rule_id.partition(".")
     file = f"data/rules/{pack}/{name}.sql"
     digest = sha256_of(folder / file)
@@ -82,7 +82,7 @@ def _rule(folder: Path, rule_id: str) -> dict[str, str]:
 
 
 def _options(check_request: RunRequest, result: Result) -> dict[str, Any]:
-    """Return the options of the check, but for where logs, maps, mapping and rules lay."""
+    """Return the options of the check, without the paths of logs, maps, mapping and rules."""
     plain = json.loads(run_request.render(check_request, Path()))
     kept = {each.name for each in fields(DriveInput)} - {"map", "map_dir", "mapping"}
     told = {key: value for key, value in plain.items() if key in {*kept, "profiles"}}
@@ -90,7 +90,7 @@ def _options(check_request: RunRequest, result: Result) -> dict[str, Any]:
 
 
 def library_versions() -> dict[str, str]:
-    """Return the versions of the libraries that wrote the pack."""
+    """Return the versions of drivelint, Python and the libraries in use."""
     return {
         "drivelint": __version__,
         "python": platform.python_version(),
@@ -99,7 +99,7 @@ def library_versions() -> dict[str, str]:
 
 
 def inside(folder: Path, path: str) -> Path:
-    """Return a path of `evidence.json` in the pack. Errors: `ValueError` for one that leads out of it."""
+    """Return the path of a file that `evidence.json` names. Errors: `ValueError` for a path outside the pack."""
     found = folder / path
     if not found.resolve().is_relative_to(folder.resolve()):
         raise ValueError(f"{EVIDENCE} leads out of the pack: {path}")
@@ -107,7 +107,8 @@ def inside(folder: Path, path: str) -> Path:
 
 
 def findings(rows: Iterable[Row], evidence: Evidence, place: str = FINDINGS) -> list[dict[str, Any]]:
-    """Return findings with their numbers, and the SQL that computes these or why there is none. `place`: their folder."""
+    """Return the entries of findings: their numbers, and the path of the SQL or the reason why there is none. `place`: folder of the
+    findings in the pack."""
     told = []
     for row in rows:
         files = evidence[row["finding_id"]]

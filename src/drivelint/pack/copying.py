@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def copy(source: Path, place: Path, work: Path) -> str:
-    """Copy a file or folder into the new folder `place` of the pack; return where it is in the pack."""
+    """Copy a file or folder into the new folder `place` of the pack; return the copy's path in the pack."""
     target = make_folder(place, work) / source.name
     if source.is_dir():
         shutil.copytree(source, target)
@@ -25,7 +25,7 @@ def copy(source: Path, place: Path, work: Path) -> str:
 
 
 def copy_rules(rules: Iterable[Rule], work: Path) -> None:
-    """Copy the files of rules."""
+    """Copy the files of rules into the pack."""
     for rule in rules:
         place = work / "data" / "rules" / rule.pack
         place.mkdir(parents=True, exist_ok=True)
@@ -33,7 +33,7 @@ def copy_rules(rules: Iterable[Rule], work: Path) -> None:
 
 
 def copy_rules_dirs(rules_dirs: Iterable[Path], work: Path) -> list[str]:
-    """Copy folders of rules that are not drivelint's; return where they are in the pack."""
+    """Copy folders of rules that are not drivelint's own; return their paths in the pack."""
     place = work / "data" / "rules_dirs"
     return [copy(folder.resolve(), place / str(no), work) for no, folder in enumerate(rules_dirs)]
 
@@ -46,7 +46,7 @@ def write_files(files: Mapping[str, bytes], place: Path, work: Path) -> None:
 
 
 def make_folder(place: Path, work: Path) -> Path:
-    """Make a folder in the pack. Its name may be an id of a foreign result."""
+    """Create a folder in the pack. Errors: `UsageError` for an unsafe name: the name may be an id from an untrusted result."""
     if not place.resolve().is_relative_to(work.resolve() / "data") or place.is_dir():
         raise UsageError(f"{place.name}: no id of a finding or a drive: check the drives again")
     place.mkdir(parents=True)

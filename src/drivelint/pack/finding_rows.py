@@ -1,4 +1,4 @@
-"""The rows that are enough to give the numbers of a finding again, tried in a DuckDB that has nothing of drivelint."""
+"""Finds the few rows that reproduce the numbers of a finding, and tests them in a DuckDB without drivelint's tables."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ if TYPE_CHECKING:
     from drivelint.pack.finding_sql import Row
 
 PADDING_NS: Final = 10_000_000_000
-"""The spans around a finding that are tried before the whole drive."""
+"""Time before and after a finding whose rows are tried before the whole drive is taken."""
 _SPANS: Final = (("t_ns", "t_ns"), ("t_start_ns", "t_end_ns"), ("t_from_ns", "t_to_ns"), ("t_first_ns", "t_last_ns"))
 _OBJECTS: Final = ("object_id", "vbp_id", "ov_id", "lead_id", "actor_id")
 SQL_FILE: Final = "finding.sql"
 
 
 def rows_of_ego(con: duckdb.DuckDBPyConnection, table: str, drive_id: str, ego_id: str) -> pa.Table:
-    """Return the rows of a table about a drive and an ego, in an order of their own, ids as text and without shapes."""
+    """Return the rows of a table about a drive and an ego, sorted, with ids as text and without geometry columns."""
     columns = con.execute(f"DESCRIBE {table}").fetchall()
     kinds = {str(name): str(kind) for name, kind, *_ in columns}
     shown = [
@@ -48,13 +48,13 @@ def evidence(
 ) -> dict[str, bytes] | str:
     """Return file name -> content of the files that reproduce the numbers of a finding, or why there are none.
 
-    `tables`: all rows about the ego that the rule's condition reads.
+    `tables`: name of a table that the rule's condition reads -> all its rows about the ego.
     """
     sql = finding_sql.query(rule, params, finding, ref_id)
     if not finding_sql.is_read_alike(sql):
         return "DuckDB's shell would read it otherwise: the rule has a comment in /* */, or a text in E'' or $$"
     with duckdb.connect(config={"threads": "1"}) as con:
-        store.lock(con)  # the rule may be a stranger's, and so may the pack that is verified
+        store.lock(con)  # the rule, or the pack that is verified, may be untrusted
         try:
             con.execute(";".join(finding_sql.macros(sql)))
             enough = _enough(con, sql, finding, tables)
@@ -67,7 +67,7 @@ def evidence(
 
 
 def gives(sql: str, finding: Row, tables: Mapping[str, pa.Table]) -> bool:
-    """Return whether a DuckDB without drivelint computes the numbers of a finding from these rows."""
+    """Return whether a DuckDB without drivelint's tables computes the numbers of a finding from these rows."""
     with duckdb.connect(config={"threads": "1"}) as con:
         try:
             con.execute(";".join(finding_sql.macros(sql)))
@@ -81,7 +81,7 @@ def gives(sql: str, finding: Row, tables: Mapping[str, pa.Table]) -> bool:
 def _enough(
     con: duckdb.DuckDBPyConnection, sql: str, finding: Row, tables: Mapping[str, pa.Table]
 ) -> dict[str, pa.Table] | None:
-    """Return, of each table, the fewest of the tried rows with which the numbers stay the same; None: all rows give others."""
+    """Return the fewest tried rows of each table that give the finding's numbers; None: even all rows give other numbers."""
     choices = {table: _choices(con, finding, rows) for table, rows in tables.items()}
 
     def enough(rows_by_table: Mapping[str, pa.Table]) -> bool:
@@ -101,7 +101,7 @@ def _enough(
 
 
 def _first(choices: Sequence[pa.Table], gives: Callable[[pa.Table], bool]) -> pa.Table:
-    """Return the first of these rows that do; the last ones do."""
+    """Return the first choice of rows that gives the numbers. The last choice is known to give them."""
     return next((rows for rows in choices[:-1] if gives(rows)), choices[-1])
 
 
@@ -110,7 +110,7 @@ def _is_same(rows: list[dict[str, Any]], finding: Row) -> bool:
 
 
 def _choices(con: duckdb.DuckDBPyConnection, finding: Row, rows: pa.Table) -> list[pa.Table]:
-    """Return rows of a table from few to all: at the worst step or around the finding, of its object or of all actors."""
+    """Return choices of a table's rows, from few to all: at the worst step or around the finding, about the two parties or all actors."""
     columns = rows.column_names
     step, around = (
         _at_time(columns, *times)

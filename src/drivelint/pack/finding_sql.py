@@ -1,4 +1,4 @@
-"""The SQL of one finding as a file that any DuckDB runs: its macros, its tables from Parquet files, its numbers filled in."""
+"""Writes the SQL of one finding as a file that any DuckDB can run: with its macros, its tables from Parquet files, and its values."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _MACRO: Final = re.compile(r"\bCREATE OR REPLACE (?:TEMP )?MACRO (\w+)")
 _COMMENT: Final = re.compile(r"--.*")
 _SPATIAL: Final = re.compile(r"\bST_\w+\s*\(")
 COMPARED: Final = ("observed", "required", "margin")
-"""The results of the SQL of a finding, as the finding has them."""
+"""The columns that the SQL of a finding must reproduce."""
 
 
 def tables_of(rule: Rule) -> list[str]:
@@ -36,7 +36,7 @@ def tables_of(rule: Rule) -> list[str]:
 
 
 def query(rule: Rule, params: Mapping[str, object], finding: Row, ref_id: int | None) -> str:
-    """Return the SELECT of a finding's numbers at its worst step; `ref_id`: the reference point, as the condition numbers it."""
+    """Return the SELECT that computes a finding's numbers at its worst step. `ref_id`: the condition's number of the reference point."""
     with_values = syntax.with_values(condition_ctes(rule), {name: literal(value) for name, value in params.items()})
     at = [f"t_ns = {finding['t_worst_ns']}"]
     if rule.per_object and finding["object_id"] is not None:
@@ -54,7 +54,7 @@ def query(rule: Rule, params: Mapping[str, object], finding: Row, ref_id: int | 
 
 
 def literal(value: object) -> str:
-    """Return a parameter as SQL of the same type: 0.5 alone would be a DECIMAL, which divides otherwise."""
+    """Return a parameter as an SQL literal of the same type. A plain 0.5 would be a DECIMAL, which divides differently."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, str):
@@ -62,24 +62,24 @@ def literal(value: object) -> str:
     text = repr(value)
     if isinstance(value, float) and "e" not in text:
         text += "e0"
-    return f"({text})" if text.startswith("-") else text  # two minus signs begin a comment
+    return f"({text})" if text.startswith("-") else text  # two minus signs would begin a comment
 
 
 def text_literal(text: str) -> str:
-    """Return a text as SQL on one line, without invisible characters: an id is a word of the log."""
+    """Return a text as an SQL literal on one line, without invisible characters, which an id may contain."""
     shown = (c if c.isprintable() else f"' || chr({ord(c)}) || '" for c in text.replace("'", "''"))
     return f"'{''.join(shown)}'" if text.isprintable() else f"('{''.join(shown)}')"
 
 
 def is_read_alike(sql: str) -> bool:
-    """Whether DuckDB's shell ends a statement where its parser does: the rest would run as a statement that was not checked."""
+    """Return whether DuckDB's shell ends a statement where its parser does. If not, the shell would run text as an unchecked statement."""
     content = sql.encode()
     kinds = (content[at : at + 1] for at, kind in duckdb.tokenize(sql) if kind == duckdb.token_type.string_const)
     return "/*" not in sql and all(first == b"'" for first in kinds)
 
 
 def macros(sql: str) -> list[str]:
-    """Return the macros that a statement calls, and those that these call, in the order in which they are defined."""
+    """Return the macros that a statement calls directly or indirectly, in the order of their definitions."""
     known = _macros()
     needed: set[str] = set()
     todo = [sql]
@@ -93,7 +93,7 @@ def macros(sql: str) -> list[str]:
 
 @cache
 def _macros() -> dict[str, str]:
-    """Return macro -> its definition: those that rules call, and those of the judging itself."""
+    """Return name -> definition of the macros for rules and for judging."""
     both = f"{macro_definitions()}\n{texts('judging')['macros']}"
     found = {}
     for each in syntax.parser().extract_statements(both):
@@ -104,7 +104,7 @@ def _macros() -> dict[str, str]:
 
 
 def file_text(rule: Rule, finding: Row, sql: str, tables: Iterable[str]) -> str:
-    """Return the file `finding.sql`: run in its folder, it gives the finding's numbers."""
+    """Return the text of `finding.sql`. Run in its folder, it prints the finding's numbers."""
     called = macros(sql)
     spatial = any(_SPATIAL.search(text) for text in (sql, *called))
     numbers = ", ".join(f"{name} {_sql_literal(finding[name])}" for name in COMPARED)

@@ -1,4 +1,4 @@
-"""The logs and the map of a result: where they are now, and that they are those that were judged."""
+"""Locates the logs and the map of a result, and checks by hash that they are the files that were judged."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ def judged_drives(drives: Sequence[Row]) -> list[Row]:
 
 
 def located(check_request: RunRequest, drives: Sequence[Row], traces: Sequence[Path], map_: Path | None) -> RunRequest:
-    """Return a request with the paths at which its logs and map are now; each was hashed and is the one that was judged.
+    """Return a request with the present paths of its logs and map, after comparing each with its hash.
 
-    `traces`, `map_`: files that were moved. Errors: `UsageError` for a log or map that is not there or is another one.
+    `traces`, `map_`: present paths of files that were moved. Errors: `UsageError` for a log or map that is missing or has another hash.
     """
     given = {identify(path).sha256: path for path in traces if path.exists()}
     if gone := [path for path in traces if not path.exists()]:

@@ -12,14 +12,14 @@ if TYPE_CHECKING:
     from drivelint.pack.bag import Problem
 
 MOST_FINDINGS: Final = 100
-"""Of so many findings of an audit a pack has the rows, unless it is asked for more."""
+"""Default number of findings of an audit whose rows are in its pack."""
 
 
 @dataclass(frozen=True)
 class PackRequest:
     """A request to `pack`: a result folder, the folder of the pack, its content, the signing key, the time stamp.
 
-    `findings`: of an audit, the rows of so many of the worst findings go into it; None: of all. A check's all do.
+    `findings`: number of worst findings of an audit whose rows go into the pack; None: all. The pack of a check has all findings.
     """
 
     folder: Path
@@ -35,7 +35,8 @@ class PackRequest:
 
 
 class Content(NamedTuple):
-    """What makes a pack of a result: writes its payload and returns what `evidence.json` says; returns its statement."""
+    """The two functions that make a pack. `payload` writes the payload and returns the content of `evidence.json`; `statement` returns the
+    statement."""
 
     payload: Callable[[Path], dict[str, Any]]
     statement: Callable[[Path, dict[str, Any]], bytes]
@@ -43,10 +44,10 @@ class Content(NamedTuple):
 
 @dataclass(frozen=True)
 class VerifyRequest:
-    """A request to `verify`: a pack, the required signer and time stamp authority, and the paths of log and map if they are not in it.
+    """A request to `verify`: a pack, the required signer and time stamp authority, and paths of logs and map that are not in the pack.
 
-    `require_signature`: a missing `key`, which identifies the signer, is a problem. `not_before`: the earliest day of its
-    Bagging-Date, as 2026-11-26; None: any, or none.
+    `require_signature`: report a problem if no `key` is given, because only a key identifies the signer. `not_before`: the earliest allowed
+    Bagging-Date, such as 2026-11-26; None: any date, or no date.
     """
 
     folder: Path
@@ -60,7 +61,7 @@ class VerifyRequest:
 
 @dataclass(frozen=True)
 class Verification:
-    """The problems of a pack, a sentence if there are none, and what was not examined."""
+    """The result of `verify`: the problems of a pack, a sentence for a pack without problems, and notes on what was not examined."""
 
     problems: list[Problem]
     sentence: str

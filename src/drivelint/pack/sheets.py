@@ -1,4 +1,4 @@
-"""Puts the incident sheets of a result into its pack. It writes each page again from the log, and so finds a page that was changed."""
+"""Puts the incident sheets of a result into its pack. Each page is written again from the log, which reveals a page that was changed."""
 
 from __future__ import annotations
 
@@ -20,10 +20,9 @@ _PDF: Final = ".pdf"
 
 
 def of_result(folder: Path, result: Result, check_request: RunRequest) -> dict[str, bytes]:
-    """Return path in the pack -> content of the sheets that lie in a result folder and are of its findings.
+    """Return path in the pack -> content of the incident sheets in a result folder that belong to its findings.
 
-    `check_request` says where the logs are. A PDF is included if the page beside it equals the page that is written again:
-    only then both have the same content.
+    `check_request` has the paths of the logs. A PDF is included only if the HTML page beside it equals the page that is written again.
     """
     ids = set(result.findings["finding_id"].to_pylist())
     found = {}
@@ -38,23 +37,24 @@ def of_result(folder: Path, result: Result, check_request: RunRequest) -> dict[s
 
 
 def again(result_folder: Path, evidence: Mapping[str, Any], check_request: RunRequest) -> dict[str, bytes]:
-    """Write the pages of a pack again from its logs; return path in the pack -> content. `result_folder`: the result in the pack."""
+    """Write the pages of a pack again from its logs; return path in the pack -> content. `result_folder`: folder of the result in the
+    pack."""
     pages = [name for name in sheet_files(evidence) if name.endswith(_PAGE)]
     return {name: _page(result_folder, PurePosixPath(name).stem, check_request) for name in pages}
 
 
 def sheet_files(evidence: Mapping[str, Any]) -> list[str]:
-    """Return the files of sheets that `evidence.json` names. A pack without sheets does not speak of them."""
+    """Return the files of incident sheets that `evidence.json` names. Without sheets, the file lacks this key."""
     return list(evidence.get("incidents", ()))
 
 
 def has_printed(evidence: Mapping[str, Any]) -> bool:
-    """Whether a pack has a PDF, which cannot be written again."""
+    """Return whether a pack has a PDF, which cannot be written again."""
     return any(name.endswith(_PDF) for name in sheet_files(evidence))
 
 
 def misnamed(folder: Path, evidence: Mapping[str, Any], finding_ids: Iterable[str]) -> list[str]:
-    """Return the sheets that `evidence.json` names and that are of no finding, are not there, or are a PDF without its page."""
+    """Return the sheets in `evidence.json` that belong to no finding, do not exist, or are a PDF without its page."""
     pages = {f"{SHEETS}/{finding_id}{_PAGE}" for finding_id in finding_ids}
     named = sheet_files(evidence)
     due = pages | {name.removesuffix(_PAGE) + _PDF for name in pages & set(named)}

@@ -25,7 +25,7 @@ _PUBLIC: Final = (*_LINE, b"-----BEGIN PUBLIC KEY-----")
 
 
 class EnvelopeError(Exception):
-    """What stands in an envelope's place is none."""
+    """A file in the place of an envelope is not an envelope."""
 
 
 class SigningKey(Protocol):
@@ -39,12 +39,12 @@ class SigningKey(Protocol):
 
 
 def signing_key(path: Path) -> SigningKey:
-    """Return the private key in a file; of a public key, the one that ssh-agent holds. Errors: `UsageError`."""
+    """Return the private key in a file; if the file has a public key, return the matching key in ssh-agent. Errors: `UsageError`."""
     return AgentKey(public_key(path)) if _read(path).startswith(_PUBLIC) else private_key(path)
 
 
 def private_key(path: Path) -> Ed25519PrivateKey:
-    """Return the key in a PEM file (PKCS 8, or OpenSSH's form). Errors: `UsageError`."""
+    """Return the private key in a PEM file (PKCS 8 or OpenSSH format). Errors: `UsageError`."""
     content = _read(path)
     load = serialization.load_ssh_private_key if content.startswith(_OPENSSH) else serialization.load_pem_private_key
     try:
@@ -59,7 +59,7 @@ def private_key(path: Path) -> Ed25519PrivateKey:
 
 
 def public_key(path: Path) -> Ed25519PublicKey:
-    """Return the public key in a file, PEM or a line of OpenSSH. Errors: `UsageError`."""
+    """Return the public key in a file, in PEM or as a line in OpenSSH format. Errors: `UsageError`."""
     content = _read(path)
     load = serialization.load_ssh_public_key if content.startswith(_LINE) else serialization.load_pem_public_key
     try:
@@ -84,13 +84,13 @@ def public_pem(key: Ed25519PublicKey) -> bytes:
 
 
 def key_id(key: Ed25519PublicKey) -> str:
-    """Return the hash by which a key is known: SHA-256 of its DER form, hexadecimal."""
+    """Return the hash that identifies a key: SHA-256 of its DER form, hexadecimal."""
     der = key.public_bytes(serialization.Encoding.DER, serialization.PublicFormat.SubjectPublicKeyInfo)
     return hashlib.sha256(der).hexdigest()
 
 
 def envelope(payload: bytes, key: SigningKey) -> bytes:
-    """Return the DSSE envelope of a signed statement: the same bytes each time, as Ed25519 has no random part."""
+    """Return the DSSE envelope of a signed statement. The bytes are always the same, because Ed25519 is deterministic."""
     return _rendered(payload, key.sign(_signed_bytes(PAYLOAD_TYPE, payload)), key.public_key())
 
 
@@ -104,12 +104,12 @@ def _rendered(payload: bytes, signature: bytes, key: Ed25519PublicKey) -> bytes:
 
 
 def payload_of(content: bytes) -> bytes:
-    """Return the payload of an envelope, whoever signed it. Errors: `EnvelopeError`."""
+    """Return the payload of an envelope without checking its signature. Errors: `EnvelopeError`."""
     return _parse_envelope(content)[1]
 
 
 def is_signed_by(content: bytes, key: Ed25519PublicKey) -> bool:
-    """Return whether an envelope has a signature of a key. Errors: `EnvelopeError`."""
+    """Return whether an envelope has a valid signature by a key. Errors: `EnvelopeError`."""
     kind, payload, signatures = _parse_envelope(content)
     for signature in signatures:
         try:
@@ -121,7 +121,7 @@ def is_signed_by(content: bytes, key: Ed25519PublicKey) -> bool:
 
 
 def is_as_written(content: bytes, key: Ed25519PublicKey) -> bool:
-    """Return whether an envelope that a key signed is the one that `envelope` writes: content beside the payload is not signed."""
+    """Return whether a signed envelope has exactly the text that `envelope` writes: the signature covers only the payload."""
     _, payload, signatures = _parse_envelope(content)
     return len(signatures) == 1 and content == _rendered(payload, signatures[0], key)
 
@@ -137,5 +137,5 @@ def _parse_envelope(content: bytes) -> tuple[str, bytes, list[bytes]]:
 
 
 def _signed_bytes(kind: str, payload: bytes) -> bytes:
-    """Return the bytes that DSSE signs: the type and the payload with their lengths, so that neither can be mistaken for the other."""
+    """Return the bytes that DSSE signs: the type and the payload with their lengths, so that the two cannot be confused."""
     return b"DSSEv1 %d %s %d %s" % (len(kind.encode()), kind.encode(), len(payload), payload)

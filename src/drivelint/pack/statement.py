@@ -1,7 +1,7 @@
 """The in-toto statement of a pack: the logs, the rules, the result, and the pack itself.
 
-https://in-toto.io/attestation/test-result/v0.1. A test is a rule on an ego of a drive, for one profile if it has profiles. A verdict
-that is unknown is no passed test: such tests stand in a field of our own, and the result is at most WARNED.
+https://in-toto.io/attestation/test-result/v0.1. A test is one rule for one ego of a drive, and for one profile if the rule has profiles. A
+test with an unknown verdict has not passed: it is listed in a field of drivelint, and the result is then at most WARNED.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ ENVELOPE: Final = "statement.dsse.json"
 TYPE: Final = "https://in-toto.io/Statement/v1"
 PREDICATE: Final = "https://in-toto.io/attestation/test-result/v0.1"
 SEALED: Final = (bag.DECLARATION, bag.INFO, bag.MANIFEST)
-"""The tag files that a statement names: by the manifest, every file of the payload."""
+"""The tag files whose hashes a statement contains. The hash of the manifest covers every file of the payload."""
 
 
 def statement(folder: Path, result: Result, summary: Mapping[str, Any], evidence: Mapping[str, Any]) -> bytes:
-    """Return the statement about a result that stands, with its manifest, in the pack `folder`."""
+    """Return the statement about the result whose tables and manifest are in the pack `folder`."""
     drives = judged_drives(result.drives.to_pylist())
     tests = _tests(result.verdicts.to_pylist())
     maps = sorted({(drive["map_name"], drive["map_sha256"]) for drive in drives if drive["map_sha256"]})
@@ -63,7 +63,7 @@ def statement(folder: Path, result: Result, summary: Mapping[str, Any], evidence
 
 
 def differences(statement: bytes, due: bytes) -> list[bag.Problem]:
-    """Return the differences between a statement and the one that follows from the pack."""
+    """Return the differences between a statement and `due`, the statement that follows from the pack's content."""
     try:
         a, b = json.loads(statement), json.loads(due)
         parts = ((a, b, ("_type", "predicateType")), (a["predicate"], b["predicate"], ()))
@@ -84,12 +84,13 @@ def differences(statement: bytes, due: bytes) -> list[bag.Problem]:
 
 
 def resource_descriptor(name: str, digest: str) -> dict[str, Any]:
-    """Return a file or a log as in-toto names it."""
+    """Return a file or a log as an in-toto resource descriptor."""
     return {"name": name, "digest": {"sha256": digest}}
 
 
 def _tests(verdicts: Iterable[Mapping[str, Any]]) -> dict[str, list[str]]:
-    """Return outcome -> the tests with it: the worst verdict of each counts; a rule that did not apply is no test."""
+    """Return outcome (pass, near_miss, fail, unknown) -> tests. The worst verdict of a test counts; a rule that did not apply is not a
+    test."""
     order = ("fail", "unknown", "near_miss", "pass")
     worst: dict[str, int] = defaultdict(lambda: len(order))
     for row in verdicts:
@@ -104,7 +105,7 @@ def _tests(verdicts: Iterable[Mapping[str, Any]]) -> dict[str, list[str]]:
 def result_word(tests: Mapping[str, list[str]], *, is_clean: bool) -> str:
     """Return PASSED, WARNED or FAILED.
 
-    `is_clean`: the exit code is 0, so every drive was judged, on a map that fits, and from a whole log.
+    `is_clean`: the exit code is 0, so every drive was judged from a complete log and on a map that fits.
     """
     if tests["fail"]:
         return "FAILED"

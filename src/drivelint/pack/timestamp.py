@@ -1,6 +1,6 @@
 """The time stamp of a pack (RFC 3161): an authority states that the signed statement existed at a time.
 
-The token is made elsewhere. No signature of the pack covers it: it was made after that.
+Another program requests the token. No signature of the pack covers it, because it is made after the signature.
 """
 
 from __future__ import annotations
@@ -24,19 +24,19 @@ _HASHES: Final = {
     "2.16.840.1.101.3.4.2.2": hashlib.sha384,
     "2.16.840.1.101.3.4.2.3": hashlib.sha512,
 }
-"""By their ids; of older ones another statement of the same hash could be made."""
+"""Object identifier of an algorithm -> hash function. Algorithms with known collisions are not accepted."""
 
 
 class StampCheck(NamedTuple):
-    """The result of checking a time stamp: its problems, its time and authority in words, and notes on what was not checked."""
+    """The result of checking a time stamp: its problems, a phrase about its time and authority, and notes on what was not checked."""
 
     problems: list[Problem]
     description: str = ""
-    notes: list[str] = []  # noqa: RUF012 - nobody changes it
+    notes: list[str] = []  # noqa: RUF012 - never modified
 
 
 def read(path: Path, envelope: bytes) -> bytes:
-    """Return the response of an authority in a file. Errors: `UsageError` where it is none, or not of this envelope."""
+    """Return the time stamp response in a file. Errors: `UsageError` if the file is not a response, or not for this envelope."""
     try:
         content = path.read_bytes()
         found = look(content, envelope, None)
@@ -52,9 +52,9 @@ def read(path: Path, envelope: bytes) -> bytes:
 
 
 def of_pack(folder: Path, roots: Path | None) -> StampCheck:
-    """Look at the time stamp of a pack. `roots`: certificates (PEM) of the authorities that are trusted; None: no authority is required.
+    """Check the time stamp of a pack. `roots`: certificates (PEM) of trusted authorities; None: no authority is required.
 
-    Errors: `UsageError` for certificates that cannot be read, or where they are given and rfc3161-client is not installed.
+    Errors: `UsageError` for certificates that cannot be read, or if certificates are given and rfc3161-client is not installed.
     """
     if not (folder / FILE).is_file() or not (folder / ENVELOPE).is_file():
         return StampCheck([] if roots is None else [Problem("no time stamp", FILE)])
@@ -67,7 +67,7 @@ def of_pack(folder: Path, roots: Path | None) -> StampCheck:
 
 
 def look(content: bytes, envelope: bytes, roots: Path | None) -> StampCheck:
-    """Look at a response of an authority: it must be about this envelope. Errors: `UsageError`, `ModuleNotFoundError`."""
+    """Check that the response of an authority is for this envelope. Errors: `UsageError`, `ModuleNotFoundError`."""
     from rfc3161_client import VerificationError, VerifierBuilder, decode_timestamp_response
 
     try:
@@ -91,12 +91,12 @@ def look(content: bytes, envelope: bytes, roots: Path | None) -> StampCheck:
 
 
 def _in_order(content: bytes) -> bytes:
-    """Return a response with its certificates in the order of DER, which rfc3161-client insists on and not every authority keeps.
+    """Return a response with its certificates in DER order, which rfc3161-client requires and some authorities do not keep.
 
     No signature covers that order.
     """
     start, end = 0, len(content)
-    # response, token, its content, the signed data, the certificates in it
+    # the path of nested elements: response, token, content, signed data, certificates
     for index, wanted in ((0, 0x30), (1, 0x30), (1, 0xA0), (0, 0x30), (3, 0xA0)):
         tag, _, start, end = list(_elements(content, start, end))[index]
         if tag != wanted:
@@ -106,7 +106,7 @@ def _in_order(content: bytes) -> bytes:
 
 
 def _elements(content: bytes, start: int, end: int) -> Iterator[tuple[int, int, int, int]]:
-    """Yield of each DER element between two places: its tag, where it begins, where its content begins and ends."""
+    """Yield (tag, start, start of content, end of content) for each DER element between two byte positions."""
     while start < end:
         n, body = content[start + 1], start + 2
         if n & 0x80:

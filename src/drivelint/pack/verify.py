@@ -1,4 +1,4 @@
-"""Verifies an evidence pack: its files, its signature, its statements, and the result itself if log and map are available."""
+"""Verifies an evidence pack: its files, its signature, its statement, and the result itself if log and map are available."""
 
 from __future__ import annotations
 
@@ -38,13 +38,13 @@ _OUTCOMES: Final = {
 }
 
 _OF_WHOM: Final = {"not signed", "nobody identified", "older pack"}
-"""Problems of packs that are as they were written."""
+"""Kinds of problems that unchanged packs can have."""
 
 
 def verify(request: VerifyRequest) -> Verification:
-    """Verify a pack. What its files, signature and statement say is looked at before anything in it is used.
+    """Verify a pack. Its files, signature and statement are checked before anything in it is used.
 
-    Errors: `UsageError` where it is no pack, or for a key, log or map that was given and cannot be used.
+    Errors: `UsageError` if the folder is not a pack, or if a given key, log or map cannot be used.
     """
     key = _given_key(request)
     wrong = bag.problems(request.folder, (ENVELOPE, PUBLIC_KEY, FILE, timestamp.FILE))
@@ -63,7 +63,7 @@ def verify(request: VerifyRequest) -> Verification:
     elif any(problem.kind not in _OF_WHOM for problem in wrong):
         notes.append("not judged again, as the pack is not as it was written")
     n = sum(1 for path in request.folder.rglob("*") if path.is_file())
-    # a changed pack can be hashed again: only a known signature shows that it was not changed
+    # anyone can hash a changed pack again: only a known signature shows that it is unchanged
     date = bag.date_of(request.folder)
     signed = ", ".join(filter(None, (signed, stamp.description, "without a date" if date is None else f"dated {date}")))
     state = "consistent" if key is None else "untouched since it was signed"
@@ -73,7 +73,7 @@ def verify(request: VerifyRequest) -> Verification:
 
 
 def _of_request(request: VerifyRequest) -> list[Problem]:
-    """Return why a consistent pack does not meet the request: its signer is not known, or it is too old."""
+    """Return why a consistent pack does not meet the request: its signer is unknown, or the pack is too old."""
     found = []
     if request.require_signature and request.key is None:
         what = (
@@ -100,7 +100,7 @@ def _given_key(request: VerifyRequest) -> Ed25519PublicKey | None:
 
 
 def _of_signature(folder: Path, key: Ed25519PublicKey | None) -> tuple[list[Problem], str]:
-    """Return the problems of the signature and of the unsigned files beside it, and the signer in words."""
+    """Return the problems of the signature and of the unsigned files beside it, and a phrase about the signer."""
     if not (folder / ENVELOPE).is_file():
         wanted = key is not None or (folder / PUBLIC_KEY).is_file()
         stamped = [Problem("file added", timestamp.FILE)] if (folder / timestamp.FILE).is_file() else []
@@ -117,7 +117,7 @@ def _of_signature(folder: Path, key: Ed25519PublicKey | None) -> tuple[list[Prob
 
 
 def _of_envelope(folder: Path, pack_key: Ed25519PublicKey, key: Ed25519PublicKey | None) -> tuple[list[Problem], str]:
-    """`pack_key`: the key in the pack; `key`: the one that was given."""
+    """Return the problems of a signed envelope, and a phrase about the signer. `pack_key`: the key in the pack; `key`: the given key."""
     content, signer = (folder / ENVELOPE).read_bytes(), pack_key if key is None else key
     by_own, by_signer = (signature.is_signed_by(content, each) for each in (pack_key, signer))
     if not (by_own or by_signer):
@@ -138,7 +138,8 @@ def _of_envelope(folder: Path, pack_key: Ed25519PublicKey, key: Ed25519PublicKey
 
 
 def _of_contents(request: VerifyRequest, stated: Stated) -> tuple[str, list[Problem], list[str]]:
-    """Judge again what can be judged; return the result in words, the problems, and notes on what was not examined."""
+    """Judge the drives again if their logs are available. Return the result as a phrase, the problems, and notes on what was not
+    examined."""
     result, evidence = stated.result, stated.evidence
     notes = _notes(evidence, result)
     try:
@@ -164,7 +165,7 @@ def _of_contents(request: VerifyRequest, stated: Stated) -> tuple[str, list[Prob
 
 
 def _notes(evidence: dict[str, Any], result: Result) -> list[str]:
-    """Return notes on content that cannot be compared with the logs, and on rules that are not drivelint's own."""
+    """Return notes on content that cannot be compared with the logs, on other versions, and on rules that are not drivelint's own."""
     notes = []
     if (version := consistency.packed_by(evidence)) != __version__:
         notes.append(f"packed by drivelint {version}, and this is {__version__}: its reports are not written again")
@@ -182,7 +183,7 @@ def _notes(evidence: dict[str, Any], result: Result) -> list[str]:
 
 
 def _request_with_pack_paths(folder: Path, evidence: dict[str, Any]) -> RunRequest:
-    """Return the check with the paths of the files in the pack. Errors: `ValueError` for a path that leads out of it."""
+    """Return the check with the paths of the files in the pack. Errors: `ValueError` for a path outside the pack."""
 
     inputs = evidence["inputs"]
     check_request = run_request.load(folder / RESULT)
@@ -198,7 +199,7 @@ def _request_with_pack_paths(folder: Path, evidence: dict[str, Any]) -> RunReque
 
 
 def _of_result(folder: Path, stated: Stated, check_request: RunRequest) -> tuple[str, list[Problem]]:
-    """Judge the drives again; return the result in words, and the files that differ."""
+    """Judge the drives again; return the result as a phrase, and the files that differ."""
     result = stated.result
     margins = (folder / RESULT / "margins.parquet").is_file()
     other_libraries = stated.evidence["packed_with"] != library_versions()
@@ -234,6 +235,6 @@ def _of_result(folder: Path, stated: Stated, check_request: RunRequest) -> tuple
 
 
 def _judged_rows(result: Result, name: str) -> Any:
-    """Return a table of a result without the drives that were not judged, which cannot be judged again."""
+    """Return a table of a result, without the drives that could not be judged."""
     rows = getattr(result, name)
     return rows.filter(pc.equal(rows["status"], "judged")) if name == "drives" else rows

@@ -33,7 +33,7 @@ PUBLIC_KEY: Final = "public-key.pem"
 
 
 class _PackSource(NamedTuple):
-    """A result with its check, rules, evidence and incident sheets (path in the pack -> content)."""
+    """The content for the pack of a check. `incidents`: path in the pack -> content of the incident sheets."""
 
     result: Result
     check_request: RunRequest
@@ -43,9 +43,10 @@ class _PackSource(NamedTuple):
 
 
 def write_pack(request: PackRequest) -> dict[str, Any]:
-    """Write the pack in one step: until it is complete, nothing is at `out`. Return the content of its `evidence.json`.
+    """Write the pack and return the content of its `evidence.json`. Nothing exists at `out` until the pack is complete.
 
-    Errors: `UsageError` for a result, log, map, rule or key that is not there or is another one, and where `out` is taken; `OutputError`.
+    Errors: `UsageError` for a result, log, map, rule or key that is missing or has changed, and if `out` exists without `overwrite`;
+    `OutputError`.
     """
     key = ready(request)
     is_audit = audits.is_audit(request.folder)
@@ -81,7 +82,8 @@ def write_pack(request: PackRequest) -> dict[str, Any]:
 
 
 def ready(request: PackRequest) -> signature.SigningKey | None:
-    """Return the key that signs a pack. Errors: `UsageError` where it cannot be used, or where `out` is taken or cannot be written."""
+    """Return the key that signs a pack; None: the pack is not signed. Errors: `UsageError` for an invalid request, or if `out` exists
+    without `overwrite`."""
     if (url := as_url(request.folder)) is not None:
         raise UsageError(f"{url}: is in an object store: copy it into a folder of this machine and pack that")
     if (url := as_url(request.out)) is not None:
@@ -105,7 +107,7 @@ def _free(out: Path, *, overwrite: bool) -> None:
 
 
 def _content(request: PackRequest) -> Content:
-    """Return the function that packs the result of a check. The logs are judged again here, before anything is written."""
+    """Return the functions that pack the result of a check. The logs are judged again here, before anything is written."""
     result = load_result(request.folder)
     check_request = run_request.load(request.folder)
     if check_request.manifest_options:
@@ -130,7 +132,7 @@ def _payload(work: Path, request: PackRequest, checked_result: _PackSource) -> d
     for path in copied:
         shutil.copyfile(path, work / RESULT / path.name)
     reports = [each for each in REPORT_FORMATS.values() if (work / RESULT / each[0]).is_file()]
-    # A report of the folder may differ from the tables, or link files that the pack leaves out.
+    # A report in the folder may differ from the tables, or link to files that the pack leaves out.
     for name, render in reports:
         (work / RESULT / name).write_bytes(render(replace(result, folder=work / RESULT)))
     for name, files in evidence.items():
@@ -142,7 +144,7 @@ def _payload(work: Path, request: PackRequest, checked_result: _PackSource) -> d
     copy_rules(rules, work)
     named = (
         check_request.mapping is not None and Path(check_request.mapping).is_file()
-    )  # else it is a shipped one, or none
+    )  # else a built-in mapping, or none
     mapping = copy(Path(str(check_request.mapping)), work / "data" / "mapping", work) if named else None
     inputs = _copied_inputs(work, check_request) if request.with_inputs else None
     taken = {*copied, *(request.folder / Path(sheet).relative_to("data") for sheet in incidents)}
@@ -163,7 +165,7 @@ def _payload(work: Path, request: PackRequest, checked_result: _PackSource) -> d
 
 
 def _copied_inputs(work: Path, check_request: RunRequest) -> dict[str, Any]:
-    """Copy logs and map into the pack; return where each is."""
+    """Copy logs and map into the pack; return their paths in the pack."""
     inputs = work / "data" / "inputs"
     told: dict[str, Any] = {"traces": {}}
     for name, text in sorted(check_request.traces.items()):

@@ -1,4 +1,4 @@
-"""Receipts of `check`: the output of a run, kept with the state of everything that it read.
+"""Receipts of `check`: the output of a run, stored with the state of everything that the run read.
 
-If a later run has the same request and finds all of this unchanged, it writes and prints the same without judging.
+If a later run has the same request and finds all inputs unchanged, it writes and prints the same output without judging.
 """

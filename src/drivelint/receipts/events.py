@@ -1,4 +1,4 @@
-"""The messages of a run to the recorder of its inputs: audit events of Python, which also include its opening of files."""
+"""Messages of a run to the recorder of its inputs. They are audit events of Python, like the events for opened files."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ MACHINE_BOUND: Final = "drivelint.machine_bound"
 
 
 def looked_for(path: Path) -> Path:
-    """Report that the run depends on whether there is a file at a path, outside of the folders that it lists; return the path."""
+    """Report that the run depends on whether a file exists at a path outside the folders that it lists; return the path."""
     sys.audit(LOOKED_FOR, os.fspath(path))
     return path
 
 
 def machine_bound(why: str) -> None:
-    """Report that the result depends on more than the inputs, such as the time that a rule took."""
+    """Report that the result depends on more than the inputs, such as the computing time of a rule."""
     sys.audit(MACHINE_BOUND, why)

@@ -1,6 +1,6 @@
-"""The state of files and folders that a run reads: the same state, the same input.
+"""Computes the state of files and folders that a run reads. If the state is the same, the input is the same.
 
-The content of every file is hashed: size and time of the last change can be the same for another content.
+The content of every file is hashed, because different contents can have the same size and modification time.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
     IsOutput = Callable[[str], bool]
-    """Whether a file or folder is an output of the run, at its absolute path without links."""
+    """Returns whether an absolute path without links is an output of the run."""
 
 ABSENT: Final = "absent"
 
@@ -30,9 +30,9 @@ def file_sha256(path: Path | str) -> str:
 
 
 def state(path: str, is_output: IsOutput) -> str | None:
-    """Return a state that is the same as long as nothing changes at a path; None: it cannot be known, as for a pipe.
+    """Return a state that stays the same while nothing changes at a path; None: the state cannot be known, as for a pipe.
 
-    Of a file its content counts, of a folder the names in it; of both, where links lead to.
+    The state of a file is its content, the state of a folder the names in it; both include the targets of links.
     """
     try:
         mode = os.stat(path).st_mode  # noqa: PTH116 - thousands of paths
@@ -47,20 +47,20 @@ def state(path: str, is_output: IsOutput) -> str | None:
 
 
 def matches(pattern: str, is_output: IsOutput) -> str:
-    """Return the hash of the names that a pattern matches."""
-    found = glob(pattern, recursive=True)  # noqa: PTH207 - as the search for logs does it
+    """Return the hash of the file names that a glob pattern matches."""
+    found = glob(pattern, recursive=True)  # noqa: PTH207 - same function as the search for logs
     return _hash(sorted(name for name in found if not is_output(os.path.realpath(name))))
 
 
 @dataclass(frozen=True)
 class Inputs:
-    """The inputs of a run. `states`: absolute path -> state; `globs`: pattern -> hash of the names that it matched."""
+    """The inputs of a run. `states`: absolute path -> state. `globs`: pattern -> hash of the names that matched."""
 
     states: dict[str, str] = field(default_factory=dict)
     globs: dict[str, str] = field(default_factory=dict)
 
     def are_unchanged(self, is_output: IsOutput) -> bool:
-        """Whether everything is as it was."""
+        """Return whether all inputs have the same state as before."""
         names = all(matches(pattern, is_output) == said for pattern, said in self.globs.items())
         return names and all(state(path, is_output) == said for path, said in self.states.items())
 
@@ -73,7 +73,7 @@ def _listing(folder: str, real: str, is_output: IsOutput) -> str:
 
 
 def _kind(entry: os.DirEntry[str]) -> tuple[str, str]:
-    """Return the kind of an entry of a folder, and the target of a link."""
+    """Return the kind of a folder's entry, and the target if it is a link."""
     kind = "folder" if entry.is_dir() else "file" if entry.is_file() else "other"
     return kind, os.readlink(entry.path) if entry.is_symlink() else ""  # noqa: PTH115
 

@@ -1,4 +1,5 @@
-"""Everything that decides a result besides its inputs: the program, the installed packages, the request, and the working folder."""
+"""Hashes everything that determines a result besides its inputs: the program, the installed packages, the request, and the working
+folder."""
 
 from __future__ import annotations
 
@@ -26,26 +27,26 @@ ENVIRONMENT: Final = (
         "PYTHON_ZSTANDARD_IMPORT_POLICY",
     ),
 )
-"""The variables that a result, or how it is shown, may depend on."""
+"""The environment variables that can affect a result or its presentation."""
 
 
 def program_folders() -> tuple[Path, ...]:
-    """Return the folders of the program's own files."""
+    """Return the folders of drivelint's own files: code, queries and schemas."""
     return Path(__file__).parents[1], folder("queries"), folder("schemas")
 
 
 @cache
 def program_sha256() -> str:
-    """Return the hash of all files of the program, of Python, and of the names and versions of what is installed beside it.
+    """Return the hash of all files of the program, of Python's version, and of the names and versions of installed packages.
 
-    Everything counts: developers change drivelint without changing its version.
+    Developers change drivelint without changing its version.
     """
     whole = sha256()
     for root in program_folders():
         for place, folders, names in os.walk(root):
             folders[:] = sorted(name for name in folders if name != "__pycache__")
             for name in sorted(names):
-                path = os.path.join(place, name)  # noqa: PTH118 - a thousand files, and a tenth of a second is much here
+                path = os.path.join(place, name)  # noqa: PTH118 - faster for a thousand files
                 with open(path, "rb", buffering=0) as file:  # noqa: PTH123
                     content = file.read()
                 whole.update(f"{os.path.relpath(path, root)} {len(content)}\0".encode("utf-8", "surrogateescape"))
@@ -56,7 +57,7 @@ def program_sha256() -> str:
 
 
 def _installed() -> list[str]:
-    """Return the folders of what is installed, which are called by name and version."""
+    """Return the names of the metadata folders of installed packages, which contain name and version."""
     found: list[str] = []
     for place in sys.path:
         try:
@@ -67,10 +68,10 @@ def _installed() -> list[str]:
 
 
 def question_sha256(arguments: Mapping[str, object]) -> str:
-    """Return the hash of the program and of the request: the options, the folder, and the reader of the output."""
+    """Return the hash of the program and of the request: the options, the working folder, the terminal, and the environment variables."""
     asked = {
         "arguments": arguments,
-        "folder": os.getcwd(),  # noqa: PTH109 - relative paths begin there
+        "folder": os.getcwd(),  # noqa: PTH109 - relative paths start there
         "stdout": [sys.stdout.encoding, sys.stdout.isatty(), _terminal_size()],
         "names": sys.getfilesystemencoding(),
         "environment": {name: os.environ.get(name) for name in ENVIRONMENT},
@@ -79,7 +80,7 @@ def question_sha256(arguments: Mapping[str, object]) -> str:
 
 
 def _terminal_size() -> tuple[int, int] | None:
-    """Return columns and lines of the terminal; None where stdout is none."""
+    """Return the columns and lines of the terminal; None if stdout is not a terminal."""
     if not sys.stdout.isatty():
         return None
     for stream in (0, 1, 2):

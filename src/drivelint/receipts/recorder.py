@@ -1,7 +1,7 @@
 """Records the inputs of a run: every file that Python opens, every folder that it lists, and other searched paths.
 
-The state of each is taken before its first reading, and again at the end of the run. If both differ, it is not known which of them was
-judged. What the importer reads is code, and the package's own files are those of its version: the key of a receipt has both.
+The state of each input is taken before its first use and at the end of the run. If these differ, it is unknown which state was judged.
+Files that Python's importer reads and the package's own files are not recorded: the key of a receipt includes them.
 """
 
 from __future__ import annotations
@@ -25,16 +25,16 @@ if TYPE_CHECKING:
 _WRITES: Final = frozenset("wax+")
 _WRITE_FLAGS: Final = os.O_WRONLY | os.O_RDWR
 _NO_INPUT: Final = frozenset({"/dev/null", "/dev/urandom", "/proc/self/statm", "/proc/meminfo"})
-"""Files that say nothing, or how much memory there is, on which no result depends; nor does one on what was computed (`schedstat`)."""
+"""Files that affect no result: they are empty or random, or report memory. `schedstat`, which reports computing time, is also ignored."""
 
 
 class Recorder:
-    """What one run has read so far. `is_output`: whether a path is one of its outputs."""
+    """The inputs that one run has read so far. `is_output`: returns whether a path is an output of the run."""
 
     def __init__(self, is_output: IsOutput) -> None:
         self.is_output = is_output
         self.trouble: str | None = None
-        """Why the run cannot be repeated by looking at its inputs; None: it can."""
+        """Why a receipt cannot replace a new run; None: it can."""
         self._states: dict[str, str | None] = {}
         self._globs: dict[str, str] = {}
         self._written: set[str] = set()
@@ -47,8 +47,8 @@ class Recorder:
         )
 
     def look(self, path: str | os.PathLike[str]) -> None:
-        """Take the state of a path before it is read for the first time."""
-        whole = os.path.abspath(path)  # noqa: PTH100 - a link may lead to somewhere else later
+        """Record the state of a path before it is read for the first time."""
+        whole = os.path.abspath(path)  # noqa: PTH100 - a link may have another target later
         if (
             whole in self._states
             or whole in self._written
@@ -64,7 +64,7 @@ class Recorder:
                 self.trouble = f"{whole} cannot be looked at again"
 
     def add(self, inputs: Inputs | None) -> None:
-        """Add the inputs of another process of the same run; None: its part does not depend on its inputs alone."""
+        """Add the inputs of another process of the same run; None: the part of that process depends on more than its inputs."""
         with self._lock:
             if inputs is None:
                 self.trouble = "a worker's part cannot be repeated"
@@ -75,8 +75,8 @@ class Recorder:
                         self.trouble = f"{name} changed"
 
     def inputs(self) -> Inputs | None:
-        """Return the inputs; None: the result does not depend on them alone, or they changed while they were read."""
-        self._inside.busy = True  # from here on nothing is recorded in this thread
+        """Return the inputs; None: the result depends on more than the inputs, or they changed during the run."""
+        self._inside.busy = True  # from here on, nothing is recorded in this thread
         if self.trouble is not None:
             return None
         read = {path: said for path, said in self._states.items() if said is not None}
@@ -84,13 +84,13 @@ class Recorder:
         return found if found.are_unchanged(self.is_output) else None
 
     def hear(self, event: str, args: tuple[Any, ...], importer: bool) -> None:
-        """Take note of an audit event. Errors of the caller's are its own: nothing is raised here."""
+        """Record an audit event. It never raises an error, because that would affect the audited code."""
         if getattr(self._inside, "busy", False):
             return
         self._inside.busy = True
         try:
             self._hear(event, args, importer)
-        except Exception as error:  # noqa: BLE001 - whatever it is, it must not end the run
+        except Exception as error:  # noqa: BLE001 - no error may end the run
             self.trouble = f"{event}: {error!r}"
         finally:
             self._inside.busy = False
@@ -114,7 +114,7 @@ class Recorder:
 
 
 def is_below(path: str, folder: str) -> bool:
-    """Whether a path is that of a folder or of something in it, both without links."""
+    """Return whether a path is a folder or below it. Both paths must be without links."""
     return path == folder or path.startswith(folder.rstrip(os.sep) + os.sep)
 
 
@@ -127,12 +127,12 @@ _has_hook: Final[list[bool]] = []
 
 @contextmanager
 def recording(is_output: IsOutput, named_paths: Iterable[str | os.PathLike[str]]) -> Iterator[Recorder]:
-    """Record the inputs of this process inside the block. `named_paths`: given paths, which are examined first."""
+    """Record the inputs of this process inside the block. `named_paths`: paths in the request, whose states are recorded first."""
     recorder = Recorder(is_output)
     for path in named_paths:
         recorder.look(path)
     if not _has_hook:
-        sys.addaudithook(_hook)  # it stays as long as the process
+        sys.addaudithook(_hook)  # a hook cannot be removed
         _has_hook.append(True)
     _recorders.append(recorder)
     try:
@@ -142,7 +142,7 @@ def recording(is_output: IsOutput, named_paths: Iterable[str | os.PathLike[str]]
 
 
 def active() -> Recorder | None:
-    """Return the recorder of the run that goes on in this process; None: nothing is recorded."""
+    """Return the recorder of the current run in this process; None: nothing is recorded."""
     return _recorders[-1] if _recorders else None
 
 
@@ -150,14 +150,14 @@ def _hook(event: str, args: tuple[Any, ...]) -> None:
     if not _recorders or event not in _EVENTS:
         return
     importer = _caller().startswith(("importlib.", "_frozen_importlib", "zipimport"))
-    for recorder in tuple(_recorders):  # another thread may end one
+    for recorder in tuple(_recorders):  # another thread may remove a recorder
         recorder.hear(event, args, importer)
 
 
 def _caller() -> str:
-    """Return the module whose code raised the event; '' for none, as of a thread of a library."""
+    """Return the module whose code raised the event; '' if there is none, as in a thread of a library."""
     try:
-        return str(sys._getframe(2).f_globals.get("__name__", ""))  # noqa: SLF001 - nothing else tells the importer from others
+        return str(sys._getframe(2).f_globals.get("__name__", ""))  # noqa: SLF001 - the only way to recognise the importer
     except ValueError:
         return ""
 

@@ -1,7 +1,7 @@
-"""The receipts in the user's cache folder: one file each, sealed with the hash of its bytes, and no more than a few.
+"""Stores receipts in the user's cache folder: one file each, protected by a hash, and limited in number and size.
 
-A file is a line of JSON about the run, the files that it wrote, and 32 bytes of hash. It appears whole or not at all; one that is damaged
-is none. The receipts that were not used for longest go first.
+A file consists of a line of JSON about the run, the files that the run wrote, and a hash of 32 bytes. Files are written atomically; damaged
+files are ignored. The least recently used receipts are removed first.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ if TYPE_CHECKING:
 
 MOST_RECEIPTS: Final = 100
 MOST_BYTES: Final = 1_000_000_000
-"""Of all receipts together."""
+"""Limit of the size of all receipts together in bytes."""
 MOST_BYTES_OF_ONE: Final = 200_000_000
-"""A run that writes more is judged again: copying so much takes long, too."""
+"""Limit of the output of one run in bytes. A larger run is judged again, because copying its output takes long, too."""
 _FORMAT: Final = "drivelint receipt 1"
 _SEAL_BYTES: Final = 32
 _PIECE: Final = 1 << 20
@@ -34,9 +34,9 @@ _PIECE: Final = 1 << 20
 
 @dataclass(frozen=True)
 class Receipt:
-    """A run: its inputs, output, notes and exit code, and the names and sizes of the files that it wrote.
+    """The receipt of a run: its inputs, output, notes and exit code, and the names and sizes of the files that it wrote.
 
-    `day`: on which it was, where that counts; `grown_files`: those of the files that grew during the run.
+    `day`: the day of the run, if the result depends on it. `grown_files`: names of files that were written in pieces during the run.
     """
 
     inputs: Inputs
@@ -49,7 +49,7 @@ class Receipt:
 
 
 class OpenedReceipt:
-    """A receipt whose file is open, so that it is not replaced meanwhile."""
+    """A receipt whose file is open, so that its content cannot be replaced meanwhile."""
 
     def __init__(self, receipt: Receipt, file: IO[bytes], start: int) -> None:
         self.receipt = receipt
@@ -57,7 +57,7 @@ class OpenedReceipt:
         self._start = start
 
     def unpack(self, work: Path) -> tuple[dict[str, bytes], dict[str, Path]]:
-        """Return name -> content, and name -> path of those of the files that grew during the run, which are put into `work`."""
+        """Return name -> content of the files, and name -> path of the `grown_files`, which are written into `work`."""
         self._file.seek(self._start)
         contents: dict[str, bytes] = {}
         grown_files: dict[str, Path] = {}
@@ -74,7 +74,7 @@ class OpenedReceipt:
 
 @contextmanager
 def open_receipt(key: str) -> Iterator[OpenedReceipt | None]:
-    """Open the receipt of a key; None: there is none, or it is damaged."""
+    """Open the receipt of a key; None: it does not exist or is damaged."""
     home = _folder()
     try:
         file = None if home is None else (home / key).open("rb")
@@ -92,7 +92,7 @@ def open_receipt(key: str) -> Iterator[OpenedReceipt | None]:
 
 
 def keep(key: str, receipt: Receipt, out: Path | None) -> None:
-    """Keep a receipt with the files that the run wrote into `out`, unless they are too large, or the folder cannot be written."""
+    """Store a receipt with the files that the run wrote into `out`, unless they are too large or the cache folder is not writable."""
     home = _folder()
     if home is None or sum(receipt.files.values()) > MOST_BYTES_OF_ONE:
         return
@@ -114,7 +114,7 @@ def _folder() -> Path | None:
 
 
 def _write(part: IO[bytes], key: str, receipt: Receipt, files: Sequence[Path]) -> None:
-    """Write a receipt. Errors: `OSError`, also if a file has another size than stated."""
+    """Write a receipt. Errors: `OSError`, also if a file does not have its stated size."""
     head = {"format": _FORMAT, "key": key, **asdict(receipt)}
     part.write(json.dumps(head).encode() + b"\n")
     for file, size in zip(files, receipt.files.values(), strict=True):
@@ -149,7 +149,7 @@ def _receipt(stored_fields: Mapping[str, Any]) -> Receipt:
 
 
 def _hash_of(file: IO[bytes], size: int) -> bytes:
-    """Return the hash of the next `size` bytes."""
+    """Return the hash of the next `size` bytes of a file."""
     whole = sha256()
     while size > 0 and (piece := file.read(min(size, _PIECE))):
         whole.update(piece)
@@ -158,7 +158,7 @@ def _hash_of(file: IO[bytes], size: int) -> bytes:
 
 
 def _remove_oldest(home: Path) -> None:
-    """Remove the receipts that were unused for longest, until the rest is small enough; parts of killed processes are among them."""
+    """Remove the least recently used receipts until the limits are met, including incomplete files of killed processes."""
     known = sorted(((path.stat().st_mtime_ns, path) for path in home.iterdir()), reverse=True)
     size = 0
     for n, (_, path) in enumerate(known, 1):

@@ -1,4 +1,4 @@
-"""The executors of tasks: one small protocol, and an adapter for each engine that implements it."""
+"""The executors of tasks: one small protocol, and one adapter for each engine."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class Outcome(NamedTuple):
-    """The outcome of a task: its receipts, or the error that it raised, or why its worker was lost (died, hung, out of memory)."""
+    """The outcome of a task: its receipts, the error that it raised, or why its worker was lost (died, hung, out of memory)."""
 
     task: Task
     receipts: Sequence[Receipt] = ()
@@ -22,7 +22,7 @@ class Outcome(NamedTuple):
 
 
 class Executor(Protocol):
-    """Runs tasks. Order, retries and quarantine are the driver's."""
+    """Runs tasks. The driver is responsible for order, retries and quarantine."""
 
     @property
     def capacity(self) -> int:
@@ -30,22 +30,22 @@ class Executor(Protocol):
         ...
 
     def submit(self, task: Task) -> None:
-        """Hand over a task."""
+        """Submit a task."""
         ...
 
     def wait(self) -> list[Outcome]:
-        """Return outcomes of tasks that have ended since, at least one; nothing only where no task is running.
+        """Wait until at least one task has ended, and return the outcomes of all ended tasks; an empty list if no task is running.
 
-        Errors: `ClusterError` where the whole engine is gone.
+        Errors: `ClusterError` if the engine does not respond.
         """
         ...
 
     def close(self) -> None:
-        """End all workers, also those that are at work."""
+        """Stop all workers, including busy ones."""
         ...
 
 
 class ClusterError(DriveLintError):
-    """A cluster that does not answer, or is gone: the same command can be given again."""
+    """A cluster does not answer, or was lost. The same command can be run again."""
 
     exit_code = ExitCode.TEMPFAIL

@@ -11,13 +11,13 @@ if TYPE_CHECKING:
     from drivelint.audit.executors import Executor
 
 _HOST_AND_PORT: Final = re.compile(r"[\w.-]+:\d+")
-"""Ray's name of the cluster for a process on one of its nodes."""
+"""An address of a Ray cluster in the form `host:port`, for a process on one of its nodes."""
 
 
 def open_executor(cluster: str | None, *, workers: int | None, memory: int | None, timeout_s: float | None) -> Executor:
-    """Return the executor for `--cluster`, or the local one, whose options the others are.
+    """Return the executor for `--cluster`, or the local one, to which the other arguments apply.
 
-    Errors: `UsageError` for an address of neither, or an engine that is not installed; `ClusterError`.
+    Errors: `UsageError` for an unknown kind of address, or an engine that is not installed; `ClusterError`.
     """
     if cluster is None:
         from drivelint.audit.executors.local import LocalPool

@@ -1,4 +1,4 @@
-"""Tasks on a Dask cluster, whose workers have one thread each and lie where logs, map and results can be reached."""
+"""Runs tasks on a Dask cluster. Its workers have one thread each, and must be able to access logs, map and results."""
 
 from __future__ import annotations
 
@@ -18,21 +18,22 @@ distributed: Any = import_module("distributed")  # not typed
 ANSWER_S = 30.0
 """Seconds in which a scheduler must answer."""
 WORKERLESS_S = 120.0
-"""Seconds for which an audit waits for a worker when there is none."""
+"""Seconds for which an audit waits for a worker if the cluster has none."""
 _LOOK_S: Final = 5.0
-"""Seconds after which a wait looks whether the scheduler and workers are still there."""
+"""Seconds between checks whether the scheduler and workers are still there."""
 _ENDED: Final = frozenset({"finished", "error"})
 
 
 class DaskCluster:
-    """A Dask scheduler at an address, with TLS for `tls://` as Dask's own configuration says.
+    """A Dask scheduler at an address; for `tls://`, Dask's own configuration sets up TLS.
 
-    A task whose worker dies is lost once the scheduler has tried it as often as its `allowed-failures` say: set them to 0, as the
-    driver tries again, each drive alone. Errors: `ClusterError` where no scheduler answers, has no workers, or they have threads.
+    If a worker dies, the scheduler repeats the task up to `allowed-failures` times before the task is lost. Set this to 0, because the
+    driver itself repeats each drive alone. Errors: `ClusterError` if no scheduler answers, it has no workers, or a worker has several
+    threads.
     """
 
     def __init__(self, address: str) -> None:
-        # Dask logs a lost scheduler with a traceback; `ClusterError` says it in one line
+        # Dask logs a lost scheduler with a traceback; `ClusterError` reports it in one line
         logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
         try:
             self._client = distributed.Client(address, timeout=ANSWER_S)
@@ -64,7 +65,7 @@ class DaskCluster:
                 ended = distributed.wait(list(self._running), timeout=_LOOK_S, return_when="FIRST_COMPLETED").done
             except TimeoutError:
                 ended = set()
-            except CancelledError as error:  # our words replace its text, which lists all tasks
+            except CancelledError as error:  # our message replaces the original text, which lists all tasks
                 lost = self._client.status != "running"
                 raise self._scheduler_error(
                     "the connection was lost" if lost else "its tasks were cancelled"
@@ -73,7 +74,7 @@ class DaskCluster:
                 raise self._scheduler_error(str(error)) from error
             if self._client.status != "running":
                 raise self._scheduler_error("the connection was lost")
-            # a result that was lost with its worker is among them: another worker makes it again
+            # futures whose result was lost with a worker are skipped: another worker computes them again
             ended = {future for future in ended if future.status in _ENDED}
             if ended:
                 self._workerless_since = None
@@ -82,7 +83,7 @@ class DaskCluster:
         return []
 
     def close(self) -> None:
-        """See `Executor.close`. The workers are the cluster's and stay."""
+        """See `Executor.close`. The workers belong to the cluster and keep running."""
         for future in self._running:
             future.cancel()
         self._client.close(timeout=5)
@@ -94,14 +95,14 @@ class DaskCluster:
             where = error.last_worker.address if error.last_worker else "unknown"
             return Outcome(task, loss_reason=f"the worker died ({where})")
         except Exception as error:
-            if future.status != "error":  # the task has not failed: its result cannot be fetched
+            if future.status != "error":  # the task itself has not failed, but its result cannot be fetched
                 raise self._scheduler_error("a result could not be fetched") from error
-            return Outcome(task, error=error)  # the driver distinguishes them
+            return Outcome(task, error=error)  # the driver distinguishes kinds of errors
 
     def _require_workers(self) -> None:
         try:
             workers = self._client.nthreads(callback_timeout=_LOOK_S)
-        except OSError:  # Dask finds out whether the connection is lost, and then cancels the tasks
+        except OSError:  # Dask itself detects a lost connection, and then cancels the tasks
             return
         now = time.monotonic()
         if workers:

@@ -1,4 +1,4 @@
-"""A pool of processes on this machine: one warm worker per core, each with limits of memory and computing time."""
+"""A pool of worker processes on this machine, one per core, each with limits of memory and computing time."""
 
 from __future__ import annotations
 
@@ -27,17 +27,17 @@ if TYPE_CHECKING:
     from drivelint.audit.model import Receipt, Task
 
 TASKS_PER_WORKER: Final = 500
-"""After so many tasks a worker is replaced, so that nothing that a library keeps can add up."""
+"""A worker is replaced after this many tasks, so that leaks in libraries cannot accumulate."""
 _LOOK_S: Final = 0.1
 _BEGUN: Final = "begun"
-"""The message of a worker that has opened its database; its time counts from then on."""
+"""The message of a worker that has opened its database. Its computing time counts from then on."""
 
 
 class LocalPool:
-    """Runs tasks in processes. A process that dies is replaced, and one that takes too much is ended.
+    """Runs tasks in processes. A process that dies is replaced; a process that exceeds a limit is killed.
 
-    `workers`: number of processes, None: one per core. `memory`: resident bytes of one process. `timeout_s`: seconds per drive for which
-    a process may compute; its start does not count, nor the time in which others have the machine.
+    `workers`: number of processes; None: one per core. `memory`: limit of resident bytes per process. `timeout_s`: limit of computing time
+    per drive in seconds. The start of a process does not count, nor the time in which it waits for a processor.
     """
 
     def __init__(self, workers: int | None = None, memory: int | None = None, timeout_s: float | None = None) -> None:
@@ -74,7 +74,7 @@ class LocalPool:
         self._workers.clear()
 
     def _hand_over(self) -> None:
-        """Give waiting tasks to workers that have none, and start workers as far as there may be more."""
+        """Give waiting tasks to idle workers, and start workers up to the capacity."""
         for worker in [each for each in self._workers if each.is_over]:
             worker.end()
             self._workers.remove(worker)
@@ -89,7 +89,7 @@ class LocalPool:
 
 
 class _Worker:
-    """One process and the task that it has, if any."""
+    """One worker process and its task, if it has one."""
 
     def __init__(self, memory: int | None, timeout_s: float | None) -> None:
         context = multiprocessing.get_context("spawn")  # a fork would copy threads that hold locks
@@ -106,18 +106,18 @@ class _Worker:
 
     @property
     def is_over(self) -> bool:
-        """Whether it has no task and is to get none any more."""
+        """Whether the worker has no task and must not get another one."""
         return self.task is None and (self._n_tasks >= TASKS_PER_WORKER or not self._process.is_alive())
 
     def begin(self, task: Task) -> None:
-        """Hand over a task."""
+        """Send a task to the worker."""
         self.task, self._begun_s = task, None
         self._n_tasks += 1
-        with suppress(OSError):  # it has died, and `hear` says so
+        with suppress(OSError):  # the worker has died, which `hear` reports
             self.pipe.send(task)
 
     def hear(self) -> Outcome | None:
-        """Return the outcome of the task; None: it has only begun."""
+        """Receive a message of the worker. Return the outcome of the task; None: the task has only begun."""
         try:
             told: str | list[Receipt] | Exception = self.pipe.recv()
         except (EOFError, OSError):
@@ -131,7 +131,7 @@ class _Worker:
         return Outcome(task, error=told) if isinstance(told, Exception) else Outcome(task, told)
 
     def look(self) -> Outcome | None:
-        """Return that the worker was lost if it takes too much; then it is ended."""
+        """Kill the worker if it exceeds a limit, and return the loss as the task's outcome; None: it is within its limits."""
         if self._memory is not None and (taken := resident_bytes(self._process.pid)) > self._memory:
             return self._lost_outcome(
                 f"the worker took {taken / 1e6:.0f} MB of memory, but the limit is {self._memory / 1e6:.0f} MB"
@@ -161,14 +161,14 @@ class _Worker:
         return computed_s(self._process.pid)
 
     def end(self) -> None:
-        """End the process."""
+        """Kill the process."""
         self.pipe.close()
         self._process.kill()
         self._process.join()
 
 
 def _serve(pipe: Connection, parent: int) -> None:
-    """Run the tasks that come, in a process of its own."""
+    """Run the tasks that arrive through the pipe. This is the main function of a worker process."""
     begin_worker(parent)
     while True:
         try:
@@ -180,21 +180,21 @@ def _serve(pipe: Connection, parent: int) -> None:
             warm_up(task.settings)
             pipe.send(_BEGUN)
             told = run_task(task)
-        except Exception as error:  # noqa: BLE001 - handed on: the driver tells them apart
+        except Exception as error:  # noqa: BLE001 - passed on: the driver distinguishes errors
             told = error
         try:
             pipe.send(told)
         except OSError:
             return
-        except Exception:  # noqa: BLE001 - some errors of libraries cannot be handed on as they are
+        except Exception:  # noqa: BLE001 - some errors of libraries cannot be pickled
             pipe.send(InternalError(f"{type(told).__name__}: {told}"))
 
 
 @contextmanager
 def deaf_to_ctrl_c() -> Iterator[None]:
-    """Block Ctrl-C in threads and processes that start inside this block: the main thread alone handles it."""
-    sys.warnoptions.append("ignore:resource_tracker")  # it removes what an interrupted audit leaves, without a word
-    resource_tracker.ensure_running()  # its start inside the block would end the block
+    """Block Ctrl-C in threads and processes that start inside this block: only the main thread handles it."""
+    sys.warnoptions.append("ignore:resource_tracker")  # no warnings about resources that it frees
+    resource_tracker.ensure_running()  # started later, it would unblock the signal
     sys.warnoptions.pop()
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
@@ -204,12 +204,12 @@ def deaf_to_ctrl_c() -> Iterator[None]:
 
 
 def begin_worker(parent: int) -> None:
-    """Prepare a worker: Ctrl-C and a terminal that is gone are the driver's, and a worker whose driver was killed ends."""
+    """Prepare a worker process: it ignores Ctrl-C and a closed terminal, which the driver handles, and ends if its driver was killed."""
     leave_out_pandas()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if (hang_up := getattr(signal, "SIGHUP", None)) is not None:  # not on Windows
         signal.signal(hang_up, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)  # the command's own way to end is not a worker's
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)  # the handler of the command is not for workers
     try:
         import ctypes
 
@@ -229,7 +229,7 @@ def cores() -> int:
 
 
 def computed_s(process: int | None) -> float:
-    """Return for how many seconds a process has computed; if the system does not report it, the time of day is used."""
+    """Return the processor time of a process in seconds; if the system does not report it, a monotonic clock."""
     try:
         told = Path(f"/proc/{process}/stat").read_text(encoding="ascii", errors="replace").rpartition(")")[2].split()
         return (int(told[11]) + int(told[12])) / os.sysconf("SC_CLK_TCK")  # utime and stime, of all its threads

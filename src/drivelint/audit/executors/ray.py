@@ -1,4 +1,4 @@
-"""Tasks on a Ray cluster, whose workers lie where logs, map and results can be reached."""
+"""Runs tasks on a Ray cluster, whose workers must be able to access logs, map and results."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from drivelint.audit.worker import run_task
 if TYPE_CHECKING:
     from drivelint.audit.model import Task
 
-ray: Any = import_module("ray")  # typed in part, and not installed where the types are checked
+ray: Any = import_module("ray")  # only partly typed, and not installed where types are checked
 exceptions: Any = import_module("ray.exceptions")
 _WORKER_LOSSES: Final = (
     exceptions.WorkerCrashedError,
@@ -23,9 +23,9 @@ _WORKER_LOSSES: Final = (
 
 
 class RayCluster:
-    """A Ray cluster at an address (`ray://...`, or `auto` for the one of this machine). A task takes one CPU.
+    """A Ray cluster at an address (`ray://...`, or `auto` for the cluster of this machine). A task uses one CPU.
 
-    Errors: `ClusterError` where none answers.
+    Errors: `ClusterError` if no cluster answers.
     """
 
     def __init__(self, address: str) -> None:
@@ -57,7 +57,7 @@ class RayCluster:
         return [_outcome(future, self._running.pop(future)) for future in ended]
 
     def close(self) -> None:
-        """See `Executor.close`. The cluster stays."""
+        """See `Executor.close`. The cluster keeps running."""
         for future in self._running:
             ray.cancel(future, force=True)
         ray.shutdown()

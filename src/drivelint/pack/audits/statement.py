@@ -1,6 +1,6 @@
 """The in-toto statement about an audit: every drive with its log, its map, its status and its verdicts by kind.
 
-A test is a drive. It has passed if it was judged whole and on a map that fits, and nothing about it failed, is unknown or only just held.
+Each drive is a test. It has passed if its complete log was judged on a map that fits, and no verdict is a failure, unknown or a near miss.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def statement(folder: Path, evidence: Mapping[str, Any]) -> bytes:
-    """Return the statement about the audit whose tables stand, with their manifest, in the pack `folder`."""
+    """Return the statement about the audit whose tables and manifest are in the pack `folder`."""
     with opened_packed(folder / AUDIT) as (con, _):
         drives = con.execute(query("audit/drive_outcomes"), {"misfits": sorted(MISFITS)}).to_arrow_table().to_pylist()
     outcomes = {word: _names(drives, word) for word in ("pass", "near_miss", "fail", "unknown")}

@@ -1,4 +1,4 @@
-"""The tables of an audit in a pack: whether they agree, its worst findings, and one drive of it as a result of a check."""
+"""The tables of an audit in a pack: checks their consistency, selects the worst findings, and returns one drive as a check's result."""
 
 from __future__ import annotations
 
@@ -47,13 +47,13 @@ if TYPE_CHECKING:
 AUDIT: Final = f"{DATA}/audit"
 FILES: Final = (AUDIT_FILE, SUMMARY_FILE, RULES_FILE)
 FINDING_KEYS: Final = ("key", *SAID_OF_FINDINGS)
-"""The entry of `evidence.json` for a finding of an audit; its drive is identified by its key."""
+"""The fields of `evidence.json` about a finding of an audit. `key` identifies its drive."""
 _OF_RUN: Final = frozenset({"reused", "n_asked", "n_absent"})
-"""The facts in `summary.json` about the run that wrote it; no table has them."""
+"""The keys of `summary.json` about the run that wrote it; they cannot be derived from the tables."""
 
 
 class PackedDrive(NamedTuple):
-    """A drive with findings of which a pack has the rows, as the result of a check; `receipt`: its row of `receipts`."""
+    """A drive, as the result of a check, with those of its findings whose rows are in the pack. `receipt`: its row of `receipts`."""
 
     key: str
     receipt: Row
@@ -62,17 +62,17 @@ class PackedDrive(NamedTuple):
 
 
 def is_audit(folder: Path) -> bool:
-    """Whether `audit --out` wrote a folder."""
+    """Return whether a folder was written by `audit --out`."""
     return (folder / AUDIT_FILE).is_file()
 
 
 def is_packed(folder: Path) -> bool:
-    """Whether a pack is of an audit."""
+    """Return whether a pack contains an audit."""
     return (folder / AUDIT).is_dir()
 
 
 def names(results: ResultStore) -> list[str]:
-    """Return the files of an audit that a pack has: its settings, summary and rules, and all chunks of its tables."""
+    """Return the files of an audit that a pack contains: its settings, summary and rules, and all chunks of its tables."""
     return [*FILES, *(chunk_name(table, each) for table in (*TABLES, "receipts") for each in chunks(results))]
 
 
@@ -80,7 +80,7 @@ def facts(folder: Path, con: duckdb.DuckDBPyConnection, audit: Audit, rules: Seq
     """Return the values of `evidence.json` that follow from the tables in the pack `folder`."""
     counted = summed(con, 0)
     fail_on = str(audit.audit_json["fail_on"])
-    # of the tables, which have those of copies and both of a touch of two egos
+    # all rows of the table: also findings of copied logs, and both findings of a contact of two egos
     ((n_findings,),) = con.execute("SELECT count(*) FROM findings").fetchall()
     not_judged = con.execute(statement("audit/not_judged")).to_arrow_table().to_pylist()
     return {
@@ -106,7 +106,7 @@ def unlike_summary(con: duckdb.DuckDBPyConnection, audit: Audit, packed_summary:
 def unlike_receipts(results: ResultStore, rules: pa.Table, *, same_libraries: bool) -> Iterator[Problem]:
     """Yield the differences between receipts and the rows of their drives, chunk by chunk.
 
-    `same_libraries`: the hash of the rows, which is one of Parquet, is compared, too.
+    `same_libraries`: also compare the hashes of the rows, which depend on the version of pyarrow.
     """
     stable = rules.filter(pc.equal(rules["status"], "stable"))["rule_id"].combine_chunks()
     schemas = {table: rows.schema for table, rows in empty_rows().items()}
@@ -132,11 +132,11 @@ def unlike_receipts(results: ResultStore, rules: pa.Table, *, same_libraries: bo
 
 
 def _unlike(receipt: Row, due: dict[str, Any], *, same_libraries: bool) -> list[str]:
-    """Return the differences between a receipt and its rows."""
+    """Return the fields of a receipt that differ from `due`, the values computed from the drive's rows."""
     told = {name: dict(value) if isinstance(due.get(name), dict) else value for name, value in receipt.items()}
     if told["status"] == "quarantined" and due["status"] == "refused":
         due |= {"status": "quarantined"}
-        if str(due["reason"]).endswith(str(told["reason"])):  # the row names the log before it
+        if str(due["reason"]).endswith(str(told["reason"])):  # the row has the log's name in front
             due |= {"reason": told["reason"]}
     if not same_libraries:
         due.pop("rows_sha256")
@@ -144,7 +144,7 @@ def _unlike(receipt: Row, due: dict[str, Any], *, same_libraries: bool) -> list[
 
 
 def _by_key(rows: pa.Table) -> dict[str, pa.Table]:
-    """Return key -> its rows, which lie together, as chunks have them."""
+    """Return key -> its rows. The rows of a key are contiguous, as in chunks."""
     counted = pc.value_counts(rows["key"]).to_pylist()
     ends = [0]
     for each in counted:
@@ -153,7 +153,7 @@ def _by_key(rows: pa.Table) -> dict[str, pa.Table]:
 
 
 def worst_findings(con: duckdb.DuckDBPyConnection, max_findings: int | None) -> list[Row]:
-    """Return the worst findings in the order of reports, or all of them. Each has the key of its drive."""
+    """Return the worst findings, each with the key of its drive, in the order of reports. `max_findings`: None: all findings."""
     sql = statement("audit/worst_findings", least_share=str(LEAST_SHARE))
     found: list[Row] = con.execute(sql, {"most": max_findings}).to_arrow_table().to_pylist()
     return found
@@ -162,7 +162,7 @@ def worst_findings(con: duckdb.DuckDBPyConnection, max_findings: int | None) -> 
 def packed_drives(
     con: duckdb.DuckDBPyConnection, audit: Audit, rules: pa.Table, findings: Sequence[Row], rules_dirs: tuple[Path, ...]
 ) -> Iterator[PackedDrive]:
-    """Yield the drives of these findings, one after the other, as results of checks. `rules_dirs`: where they are now."""
+    """Yield the drives of these findings as results of checks. `rules_dirs`: the present paths of the folders of rules."""
     for key, rows in group_rows(findings, lambda row: row["key"]).items():
         (receipt,), (drive,) = (
             con.execute(f"FROM {table} WHERE key = ?", [key]).to_arrow_table().to_pylist()
@@ -181,7 +181,8 @@ def packed_drives(
 
 
 def asked_of(audit: Audit, receipt: Row | None, rules_dirs: tuple[Path, ...]) -> RunRequest:
-    """Return the request of a check of a drive with the same result; None: of no drive."""
+    """Return the request of a check that has the same result as the audit for the drive of a receipt. `receipt`: None: a request without a
+    drive."""
     options = msgspec.json.decode(
         (receipt or {}).get("options") or "{}", type=DriveInput, dec_hook=lambda kind, value: kind(value)
     )
@@ -199,14 +200,14 @@ def asked_of(audit: Audit, receipt: Row | None, rules_dirs: tuple[Path, ...]) ->
 
 
 def settings_of(audit: Audit) -> JudgeSettings:
-    """Return the settings that decided the verdicts of an audit, with the folders of rules where they were."""
+    """Return the settings that determined the verdicts of an audit, with the original paths of the folders of rules."""
     return msgspec.convert(audit.settings, JudgeSettings, dec_hook=lambda kind, value: kind(value))
 
 
 def logs_of(con: duckdb.DuckDBPyConnection, findings: Sequence[Row], log_paths: Sequence[Path]) -> dict[str, Path]:
-    """Return hash -> path of the given logs whose drives have one of these findings; folders are searched.
+    """Return hash -> path of the given logs that belong to a drive with one of these findings. Folders are searched.
 
-    Files of other sizes are not read. Errors: `UsageError` where no log is of any; `TraceError` for what is not there.
+    Files of other sizes are not read. Errors: `UsageError` if no log belongs to such a drive; `TraceError` for a missing path.
     """
     if not log_paths:
         return {}
@@ -223,9 +224,9 @@ def logs_of(con: duckdb.DuckDBPyConnection, findings: Sequence[Row], log_paths: 
 
 
 def located_drive(drive: PackedDrive, log: Path | None, map_: Path | None) -> RunRequest:
-    """Return the check of a drive with the paths at which its log and map are now; both were hashed.
+    """Return the check of a drive with the present paths of its log and map, after comparing both with their hashes.
 
-    `log`: None: it is where it was. `map_`: counts for the drives that were judged on it. Errors: as `inputs.located`.
+    `log`: None: the original path. `map_`: used only if the drive was judged on this map. Errors: as `inputs.located`.
     """
     if map_ is not None and (not map_.is_file() or sha256_of(map_) != drive.receipt["map_sha256"]):
         map_ = None

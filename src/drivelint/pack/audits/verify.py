@@ -1,4 +1,4 @@
-"""Verifies the pack of an audit: its tables, its statements about them, and the drives whose logs are available."""
+"""Verifies the pack of an audit: its tables, its statement, and the drives whose logs are available."""
 
 from __future__ import annotations
 
@@ -49,10 +49,11 @@ _NOT_FACTS: Final = frozenset({
 
 @dataclass
 class _Pack:
-    """The opened pack of an audit, and the progress with its findings.
+    """The opened pack of an audit, with counts of what was verified.
 
-    `rules_by_id`: the rules that judged; None: this drivelint has others. `packed_by`: the version of drivelint that wrote the pack.
-    `n_judged`: drives that were judged again; `n_alone`: drives without a log, of which the SQL was run; `n_run`: their findings.
+    `rules_by_id`: the rules that judged; None: this drivelint has other rules. `packed_by`: version of drivelint that wrote the pack.
+    `n_judged`: number of drives that were judged again. `n_alone`: number of drives without a log, for which only the findings' SQL was
+    run. `n_run`: number of their findings.
     """
 
     folder: Path
@@ -70,9 +71,9 @@ class _Pack:
 
 
 def verified(request: VerifyRequest) -> tuple[list[Problem], str, str, list[str]]:
-    """Return the problems, the drives judged again in words, the statements of the pack, and what was not examined.
+    """Return the problems, a phrase about the drives judged again, the result stated in the pack, and notes on what was not examined.
 
-    Errors: `UsageError` for logs or a map that were given and are of no drive in the pack.
+    Errors: `UsageError` for given logs or a given map that belong to no drive in the pack.
     """
     with ExitStack() as stack:
         try:
@@ -118,7 +119,7 @@ def _of_tables(pack: _Pack) -> Iterator[Problem]:
 
 
 def _of_evidence(pack: _Pack, findings: Sequence[Row]) -> Iterator[Problem]:
-    """Yield the contradictions between `evidence.json` and the tables, and the files that nothing names."""
+    """Yield the contradictions between `evidence.json` and the tables, and the files that are not named anywhere."""
     folder, evidence = pack.folder, pack.evidence
     due = tables.facts(folder, pack.con, pack.audit, pack.rules.to_pylist())
     due["findings_left_out"] = due["n_findings"] - len(findings)
@@ -152,9 +153,9 @@ def _of_statement(folder: Path, due: bytes) -> list[Problem]:
 
 
 def _of_drive(pack: _Pack, drive: tables.PackedDrive, log: Path | None, map_: Path | None) -> list[Problem]:
-    """Judge a drive again; where its log is not at hand, run the SQL of its findings.
+    """Judge a drive again, or, without its log, run the SQL of its findings. Return the problems.
 
-    Errors: `UsageError` where a log was given and its map cannot be found.
+    Errors: `UsageError` if a log was given but its map cannot be found.
     """
     inputs = pack.evidence["inputs"]
     try:
@@ -194,7 +195,7 @@ def _of_drive(pack: _Pack, drive: tables.PackedDrive, log: Path | None, map_: Pa
 
 
 def _request_with_pack_paths(pack: _Pack, drive: tables.PackedDrive) -> RunRequest:
-    """Return the check of a drive with the paths of the files in the pack. Errors: `ValueError` for a path that leads out of it."""
+    """Return the check of a drive with the paths of the files in the pack. Errors: `ValueError` for a path outside the pack."""
     check_request = drive.check_request
     if drive.key in pack.evidence["mappings"]:
         check_request = replace(check_request, mapping=str(inside(pack.folder, pack.evidence["mappings"][drive.key])))
@@ -209,7 +210,7 @@ def _request_with_pack_paths(pack: _Pack, drive: tables.PackedDrive) -> RunReque
 
 
 def _of_rows(pack: _Pack, drive: tables.PackedDrive) -> list[Problem]:
-    """Run the SQL of a drive's findings on the rows in the pack."""
+    """Run the SQL of a drive's findings on the rows in the pack, and return the findings with other numbers."""
     pack.n_alone += 1
     if pack.rules_by_id is None:
         return []
@@ -227,7 +228,7 @@ def _rules_by_id(rules: pa.Table, rules_dirs: tuple[Path, ...]) -> dict[str, Rul
 
 
 def _same_rows(pack: _Pack, drive: tables.PackedDrive, fresh: Result) -> bool:
-    """Return whether a drive that was judged again has the rows of the audit."""
+    """Return whether the new result of a drive has the same rows as the audit."""
     rows = {table: with_key(getattr(fresh, table), drive.key, None) for table in TABLES}
     if rows_sha256(rows) == drive.receipt["rows_sha256"]:
         return True
@@ -258,7 +259,7 @@ def _judging(pack: _Pack) -> str:
 
 
 def _notes(pack: _Pack) -> list[str]:
-    """Return notes on results that were not compared with the logs, and on rules that are not drivelint's own."""
+    """Return notes on results that were not compared with the logs, on other versions, and on rules that are not drivelint's own."""
     notes, evidence, told = [], pack.evidence, pack.audit.audit_json["versions"]
     if pack.n_alone:
         ran = (

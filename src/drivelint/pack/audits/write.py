@@ -1,4 +1,4 @@
-"""The content of the pack of an audit: its tables, the rules, and the data that reproduce its worst findings."""
+"""Writes the content of the pack of an audit: its tables, the rules, and the data that reproduce its worst findings."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 def content(request: PackRequest) -> Content:
-    """Return the function that packs an audit. Errors: `UsageError` for one that has not ended."""
+    """Return the functions that pack an audit. Errors: `UsageError` for an audit that has not ended."""
     with open_audits(str(request.folder)) as (_, audit, _):
         if audit.warning:
             raise UsageError(audit.warning)
@@ -37,7 +37,7 @@ def content(request: PackRequest) -> Content:
 
 
 def _payload(work: Path, request: PackRequest) -> dict[str, Any]:
-    """Copy the tables; then judge the drives of the worst findings again, one by one. Return the content of `evidence.json`."""
+    """Copy the tables, judge the drives of the worst findings again, and write their evidence. Return the content of `evidence.json`."""
     results = LocalFolder(request.folder)
     names = tables.names(results)
     for name in names:
@@ -90,7 +90,8 @@ def _findings(
 
 
 class _Inputs:
-    """Copies mappings, with `with_inputs` also logs and maps, into a pack; a shared file once. Each dict: key of a drive -> place."""
+    """Copies mappings, and with `with_inputs` also logs and maps, into a pack. A file that drives share is copied once. Each dict: key of a
+    drive -> path in the pack."""
 
     def __init__(self, work: Path, *, with_inputs: bool) -> None:
         self._work, self._with_inputs = work, with_inputs
@@ -100,10 +101,10 @@ class _Inputs:
         self.maps: dict[str, str] = {}
 
     def add(self, key: str, check_request: RunRequest) -> None:
-        """Copy the log and the map of a drive; `check_request` has their present paths."""
+        """Copy the mapping of a drive, and with `with_inputs` its log and map. `check_request` has their present paths."""
         if (
             check_request.mapping is not None and Path(check_request.mapping).is_file()
-        ):  # else the name of a shipped one
+        ):  # else the name of a built-in mapping
             self.mappings[key] = self._place(Path(check_request.mapping), "mapping")
         if not self._with_inputs:
             return
