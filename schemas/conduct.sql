@@ -1,5 +1,5 @@
--- The library, second part: the conditions of a step, the ego's own motion, and what it does with the others on its road.
--- As in derived.sql: what is present but cannot be placed is a row with NULL, never an absent row.
+-- The derived tables, second part: the conditions of a step, the ego's own motion, and its conduct towards other road users.
+-- As in derived.sql, an actor that is present without a known position has a row with NULL, never an absent row.
 
 -- lifetime: part
 CREATE TABLE ego_condition (

@@ -1,5 +1,5 @@
--- The library: what queries/derive/<table>.sql fills. Keyed by (drive_id, ego_id) unless it is a property of the map or of any actor.
--- What is present but cannot be placed is a row with NULL, never an absent row.
+-- The derived tables, first part: queries/derive/<table>.sql fills each. The key is (drive_id, ego_id), except for properties of the map
+-- or of any actor. An actor that is present without a known position has a row with NULL, never an absent row.
 
 -- ---- the map, prepared once per environment
 
@@ -119,7 +119,7 @@ CREATE TABLE lane_cell (
     slack1_m DOUBLE NOT NULL          -- see lane_segment
 );
 
--- ---- time, and what the drive can tell
+-- ---- time, and the inputs that the drive has
 
 -- lifetime: part
 CREATE TABLE ego_clock (
@@ -197,7 +197,7 @@ CREATE TABLE registration (
     reason VARCHAR NOT NULL           -- why ok is true or false, as JSON from the macro why
 );
 
--- ---- where everybody is
+-- ---- positions of the actors
 
 -- lifetime: part
 CREATE TABLE road_user (

@@ -1,5 +1,5 @@
--- The road, one format for all maps. Keyed by environment_id (map hash, offset and handedness), so a thousand drives share one.
--- A lanelet is one lane of one lane section. Its points run in the direction of travel, so left and right are the driver's.
+-- The road, in one format for all maps. The key is environment_id (map hash, offset and handedness): many drives share one map.
+-- A lanelet is one lane of one lane section. Its points run in the direction of travel: left and right are as the driver sees them.
 
 -- lifetime: run
 CREATE TABLE environment (

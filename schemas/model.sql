@@ -1,5 +1,5 @@
--- The trace as recorded: what ingest writes and nothing later changes.
--- Frame: right-handed map metres, box centres. Time: integer nanoseconds of the log's own clock. Everything else SI.
+-- The trace as recorded: the tables that the readers of logs write, and that no later step changes.
+-- Positions: box centres, in metres of the map, right-handed. Times: integer nanoseconds of the log's own clock. Other values: SI units.
 
 -- lifetime: run
 CREATE TABLE data_log (
@@ -99,7 +99,7 @@ CREATE TABLE quality (
     message VARCHAR NOT NULL          -- what was observed and its effect, in one sentence
 );
 
--- What of an actor is not believed, and when: a step at which a rule uses it is unknown.
+-- Quantities of an actor that the checks of the log doubt, with the time: a step at which a rule uses one of them is unknown.
 -- lifetime: drive
 CREATE TABLE doubt (
     drive_id VARCHAR NOT NULL,        -- the drive
