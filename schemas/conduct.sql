@@ -115,7 +115,7 @@ CREATE TABLE neighbour (
     side VARCHAR NOT NULL,            -- [side] the side of the ego on which the object is {position}
     gap_m DOUBLE NOT NULL,            -- see beside {position, heading, size}
     clearance_m DOUBLE,               -- see pair {position, heading, size}
-    ego_speed_mps DOUBLE,             -- ego's speed {velocity}
+    ego_speed_mps DOUBLE,             -- speed of the ego {velocity}
     speed_mps DOUBLE,                 -- speed of the object {velocity}
     ego_left_mps DOUBLE               -- the ego's speed across the corridor, left positive: from its velocity if known, else from speed and heading {velocity}
 );
@@ -124,7 +124,7 @@ CREATE TABLE neighbour (
 CREATE TABLE follower (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    t_ns BIGINT NOT NULL,             -- the step; no row: not known
+    t_ns BIGINT NOT NULL,             -- the step; no row: it is not known which vehicle is behind
     lane VARCHAR NOT NULL,            -- [lane_of_follower] the lane; one row per lane {position}
     object_id VARCHAR,                -- the nearest vehicle behind in this lane, within 200 m, that heads in the ego's direction; NULL: no vehicle
     gap_m DOUBLE,                     -- distance from its front to the ego's rear along the corridor; negative: alongside {position, heading, size}
@@ -143,7 +143,7 @@ CREATE TABLE lane_crossing (
     k INTEGER NOT NULL,               -- see step
     t_before_ns BIGINT NOT NULL,      -- the step before {position}
     seen BOOLEAN NOT NULL,            -- there is no hole between the two steps {position}
-    side INTEGER NOT NULL             -- 1 to the left, -1 to the right {position}
+    side INTEGER NOT NULL             -- the side to which the ego crosses: 1 left, -1 right {position}
 );
 
 -- lifetime: part
@@ -172,7 +172,7 @@ CREATE TABLE lane_change (
     leader_id VARCHAR,                -- the nearest vehicle ahead in the new lane at t_start_ns; NULL: none, see known {position}
     leader_gap_m DOUBLE,              -- distance from the ego's front to the leader's rear {position, heading, size}
     leader_speed_mps DOUBLE,          -- speed of the leader {velocity}
-    follower_id VARCHAR,              -- the nearest vehicle behind in the new lane at t_start_ns, or one beside the ego there that is still beside it when the ego's centre crosses the line; NULL: none, see known {position}
+    follower_id VARCHAR,              -- the nearest vehicle behind in the new lane at t_start_ns, or one beside the ego that is still beside it when the ego's centre crosses the line; NULL: none, see known {position}
     follower_gap_m DOUBLE,            -- distance from the follower's front to the ego's rear; negative: alongside {position, heading, size}
     follower_gap_before_m DOUBLE,     -- the same gap at the step before t_start_ns: the ego crosses the line between the two steps; NULL: not seen {position, heading, size}
     follower_speed_mps DOUBLE,        -- speed of the follower {velocity}
@@ -202,19 +202,19 @@ CREATE TABLE beside (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- a step at which the two boxes overlap along the corridor, or after which they pass each other before the next step; or at which they may overlap: then the other columns are NULL
-    object_id VARCHAR NOT NULL,       -- any other actor
+    object_id VARCHAR NOT NULL,       -- another actor
     actor_class VARCHAR,              -- [actor_class] see road_user {class}
     side VARCHAR,                     -- [side] the side of the ego on which the object is {position}
     gap_m DOUBLE,                     -- gap between the two boxes across the corridor; negative: overlap; if they pass each other between two steps, the mean of the gaps at both {position, heading, size}
     clearance_m DOUBLE,               -- distance between the two boxes, see pair; if they pass each other between two steps, gap_m {position, heading, size}
     blur_m DOUBLE,                    -- how much nearer the two may have been between this step and its neighbours, if both swerve by 3 m/s2; 0 in a log of about ten or more samples a second {position}
     ahead_m DOUBLE,                   -- distance from the ego's front to the object's front along the corridor, positive ahead {position}
-    ego_speed_mps DOUBLE,             -- ego's speed {velocity}
+    ego_speed_mps DOUBLE,             -- speed of the ego {velocity}
     speed_mps DOUBLE,                 -- speed of the object {velocity}
     ego_lat_mps DOUBLE,               -- the ego's speed across the corridor, positive towards the object {velocity}
     lat_mps DOUBLE,                   -- the object's speed across the corridor, positive towards the ego {velocity}
     cycle_lane VARCHAR,               -- [marking + unsaid] the object is on a cycle lane of the carriageway: the marking between this lane and the lane of motor vehicles, unsaid if the map states none; NULL: it is on no cycle lane {position}
-    along BOOLEAN,                    -- the object heads in the corridor's direction, within 45 degrees: an actor that crosses at 89 degrees does not go the same way {position}
+    along BOOLEAN,                    -- the object heads in the corridor's direction, within 45 degrees {position}
     on_carriageway BOOLEAN,           -- the object's box reaches into the running lane or a drivable lane beside it, or its centre is on a drivable lane or an adjacent cycle lane (not one behind a verge, kerb or footway); NULL: not known
     on_strip BOOLEAN                  -- the object's centre is beside the drivable lanes, with no kerb or verge between: on a shoulder, stop, border, parking, restricted or cycle lane; NULL: not known, as behind a border, which may be a kerb {position}
 );
@@ -232,8 +232,8 @@ CREATE TABLE passing (
     t_from_ns BIGINT NOT NULL,        -- first step of the stretch around t_ns in which the two are beside each other {position}
     t_to_ns BIGINT NOT NULL,          -- last step of this stretch {position}
     side VARCHAR,                     -- [side] the side of the ego on which the other is; NULL: ego_passes is NULL {position}
-    gap_m DOUBLE,                     -- least gap across the corridor in this stretch; NULL: no step was seen at which they are beside each other {position, heading, size}
-    whole BOOLEAN NOT NULL,           -- the stretch was seen from before its first step until after its last, without a hole; false: gap_m is only the least gap that was seen {position}
+    gap_m DOUBLE,                     -- least gap across the corridor from t_from_ns to t_to_ns; NULL: no step was seen at which the two are beside each other {position, heading, size}
+    whole BOOLEAN NOT NULL,           -- the stretch was completely seen, from before its first step until after its last, without a hole; false: gap_m is only the least gap that was seen {position}
     same_lane BOOLEAN,                -- the other's centre is in the ego's running lane at t_ns: the ego passes round it; NULL: ego_passes is NULL {position}
     ego_speed_mps DOUBLE,             -- speed of the ego at t_ns {velocity}
     speed_mps DOUBLE                  -- speed of the other at t_ns; standing: at most 0.5 {velocity}
@@ -256,10 +256,10 @@ CREATE TABLE line_step (
     t_astride_ns BIGINT,              -- first step since which the box has been astride of the line, with more than 0.05 m on each side; both lanes beside the line count; NULL: not astride at this step {position}
     astride_begin_seen BOOLEAN,       -- the step before t_astride_ns exists; NULL: not astride {position}
     changes BOOLEAN,                  -- in that time, the centre crosses to the other side of the line and stays there: a lane change, or part of an overtake; NULL: the end is not seen and the ego may go back, or not astride {position}
-    overtaking BOOLEAN,               -- the ego overtakes a vehicle, or passes round a pedestrian in its lane, from 10 m plus 5 s of the closing speed (at least 30 m) before to the same after; NULL: it may, but that actor is lost meanwhile, or the overtaking side is not known {position}
+    overtaking BOOLEAN,               -- the ego overtakes a vehicle, or passes round a pedestrian in its lane. This counts from 10 m plus 5 s of the closing speed (at least 30 m) before that actor to the same distance after it; NULL: it may overtake, but the actor is lost meanwhile, or the overtaking side is not known {position}
     passing_id VARCHAR,               -- an actor in the running lane or on its edge that the ego passes, and that leaves too little room on this side of the line: a standing vehicle, or a cyclist or animal at up to 4.47 m/s. It counts from 10 m plus 5 s of the ego's speed (at least 30 m) ahead to 10 m plus 5 s behind; NULL: none, or in this stretch the ego overtakes a moving vehicle {position}
     passing_known BOOLEAN NOT NULL,   -- no other actor may be passed: all near actors have a position, or are out of plain view while the lane ahead is in plain view {position}
-    access BOOLEAN                    -- within 30 m, the ego enters or leaves premises or a side road beyond the line: off the lanes at 20 mph or less, it turns off, stands, or gets more than 10 m from the running lane's centre line. Not a shoulder, bay or cycle lane of the same road, nor an ego that was or comes back by 0.25 m on the same lane; NULL: not known, as when it turns off and comes back the opposite way
+    access BOOLEAN                    -- within 30 m, the ego enters or leaves premises or a side road beyond the line. It then is off the lanes at 20 mph or less, and turns off, stands, or gets more than 10 m from the running lane's centre line. A shoulder, bay or cycle lane of the same road does not count, nor an ego that was or comes back by 0.25 m on the same lane; NULL: not known, as when it turns off and comes back the opposite way
 );
 
 -- lifetime: part
@@ -283,11 +283,11 @@ CREATE TABLE overtake_place (
 CREATE TABLE following (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    t_ns BIGINT NOT NULL,             -- every step
+    t_ns BIGINT NOT NULL,             -- the step; every step has a row
     object_id VARCHAR,                -- the nearest vehicle ahead that the ego follows, else the lead; NULL: none, or not known
     follows BOOLEAN,                  -- the ego is behind this vehicle and goes its way: in its lane, outside an overtake or lane change (of up to 10 s astride the line), and it is neither oncoming nor beside. A standing vehicle must be in the way of the ego's box at this step and when the ego arrives. A moving one must be in its way, or have its centre in the lane and be more than 3 s from being passed; NULL: not known {position}
     gap_m DOUBLE,                     -- see lead {position, heading, size}
-    ego_speed_mps DOUBLE,             -- ego's speed {velocity}
+    ego_speed_mps DOUBLE,             -- speed of the ego {velocity}
     speed_mps DOUBLE,                 -- speed of the vehicle {velocity}
     joined_ns BIGINT,                 -- see vehicle_ahead: the time since which the gap is new; NULL: the vehicle was ahead before, or its arrival was not seen {position}
     let_in_ns BIGINT,                 -- see vehicle_ahead: the time since which the gap is new, if the ego did not change lanes {position}

@@ -36,10 +36,10 @@ CREATE TABLE lane_near (
 CREATE TABLE lane_next (
     environment_id VARCHAR NOT NULL,  -- the map
     lanelet_id VARCHAR NOT NULL,      -- a drivable lanelet
-    ahead_id VARCHAR,                 -- the straightest lanelet that continues it; NULL: none continues it
-    behind_id VARCHAR,                -- the straightest lanelet that it continues; NULL: it continues none
-    map_ends BOOLEAN NOT NULL,        -- no lanelet continues it or a lane beside it of the same direction: the map ends here
-    map_begins BOOLEAN NOT NULL       -- neither it nor a lane beside it of the same direction continues another lanelet: the map begins here
+    ahead_id VARCHAR,                 -- the straightest lanelet that continues this one; NULL: none
+    behind_id VARCHAR,                -- the straightest lanelet that this one continues; NULL: none
+    map_ends BOOLEAN NOT NULL,        -- neither this lanelet nor a lane beside it of the same direction has a continuation: the map ends here
+    map_begins BOOLEAN NOT NULL       -- neither this lanelet nor a lane beside it of the same direction continues another lanelet: the map begins here
 );
 
 -- lifetime: map
@@ -347,7 +347,7 @@ CREATE TABLE corridor_cell (
 CREATE TABLE ego_corridor (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    chain_id INTEGER NOT NULL,        -- a running chain whose strip the ego is in
+    chain_id INTEGER NOT NULL,        -- a running chain whose strip contains the ego
     t_ns BIGINT NOT NULL,             -- the step
     s_m DOUBLE NOT NULL,              -- chain station of the box centre {position}
     d_m DOUBLE NOT NULL,              -- offset of the centre from the running lane's centre line, left positive {position}
@@ -374,7 +374,7 @@ CREATE TABLE ego_state (
     y_m DOUBLE,                       -- box centre, y {position}
     z_m DOUBLE,                       -- see state_dynamics {position}
     yaw_rad DOUBLE,                   -- heading {heading}
-    speed_mps DOUBLE,                 -- speed {velocity}
+    speed_mps DOUBLE,                 -- speed of the ego {velocity}
     accel_mps2 DOUBLE,                -- see state_dynamics {velocity}
     fastest_3s_mps DOUBLE,            -- highest speed at this step and in the 3 s before it; NULL: the ego stands in the recorded part, and not all 3 s are recorded {velocity}
     travel_m DOUBLE,                  -- distance driven since the first step {position}
@@ -549,7 +549,7 @@ CREATE TABLE passed_by (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     t_ns BIGINT NOT NULL,             -- the step
-    object_id VARCHAR NOT NULL,       -- a vehicle ahead that the map puts into the running lane, but that the ego's path passes at 0.2 m or more. It stands clear of the middle of the lane, or the lane is too narrow for both. Not one round which the ego swerves in the last 2 s, or for which it leaves its lane
+    object_id VARCHAR NOT NULL,       -- a vehicle ahead that is in the running lane by the map, but that the ego's path passes at a distance of 0.2 m or more. It stands clear of the middle of the lane, or the lane is too narrow for both. Vehicles are excluded round which the ego swerves in the last 2 s, or for which it leaves its lane
     is_sure BOOLEAN NOT NULL          -- false: the positions were measured by sensors, and the path overlaps the vehicle by less than their accuracy, or passes it by less than 0.2 m
 );
 
@@ -588,7 +588,7 @@ CREATE TABLE vehicle_ahead (
     ego_across_mps DOUBLE,            -- the ego's speed across the corridor, positive towards the vehicle {velocity}
     across_mps DOUBLE,                -- the vehicle's speed across the corridor, positive towards the ego {velocity}
     error_mps DOUBLE NOT NULL,        -- see lead {velocity}
-    joined_ns BIGINT,                 -- of the lead: the time since which it is the lead, if one of the two changed lanes then. Of another vehicle: the later of its last cut-in and the ego's last lane change; NULL: it was ahead before, or its arrival was not seen {position}
+    joined_ns BIGINT,                 -- of the lead: the time since which it is the lead, if it or the ego changed lanes then. Of another vehicle: the later of its last cut-in and the ego's last lane change; NULL: it was ahead before, or its arrival was not seen {position}
     let_in_ns BIGINT,                 -- joined_ns, if the ego did not change lanes; of a vehicle other than the lead: its last cut-in {position}
     passes_by BOOLEAN,                -- at the present velocities, the two boxes pass each other without contact: where lanes turn or cross, a vehicle ahead along the lane may be out of the way; NULL: the meeting is more than 3 s away, or not known {position}
     grazes BOOLEAN,                   -- it is not known whether the boxes pass without contact: they miss each other by less than the uncertainty of velocities and lane, or overlap by less than that of the headings {position, heading, size}
@@ -641,7 +641,7 @@ CREATE TABLE overtake (
     occurrence INTEGER NOT NULL,      -- number of the overtake, from 0, in time order; each vehicle passed in one excursion has its own row
     chain_id INTEGER NOT NULL,        -- the running chain
     opposing BOOLEAN,                 -- the overtaking lane is driven in the opposite direction; NULL: no lane beside, or unknown {position}
-    side INTEGER NOT NULL,            -- 1 left, -1 right {position}
+    side INTEGER NOT NULL,            -- the overtaking side: 1 left, -1 right {position}
     vbp_id VARCHAR NOT NULL,          -- VBP: the vehicle being passed, or one that may be it {position}
     vbp_placed BOOLEAN NOT NULL,      -- the VBP's position was known at t0; false: only its presence is known {position}
     sure BOOLEAN NOT NULL,            -- it certainly is an overtake, as two of three hold: the VBP's position was known at t0; the ego passed the VBP; the ego's centre crossed the line, or the ego was astride of it for 3 s. False: it may be one {position}
@@ -651,19 +651,19 @@ CREATE TABLE overtake (
     t_out_ns BIGINT NOT NULL,         -- end of pulling out: t1; in an overtake astride the line, the first step within 0.1 m of the greatest excursion {position}
     t2_ns BIGINT,                     -- step at which the lateral speed changes its sign, see t_turn_ns of excursion {position}
     t3_ns BIGINT,                     -- first step wholly back in the running lane {position}
-    t_end_ns BIGINT NOT NULL,         -- t3, or the last step of the excursion {position}
-    passed BOOLEAN NOT NULL,          -- the ego's front got past the VBP's front {position}
+    t_end_ns BIGINT NOT NULL,         -- t3_ns, or the last step of the excursion {position}
+    passed BOOLEAN NOT NULL,          -- the ego's front got ahead of the VBP's front {position}
     status VARCHAR NOT NULL,          -- [overtake_status] {position}
     v_av_mps DOUBLE,                  -- speed of the ego (AV: automated vehicle) at t0 {velocity}
-    v_vbp_mps DOUBLE,                 -- VBP's speed at t0 {velocity}
-    l_av_m DOUBLE,                    -- ego's length {size}
-    l_vbp_m DOUBLE,                   -- VBP's length {size}
-    lane_width_m DOUBLE,              -- w_L, width of the running lane at t0
+    v_vbp_mps DOUBLE,                 -- speed of the VBP (vehicle being passed) at t0 {velocity}
+    l_av_m DOUBLE,                    -- length of the ego, with its trailer {size}
+    l_vbp_m DOUBLE,                   -- length of the VBP (vehicle being passed) {size}
+    lane_width_m DOUBLE,              -- width of the running lane at t0 (w_L of Harper et al. 2021)
     vbp_gap_m DOUBLE,                 -- distance from the ego's front to the VBP's rear at t0, along the corridor; negative: the VBP is beside the ego {position, heading, size}
     span_m DOUBLE,                    -- from the rear of the first vehicle passed in this excursion to the front of this VBP, at t0; the VBP's length if it is the only one {position}
     t2_gap_m DOUBLE,                  -- distance from the VBP's front to the ego's rear at t2 {position, heading, size}
     t3_gap_m DOUBLE,                  -- distance from the VBP's front to the ego's rear at t3 {position, heading, size}
-    v_vbp_t3_mps DOUBLE,              -- VBP's speed at t3 {velocity}
+    v_vbp_t3_mps DOUBLE,              -- speed of the VBP (vehicle being passed) at t3 {velocity}
     ov_id VARCHAR,                    -- the oncoming vehicle (OV) at t0, see oncoming {position}
     da_m DOUBLE,                      -- distance ahead at t0: to the OV, or without an OV the free distance {position}
     v_ov_mps DOUBLE,                  -- OV's speed at t0; without an OV, the speed limit {velocity}
@@ -671,7 +671,7 @@ CREATE TABLE overtake (
     unplaced_reason VARCHAR,          -- see oncoming
     free_reason VARCHAR,              -- [free_end] see oncoming
     pull_out_angle_rad DOUBLE,        -- observed: atan of lateral over longitudinal distance from t0 to t_out {heading}
-    cut_in_angle_rad DOUBLE           -- observed: the same from t2 to t3 {heading}
+    cut_in_angle_rad DOUBLE           -- observed: atan of lateral over longitudinal distance from t2 to t3 {heading}
 );
 
 -- lifetime: part
@@ -686,14 +686,14 @@ CREATE TABLE overtake_sda (
     at_least BOOLEAN NOT NULL,        -- da_m is only a lower bound: no OV is seen within this free distance {position}
     nobody BOOLEAN NOT NULL,          -- the positions of all vehicles are known, and there is no OV within da_m {position}
     sda_m DOUBLE,                     -- safe distance ahead, at the ego's speed at t0. Profile observed: at the ego's mean speed, if completed; at least the distance that ego and OV covered during the overtake plus the OV's stopping distance, if da_m is no more than that; NULL: undefined {position, heading, velocity, size}
-    spare_m DOUBLE,                   -- da_m - sda_m {position, heading, velocity, size}
+    spare_m DOUBLE,                   -- spare distance: da_m minus sda_m {position, heading, velocity, size}
     spare_s DOUBLE,                   -- time in which spare_m closes at the speed v_AV + v_OV {position, heading, velocity, size}
     zone VARCHAR,                     -- [zone] NULL: unknown {position, heading, velocity, size}
     reason VARCHAR,                   -- why sda_m or da_m is NULL, or a remark on them, as JSON from the macro why
     pull_out_m DOUBLE,                -- part of sda_m: the distance that the ego drives to pull out; NULL: sda_m is the distance covered (covered_m), or undefined {position, heading, velocity, size}
     passing_m DOUBLE,                 -- part of sda_m: the distance that the ego drives beside the VBP; NULL: as pull_out_m {position, heading, velocity, size}
     cut_in_m DOUBLE,                  -- part of sda_m: the distance that the ego drives to cut in; NULL: as pull_out_m {position, heading, velocity, size}
-    oncoming_m DOUBLE,                -- part of sda_m: the distance that the OV drives meanwhile; NULL: as pull_out_m {position, heading, velocity, size}
+    oncoming_m DOUBLE,                -- part of sda_m: the distance that the OV drives during the overtake; NULL: as pull_out_m {position, heading, velocity, size}
     covered_m DOUBLE,                 -- part of sda_m: the distance that the ego and the OV covered during the overtake, until both stand; NULL: sda_m is from the formula, or undefined {position, heading, velocity, size}
     stopping_m DOUBLE                 -- part of sda_m: the OV's stopping distance; NULL: undefined {position, heading, velocity, size}
 );
@@ -728,7 +728,7 @@ CREATE TABLE overtake_step (
 CREATE TABLE opportunity (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    occurrence INTEGER NOT NULL,      -- 0.. in time order
+    occurrence INTEGER NOT NULL,      -- number of the opportunity, from 0, in time order
     object_id VARCHAR NOT NULL,       -- the slower vehicle ahead, which holds up the ego
     profile VARCHAR NOT NULL,         -- [profile_name] see profile (not observed)
     t_start_ns BIGINT NOT NULL,       -- first step at which the ego is held up {position}
@@ -736,7 +736,7 @@ CREATE TABLE opportunity (
     t_best_ns BIGINT,                 -- the step with the most spare distance; NULL: never known {position}
     da_m DOUBLE,                      -- distance ahead at t_best_ns, or the free distance; NULL: unknown {position}
     sda_m DOUBLE,                     -- safe distance ahead at t_best_ns {position, heading, velocity, size}
-    spare_s DOUBLE,                   -- time in which the spare distance closes {position, heading, velocity, size}
+    spare_s DOUBLE,                   -- time in which the spare distance (da_m minus sda_m) closes {position, heading, velocity, size}
     zone VARCHAR,                     -- [zone] at t_best_ns; NULL: unknown {position, heading, velocity, size}
     taken BOOLEAN NOT NULL            -- an overtake of this vehicle began in this time {position}
 );
@@ -747,10 +747,10 @@ CREATE TABLE opportunity (
 CREATE TABLE lane_departure (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    occurrence INTEGER NOT NULL,      -- 0.. in time order
+    occurrence INTEGER NOT NULL,      -- number of the departure, from 0, in time order
     t_ns BIGINT NOT NULL,             -- first step with a corner more than 0.05 m over a boundary, in a manoeuvre: the centre crossed too, or a vehicle was overtaken; for the way back, see t_return_ns and t_back_ns of excursion
     begin_seen BOOLEAN NOT NULL,      -- see excursion {position}
-    side VARCHAR NOT NULL,            -- [side] {position}
+    side VARCHAR NOT NULL,            -- [side] the side of the boundary {position}
     back BOOLEAN NOT NULL             -- the departure is the way back of an excursion: the ego crosses the boundary towards the running lane {position}
 );
 
@@ -758,7 +758,7 @@ CREATE TABLE lane_departure (
 CREATE TABLE indicator_on (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    occurrence INTEGER NOT NULL,      -- 0.. in time order
+    occurrence INTEGER NOT NULL,      -- number of the stretch with an indicator on, from 0, in time order
     side VARCHAR NOT NULL,            -- [side]
     t_on_ns BIGINT NOT NULL,          -- first step with the indicator on; at the step before, it was off or on the other side
     t_off_ns BIGINT NOT NULL,         -- last step with the indicator on
@@ -777,7 +777,7 @@ CREATE TABLE exit_lane (
 CREATE TABLE exit_taken (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    occurrence INTEGER NOT NULL,      -- 0.. in time order
+    occurrence INTEGER NOT NULL,      -- number of the exit, from 0, in time order
     t_ns BIGINT NOT NULL,             -- first step with a corner more than 0.05 m over the exit lane's boundary
     side VARCHAR NOT NULL,            -- [side] {position}
     lanelet_id VARCHAR NOT NULL,      -- the exit lanelet
@@ -789,7 +789,7 @@ CREATE TABLE exit_taken (
 CREATE TABLE exit_passed (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    occurrence INTEGER NOT NULL,      -- 0.. in time order
+    occurrence INTEGER NOT NULL,      -- number of the exit, from 0, in time order
     lanelet_id VARCHAR NOT NULL,      -- the exit lanelet beside the ego's lane
     side VARCHAR NOT NULL,            -- [side] {position}
     t_near_ns BIGINT NOT NULL,        -- first step with the ego beside the exit lanelet, or on it {position}

@@ -16,7 +16,7 @@ CREATE TABLE scene (
 CREATE TABLE picture (
     drive_id VARCHAR NOT NULL,        -- the drive
     t_ns BIGINT NOT NULL,             -- the moment: t_worst_ns of findings and near misses
-    camera VARCHAR NOT NULL,          -- topic of the camera in the log
+    camera VARCHAR NOT NULL,          -- the camera's topic in the log
     camera_no INTEGER NOT NULL,       -- number of the camera in display order, from 0: those that look ahead come first
     shot VARCHAR NOT NULL,            -- [shot] which of the three pictures of the moment this is
     t_frame_ns BIGINT NOT NULL,       -- time of the frame: the camera's nearest to the moment, or to a second before or after it
@@ -59,7 +59,7 @@ CREATE TABLE course (
     rule_id VARCHAR NOT NULL,         -- the rule
     profile VARCHAR,                  -- the profile; NULL: the rule has none
     object_id VARCHAR,                -- the other road user; NULL: none
-    occurrence INTEGER NOT NULL,      -- as in finding; for a near miss as in verdict
+    occurrence INTEGER NOT NULL,      -- number of the finding, as in finding; for a near miss, that of its verdict
     t_ns BIGINT[] NOT NULL,           -- judged steps around the finding or near miss, of the same rule, profile, object and reference point
     observed DOUBLE[] NOT NULL,       -- measured value at each step; NULL: not known, or nothing is measured
     required DOUBLE[] NOT NULL,       -- the value with which observed was compared
@@ -96,10 +96,10 @@ CREATE TABLE overtake_record (
     t2_ns BIGINT,                     -- step at which the ego turns back; NULL: never
     t3_ns BIGINT,                     -- first step wholly back in the running lane; NULL: never
     t_end_ns BIGINT NOT NULL,         -- t3_ns, or the last step over the boundary
-    v_av_mps DOUBLE,                  -- ego's speed at t0
+    v_av_mps DOUBLE,                  -- speed of the ego at t0
     v_vbp_mps DOUBLE,                 -- speed of the vehicle being passed at t0
     v_ov_mps DOUBLE,                  -- speed of the oncoming vehicle at t0; without one, the speed limit
-    l_av_m DOUBLE,                    -- ego's length
+    l_av_m DOUBLE,                    -- length of the ego, with its trailer
     l_vbp_m DOUBLE,                   -- length of the vehicle being passed
     lane_width_m DOUBLE,              -- width of the running lane at t0
     da_m DOUBLE,                      -- distance ahead at t0; without an oncoming vehicle, the free distance
@@ -111,7 +111,7 @@ CREATE TABLE overtake_record (
 CREATE TABLE opportunity_record (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    occurrence INTEGER NOT NULL,      -- 0.. in time order, see opportunity
+    occurrence INTEGER NOT NULL,      -- number of the opportunity, from 0, in time order, see opportunity
     object_id VARCHAR NOT NULL,       -- the slower vehicle ahead, which holds up the ego
     profile VARCHAR NOT NULL,         -- see profile (not observed)
     style INTEGER NOT NULL,           -- rank of aggressiveness, 0 = least aggressive
@@ -120,7 +120,7 @@ CREATE TABLE opportunity_record (
     t_best_ns BIGINT,                 -- the step with the most spare distance; NULL: never known
     da_m DOUBLE,                      -- distance ahead at t_best_ns, or the free distance; NULL: unknown
     sda_m DOUBLE,                     -- safe distance ahead at t_best_ns
-    spare_s DOUBLE,                   -- time in which the spare distance closes
+    spare_s DOUBLE,                   -- time in which the spare distance (da_m minus sda_m) closes
     zone VARCHAR,                     -- [zone] at t_best_ns; NULL: unknown
     taken BOOLEAN NOT NULL            -- an overtake of this vehicle began in this time
 );

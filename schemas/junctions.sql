@@ -27,10 +27,10 @@ CREATE TABLE swept_box (
     heading INTEGER NOT NULL,         -- visit of that sample: number of the 5-degree heading step {heading}
     ix INTEGER NOT NULL,              -- column of the drive's grid that contains the box centre {position}
     iy INTEGER NOT NULL,              -- row of the drive's grid that contains the box centre {position}
-    cell_m DOUBLE NOT NULL,           -- width of that grid's cells {position}
+    cell_m DOUBLE NOT NULL,           -- width of the drive's grid cells {position}
     x_m DOUBLE NOT NULL,              -- box centre, x {position}
     y_m DOUBLE NOT NULL,              -- box centre, y {position}
-    z_m DOUBLE,                       -- height, see state_dynamics {position}
+    z_m DOUBLE,                       -- height of the box centre, see state_dynamics {position}
     travel_rad DOUBLE NOT NULL,       -- direction of travel, see state_dynamics {heading}
     half_length_m DOUBLE NOT NULL,    -- half the box's length {size}
     half_width_m DOUBLE NOT NULL,     -- half the box's width {size}
@@ -47,14 +47,14 @@ CREATE TABLE common_ground (
     actor_id VARCHAR NOT NULL,        -- the ego, or a trailer of the ego
     object_id VARCHAR NOT NULL,       -- another actor
     t_ego_ns BIGINT NOT NULL,         -- a moment of the box of actor_id, see swept_box
-    t_object_ns BIGINT NOT NULL       -- a moment of the object's box, at most 10 s apart, at which it covers the same ground at more than 20 degrees
+    t_object_ns BIGINT NOT NULL       -- a moment of the object's box, at most 10 s before or after, at which it covers the same ground at more than 20 degrees
 );
 
 -- lifetime: part
 CREATE TABLE conflict (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
-    occurrence INTEGER NOT NULL,      -- number of the conflict, from 0, in time order: the areas swept by the ego (with its trailer) and another actor cross or merge at more than 20 degrees (between their paths, where they come nearest), at most 10 s apart. Not with an actor that stands all the time on the common ground, has no position, heading or size, or takes the same course within 20 degrees; see passage_conflict
+    occurrence INTEGER NOT NULL,      -- number of the conflict, from 0, in time order: the areas swept by the ego (with its trailer) and another actor cross or merge, at more than 20 degrees between the two paths and at most 10 s apart. There is no conflict with an actor that stands all the time on the common ground, has no position, heading or size, or takes the same course within 20 degrees; see passage_conflict
     object_id VARCHAR NOT NULL,       -- the other actor
     actor_class VARCHAR,              -- [actor_class] see road_user {class}
     t_ego_in_ns BIGINT NOT NULL,      -- first step with the ego's box on the conflict area: the ground that the object's box was or will be on {position}
@@ -77,7 +77,7 @@ CREATE TABLE impact (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     object_id VARCHAR NOT NULL,       -- another actor
-    t_ns BIGINT NOT NULL              -- first step with an impact: with the boxes 0.5 m or less apart, the object or the ego loses or gains 12 m/s2 or more of speed since the step before (an actor that may be on foot: loses). A step up to 0.5 s before, if the change began there
+    t_ns BIGINT NOT NULL              -- first step with an impact: the boxes are 0.5 m or less apart, and the object or the ego has lost or gained speed by 12 m/s2 or more since the step before (an actor that may be on foot: lost); or a step up to 0.5 s before, if the change began there
 );
 
 -- lifetime: part
@@ -154,7 +154,7 @@ CREATE TABLE mark_phase (
     t_from_ns BIGINT NOT NULL,        -- start of the phase
     t_to_ns BIGINT,                   -- end of the phase (excluded); NULL: no end
     state VARCHAR,                    -- [light_state] the state that the lights show for the ego's turn, see signal_state: that of its arrow, or of the full light if the arrow is dark; NULL: not known, or the heads that may be for this turn differ
-    state_before VARCHAR,             -- [light_state] the state before; NULL: not known
+    state_before VARCHAR,             -- [light_state] the state before this phase; NULL: not known
     begin_seen BOOLEAN NOT NULL,      -- both states are known: the change was seen
     t_before_ns BIGINT                -- start of the state before; NULL: not seen
 );
@@ -174,7 +174,7 @@ CREATE TABLE junction_passage (
     to_lanelet_id VARCHAR,            -- the lanelet after the junction
     turn VARCHAR,                     -- [turn] by the change of heading from from_lanelet_id to to_lanelet_id (straight within 30 degrees, u_turn beyond 150); NULL: not seen from the entry of the ego's front until its centre was on the lane after the junction {position}
     turn_rad DOUBLE,                  -- this change of heading, left positive {heading}
-    straightest_rad DOUBLE,           -- the same change for the straightest of all ways out of the ego's road; NULL: that road is not known {heading}
+    straightest_rad DOUBLE,           -- change of heading to the straightest of all ways out of the junction from the ego's road, left positive; NULL: that road is not known {heading}
     across BOOLEAN,                   -- the turn crosses the oncoming traffic (a right turn in left-hand traffic; any u_turn); NULL: handedness or turn not known {position, heading, velocity}
     branches INTEGER NOT NULL,        -- number of roads that meet in the junction; 2: no junction for a driver
     control VARCHAR,                  -- [control + none] the sign or light that governs the ego's entry, see way_mark; NULL: not known, because the map has no such signals at all or begins less than 50 m before the junction
@@ -244,7 +244,7 @@ CREATE TABLE crossing_passage (
     coming_id VARCHAR,                -- a pedestrian on the other half at t_in_ns who goes straight on to the ego's half within 3 s (a longer time is a wait on an island); NULL: none {position}
     coming_known BOOLEAN NOT NULL,    -- for every pedestrian on the other half at t_in_ns, it is known whether they came from the ego's half, leave the crossing, or come to the ego's half; not known if the ego's side was over the other half {position}
     waiting_id VARCHAR,               -- a pedestrian who stands (at most 0.5 m/s) beside the lanes, within 2 m of the crossing's end on the ego's side, during the whole 2 s before t_in_ns; NULL: none {position}
-    waiting_known BOOLEAN NOT NULL,   -- no actor of unknown class stands there like that {position}
+    waiting_known BOOLEAN NOT NULL,   -- no actor of unknown class waits there {position}
     known BOOLEAN NOT NULL,           -- all pedestrians nearby have a position from 2 s before t_in_ns to t_out_ns: no track has a hole then, or begins or ends within 30 m; and no actor of unknown class is on the crossing {position}
     signal_id VARCHAR,                -- the light for vehicles, see way_mark; NULL: the map has none
     state VARCHAR,                    -- [light_state] the light's state at t_in_ns; NULL: not known
@@ -256,8 +256,8 @@ CREATE TABLE standstill (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     occurrence INTEGER NOT NULL,      -- number of the standstill, from 0, in time order: the ego stands (below 0.1 m/s; without a speed in the log, by the distance from step to step) for at least 1 s
-    t_start_ns BIGINT NOT NULL,       -- first step {velocity}
-    t_end_ns BIGINT NOT NULL,         -- last step {velocity}
+    t_start_ns BIGINT NOT NULL,       -- first step of the standstill {velocity}
+    t_end_ns BIGINT NOT NULL,         -- last step of the standstill {velocity}
     begin_seen BOOLEAN NOT NULL,      -- the stop was seen: the step before exists, and the ego moves there {position}
     end_seen BOOLEAN NOT NULL,        -- the start after the standstill was seen {position}
     road_type VARCHAR,                -- [road_type] see ego_state
@@ -277,11 +277,11 @@ CREATE TABLE standstill (
     ahead_id VARCHAR,                 -- the nearest vehicle ahead in the ego's lane at t_start_ns; NULL: none, see ahead_known {position}
     ahead_gap_m DOUBLE,               -- gap from the ego to this vehicle {position, heading, size}
     ahead_speed_mps DOUBLE,           -- speed of this vehicle {velocity}
-    ahead_known BOOLEAN NOT NULL,     -- see lead {position}
+    ahead_known BOOLEAN NOT NULL,     -- it is known which vehicle is ahead, see lead {position}
     blocking_id VARCHAR,              -- the nearest of the vehicles ahead in the ego's lane while the ego stood; vehicles at 1 m/s or less come before faster ones; NULL: none, see blocking_known {position}
     blocking_gap_m DOUBLE,            -- the least gap from the ego to this vehicle {position, heading, size}
     blocking_speed_mps DOUBLE,        -- speed of this vehicle at that gap {velocity}
-    blocking_known BOOLEAN NOT NULL,  -- see lead, at every step {position}
+    blocking_known BOOLEAN NOT NULL,  -- it is known at every step which vehicle is ahead, see lead {position}
     idle_ns BIGINT NOT NULL,          -- lower bound of the time for which the ego stood without an actor in its way within 10 m that stood or moved up at 1 m/s or less, see in_way {velocity}
     idle_at_most_ns BIGINT NOT NULL   -- upper bound of that time: it includes the time in which this is not known {velocity}
 );

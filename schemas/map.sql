@@ -74,7 +74,7 @@ CREATE TABLE lane_link (
 CREATE TABLE lane_boundary (
     environment_id VARCHAR NOT NULL,  -- the map
     lanelet_id VARCHAR NOT NULL,      -- the lanelet
-    side VARCHAR NOT NULL,            -- [side]
+    side VARCHAR NOT NULL,            -- [side] the side of the boundary
     s_start_m DOUBLE NOT NULL,        -- start of this marking, along the lanelet's centre line
     s_end_m DOUBLE NOT NULL,          -- end of this marking
     marking VARCHAR,                  -- [marking] NULL: the map does not state it, or uses an unknown word
@@ -95,7 +95,7 @@ CREATE TABLE speed_limit (
 -- lifetime: map
 CREATE TABLE traffic_signal (
     environment_id VARCHAR NOT NULL,  -- the map
-    signal_id VARCHAR NOT NULL,       -- id in the map
+    signal_id VARCHAR NOT NULL,       -- id of the signal in the map
     kind VARCHAR,                     -- [sign_kind] NULL: not recognised
     country VARCHAR,                  -- country of the code list of type and subtype, lower case
     type VARCHAR,                     -- code of the signal's type
@@ -116,7 +116,7 @@ CREATE TABLE traffic_signal (
 -- lifetime: map
 CREATE TABLE stop_line (
     environment_id VARCHAR NOT NULL,  -- the map
-    stop_line_id VARCHAR NOT NULL,    -- id in the map
+    stop_line_id VARCHAR NOT NULL,    -- id of the line in the map
     lanelet_id VARCHAR NOT NULL,      -- a lanelet that the line crosses; one row per lanelet
     lane_s_m DOUBLE NOT NULL,         -- position of the line, as a distance along that lanelet
     source VARCHAR NOT NULL,          -- [stop_line_source]
@@ -126,7 +126,7 @@ CREATE TABLE stop_line (
 -- lifetime: map
 CREATE TABLE road_object (
     environment_id VARCHAR NOT NULL,  -- the map
-    object_id VARCHAR NOT NULL,       -- id in the map
+    object_id VARCHAR NOT NULL,       -- id of the object in the map
     kind VARCHAR NOT NULL,            -- [object_kind]
     name VARCHAR,                     -- the map's name for the object
     road_id VARCHAR NOT NULL,         -- the road in which the map lists the object
@@ -141,7 +141,7 @@ CREATE TABLE road_object (
 -- lifetime: map
 CREATE TABLE crossing (
     environment_id VARCHAR NOT NULL,  -- the map
-    crossing_id VARCHAR NOT NULL,     -- id in the map
+    crossing_id VARCHAR NOT NULL,     -- id of the crossing in the map
     lanelet_id VARCHAR NOT NULL,      -- a drivable lanelet that the crossing crosses; one row per lanelet
     s_start_m DOUBLE NOT NULL,        -- start of the crossing, along that lanelet
     s_end_m DOUBLE NOT NULL,          -- end of the crossing

@@ -44,10 +44,10 @@ CREATE TABLE rule (
     kind VARCHAR NOT NULL,            -- [rule_kind]
     subtype VARCHAR,                  -- temporal, physical; NULL: neither pre- nor postcondition
     window_s DOUBLE,                  -- length of the period before or after the reference point, as used; NULL: none
-    derivation VARCHAR NOT NULL,      -- direct, model
+    derivation VARCHAR NOT NULL,      -- how the rule follows from the clause: direct, model
     severity VARCHAR NOT NULL,        -- [rule_severity]
-    legal VARCHAR NOT NULL,           -- must, should
-    status VARCHAR NOT NULL,          -- draft, stable, deprecated; only stable rules gate
+    legal VARCHAR NOT NULL,           -- the obligation in the clause: must, should
+    status VARCHAR NOT NULL,          -- draft, stable, deprecated; only findings of stable rules count in the gate
     is_named BOOLEAN NOT NULL,        -- the user named the rule by its id: it is unknown if the log lacks a signal that few logs have. Without a name, it does not apply to that log
     sense VARCHAR NOT NULL,           -- relation that must hold between observed and required
     unit VARCHAR,                     -- unit of observed, required and margin
