@@ -53,7 +53,7 @@ CREATE TABLE track_end (
     object_id VARCHAR NOT NULL,       -- an actor
     lost BOOLEAN NOT NULL,            -- true: its track, or the part of it before a hole, ends here; false: the track or part begins here {position}
     t_ns BIGINT NOT NULL,             -- the last (or first) sample with a position
-    plain_ns BIGINT NOT NULL          -- after this time (or before it), an actor without samples is assumed not to be in plain view {position}
+    plain_ns BIGINT NOT NULL          -- time limit of plain view: after it (if lost; else before it), an actor without samples is assumed not to be in plain view {position}
 );
 
 -- lifetime: part
@@ -215,7 +215,7 @@ CREATE TABLE beside (
     lat_mps DOUBLE,                   -- the object's speed across the corridor, positive towards the ego {velocity}
     cycle_lane VARCHAR,               -- [marking + unsaid] the object is on a cycle lane of the carriageway: the marking between this lane and the lane of motor vehicles, unsaid if the map states none; NULL: it is on no cycle lane {position}
     along BOOLEAN,                    -- the object heads in the corridor's direction, within 45 degrees {position}
-    on_carriageway BOOLEAN,           -- the object's box reaches into the running lane or a drivable lane beside it, or its centre is on a drivable lane or an adjacent cycle lane (not one behind a verge, kerb or footway); NULL: not known
+    on_carriageway BOOLEAN,           -- the object is on the carriageway: its box reaches into the running lane or a drivable lane beside it, or its centre is on a drivable lane or an adjacent cycle lane. Not behind a verge, kerb or footway; NULL: not known
     on_strip BOOLEAN                  -- the object's centre is beside the drivable lanes, with no kerb or verge between: on a shoulder, stop, border, parking, restricted or cycle lane; NULL: not known, as behind a border, which may be a kerb {position}
 );
 

@@ -193,7 +193,7 @@ CREATE TABLE registration (
     n_with_direction BIGINT NOT NULL, -- steps of n_moving with a heading within 90 degrees of the lane's direction, or on a lane that is driven in both directions
     lateral_median_m DOUBLE,          -- median distance from the centre line of the lane; if enough steps lie outside an overtake in the opposing lane, only of those steps; NULL: never on a lane
     is_aside BOOLEAN NOT NULL,        -- lateral_median_m is so great, over meaningful steps, that the map may be shifted against the log
-    ok BOOLEAN NOT NULL,              -- the map fits well enough for the rules that need it. One of: the ego fits; the ego is against its lane, but three of four other vehicles are with theirs; the ego keeps to the middle of a lane (within 0.6 m for 5 s and 50 m, or within 0.3 m for 2 s and 20 m) before and after the time elsewhere, on a road of the same direction or on two roads that cross
+    ok BOOLEAN NOT NULL,              -- the map fits well enough for the rules that need it. One of: the ego fits; the ego is against its lane, but three of four other vehicles are with theirs; the ego keeps to the middle of a lane before and after the time elsewhere (within 0.6 m for 5 s and 50 m, or 0.3 m for 2 s and 20 m; on a road of the same direction or on two roads that cross)
     reason VARCHAR NOT NULL           -- why ok is true or false, as JSON from the macro why
 );
 
@@ -461,7 +461,7 @@ CREATE TABLE lost_object (
     ego_id VARCHAR NOT NULL,          -- the ego
     object_id VARCHAR NOT NULL,       -- an actor whose track ends although it may still have been there
     t_from_ns BIGINT NOT NULL,        -- the actor's position is unknown from this time on {position}
-    t_to_ns BIGINT NOT NULL,          -- until this time: the log's end; or, if data_log.in_sight holds and the track ended near the ego, the time at which the recorder would have found it again {position}
+    t_to_ns BIGINT NOT NULL,          -- the actor's position is unknown until this time: the log's end or, if data_log.in_sight holds and the track ended near the ego, the time at which the recorder would have found it again {position}
     code VARCHAR NOT NULL             -- [loss]
 );
 

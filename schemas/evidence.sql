@@ -104,7 +104,7 @@ CREATE TABLE overtake_record (
     lane_width_m DOUBLE,              -- width of the running lane at t0
     da_m DOUBLE,                      -- distance ahead at t0; without an oncoming vehicle, the free distance
     profiles STRUCT(profile VARCHAR, style INTEGER, da_m DOUBLE, at_least BOOLEAN, nobody BOOLEAN, sda_m DOUBLE, spare_m DOUBLE, spare_s DOUBLE, "zone" VARCHAR, reason VARCHAR)[] NOT NULL, -- per profile, selected or not: the columns of overtake_sda
-    stretches STRUCT(stage VARCHAR, t_start_ns BIGINT, t_end_ns BIGINT, n BIGINT, said VARCHAR[], worst_m DOUBLE[])[] NOT NULL -- runs of steps with the same results of the four danger-space assertions, in the order VBP (vehicle being passed) outside DS_AV (danger space of the ego), OV (oncoming vehicle) outside DS_AV, AV (ego) outside DS_OV, DS_AV and DS_OV apart. said: pass, fail, unknown or nobody (no such vehicle); worst_m: the greatest depth inside (negative: distance from it)
+    stretches STRUCT(stage VARCHAR, t_start_ns BIGINT, t_end_ns BIGINT, n BIGINT, said VARCHAR[], worst_m DOUBLE[])[] NOT NULL -- runs of steps with the same results of the four danger-space assertions. Their order: VBP outside DS_AV, OV outside DS_AV, AV outside DS_OV, DS_AV and DS_OV apart. (VBP: vehicle being passed; OV: oncoming vehicle; AV: ego; DS_AV, DS_OV: danger spaces.) said: pass, fail, unknown or nobody (no such vehicle); worst_m: the greatest depth inside (negative: distance from it)
 );
 
 -- lifetime: run

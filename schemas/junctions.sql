@@ -77,7 +77,7 @@ CREATE TABLE impact (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     object_id VARCHAR NOT NULL,       -- another actor
-    t_ns BIGINT NOT NULL              -- first step with an impact: the boxes are 0.5 m or less apart, and the object or the ego has lost or gained speed by 12 m/s2 or more since the step before (an actor that may be on foot: lost); or a step up to 0.5 s before, if the change began there
+    t_ns BIGINT NOT NULL              -- first step with an impact: the boxes are 0.5 m or less apart, and the object or the ego has lost or gained speed by 12 m/s2 or more since the step before. For an actor that may be on foot, only a loss counts. If the change began up to 0.5 s before, that earlier step
 );
 
 -- lifetime: part
@@ -106,8 +106,8 @@ CREATE TABLE way_mark (
     kind VARCHAR NOT NULL,            -- [mark_kind]
     mark_id VARCHAR NOT NULL,         -- id in the map; a traffic light without a stop line within 30 m counts as a stop line at its own position (inside a junction: at the junction's start), with the light's id
     lanelet_id VARCHAR NOT NULL,      -- the first lanelet of the chain on which the mark lies
-    seq_first INTEGER NOT NULL,       -- seq of that lanelet, see chain
-    seq_last INTEGER NOT NULL,        -- seq of the last lanelet on which the mark lies
+    seq_first INTEGER NOT NULL,       -- seq of lanelet_id in the chain
+    seq_last INTEGER NOT NULL,        -- seq of the last lanelet of the chain on which the mark lies
     s_start_m DOUBLE NOT NULL,        -- chain station of the mark's start
     s_end_m DOUBLE NOT NULL,          -- chain station of the mark's end
     control VARCHAR,                  -- [control] the first of these that governs the mark: of a junction, from 50 m before it to its connecting lanelets; of a stop line, within 30 m; of a crossing (lights only), from 15 m before to 30 m after it; never beyond another junction; NULL: none

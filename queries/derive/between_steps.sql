@@ -6,8 +6,8 @@ WITH ego_step AS (
     JOIN clock c USING (drive_id, ego_id)
     WINDOW w AS (PARTITION BY s.drive_id, s.ego_id ORDER BY s.t_ns)
 ),
--- The only full scan of the large table pair. Two boxes can touch between two steps only if one of the two clearances is at most half of
--- the distance that they move in that time, plus the distance that they may swerve.
+-- The only full scan of the large table pair. Two boxes that touch between two steps have a small clearance at one of the steps: at most
+-- half of the distance that they move in that time, plus the distance that they may swerve.
 near_pair AS (
     SELECT p.drive_id, p.ego_id, p.object_id, t.t_before_ns, t.t_ns, t.t_next_ns, t.max_gap_ns
     FROM (

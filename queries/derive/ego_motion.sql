@@ -6,9 +6,9 @@
 -- that the jerk does not depend on the rate of the log. nuPlan differentiates the acceleration with a Savitzky-Golay filter of second order
 -- over 15 samples at 10 Hz, which at the middle of its window is this slope (nuPlan devkit, state_extractors, extract_ego_jerk).
 --
--- A value is NULL if the velocity itself comes from a filter (quality velocity_filtered), if a sample in the window is not known, or if the
--- samples do not extend over 0.7 of the half window on both sides (at the log's ends, at a hole). It is also NULL in logs with less than 5
--- samples a second: the mean would then be over so long a time that harsh braking disappears.
+-- A value is NULL in four cases: the velocity itself comes from a filter (quality velocity_filtered); a sample in the window is not known;
+-- the samples do not extend over 0.7 of the half window on both sides (at the log's ends, at a hole); or the log has less than 5 samples a
+-- second. In the last case, the mean would be over so long a time that harsh braking disappears.
 --
 -- A mean over half a second flattens a peak. The *_peak columns are upper bounds of this loss, for a value that is further from zero than
 -- both values half a window before and after it (see peak_rise).

@@ -135,7 +135,7 @@ distance_bound AS (
     FROM station_range
 ),
 -- While everything around the ego is in plain view, no vehicle can pass the ego unseen. An object that is ahead (or behind) at the
--- beginning of such a time is so until its end, and the other way round.
+-- beginning of such a time is so until its end. One that is ahead (or behind) at its end was so from its beginning.
 view_step AS (
     SELECT
         b.*, g.around_m, g.lane_m AS lane_in_view_m,

@@ -108,7 +108,7 @@ branch_count AS (
     LEFT JOIN road_half h USING (environment_id, road_id)
     GROUP BY environment_id, junction_id
 ),
--- A map that has only lights may lack the signs: a junction without a light may have one.
+-- A map that has only lights may lack the signs: a junction without a light may have a sign.
 map_with_signals AS (
     SELECT DISTINCT t.environment_id
     FROM traffic_signal t

@@ -1,6 +1,6 @@
--- Changes of the ego to an adjacent lane of the same direction, from the first corner over the line until the whole ego is in the new lane,
--- with the vehicles in the new lane at the start. If the crossing of the line is not seen, the change counts only if half a metre of the
--- ego is over the line when the log or a hole ends it.
+-- Changes of the ego to an adjacent lane of the same direction, with the vehicles in the new lane at the start. A change lasts from the
+-- first corner over the line until the whole ego is in the new lane. If the crossing of the line is not seen, the change counts only if
+-- half a metre of the ego is over the line when the log or a hole ends it.
 WITH any_crossing AS (FROM lane_crossing),
 unfinished_excursion AS (FROM excursion WHERE t_back_ns IS NULL AND max_out_m >= 0.5),
 step_on_restricted_ground AS (FROM ego_aside WHERE lane_type = 'restricted' AND with_direction),

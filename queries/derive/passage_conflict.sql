@@ -1,5 +1,5 @@
--- The actors that the ego went ahead of in a junction (it took the common ground first, or while they were still on it), by the direction
--- from which they came, and whether another actor may have come.
+-- The actors that the ego went ahead of in a junction, by the direction from which they came, and whether another actor may have come. The
+-- ego went ahead of an actor if it took the common ground first, or while the actor was still on it.
 WITH passage AS (
     SELECT
         p.drive_id, p.ego_id, p.occurrence, p.t_in_ns, p.t_out_ns, coalesce(p.t_in_ns, p.t_first_ns) AS t_enter_ns, coalesce(p.t_out_ns, p.t_last_ns) AS t_leave_ns,

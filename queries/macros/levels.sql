@@ -1,8 +1,8 @@
 -- Actors over or under the ego's road, and actors that belong to the ego itself.
 
 -- The heights of two actors on the same ground differ by at most this. A log may give the height of the box centre for one actor and of the
--- ground for the other (2.2 m for a bus of 4.4 m), and a vehicle may rise or sink by some decimetres on its springs. A footbridge, the
--- lowest kind of bridge, is 3 m above the road.
+-- ground for the other (2.2 m for a bus of 4.4 m). The height of a vehicle may also change by some decimetres while it settles. A
+-- footbridge, the lowest kind of bridge, is 3 m above the road.
 CREATE OR REPLACE MACRO level_m() AS 2.5;
 -- If one actor is over another, the centres of their boxes are further apart than this: at least half the sum of their heights (NULL:
 -- unknown).
