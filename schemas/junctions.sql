@@ -77,7 +77,7 @@ CREATE TABLE impact (
     drive_id VARCHAR NOT NULL,        -- the drive
     ego_id VARCHAR NOT NULL,          -- the ego
     object_id VARCHAR NOT NULL,       -- another actor
-    t_ns BIGINT NOT NULL              -- first step with an impact: the boxes are 0.5 m or less apart, and the object or the ego has lost or gained speed by 12 m/s2 or more since the step before. For an actor that may be on foot, only a loss counts. If the change began up to 0.5 s before, that earlier step
+    t_ns BIGINT NOT NULL              -- first step with an impact: the boxes are 0.5 m or less apart, and the object or the ego has lost or gained speed by 12 m/s2 or more since the step before. For an actor that may be on foot, only a loss counts. If the change began up to 0.5 s before, it is that earlier step
 );
 
 -- lifetime: part
@@ -176,7 +176,7 @@ CREATE TABLE junction_passage (
     turn_rad DOUBLE,                  -- this change of heading, left positive {heading}
     straightest_rad DOUBLE,           -- change of heading to the straightest of all ways out of the junction from the ego's road, left positive; NULL: that road is not known {heading}
     across BOOLEAN,                   -- the turn crosses the oncoming traffic (a right turn in left-hand traffic; any u_turn); NULL: handedness or turn not known {position, heading, velocity}
-    branches INTEGER NOT NULL,        -- number of roads that meet in the junction; 2: no junction for a driver
+    branches INTEGER NOT NULL,        -- number of roads that meet in the junction; with 2, it is no junction for a driver
     control VARCHAR,                  -- [control + none] the sign or light that governs the ego's entry, see way_mark; NULL: not known, because the map has no such signals at all or begins less than 50 m before the junction
     minor BOOLEAN                     -- the ego must give way: control is stop or give_way; NULL: control not known {position}
 );
@@ -187,7 +187,7 @@ CREATE TABLE passage_conflict (
     ego_id VARCHAR NOT NULL,          -- the ego
     occurrence INTEGER NOT NULL,      -- see junction_passage; one row for each relation
     relation VARCHAR NOT NULL,        -- [relation] the direction from which the actor came, by its heading 2 s before, relative to the ego's at its entry. oncoming: from the road ahead (if that road leads off at an angle and no other is as straight, also from_left or from_right). ahead_going: a cyclist, animal or vehicle along the ego's own road that continues while the ego turns. pedestrian: on foot, in the junction or within 12 m before or after it. An actor without a class may be any {position}
-    object_id VARCHAR,                -- the actor with the least PET, of the actors that the ego went ahead of or into (on foot: still there as the ego came; driven: not yet past the ego's front); NULL: none
+    object_id VARCHAR,                -- the actor with the least PET, of the actors that the ego went ahead of or drove into. Driven into: a pedestrian who was still there, or a vehicle that had not yet passed the ego's front; NULL: none
     actor_class VARCHAR,              -- [actor_class] see road_user; it decides whether a low PET breaks a rule {class}
     pet_s DOUBLE,                     -- PET (post-encroachment time) of object_id, also if by reason another actor may have a lower one; infinite: no actor within 10 s, or until the log's end at least 4 s later; NULL: not known {position, velocity}
     decel_mps2 DOUBLE,                -- see conflict; 0 if there is no actor; NULL: not known {velocity}

@@ -95,7 +95,7 @@ CREATE TABLE quality (
     actor_id VARCHAR,                 -- the actor concerned; NULL: the whole drive
     n BIGINT NOT NULL,                -- number of samples concerned
     t_first_ns BIGINT,                -- time of the first of these samples. For lost_time: the last time before the loss; NULL: not known, or the loss is at the beginning of the log
-    t_last_ns BIGINT,                 -- for lost_time only: the first time after the loss; NULL: the loss is at the end of the log, or another check
+    t_last_ns BIGINT,                 -- for lost_time only: the first time after the loss; NULL: the loss is at the end of the log, or the check is another one
     message VARCHAR NOT NULL          -- what was observed and its effect, in one sentence
 );
 
