@@ -1,7 +1,7 @@
--- Objects whose box overlaps the ego's along the corridor, and the gap to them across it. The speed of an object across the corridor comes
--- from its velocity where it has a sample at the time of the step, else from its speed and heading.
+-- Objects whose box overlaps the ego's along the corridor, and the gap between the two boxes across it. An object's speed across the
+-- corridor comes from its velocity if it has a sample at the time of the step, else from its speed and heading.
 WITH RECURSIVE
--- The object and the ego pass each other between this step and the next: they are beside each other at neither of the two.
+-- The object and the ego pass each other between this step and the next; they are beside each other at neither of the two steps.
 pass_between_steps AS (
     SELECT n.* REPLACE ((n.gap_m + m.gap_m) / 2 AS gap_m, (n.gap_m + m.gap_m) / 2 AS clearance_m)
     FROM neighbour n
@@ -52,9 +52,9 @@ object_on_cycle_lane AS (
     JOIN cycle_lane y ON y.environment_id = g.environment_id AND y.lanelet_id = o.lanelet_id
     GROUP BY ALL
 ),
--- The drivable lanelets, and the lanelets beside them with no kerb or verge between: people ride there, too. A border may be a kerb, and
--- no vehicle drives over restricted ground. Whether a lanelet beyond a border or beyond restricted ground belongs to the road is not known
--- (is_certain is false).
+-- The drivable lanelets, and the lanelets beside them without a kerb or verge between, on which people ride, too. A border may be a kerb,
+-- and no vehicle drives over restricted ground. It is therefore not known whether a lanelet beyond a border or restricted ground belongs to
+-- the road (is_certain is false).
 rideable_lanelet AS (
     SELECT environment_id, lanelet_id, lane_type, true AS is_certain FROM lanelet WHERE drivable
     UNION

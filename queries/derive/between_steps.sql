@@ -1,14 +1,13 @@
--- Intervals between two steps in which the ego and an object may have touched. Each box moves along the cubic through its places and
--- velocities at the two steps. Only pairs are examined that are so near at one of the two steps that they could touch on the way to the
--- other.
+-- Intervals between two steps in which the ego and an object may have touched. Each box moves along the cubic through its positions and
+-- velocities at the two steps. A pair is examined only if it is so near at one of the two steps that it could touch in the interval.
 WITH ego_step AS (
     SELECT s.drive_id, s.ego_id, s.t_ns, lead(s.t_ns) OVER w AS t_next_ns, lag(s.t_ns) OVER w AS t_before_ns, c.max_gap_ns
     FROM step s
     JOIN clock c USING (drive_id, ego_id)
     WINDOW w AS (PARTITION BY s.drive_id, s.ego_id ORDER BY s.t_ns)
 ),
--- The only full scan of the large table pair. Two boxes can touch between two steps only if one of the two clearances is at most half of
--- the distance that they move in that time, plus the distance that they may swerve.
+-- The only full scan of the large table pair. Two boxes that touch between two steps have a small clearance at one of the steps: at most
+-- half of the distance that they move in that time, plus the distance that they may swerve.
 near_pair AS (
     SELECT p.drive_id, p.ego_id, p.object_id, t.t_before_ns, t.t_ns, t.t_next_ns, t.max_gap_ns
     FROM (
@@ -34,8 +33,8 @@ pair_end AS MATERIALIZED (
     SELECT p.* RENAME (t_ns AS t_next_ns) FROM pair p
     SEMI JOIN step_interval n ON n.drive_id = p.drive_id AND n.ego_id = p.ego_id AND n.object_id = p.object_id AND n.t_next_ns = p.t_ns
 ),
--- Both actors at both steps. (x, y) is the place of the object seen from the ego at the first step; ego_way and object_way are their ways to
--- the second step (see between_way).
+-- Both actors at both steps. (x, y) is the position of the object relative to the ego at the first step; ego_way and object_way are their
+-- displacements until the second step (see between_way).
 interval_motion AS (
     SELECT
         n.drive_id, n.ego_id, n.object_id, n.t_ns, n.t_next_ns, (n.t_next_ns - n.t_ns) / 1e9 AS dt_s, least(a.clearance_m, b.clearance_m) AS end_clearance_m,
@@ -58,9 +57,9 @@ interval_motion AS (
 relative_motion AS MATERIALIZED (
     SELECT *,
         object_way.x - ego_way.x AS change_x_m, object_way.y - ego_way.y AS change_y_m, object_way.px - ego_way.px AS px, object_way.py - ego_way.py AS py, object_way.qx - ego_way.qx AS qx, object_way.qy - ego_way.qy AS qy,
-        -- A box that hardly moves cannot swerve far: its deviation is at most the length of its way.
+        -- The box of a slow actor cannot swerve far: its deviation is at most the length of its path.
         least(between_blur_m(ego_way, dt_s), ego_way.long_m) + least(between_blur_m(object_way, dt_s), object_way.long_m)
-            -- A box does not turn evenly either.
+            -- The box may also turn unevenly.
             + 0.1 * (abs(ego_turn_rad) * ego_half_length_m + abs(object_turn_rad) * object_half_length_m) AS blur_m
     FROM interval_motion
     WHERE ego_turn_rad IS NOT NULL AND object_turn_rad IS NOT NULL AND x IS NOT NULL
@@ -96,5 +95,5 @@ least_clearance AS (
     FROM fine_box_pair
     GROUP BY drive_id, ego_id, object_id, t_ns, t_next_ns, end_clearance_m, blur_m
 )
--- The boxes come nearer between the two steps than at either of them. A vehicle that only follows does not come nearer.
+-- The boxes must come nearer between the two steps than at either of them. This excludes a vehicle that only follows.
 SELECT drive_id, ego_id, t_ns, t_next_ns, object_id, least_m, blur_m FROM least_clearance WHERE least_m <= blur_m AND least_m < end_clearance_m - 0.05

@@ -1,5 +1,5 @@
--- The inputs ("signals") that rules may require: whether each log and its map have them. A rule is not run, and its verdict is unknown, if
--- it requires an input that has no row here with available = true.
+-- The inputs ("signals") that rules may require, and whether each log and its map have them. If a rule requires an input without a row with
+-- available = true, the rule is not run and its verdict is unknown.
 WITH ego_log AS (
     SELECT
         c.drive_id, c.ego_id, g.environment_id,
@@ -8,7 +8,7 @@ WITH ego_log AS (
         ), why('no_map')) AS no_map_reason, g.has_indicator, g.has_brake_light,
         a.length_m IS NOT NULL AND a.width_m IS NOT NULL AS has_ego_size,
         NOT EXISTS (FROM quality q WHERE q.drive_id = c.drive_id AND q.check_id = 'assumed_motion') AS has_speeds,
-        -- Headlights are recorded lamps: a log may have them although the ego does not declare what it looks at or means to do.
+        -- Headlights are recorded lamps. A log may have them even if the ego declares nothing about its observations or intentions.
         EXISTS (FROM declared_event d WHERE d.drive_id = c.drive_id AND d.actor_id = c.ego_id AND d.event <> 'headlights') AS has_events,
         EXISTS (FROM signal_state l WHERE l.drive_id = c.drive_id AND l.state IS NOT NULL) AS has_signals,
         EXISTS (FROM drive_condition x WHERE x.drive_id = c.drive_id AND x.condition = 'road_type') AS is_road_type_given,
@@ -59,8 +59,7 @@ ego_input AS (
             'reason_available': CASE WHEN s.is_road_type_given THEN why('given_road_type') ELSE why('has_road_types') END,
             'reason_missing': why('no_road_types')},
         {'signal': 'junctions', 'is_of_map': true, 'available': m.has_junctions, 'reason_available': why('has_junctions'), 'reason_missing': why('no_junctions')},
-        -- A map without junctions and crossings needs no traffic lights. If it has no traffic lights either, the log has no states of
-        -- lights to record.
+        -- A map without junctions and crossings needs no traffic lights. A map without traffic lights needs no recorded states of lights.
         {'signal': 'traffic_lights', 'is_of_map': true, 'available': m.has_traffic_lights OR NOT (m.has_junctions OR m.has_crossings),
             'reason_available': CASE WHEN m.has_traffic_lights THEN why('has_traffic_lights') ELSE why('needs_no_lights') END,
             'reason_missing': why('no_traffic_lights')},

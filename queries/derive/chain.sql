@@ -1,7 +1,7 @@
--- The running lane as a chain of lanelets: those that the ego drove, and beyond them those straight on. It goes on for at least 1000 m
--- (corridor_ahead_m) beyond the last lanelet that the ego drove, and for at least 200 m (corridor_behind_m) before the first, unless the lane
--- or the map ends before. Steps in a lane driven the other way (an overtake) or off the lanes do not interrupt the chain. A change to
--- another lane of the same direction begins a new chain. Without a map the chain is the way that the ego itself drove (own_way).
+-- The running lane as a chain of lanelets: those that the ego drove, continued straight on at both ends. It extends for at least 1000 m
+-- (corridor_ahead_m) beyond the last driven lanelet and 200 m (corridor_behind_m) before the first, unless the lane or the map ends
+-- earlier. Steps in an opposing lane (an overtake) or off the lanes do not interrupt the chain. A change to another lane of the same
+-- direction begins a new chain. Without a map, the chain is the ego's own recorded path (own_way).
 WITH RECURSIVE lane_step AS (
     SELECT
         drive_id, ego_id, t_ns, lanelet_id,
@@ -23,15 +23,14 @@ visit AS (
     GROUP BY ALL
 ),
 visited_lanelet AS (SELECT DISTINCT v.drive_id, v.ego_id, l.environment_id, v.lanelet_id FROM visit v JOIN data_log l USING (drive_id)),
--- Where the ego went on is known: a link between two lanelets that it drove has priority over the link straight on.
+-- The ego's route is known: a link between two lanelets that it drove has priority over the link straight on.
 driven_link AS (
     SELECT a.drive_id, a.ego_id, a.lanelet_id, {'beside': false, 'abs_turn_rad': abs(l.turn_rad), 'id': l.to_id} AS next
     FROM visited_lanelet a
     JOIN lane_link l ON l.environment_id = a.environment_id AND l.from_id = a.lanelet_id
     JOIN visited_lanelet b ON b.drive_id = a.drive_id AND b.ego_id = a.ego_id AND b.lanelet_id = l.to_id
 ),
--- A link into a junction is known, too, if the ego drove through the junction beside the connecting lanelet, as a driver does who cuts the
--- corner.
+-- A link into a junction is also known if the ego cut the corner, and so drove through the junction beside the connecting lanelet.
 corner_cut AS (
     SELECT a.drive_id, a.ego_id, a.lanelet_id, {'beside': true, 'abs_turn_rad': abs(l.turn_rad), 'id': l.to_id} AS next
     FROM visit a
@@ -60,7 +59,7 @@ lanelet_ahead AS (
     JOIN lanelet n ON n.environment_id = a.environment_id AND n.lanelet_id = coalesce(w.next_id, s.ahead_id)
     WHERE a.beyond_m < corridor_ahead_m() AND a.hop < 500
 ),
--- If the next visit lies on the way ahead of this one, it continues the chain at that hop.
+-- If the next visit is on the extension ahead of this one, it continues the chain at that hop.
 continuation AS (
     SELECT v.drive_id, v.ego_id, v.v, min(a.hop) AS hop
     FROM visit v
@@ -85,7 +84,7 @@ lanelet_behind AS (
     JOIN lanelet n ON n.environment_id = b.environment_id AND n.lanelet_id = s.behind_id
     WHERE b.before_m < corridor_behind_m() AND b.hop < 200
 ),
--- The lanelets of each chain in order: those behind the first visit, then those of each visit and ahead of it.
+-- The lanelets of each chain in order: those behind the first visit, then the lanelets of each visit and those ahead of it.
 chain_lanelet AS (
     SELECT drive_id, ego_id, chain_id, -1 AS v, -hop AS hop, environment_id, lanelet_id FROM lanelet_behind WHERE hop > 0
     UNION ALL
@@ -108,7 +107,7 @@ SELECT
 FROM chain_lanelet_with_end o
 LEFT JOIN visit v ON v.drive_id = o.drive_id AND v.ego_id = o.ego_id AND v.v = CASE WHEN o.hop = 0 THEN o.v END
 UNION ALL
--- Without a map the ego's own way is its lane: each piece of it is a chain of one lanelet.
+-- Without a map, the ego's own path is its lane: each piece of it is a chain of one lanelet.
 SELECT w.drive_id, w.ego_id, w.seg, 0, own_lanelet(w.seg), sum(w.len_m ORDER BY w.k), min(w.t_from_ns), min(s.t_last_ns), 0.0
 FROM own_way w
 JOIN (SELECT drive_id, ego_id, seg, max(t_ns) AS t_last_ns FROM step GROUP BY ALL) s USING (drive_id, ego_id, seg)

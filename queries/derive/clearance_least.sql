@@ -1,7 +1,7 @@
--- A lower bound of the clearance at the steps at which it is not known because one of the two has no position, heading or size. The
--- clearance seen before and the one seen after each shrink by no more than the two can come nearer in the time between. There is no bound
--- for an actor whose track once jumps to the place of another actor, where it cannot have driven (quality jumps_onto): its positions are
--- not trusted.
+-- A lower bound of the clearance, for the steps at which it is not known because the ego or the object has no position, heading or size.
+-- The known clearances before and after the step decrease by at most the distance that the two actors can approach in the time between.
+-- There is no bound for an actor whose track jumps to the position of another actor that it cannot have reached (quality jumps_onto): its
+-- positions are not trusted.
 WITH doubtful_actor AS (
     SELECT DISTINCT drive_id, actor_id FROM quality WHERE check_id = 'jumps_onto'
 ),

@@ -1,5 +1,5 @@
--- Moments at which two boxes cover the same ground, at an angle and at most 10 s apart. The ground that two actors share does not depend on
--- which of them is the ego.
+-- Moments at which two boxes cover the same ground, at an angle and at most 10 s apart. The result does not depend on which of the two
+-- actors is the ego.
 WITH
 -- Pairs of visits. A visit groups the samples of one actor that lie in one grid cell, one 10 s slot and one 5-degree heading step (see
 -- meeting). The first visit is that of the actor with the lesser id, so that a pair that two egos share is examined only once.
@@ -12,7 +12,7 @@ visit_pair AS (
     FROM meeting
     WHERE actor_id > object_id
 ),
--- One join at a time: the planner cannot know how few the pairs of visits are, and would compare all actors with each other.
+-- One join at a time: the planner underestimates how few pairs of visits there are, and would compare all actors with each other.
 visit_pair_box AS MATERIALIZED (
     SELECT m.a_id, m.a_cell, m.a_slot, m.a_heading, b.*
     FROM visit_pair m
@@ -25,9 +25,9 @@ angled_pair AS MATERIALIZED (
     WHERE abs(a.t_ns - b.t_ns) <= conflict_ns() AND abs(wrap_rad(b.travel_rad - a.travel_rad)) > conflict_angle_rad() AND same_level(b.z_m, a.z_m)
         AND boxes_meet(b.x_m - a.x_m, b.y_m - a.y_m, a.cos_yaw, a.sin_yaw, b.cos_yaw, b.sin_yaw, a.half_length_m, a.half_width_m, b.half_length_m, b.half_width_m)
 ),
--- In a tight bend even a follower's box lies at an angle to the leader's box of another moment. What counts is the angle to the other's way
--- at the point of that way that is nearest to the actor. An actor moves along the other's way if the nearest of the other's boxes has the
--- actor's direction.
+-- In a tight bend, even a follower's box lies at an angle to the leader's box of another moment. The angle is therefore measured to the
+-- other actor's path, at its point nearest to this actor. An actor moves along that path if the nearest of the other actor's boxes has the
+-- same direction.
 angled_moment AS MATERIALIZED (
     SELECT t.other_id, t.squared_distance_m2, b.*
     FROM (

@@ -1,5 +1,5 @@
--- Encounters of two actors on common ground: when each of them entered and left it, and the time between the two. None of that depends on
--- which of them is the ego.
+-- Encounters of two actors on common ground: when each of them entered and left it, and the time between the two. The result does not
+-- depend on which of the two is the ego.
 WITH
 drive_clock AS (SELECT drive_id, max(period_ns) AS period_ns, max(max_gap_ns) AS max_gap_ns FROM ego_clock GROUP BY drive_id),
 -- u is the actor with the lesser id, v is the other one. The moments of u are divided into stretches without a pause; within each stretch
@@ -36,9 +36,9 @@ stretch_pair AS MATERIALIZED (
     FROM greater_id_moment
     GROUP BY drive_id, ego_id, object_id, u_stretch, v_stretch
 ),
--- A pair of stretches and the one before it (b) are the same encounter if one of the actors has not left in between and the other is back
--- soon: at the edge of the shared ground, the angle between the two may fall below 20 degrees and rise again, and an actor may step aside.
--- n is the number of the encounter.
+-- A pair of stretches and the previous one (b) belong to the same encounter if one of the actors did not leave in between and the other
+-- soon came back. At the edge of the common ground, the angle may fall below 20 degrees and rise again, and an actor may step aside. n is
+-- the number of the encounter.
 encounter_part AS MATERIALIZED (
     SELECT drive_id, ego_id, object_id, u_stretch, v_stretch, sum((NOT is_joined)::INTEGER) OVER (PARTITION BY drive_id, ego_id, object_id ORDER BY u_stretch, v_stretch) AS n
     FROM (
@@ -68,9 +68,9 @@ encounter_time AS MATERIALIZED (
     FROM box_time
     GROUP BY drive_id, ego_id, object_id, n
 ),
--- One row per entry (sense 1) or exit (sense -1) of a box: on_id is the actor whose ground is entered or left, t_from_ns to t_to_ns the
--- time in which that actor is there. i is the box at the first or last moment on the ground; t_off_ns is the moment just before or after,
--- at which the box is off the ground.
+-- One row per entry (sense 1) or exit (sense -1) of a box. on_id is the actor whose ground is entered or left; that actor is there from
+-- t_from_ns to t_to_ns. i is the box at the first or last moment on the ground; t_off_ns is the moment just before or after, when the box
+-- is off the ground.
 entry_or_exit AS MATERIALIZED (
     SELECT
         p.drive_id, p.ego_id, p.object_id, p.n, p.is_ego, p.on_id, p.t_from_ns - g.period_ns AS t_from_ns, p.t_to_ns + g.period_ns AS t_to_ns, p.sense, i,
@@ -94,8 +94,8 @@ entry_or_exit_with_boxes AS MATERIALIZED (
     FROM entry_or_exit e
     LEFT JOIN swept_box f ON f.drive_id = e.drive_id AND f.actor_id = e.i.actor_id AND f.t_ns = e.t_off_ns
 ),
--- share: the part of the way, from the moment off the ground to the moment on it, after which the box first touches a box of the other.
--- angle_rad: the other's direction of travel minus its own, where the two come nearest.
+-- share: the part of the path, from the moment off the ground to the moment on it, after which the box first touches a box of the other
+-- actor. angle_rad: the other's direction of travel minus this actor's own, where the two are nearest.
 first_contact AS MATERIALIZED (
     SELECT
         drive_id, ego_id, object_id, n, is_ego, actor_id, sense, t_sample_ns, t_on_ns, t_off_ns, min(first_touch(sides_off, sides_on)) AS share,
@@ -112,8 +112,8 @@ first_contact AS MATERIALIZED (
     )
     GROUP BY drive_id, ego_id, object_id, n, is_ego, actor_id, sense, t_sample_ns, t_on_ns, t_off_ns
 ),
--- If the common ground ends because the angle becomes too small, not because the boxes part, share is NULL, and the moment off the ground
--- is the time of the entry or exit. An entry or exit without a moment off the ground was not seen.
+-- If the common ground ends because the angle becomes too small, and not because the boxes separate, share is NULL. The time of the entry
+-- or exit is then the moment off the ground. An entry or exit without a moment off the ground was not seen.
 entry_or_exit_time AS MATERIALIZED (
     SELECT
         drive_id, ego_id, object_id, n, is_ego, sense, min(sense * t_sample_ns) AS signed_sample_ns,
@@ -133,8 +133,8 @@ encounter AS MATERIALIZED (
     FROM entry_or_exit_time
     GROUP BY drive_id, ego_id, object_id, n
 ),
--- The course over ground of each on the common ground, whatever its recorded heading; where it moves less than a metre there, also half a
--- second before and after. NULL: it hardly moves.
+-- The course over ground of each actor on the common ground, independent of its recorded heading. If the actor moves less than a metre
+-- there, half a second before and after is added. NULL: it hardly moves.
 course_on_ground AS MATERIALIZED (
     SELECT drive_id, ego_id, object_id, n, is_ego, min({'margin_ns': margin_ns, 'course_rad': atan2(north_m, east_m)}).course_rad AS course_rad
     FROM (
@@ -155,15 +155,15 @@ course_on_ground AS MATERIALIZED (
     WHERE sqrt(east_m ** 2 + north_m ** 2) >= standing_spread_m()
     GROUP BY drive_id, ego_id, object_id, n, is_ego
 ),
--- Two that take the common ground on one course follow each other: only their headings, of which one is wrong, are at an angle. The time
--- between them is headway.
+-- Two actors with the same course over the common ground follow each other: only their recorded headings differ, and one of them is wrong.
+-- The time between them is headway.
 following_encounter AS MATERIALIZED (
     SELECT e.drive_id, e.ego_id, e.object_id, e.n
     FROM (FROM course_on_ground WHERE is_ego) e
     JOIN (FROM course_on_ground WHERE NOT is_ego) o USING (drive_id, ego_id, object_id, n)
     WHERE abs(wrap_rad(o.course_rad - e.course_rad)) <= conflict_angle_rad()
 ),
--- An actor that stands as long as it is on the ground is an obstacle, not a partner in a conflict.
+-- An actor that stands all the time on the common ground is an obstacle, not a partner in a conflict.
 moving_encounter AS MATERIALIZED (
     SELECT
         e.*, (later_entry.ns - earlier_exit.ns) / 1e9 AS pet_s, later_entry.is_unknown OR NOT earlier_exit.is_known AS pet_at_most, later_entry.angle_rad AS angle_rad
@@ -173,12 +173,12 @@ moving_encounter AS MATERIALIZED (
         AND s.t_ns >= e.t_object_in_ns AND s.t_ns <= e.t_object_out_ns AND coalesce(s.speed_mps > standing_mps(), true)
     SEMI JOIN state_dynamics o ON o.drive_id = e.drive_id AND o.actor_id = e.ego_id
         AND o.t_ns >= e.t_ego_in_ns AND o.t_ns <= e.t_ego_out_ns AND coalesce(o.speed_mps > standing_mps(), true)
-    -- An actor over or under the ego's road does not meet the ego. off_level is also true where that is only possible: pair then gives the
+    -- An actor over or under the ego's road does not meet the ego. off_level is also true if this is only possible: pair then gives the
     -- actor no position.
     ANTI JOIN (FROM pair WHERE off_level) p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.object_id = e.object_id
         AND p.t_ns >= e.t_object_in_ns AND p.t_ns <= e.t_object_out_ns
 ),
--- The mean deceleration over the half second before each sample, where all of that was seen.
+-- The mean deceleration over the half second before each sample, if all samples of that time exist.
 object_braking AS (
     SELECT
         drive_id, ego_id, object_id, n, max(decel_mps2) FILTER (coalesce(t_ns < t_impact_ns, true)) AS decel_mps2,
@@ -206,7 +206,7 @@ object_braking AS (
     )
     GROUP BY drive_id, ego_id, object_id, n, t_ego_in_ns, t_object_in_ns, period_ns
 ),
--- The lanelets under the ego's box when it enters the area, which it does with its front.
+-- The lanelets under the ego's box when its front enters the area.
 entry_lanelet AS (
     SELECT m.drive_id, m.ego_id, m.t_ego_in_ns, g.environment_id, c.lanelet_id, e.front_s_m - c.s_start_m AS front_m, e.rear_s_m - c.s_start_m AS rear_m, c.length_m
     FROM (SELECT DISTINCT drive_id, ego_id, t_ego_in_ns FROM moving_encounter) m

@@ -31,7 +31,7 @@ SELECT
     CASE WHEN junction_id IS NULL THEN lane.against ELSE coalesce(lane, lane_before, lane_after).against END AS over_against
 FROM corridor_lanelet
 UNION ALL
--- What lies beside the ego's own way is not known.
+-- It is not known what is beside the ego's own recorded path.
 SELECT c.drive_id, c.ego_id, c.chain_id, c.seq, c.lanelet_id, c.s_start_m, c.length_m, NULL, NULL, NULL
 FROM chain c
 SEMI JOIN (FROM data_log WHERE environment_id IS NULL) g ON g.drive_id = c.drive_id

@@ -1,5 +1,5 @@
--- The grid cells of the strips beside the ego's chains in which some actor ever was. A lanelet that the ego drives in every lap is listed
--- once.
+-- The grid cells of the strips beside the ego's chains that an actor visited at some time. A lanelet that the ego drives in every lap is
+-- listed once.
 WITH chain_lanelet AS (SELECT DISTINCT c.drive_id, c.ego_id, l.environment_id, c.lanelet_id FROM chain c JOIN data_log l USING (drive_id)),
 lanelet_cell AS (
     SELECT m.drive_id, m.ego_id, m.environment_id, s.cell, s.lanelet_id, s.k
@@ -7,7 +7,8 @@ lanelet_cell AS (
     JOIN strip_cell s USING (environment_id, lanelet_id)
     SEMI JOIN visited_cell v ON v.drive_id = m.drive_id AND v.cell = s.cell
 ),
--- Without a map: the strips beside the ego's own way. The lane is as wide as the ego and a hand's breadth on both sides.
+-- Without a map: the strips beside the ego's own path. Its lane is as wide as the ego plus a small margin on both sides
+-- (own_lane_beside_m).
 own_segment AS (
     SELECT
         w.*, a.width_m / 2 + own_lane_beside_m() AS half_width_m, max(w.k) OVER (PARTITION BY w.drive_id, w.ego_id, w.seg) AS last_k,

@@ -65,7 +65,7 @@ other_half AS (
     ) o ON o.environment_id = v.environment_id AND o.lanelet_id = v.lanelet_id AND o.side = CASE v.side WHEN 1 THEN 'left' ELSE 'right' END
     JOIN ego_corridor x ON x.drive_id = v.drive_id AND x.ego_id = v.ego_id AND x.chain_id = v.chain_id
         AND x.t_ns >= coalesce(v.t_in_ns, v.t_ns) AND x.t_ns <= v.t_watch_to_ns
-    -- What the ego does after its centre is past the crossing does not count as driving on the other half.
+    -- Steps after the ego's centre has passed the crossing do not count as driving on the other half.
     WHERE x.s_m <= v.s_end_m OR x.t_ns = v.t_in_ns
     GROUP BY ALL
 ),
@@ -84,8 +84,8 @@ passage_occupancy AS (
     JOIN road_user a ON a.drive_id = o.drive_id AND a.actor_id = o.object_id
     GROUP BY v.drive_id, v.ego_id, v.mark_id, v.t_ns
 ),
--- People on the other half when the ego enters, and where they go. Those who go straight on come to the ego's half. Those who came from
--- there, or leave the crossing on the other half, do not.
+-- Pedestrians on the other half when the ego enters, and where they go. Those who go straight on reach the ego's half. Those who came from
+-- there, or who leave the crossing on the other half, do not.
 other_half_occupant AS (
     SELECT
         v.drive_id, v.ego_id, v.mark_id, v.t_ns, o.object_id, a.actor_class, o.t_to_ns, v.t_end_ns - v.max_gap_ns AS t_seen_until_ns,
@@ -129,7 +129,7 @@ person_sample AS (
     FROM passage_context v
     JOIN state_dynamics s ON s.drive_id = v.drive_id AND s.actor_id <> v.ego_id AND s.t_ns >= v.t_watch_from_ns AND s.t_ns <= v.t_in_ns
     JOIN crossing_end k ON k.environment_id = v.environment_id AND k.crossing_id = v.mark_id AND k.along_road = v.along_road
-    -- A person on the crossing does not wait any more.
+    -- A person on the crossing is no longer waiting.
     ANTI JOIN crossing_occupancy o ON o.drive_id = v.drive_id AND o.crossing_id = v.mark_id AND o.object_id = s.actor_id
         AND o.t_from_ns <= v.t_in_ns AND o.t_to_ns >= v.t_watch_from_ns
     WHERE may_walk(s.actor_class)
@@ -145,7 +145,7 @@ waiting_person AS (
     )
     GROUP BY drive_id, ego_id, mark_id, t_ns
 ),
--- ---- whether another actor can have been there
+-- ---- whether another person may have been there
 unplaced_person AS (
     SELECT v.drive_id, v.ego_id, v.mark_id, v.t_ns, o.object_id, v.x_m, v.y_m, v.t_watch_from_ns, v.t_watch_to_ns,
         CASE WHEN o.actor_class IS NULL THEN 30.0 ELSE 3.0 END * count(*) * any_value(c.period_ns) / 1e9 AS reach_m
@@ -167,8 +167,8 @@ passage_near_unplaced_person AS (
     ) k USING (drive_id, ego_id, mark_id, t_ns, object_id)
     WHERE k.least_m IS NULL OR k.least_m < meeting_near_m() + b.reach_m
 ),
--- The first and last sample with a position of each track. A track that goes on elsewhere after a jump of the position was given another id
--- when the log was read (drivelint/drive/jumps.py): it ends here at the jump.
+-- The first and last sample with a position of each track. If the position jumps, the reader of the log gives the later part of the track
+-- another id (drivelint/drive/jumps.py): the track ends here at the jump.
 track_range AS (
     SELECT s.drive_id, s.actor_id, min(s.t_ns) AS t_first_ns, max(s.t_ns) AS t_last_ns
     FROM state_dynamics s
@@ -185,7 +185,8 @@ passage_near_broken_track AS (
     ) AS w(t_at_ns, apart_ns, walk_ns)
     JOIN state_dynamics s ON s.drive_id = v.drive_id AND s.actor_id = d.actor_id AND s.t_ns = w.t_at_ns
     WHERE w.walk_ns >= 0 AND w.apart_ns <= conflict_ns() AND w.t_at_ns > c.t_start_ns + c.max_gap_ns AND w.t_at_ns < c.t_end_ns - c.max_gap_ns
-        -- The end of a track counts if it is near while the ego passes. Before or after, it counts if a person can walk that far in time.
+        -- If the track ends while the ego passes, it counts if it ends near the crossing. If it ends before or after, it counts if a person
+        -- can walk that far in the time.
         AND sqrt((s.x_m - v.x_m) ** 2 + (s.y_m - v.y_m) ** 2)
             < CASE WHEN w.apart_ns = 0 THEN meeting_near_m() ELSE greatest(5.0, 3.0 * w.walk_ns / 1e9) END
 ),

@@ -1,8 +1,8 @@
 -- A vehicle cuts in if it comes from beside into the running lane ahead of the ego: from at most 0.05 m inside the lane to more than 0.3 m,
--- along the lane (within 45 degrees), at most 150 m ahead. A vehicle that gets into the lane because the ego changes lanes does not cut in.
--- If the vehicle is not seen in between, t_ns is the first step at which it is seen in the lane. A vehicle that overtakes the ego, and is
--- over the line already when it gets ahead, cuts in at the step at which it becomes the nearest vehicle ahead. If it is not known for a
--- second which vehicle is ahead, some vehicle may have cut in.
+-- along the lane (within 45 degrees), at most 150 m ahead. A vehicle that is in the ego's lane because the ego changed lanes does not cut
+-- in. If the vehicle is not seen while it crosses the line, t_ns is the first step at which it is seen in the lane. A vehicle that
+-- overtakes the ego and is over the line when it gets ahead cuts in when it becomes the nearest vehicle ahead. If it is not known for a
+-- second which vehicle is ahead, a vehicle may have cut in.
 WITH ahead AS (
     SELECT
         p.drive_id, p.ego_id, p.t_ns, st.k, st.seg, p.object_id, e.chain_id, p.rear_s_m - e.front_s_m AS gap_m, e.speed_mps AS ego_speed_mps,
@@ -25,7 +25,7 @@ candidate_sample AS (
         HAVING min(inside_m) <= over_boundary_m() AND max(inside_m) > cut_in_m()
     ) m ON m.drive_id = a.drive_id AND m.ego_id = a.ego_id AND m.object_id = a.object_id AND m.chain_id = a.chain_id
 ),
--- Where lanes merge, or a lane begins, the centre line of the running lane jumps and no vehicle has moved: a new run begins.
+-- If lanes merge or a lane begins, the centre line of the running lane jumps without any motion of a vehicle: a new run begins.
 run_sample AS (
     SELECT *, sum(coalesce(has_jumped, false)::INTEGER) OVER (PARTITION BY drive_id, ego_id, object_id, chain_id ORDER BY k ROWS UNBOUNDED PRECEDING) AS run
     FROM (
@@ -34,7 +34,7 @@ run_sample AS (
         WINDOW w AS (PARTITION BY drive_id, ego_id, object_id, chain_id ORDER BY k)
     )
 ),
--- last_clear: the last sample before at which the vehicle was clearly in the lane or clearly out of it.
+-- last_clear: the last previous sample at which the vehicle was clearly inside or clearly outside the lane.
 sample_with_last_clear_place AS (
     SELECT
         *,
@@ -58,7 +58,7 @@ cut_in_sample AS (
 centre_in_lane_step AS (
     SELECT drive_id, ego_id, object_id, chain_id, run, n, min(t_ns) AS t_ns FROM cut_in_sample WHERE is_centre_in GROUP BY ALL
 ),
--- The least distance ahead (m) along the lane of an unseen vehicle that may be there, or of a seen actor that is not known to be a vehicle.
+-- The least distance ahead (m) along the lane of an unseen vehicle that may be present, or of a seen actor of unknown class.
 free_lane AS (
     SELECT drive_id, ego_id, t_ns, min(m) AS m
     FROM (

@@ -1,5 +1,5 @@
--- Steps at which the ego is on no drivable lane, with the nearest non-drivable lanelet that lies under the ego: a shoulder, lay-by, border,
--- parking lane, restricted lane or cycle lane. In the map, such a lanelet is part of the carriageway or is kept free beside it.
+-- Steps at which the ego is on no drivable lane, with the nearest non-drivable lanelet under the ego: a shoulder, lay-by, border, parking
+-- lane, restricted lane or cycle lane. In the map, such a lanelet is part of the carriageway, or is kept free beside it.
 SELECT e.drive_id, e.ego_id, e.t_ns, o.lanelet_id, n.lane_type, n.road_type, abs(o.d_m) AS off_m, abs(o.heading_diff_rad) < pi() / 2 AS with_direction
 FROM ego_lane e
 JOIN data_log g USING (drive_id)

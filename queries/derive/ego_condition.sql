@@ -1,4 +1,4 @@
--- The conditions at every step of the ego: as given for the drive (drive_condition), else as the map, the log and the ego itself say.
+-- The conditions at every step of the ego: as given for the drive (drive_condition), else from the map, the log and the ego's data.
 WITH given_condition AS (
     SELECT
         drive_id,
@@ -8,8 +8,8 @@ WITH given_condition AS (
         max(value) FILTER (condition = 'vehicle_class') AS vehicle_class, max(value) FILTER (condition = 'engaged') AS engaged
     FROM drive_condition GROUP BY drive_id
 ),
--- A cross-section of a road: its two directions run side by side (directions_touch), or something lies or may lie between them, or it has
--- only one direction.
+-- A cross-section of a road. Its two directions are side by side (directions_touch), or there is or may be something between them, or it
+-- has only one direction.
 cross_section AS (
     SELECT
         n.environment_id, n.road_id, n.section,

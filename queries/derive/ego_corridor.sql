@@ -1,5 +1,5 @@
--- The ego's box in its running chains. The centre and each corner are placed on segments of their own, so that a bend does not tilt the
--- box. Where a chain meets itself, the station that continues the last one counts.
+-- The position of the ego's box in its running chains. The centre and each corner have segments of their own, so that the box is not tilted
+-- in a bend. If a chain meets itself, the station that continues the last one counts.
 WITH ego_box AS (
     SELECT st.drive_id, st.ego_id, st.t_ns, s.x_m, s.y_m, s.yaw_rad, s.length_m / 2 AS half_box_length_m, s.width_m / 2 AS half_box_width_m, st.travel_m
     FROM step st
@@ -35,8 +35,8 @@ point_on_strip AS (
     )
     WHERE abs(d_m) <= strip_m()
 ),
--- A chain that comes back to a lanelet, as on a test track, has it once per lap. Each occurrence is the nearest one from halfway to the
--- occurrence before it.
+-- A chain that returns to a lanelet, as on a test track, contains it once per lap. Each occurrence applies from the midpoint between it and
+-- the previous one.
 occurrence AS (
     SELECT
         drive_id, ego_id, chain_id, lanelet_id, s_start_m, over_width_m, over_against, side,
@@ -46,7 +46,7 @@ occurrence AS (
 chain_lanelet AS (
     SELECT DISTINCT drive_id, ego_id, chain_id, lanelet_id FROM corridor
 ),
--- The certain stations of the ego: the lanelet that it is on is part of the chain.
+-- The stations of the ego that are certain: those at which its lanelet is part of the chain.
 certain_station AS (
     SELECT e.drive_id, e.ego_id, c.chain_id, e.t_ns, c.s_start_m + e.s_m - s.travel_m AS station_minus_travel_m
     FROM ego_lane e
@@ -105,7 +105,7 @@ box_extent AS (
     GROUP BY ALL
     HAVING count(*) = 4
 ),
--- Without a map the ego is in the middle of its own way. Where it drives backwards, nothing is ahead on that way.
+-- Without a map, the ego is in the middle of its own path. While it reverses, that path has nothing ahead.
 own_place AS (
     SELECT
         b.drive_id, b.ego_id, w.seg, b.t_ns, w.s0_m + w.len_m * greatest(0.0, least(1.0, a.a0 / nullif(a.a0 + a.a1, 0))) AS s_m, b.half_box_width_m + own_lane_beside_m() AS half_width_m,

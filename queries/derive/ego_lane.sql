@@ -1,5 +1,6 @@
--- One drivable lanelet per ego step. Where lanelets overlap (in junctions), the lanelet that links the last certain lanelet to the next one
--- is taken; of several the one that covers most of the stretch between those two, then the one with the best heading.
+-- One drivable lanelet per ego step. If several lanelets overlap (in junctions), the lanelet that links the last certain lanelet to the
+-- next one is taken. Of several such lanelets, it is the one that covers most steps between the two certain lanelets, then the one with the
+-- best heading.
 WITH lanelet_candidate AS (
     SELECT
         st.drive_id, st.ego_id, st.t_ns, st.k, l.environment_id, o.lanelet_id, o.s_m, o.d_m, o.half_width_m,

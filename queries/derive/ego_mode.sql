@@ -1,6 +1,6 @@
--- The modes of the automated driver that the log declares, at every step of the ego. A declaration holds until the next one. A mode is an
--- event that the ego declares on or off at least once. With any other value, or with two different values at once, the mode is not
--- known, nor is it if the log has lost something since the declaration: another one may have been in it.
+-- The modes of the automated driver that the log declares, at every step of the ego. A declaration applies until the next one. A mode is an
+-- event that the ego declares on or off at least once. The mode is not known after any other value or two different values at once, or if
+-- the log has lost data since the declaration: the lost part may contain another declaration.
 WITH declaration AS (
     SELECT
         drive_id, actor_id AS ego_id, event AS mode, t_ns,
@@ -14,5 +14,5 @@ mode AS (
 SELECT s.drive_id, s.ego_id, s.t_ns, s.mode, CASE WHEN l.t_to_ns IS NULL OR l.t_to_ns <= d.t_ns THEN d.is_on END AS is_on
 FROM (SELECT st.drive_id, st.ego_id, st.t_ns, m.mode FROM step st JOIN mode m ON m.drive_id = st.drive_id AND m.ego_id = st.ego_id) s
 ASOF LEFT JOIN declaration d ON d.drive_id = s.drive_id AND d.ego_id = s.ego_id AND d.mode = s.mode AND d.t_ns <= s.t_ns
--- The last loss that had begun by then.
+-- The last loss that began before the step.
 ASOF LEFT JOIN lost_time l ON l.drive_id = s.drive_id AND l.t_from_ns < s.t_ns

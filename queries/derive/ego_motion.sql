@@ -6,19 +6,21 @@
 -- that the jerk does not depend on the rate of the log. nuPlan differentiates the acceleration with a Savitzky-Golay filter of second order
 -- over 15 samples at 10 Hz, which at the middle of its window is this slope (nuPlan devkit, state_extractors, extract_ego_jerk).
 --
--- A value is NULL if the velocity itself comes from a filter (quality velocity_filtered), if a sample in the window is not known, or if the
--- samples do not reach 0.7 of the half window to both sides (at the log's ends, at a hole). It is also NULL in logs with less than 5
--- samples a second: there the mean would be over so long a time that harsh braking vanishes in it.
+-- A value is NULL in four cases: the velocity itself comes from a filter (quality velocity_filtered); a sample in the window is not known;
+-- the samples do not extend over 0.7 of the half window on both sides (at the log's ends, at a hole); or the log has less than 5 samples a
+-- second. In the last case, the mean would be over so long a time that harsh braking disappears.
 --
--- A mean over half a second flattens a peak. The *_peak columns say by how much at most the true peak may be higher, where the value stands
--- out over both of the values half a window away (see peak_rise).
+-- A mean over half a second flattens a peak. The *_peak columns are upper bounds of this loss, for a value that is further from zero than
+-- both values half a window before and after it (see peak_rise).
 --
--- The *_error columns say how far off a value may be: three times the mean standard error of the slopes of two seconds, by how far the
--- samples lie off their lines (where the motion changes they do for a moment, in noise always), or twice the greatest one nearby, and
--- no less than by how much another reading of the same motion contradicts it: of the acceleration that by the places, of the yaw rate that
--- by the course. They are NULL if there are too few samples. For an ego that the sensors of another vehicle measured they are at least
--- what a place that is off by a decimetre makes of it, or a speed that is not that of the places; such an ego does not gain speed faster
--- than engines let it, and is not believed within a second of a change that no tyre makes, or of sliding sideways against its heading.
+-- The *_error columns are error bounds. The bound is the greatest of three values. First, three times the mean standard error of the slopes
+-- over two seconds (the deviation of the samples from their lines: short when the motion changes, constant in noise). Second, twice the
+-- greatest standard error nearby. Third, the contradiction by another measurement of the same motion: positions for the acceleration,
+-- course for the yaw rate. It is NULL if there are too few samples.
+--
+-- For an ego that was measured by the sensors of another vehicle, the bound is at least the effect of a position error of 0.1 m, or of a
+-- speed that contradicts the positions. The values of such an ego are not trusted if it accelerates faster than an engine can, or within a
+-- second of a change that tyres cannot cause or of sliding sideways.
 --
 -- The sums are of whole numbers (v in nm/s, yaw in nrad, time in ns) and therefore exact: the same in any order, whatever other drives are
 -- in the table.
@@ -39,7 +41,7 @@ sample AS (
         st.t_ns - min(st.t_ns) OVER (PARTITION BY st.drive_id, st.ego_id, st.seg) AS age_ns,
         CASE WHEN q.actor_id IS NULL THEN filter_half_ns(c.period_ns) END AS half_ns,
         g.sensor_range_m IS NOT NULL AND coalesce(CASE WHEN o.are_all THEN NOT coalesce(list_contains(o.of_recorder, st.ego_id), false) ELSE list_contains(o.by_user, st.ego_id) END, false) AS is_measured,
-        -- also where it reverses
+        -- also while it reverses
         coalesce(s.speed_mps > 5.0 AND abs(sin(course.rad - s.yaw_rad)) > sin(slides_rad()), false) AS slides,
         EXISTS (FROM doubt d WHERE d.drive_id = st.drive_id AND d.actor_id = st.ego_id AND d.quantity = 'velocity' AND st.t_ns BETWEEN d.t_from_ns AND d.t_to_ns) AS is_doubted
     FROM step st
@@ -112,7 +114,7 @@ window_sample AS (
     SELECT
         *,
         v_long_mps * yaw_rate_radps AS lat_accel_mps2,
-        -- The engine doubts a mean at the step at which it ends; what it begins with is doubted here.
+        -- The engine doubts a mean by the doubts at its last step. The doubt at its first step is applied here.
         first_value({'t_ns': t_ns, 'v': CASE WHEN NOT is_doubted THEN v_long_mps END}) OVER (w RANGE BETWEEN 2_000_000_000 PRECEDING AND CURRENT ROW) AS at_2s,
         first_value({'t_ns': t_ns, 'a': accel_mps2, 'error': accel_error_mps2}) OVER (w RANGE BETWEEN 1_000_000_000 PRECEDING AND CURRENT ROW) AS at_1s,
         first_value({'accel': accel_mps2, 'lat': v_long_mps * yaw_rate_radps}) OVER (w RANGE BETWEEN coalesce(half_ns, 0) PRECEDING AND CURRENT ROW) AS half_window_before,
@@ -127,7 +129,7 @@ SELECT
     0.7 * peak_rise(accel_mps2, half_window_before.accel, half_window_after.accel) AS accel_peak_mps2,
     0.7 * peak_rise(lat_accel_mps2, half_window_before.lat, half_window_after.lat) AS lat_peak_mps2,
     accel_error_mps2, lat_error_mps2,
-    -- The jerk is off if the acceleration is at one end of its window.
+    -- The error of the jerk: the acceleration is wrong at one end of the window.
     1e9 * accel_error_mps2 / (2 * jerk_half_ns()) AS jerk_error_mps3,
     CASE WHEN age_ns >= 1_000_000_000 THEN 1e9 * sqrt(accel_error_mps2 ** 2 + at_1s.error ** 2) / (t_ns - at_1s.t_ns) END AS jerk_1s_error_mps3
 FROM window_sample

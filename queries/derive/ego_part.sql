@@ -1,8 +1,9 @@
--- Actors that are the ego itself: the trailer that it tows, and another id under which the log has the ego before or after its own id.
+-- Actors of the log that belong to the ego: the trailer that it tows, and the same vehicle under another id before or after the ego's own
+-- track.
 WITH track AS (
     SELECT drive_id, actor_id, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns FROM state_dynamics GROUP BY drive_id, actor_id
 ),
--- One track ends when the other begins.
+-- In time: one track ends when the other begins.
 handover AS (
     SELECT c.drive_id, c.ego_id, o.actor_id AS object_id, 'successor' AS part, c.ego_id AS early_id, c.t_end_ns AS t_ends_ns, o.actor_id AS late_id, o.t_first_ns AS t_begins_ns
     FROM clock c
@@ -14,7 +15,7 @@ handover AS (
     JOIN track o ON o.drive_id = c.drive_id AND o.actor_id <> c.ego_id
     WHERE abs(o.t_last_ns - c.t_start_ns) <= c.max_gap_ns AND o.t_first_ns < c.t_start_ns AND o.t_last_ns < c.t_end_ns
 ),
--- One track ends where the other begins: there is no room for two vehicles.
+-- In place: one track ends where the other begins, so closely that two vehicles have no room.
 renamed_ego AS (
     SELECT h.drive_id, h.ego_id, h.object_id, h.part
     FROM handover h
@@ -25,7 +26,7 @@ renamed_ego AS (
         AND abs(wrap_rad(b.yaw_rad - a.yaw_rad)) <= same_heading_rad() AND same_size(a.length_m, b.length_m) AND same_size(a.width_m, b.width_m)
         AND may_be_vehicle(a.actor_class) AND may_be_vehicle(b.actor_class)
 ),
--- Actors close behind the ego at the first moment at which both are there. Only for these few is the whole track examined.
+-- Actors close behind the ego at the first moment at which both are present. Only for these few actors is the whole track examined.
 actor_behind AS (
     SELECT w.drive_id, w.ego_id, w.object_id, w.is_called_trailer
     FROM (

@@ -1,5 +1,5 @@
--- One station along the road for all lanes between which the ego changes: where it crosses from one lane into the next, the two chains have
--- the same station. A chain that the ego entered without crossing a line begins a new road.
+-- Stations along the road, common to all lanes between which the ego changes. Where it crosses from one lane into the next, the two chains
+-- have the same station. A chain that the ego entered without crossing a line begins a new road.
 WITH chain_start AS (
     SELECT drive_id, ego_id, chain_id, min(t_ns) AS t_ns FROM ego_state WHERE chain_id IS NOT NULL GROUP BY ALL
 ),

@@ -1,7 +1,8 @@
--- Every step of the ego with all that is known of it. Its running chain is the one of the last lanelet that it drove with the traffic, so
--- that an overtake in the lane beside is seen from the lane that the ego left. Before the first such lanelet it is the ego's first chain.
+-- Every step of the ego with all known values. Its running chain is that of the last lanelet that it drove in the lane's direction. During
+-- an overtake in the next lane, this is the chain that the ego left. Before the first such lanelet, it is the ego's first chain.
 WITH
--- The rear of the trailer is the rear of the combination. reach_m is its distance from the ego's centre; NULL: the trailer is not placed.
+-- The rear of the trailer is the rear of the combination. reach_m is its distance from the ego's centre; NULL: the trailer's position is
+-- not known.
 trailer_reach AS (
     SELECT p.drive_id, p.ego_id, e.t_ns, max(sqrt((s.x_m - e.x_m) ** 2 + (s.y_m - e.y_m) ** 2) + s.length_m / 2) AS reach_m
     FROM ego_part p
@@ -31,7 +32,7 @@ step_limit AS (
 )
 SELECT
     r.drive_id, r.ego_id, r.t_ns, s.x_m, s.y_m, s.z_m, s.yaw_rad, s.speed_mps, s.accel_mps2,
-    -- An ego that is not seen for a part of the 3 s may have moved then.
+    -- If part of the 3 s is not recorded, the ego may have moved in that part.
     CASE
         WHEN max(s.speed_mps) OVER last_3s >= standing_mps()
             OR count(s.speed_mps) OVER last_3s = count(*) OVER last_3s AND min(r.seg) OVER last_3s = r.seg AND min(r.t_ns) OVER last_3s <= r.t_ns - 3_000_000_000 + k.max_gap_ns

@@ -1,5 +1,5 @@
--- Stretches in which a corner of the ego is over a boundary of its running lane, on either side. An ego that enters the lanelets of a
--- junction crosses no boundary: the chain leads through them.
+-- Stretches in which a corner of the ego is over a boundary of its running lane, on either side. An ego that enters a junction crosses no
+-- boundary: the chain continues through the junction's lanelets.
 WITH side_sample AS (
     SELECT
         c.drive_id, c.ego_id, c.chain_id, st.k, st.seg, st.t_ns, st.dt_ns, c.d_m, c.half_width_m, c.over_width_m, c.over_against, v.side,

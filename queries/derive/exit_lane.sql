@@ -1,7 +1,7 @@
--- Lanes that leave the main carriageway: by their type, or because they run beside a through lane until both go on, with gentle bends, on
--- different roads. (At an ordinary junction one of the two lanes bends off sharply. An exit bends by less than 45 degrees, the through lane
--- by less than 20.) Of the two roads, the one with fewer lanes is the exit. If they have equally many, it is the one on the side that is
--- driven on.
+-- Lanes that leave the main carriageway: by their type, or because they run beside a through lane until both continue, with gentle bends,
+-- on different roads. (At an ordinary junction, one of the two lanes bends sharply. An exit bends by less than 45 degrees, the through lane
+-- by less than 20.) Of the two roads, the one with fewer lanes is the exit. If both have the same number, the exit is the road on the side
+-- that is driven on.
 WITH RECURSIVE carriageway AS (
     SELECT environment_id, road_id, section, along_road, count(*) AS n FROM lanelet WHERE drivable GROUP BY ALL
 ),
@@ -15,8 +15,8 @@ lane_pair AS (
     JOIN lanelet m ON m.environment_id = n.environment_id AND m.lanelet_id = n.beside_id AND m.drivable AND m.junction_id IS NULL
     WHERE NOT n.against
 ),
--- Both lanes are followed straight on, through the junction if there is one, until they are beside each other again or on roads of their
--- own. e is the lanelet reached from the exit lane, m the one reached from the through lane.
+-- Both lanes are followed straight on, through the junction if there is one, until they are beside each other again or on different roads.
+-- e is the lanelet reached from the exit lane, m the one reached from the through lane.
 walk AS (
     SELECT environment_id, exit_id, through_id, side, exit_id AS e, through_id AS m, 0 AS hop, 0.0::DOUBLE AS exit_turn_rad, 0.0::DOUBLE AS through_turn_rad FROM lane_pair
     UNION ALL

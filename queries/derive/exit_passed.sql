@@ -13,8 +13,8 @@ WITH exit_step AS (
     JOIN data_log g ON g.drive_id = e.drive_id
     JOIN exit_lane x ON x.environment_id = g.environment_id AND x.from_id = e.lanelet_id
 ),
--- Consecutive steps beside or on exit lanelets of one side are a run: the lanelets follow each other, and the exit stays the same. A hole
--- ends the run: a choice that the ego makes in the hole is not known.
+-- Consecutive steps beside or on exit lanelets of one side are a run: the lanelets follow each other and belong to the same exit. A hole
+-- ends the run, because it is not known whether the ego took the exit in the hole.
 run_step AS (
     SELECT *, k - dense_rank() OVER (PARTITION BY drive_id, ego_id, seg, side ORDER BY k) AS run FROM exit_step
 ),

@@ -1,4 +1,4 @@
--- Steps at which the ego crosses into an exit lane, and the last exit sign before that.
+-- Steps at which the ego crosses into an exit lane, and the last exit sign before this step.
 WITH boundary_crossing AS (
     SELECT
         x.drive_id, x.ego_id, x.chain_id, x.t0_ns, x.side, g.environment_id, e.front_s_m,

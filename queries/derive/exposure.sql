@@ -1,5 +1,5 @@
 -- Distance and time of each ego, in total and with the automated driver. They are summed as whole micrometres and nanoseconds, so that the
--- order of summation does not change the result. The time in which an ego is absent from its log is no time that it drove.
+-- order of summation does not change the result. The time in which an ego is absent from its log does not count.
 WITH unplaced_state AS (
     SELECT a.drive_id, a.actor_id, a.t_ns
     FROM actor_state a

@@ -1,6 +1,6 @@
--- The nearest vehicle behind the ego that heads as the ego does, in the running lane and in the strip of one lane's width on either side,
--- within 200 m. It may stand, or be alongside (gap_m below 0). A row without an object says that no vehicle is there. There is no row where
--- the ego has no position on the corridor, or where an actor of unknown class, or one without a position on the corridor, may be nearer.
+-- The nearest vehicle behind the ego with the same direction, in the running lane and in the strip of one lane's width on either side,
+-- within 200 m. It may stand, or be alongside (gap_m below 0). A row without an object means that there is no vehicle. There is no row if
+-- the ego has no position on the corridor, or if an actor of unknown class, or without a position on the corridor, may be nearer.
 WITH follower_candidate AS (
     SELECT
         p.drive_id, p.ego_id, p.t_ns, {'gap_m': e.rear_s_m - p.front_s_m, 'object_id': p.object_id, 'speed_mps': p.speed_mps} AS candidate,

@@ -1,9 +1,9 @@
--- The vehicle that the ego follows at each step: the nearest of the vehicles ahead, without those that the ego meets, overtakes or passes
--- inside its lane. A vehicle beside the ego is not ahead.
+-- The vehicle that the ego follows at each step: the nearest of the vehicles ahead, without oncoming vehicles and without those that the
+-- ego overtakes or passes inside its lane. A vehicle beside the ego is not ahead.
 WITH manoeuvre_step AS (
     SELECT drive_id, ego_id, t_ns, bool_or(is_sure) AS is_sure
     FROM (
-        -- An ego that stays astride of the line for longer than a lane change takes, and passes no actor, is in its lane and in the next one.
+        -- An ego that is astride of the line for longer than a lane change takes, and passes no actor, occupies both lanes.
         SELECT *, t_astride_ns IS NULL OR t_ns - t_astride_ns <= longest_change_ns() OR passing_id IS NOT NULL OR overtaking AS is_sure
         FROM line_step
         WHERE manoeuvre
@@ -37,7 +37,7 @@ SELECT drive_id, ego_id, t_ns, object_id, gap_m, ego_speed_mps, speed_mps, joine
 FROM (
     SELECT *, row_number() OVER (
         PARTITION BY drive_id, ego_id, t_ns
-        -- No vehicle is nearer than the lead. Another vehicle counts as followed only if, for every vehicle, it is known whether the ego
+        -- No vehicle is nearer than the lead. Another vehicle counts as followed only if it is known for every vehicle whether the ego
         -- follows it.
         ORDER BY CASE WHEN follows AND nearest THEN 0 WHEN follows IS NULL THEN 1 WHEN follows THEN 2 ELSE 3 END, nearest DESC, gap_m, object_id
     ) AS rank_no

@@ -1,13 +1,13 @@
--- Objects that brake on a path that leads onto the ego's path. At its speed before the braking, the object would come there within 4 s of
--- the ego. The object's path is the one that it drives after the start of the braking, and a straight line where that one ends: the object
--- may come late, or stop and never come.
+-- Objects that brake on a path that leads onto the ego's path. At its speed before the braking, the object would have arrived there within
+-- 4 s of the ego. The object's path is the one that it drives after the start of the braking, extended by a straight line: the object may
+-- arrive late, or stop and never arrive.
 WITH
 -- First search in a large table: one hard deceleration between two samples is enough to look closer.
 hard_braking AS MATERIALIZED (
     SELECT drive_id, ego_id, object_id, t_ns FROM pair WHERE accel_mps2 < -least_braking_mps2() AND distance_m < forced_near_m()
 ),
--- The object stands, head on to the ego, while the ego is out in the object's lane. It may have waited for the ego, however gently it
--- braked before.
+-- The object stands, head on to the ego, while the ego is out in the object's lane. It may have waited for the ego, even if it braked
+-- gently before.
 head_on_stop AS MATERIALIZED (
     SELECT p.drive_id, p.ego_id, p.object_id, x.t0_ns, min(p.t_ns) AS t_ns
     FROM excursion x
@@ -50,7 +50,7 @@ braking_sample AS (
 braking_stretch AS (
     SELECT
         drive_id, object_id, is_gentle, min(earlier).t_ns AS t_from_ns, min(earlier).speed_mps AS speed_mps, max(t_ns) AS t_to_ns,
-        -- With this deceleration the object would have stopped within this distance. It did not brake for anything far beyond it.
+        -- With this deceleration, the object would have stopped within this distance. A cause far beyond this distance is excluded.
         min(earlier).speed_mps ** 2 * (max(t_ns) - min(earlier).t_ns) / 1e9 / (2 * (min(earlier).speed_mps - max({'t_ns': t_ns, 'speed_mps': speed_mps}).speed_mps))
             + stopping_before_m() AS reach_m
     FROM (
@@ -128,7 +128,7 @@ grid_scale AS (
     ) g USING (drive_id)
     GROUP BY c.drive_id
 ),
--- A time slot is as long as the period from the earliest to the latest moment that counts. Such a period lies in two slots at most.
+-- A time slot is as long as the period from the earliest to the latest moment that counts. Such a period extends over two slots at most.
 path_cell AS MATERIALIZED (
     SELECT
         c.*, meeting_cell(c.x_m, c.y_m, g.cell_m) + cell_key(x.i, y.i) AS cell,
@@ -147,8 +147,8 @@ box AS NOT MATERIALIZED (
     JOIN (SELECT drive_id, max(period_ns) / 1e9 AS period_s FROM ego_clock GROUP BY drive_id) k USING (drive_id)
     WHERE s.x_m IS NOT NULL AND s.y_m IS NOT NULL AND s.yaw_rad IS NOT NULL AND s.length_m IS NOT NULL AND s.width_m IS NOT NULL
 ),
--- The boxes of the ego, with the trailer that it tows. An oncoming driver does not drive on past an ego that is out in the driver's lane
--- with hardly any room, even if the two would just miss each other.
+-- The boxes of the ego and of the trailer that it tows. An oncoming driver also brakes if the ego is out in the driver's lane and leaves
+-- hardly any room, so that the two would just miss each other.
 ego_box AS NOT MATERIALIZED (
     SELECT o.ego_id, b.*, b.half_width_m + CASE WHEN x.t0_ns IS NULL THEN 0.0 ELSE hardly_room_m() END AS half_width_out_m
     FROM box b
@@ -169,7 +169,7 @@ encounter AS MATERIALIZED (
         r.x_m - b.x_m, r.y_m - b.y_m, b.c, b.s, r.c, r.s, b.half_length_m, CASE WHEN NOT g.is_gentle AND abs(wrap_rad(r.dir_rad - b.dir_rad)) >= head_on_rad() THEN b.half_width_out_m ELSE b.half_width_m END, r.half_length_m, r.half_width_m
     )
 ),
--- As in conflict, the angle is measured against the ego's path where that comes nearest. Only ground that the ego takes first counts.
+-- As in conflict, the angle is relative to the ego's path at its nearest point. Only ground that the ego takes first counts.
 taken_ground AS (
     SELECT
         m.drive_id, m.ego_id, m.object_id, m.t_from_ns, m.t_object_ns, min(m.t_ego_ns) FILTER (abs(m.angle_rad) > conflict_angle_rad()) AS t_ego_first_ns,
@@ -181,7 +181,7 @@ taken_ground AS (
     GROUP BY m.drive_id, m.ego_id, m.object_id, m.t_from_ns, m.t_object_ns
     HAVING t_ego_first_ns IS NOT NULL AND abs(min({'distance_m2': m.distance_m2, 't_ego_ns': m.t_ego_ns, 'angle_rad': m.angle_rad}).angle_rad) > conflict_angle_rad()
 ),
--- The first stop of the object. An object that waits for the ego to leave the object's lane stops.
+-- The first stop of the object: an object that waits for the ego to leave its lane stops.
 first_stop AS (
     SELECT b.drive_id, b.object_id, b.t_from_ns, min(s.t_ns) AS t_ns
     FROM braking b
@@ -205,7 +205,8 @@ braking_for_ego AS MATERIALIZED (
         OR t_stop_ns <= CASE WHEN b.is_gentle THEN least(max(t.t_ego_last_ns), b.t_to_ns + waits_ns()) ELSE max(t.t_ego_last_ns) END
             AND abs(min({'t_object_ns': t.t_object_ns, 'angle_rad': t.angle_rad}).angle_rad) >= head_on_rad()
 ),
--- An object that waited for the ego moves off when the ego has left, or a moment before. An object that keeps standing has another reason.
+-- An object that waited for the ego moves off when the ego has left, or a moment before. An object that continues to stand has another
+-- reason.
 restart AS (
     SELECT l.drive_id, l.ego_id, l.object_id, l.t_from_ns, min(s.t_ns) FILTER (s.speed_mps > moves_mps()) AS t_restart_ns, max(s.t_ns) AS t_last_seen_ns
     FROM braking_for_ego l

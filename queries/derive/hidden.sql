@@ -1,8 +1,8 @@
--- Every actor that is present, or may be, and has no position on the corridor, with the least distance that it can have. After its last and
--- before its next sighting it comes nearer at 60 m/s at most, and only as its tyres allow. An actor that drives along the road, the ego's
--- way or against it, neither turns round nor reverses. If the log is taken to record every actor in plain view (data_log.in_sight), an
--- actor that is not recorded for a while is not in plain view. An actor off all lanes is not listed if the corridor is longer than the
--- actor's distance, ahead and behind, and has no hole there: the actor is certainly off the road.
+-- Every actor that is or may be present without a position on the corridor, with a lower bound of its distance. After its last and before
+-- its next sighting, it comes nearer at 60 m/s at most, within the limits of its tyres. An actor that drives along the road, in the ego's
+-- direction or against it, neither turns round nor reverses. If the log is assumed to record every actor in plain view (data_log.in_sight),
+-- an actor that is not recorded for a while is not in plain view. An actor off all lanes is not listed if the corridor extends further than
+-- the actor's distance, ahead and behind, without a hole: the actor is then certainly off the road.
 WITH pair_without_position AS (
     SELECT drive_id, ego_id, t_ns, object_id, actor_class, off_level FROM pair WHERE x_m IS NULL OR y_m IS NULL
 ),
@@ -27,7 +27,7 @@ missing_step AS (
 corridor_range AS (
     SELECT drive_id, ego_id, chain_id, min(s_start_m) AS begin_m, max(s_start_m + length_m) AS end_m FROM corridor GROUP BY ALL
 ),
--- Places where the lanes of a chain do not meet: an end without a link although the map goes on, and holes between one lane and the next.
+-- Places where the lanes of a chain do not meet: an end without a link although the map continues, and holes between two consecutive lanes.
 lanelet_end AS (
     SELECT
         c.drive_id, c.ego_id, c.chain_id, c.seq, c.seq = max(c.seq) OVER (PARTITION BY c.drive_id, c.ego_id, c.chain_id) AS is_last,
@@ -38,7 +38,7 @@ lanelet_end AS (
     JOIN lane_segment p ON p.environment_id = g.environment_id AND p.lanelet_id = c.lanelet_id AND p.slack1_m > 0
 ),
 lane_hole AS (
-    -- If only the link is missing, an object straight on from the end of the lane is ahead.
+    -- If only the link is missing, an object straight beyond the end of the lane is ahead.
     SELECT e.*, 'inf'::DOUBLE AS hole_length_m
     FROM lanelet_end e
     JOIN lane_next n ON n.environment_id = e.environment_id AND n.lanelet_id = e.lanelet_id
@@ -55,8 +55,9 @@ sighting AS (
         p.drive_id, p.ego_id, p.object_id, p.t_ns, p.distance_m, p.x_m, p.y_m, box_half_diagonal_m(p.length_m, p.width_m) AS half_diagonal_m,
         CASE WHEN p.actor_class = 'pedestrian' THEN 0.0 ELSE p.speed_mps * cos(p.yaw_rad) END AS vx_mps,
         CASE WHEN p.actor_class = 'pedestrian' THEN 0.0 ELSE p.speed_mps * sin(p.yaw_rad) END AS vy_mps,
-        -- How far beside the ego's lane the object is, and how fast it may get nearer to that lane. The first velocity of a track may be
-        -- missing: that of the next sample is near it. An object without a place beside a corridor that is whole is out of its strip.
+        -- How far beside the ego's lane the object is, and how fast it may come nearer to that lane. The first velocity of a track may be
+        -- missing: the velocity of the next sample replaces it. An object without a position beside a corridor without holes is outside the
+        -- corridor's strip.
         coalesce(p.speed_mps, lead(p.speed_mps) OVER w, lag(p.speed_mps) OVER w) AS v_mps,
         {
             'chain_id': e.chain_id, 'across_mps': v_mps * coalesce(abs(sin(p.heading_diff_rad)), 1.0), 'v_mps': v_mps,
@@ -65,7 +66,7 @@ sighting AS (
                 WHEN NOT p.off_level AND h.chain_id IS NULL AND p.distance_m < least(z.end_m - e.s_m, e.s_m - z.begin_m) THEN strip_m() - half_diagonal_m - widest_lane_half_m()
             END
         } AS beside,
-        -- Place along the road of an object that heads the ego's way (1) or moves against it (-1).
+        -- Position along the road of an object that moves in the ego's direction (1) or against it (-1).
         CASE
             WHEN p.actor_class IS NOT DISTINCT FROM 'pedestrian' THEN NULL
             WHEN abs(p.heading_diff_rad) < pi() / 4
@@ -82,7 +83,7 @@ sighting AS (
     WHERE p.distance_m IS NOT NULL
     WINDOW w AS (PARTITION BY p.drive_id, p.ego_id, p.object_id ORDER BY p.t_ns)
 ),
--- The least distance of the object after its last and before its next sighting. It goes straight on, or brakes or turns as hard as tyres
+-- The least distance of the object after its last and before its next sighting. It moves straight on, or brakes or turns as hard as tyres
 -- allow.
 step_with_sightings AS (
     SELECT
@@ -112,7 +113,7 @@ step_with_sightings AS (
 station_range AS (
     SELECT
         *,
-        -- greatest() and least() ignore NULL, which is right here.
+        -- greatest() and least() ignore NULL, as intended here.
         greatest(
             last_place.rear_m - last_error_m + CASE last_place.direction WHEN 1 THEN drives_least_m(last_place.v_mps, since_s) ELSE -drives_most_m(last_place.v_mps, since_s) END,
             next_place.rear_m - next_error_m + CASE next_place.direction WHEN 1 THEN -drives_most_m(next_place.v_mps, until_s) ELSE drives_least_m(next_place.v_mps, until_s) END
@@ -133,8 +134,8 @@ distance_bound AS (
         coalesce(CASE WHEN t_before_ns IS NOT NULL THEN last_place.direction = 1 ELSE true END AND CASE WHEN t_after_ns IS NOT NULL THEN next_place.direction = 1 ELSE true END AND coalesce(t_before_ns, t_after_ns) IS NOT NULL, false) AS along
     FROM station_range
 ),
--- While everything around the ego is in plain view, no vehicle drives past the ego unseen. An object that is ahead (or behind) at the beginning
--- of such a time stays so until its end, and an object that is ahead (or behind) at its end was so from its beginning.
+-- While everything around the ego is in plain view, no vehicle can pass the ego unseen. An object that is ahead (or behind) at the
+-- beginning of such a time is so until its end. One that is ahead (or behind) at its end was so from its beginning.
 view_step AS (
     SELECT
         b.*, g.around_m, g.lane_m AS lane_in_view_m,
@@ -167,7 +168,7 @@ incomplete_pair AS (
     FROM pair
     WHERE x_m IS NOT NULL AND y_m IS NOT NULL AND (yaw_rad IS NULL OR length_m IS NULL OR width_m IS NULL)
 ),
--- Objects off the lanes and further away than the corridor reaches: they may be on a part of the road that the map does not have.
+-- Objects off the lanes and beyond the end of the corridor: they may be on a part of the road that the map lacks.
 pair_beyond_corridor AS (
     SELECT p.drive_id, p.ego_id, p.t_ns, p.object_id, p.actor_class, p.distance_m, p.x_m, p.y_m, both_half_diagonals_m() AS half_sizes_m, false AS along
     FROM unplaced u
@@ -177,7 +178,7 @@ pair_beyond_corridor AS (
     ANTI JOIN (FROM data_log WHERE environment_id IS NULL) g ON g.drive_id = u.drive_id
     WHERE u.code = 'off_lanes' AND p.s_m IS NULL AND p.distance_m > least(r.end_m - e.s_m, e.s_m - r.begin_m)
     UNION ALL
-    -- Without a map: objects further away than the ego's own way goes on.
+    -- Without a map: objects further away than the end of the ego's own path.
     SELECT
         p.drive_id, p.ego_id, p.t_ns, p.object_id, p.actor_class, p.distance_m, p.x_m, p.y_m,
         box_half_diagonal_m(p.length_m, p.width_m) + box_half_diagonal_m(e.length_m, e.width_m) AS half_sizes_m,

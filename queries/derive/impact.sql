@@ -1,5 +1,5 @@
--- The first impact of the ego and an object: one of the two loses or gains speed faster than tyres can while their boxes nearly touch, as in
--- the rule contact-signature. What an object loses in an impact, and after it, is no braking.
+-- The first impact of the ego and an object: one of the two loses or gains speed faster than tyres allow while their boxes nearly touch, as
+-- in the rule contact-signature. The loss of speed in an impact and after it does not count as braking.
 WITH near_jolt AS (
     SELECT drive_id, ego_id, object_id, min(t_ns) AS t_ns
     FROM (FROM pair WHERE clearance_m <= impact_within_m()) p

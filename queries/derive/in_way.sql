@@ -1,7 +1,7 @@
--- The nearest actor in the ego's way at each step. It may be a person, an animal, a thing or a vehicle: each is a reason to brake or to
--- stop. The way is the running lane and the strip that the ego's box takes, with half a metre on both sides. An actor that comes across is
--- in the way if its velocity (not its heading) brings it into the strip within some seconds, now and in the moments before. A single
--- velocity is no proof, because recorded velocities jitter: the actor may be in the way.
+-- The nearest actor in the ego's way at each step: a person, an animal, an object or a vehicle. Each is a reason to brake or to stop. The
+-- way is the running lane and the strip that the ego's box sweeps, with half a metre on both sides. An actor that crosses is in the way if
+-- its velocity (not its heading) brings it into the strip within some seconds, at this step and in the moments before. A single velocity is
+-- no proof, because recorded velocities jitter: the actor then only may be in the way.
 WITH ahead AS (
     SELECT
         p.drive_id, p.ego_id, p.t_ns, p.object_id, p.actor_class,

@@ -1,4 +1,4 @@
--- The ground of each junction. The lanes of one junction overlap, so that their union is taken.
+-- The area of each junction: the union of its lanes, which overlap.
 SELECT environment_id, junction_id, ST_Union_Agg(geom) AS geom
 FROM lanelet
 WHERE junction_id IS NOT NULL AND drivable

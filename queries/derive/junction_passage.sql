@@ -25,7 +25,7 @@ passage AS (
     GROUP BY drive_id, ego_id, environment_id, seg, junction_id, run_no
 ),
 -- occasion: passage
--- Where the ego cut the corner of a junction, it drove beside a lanelet of its chain. The times at that lanelet are then those between the
+-- If the ego cut the corner of a junction, it drove beside a lanelet of its chain. The times for that lanelet are then between those of the
 -- lanelet before and the one after.
 chain_lanelet AS (
     SELECT
@@ -33,7 +33,7 @@ chain_lanelet AS (
     FROM chain
     WINDOW w AS (PARTITION BY drive_id, ego_id, chain_id ORDER BY seq)
 ),
--- Where the junction begins on the chain by which the ego came in, and where it ends on the chain by which it left. One chain may end in
+-- The start of the junction on the chain on which the ego entered, and its end on the chain on which the ego left. One chain may end inside
 -- the junction and the next one begin there.
 passage_chain AS (
     SELECT
@@ -64,14 +64,14 @@ exit_time AS (
     WHERE n.rear_m >= 0 AND n.rear_before_m < 0 AND n.joined
     GROUP BY i.drive_id, i.ego_id, i.t_first_ns
 ),
--- Headings at the start and at the end of a lanelet, for the way in and the way out.
+-- Headings at the start and end of a lanelet, for the ego's entry and exit.
 lanelet_heading AS (
     SELECT environment_id, lanelet_id, min({'k': k, 'a': atan2(ty, tx)}).a AS first_rad, max({'k': k, 'a': atan2(ty, tx)}).a AS last_rad
     FROM lane_point
     GROUP BY environment_id, lanelet_id
 ),
--- The way out that turns least, of all ways out for the road that the ego came by. A connecting road may consist of several lanelets, one
--- after the other: each of them is searched for a link out of the junction.
+-- The way out with the least turn, of all ways out of the ego's road. A connecting road may consist of several consecutive lanelets: each
+-- is searched for a link out of the junction.
 straightest_exit AS (
     SELECT environment_id, junction_id, road_id, along_road, min({'off_rad': abs(turn_rad), 'turn_rad': turn_rad}).turn_rad AS turn_rad
     FROM (
@@ -89,7 +89,7 @@ straightest_exit AS (
     )
     GROUP BY environment_id, junction_id, road_id, along_road
 ),
--- Both ends of a road may lead to the same junction: they are two branches.
+-- If both ends of a road lead to the same junction, they are two branches.
 branch_count AS (
     SELECT environment_id, junction_id, count(DISTINCT {'road': coalesce(h.of_road_id, r.road_id), 'by_road_end': r.by_road_end <> coalesce(h.turned, false)}) AS n
     FROM (
@@ -108,14 +108,14 @@ branch_count AS (
     LEFT JOIN road_half h USING (environment_id, road_id)
     GROUP BY environment_id, junction_id
 ),
--- A map that has only lights does not show that there is no sign where there is no light.
+-- A map that has only lights may lack the signs: a junction without a light may have a sign.
 map_with_signals AS (
     SELECT DISTINCT t.environment_id
     FROM traffic_signal t
     JOIN environment e USING (environment_id)
     WHERE e.signs_mapped AND t.kind IN ('traffic_light', 'stop', 'give_way')
 ),
--- Passages where the map begins so shortly before the junction that a signal may stand outside the map.
+-- Passages where the map begins so shortly before the junction that a signal may be outside the map.
 cropped_approach AS (
     SELECT w.drive_id, w.ego_id, w.t_first_ns
     FROM passage_chain w
@@ -131,7 +131,7 @@ passage_detail AS (
     SELECT
         i.*, e.t_in_ns, o.t_out_ns, b.lanelet_id AS from_id, a.lanelet_id AS to_id,
         CASE WHEN v.handedness_source <> 'default' THEN v.handedness END AS known_handedness,
-        -- Once the ego's centre is on the lane after the junction, its turn is seen, even if the log ends before its rear is past the
+        -- When the ego's centre is on the lane after the junction, its turn is known, even if the log ends before its rear has left the
         -- junction.
         CASE WHEN e.t_in_ns IS NOT NULL AND (o.t_out_ns IS NOT NULL OR a.t_first_ns > i.t_last_ns) THEN wrap_rad(ea.first_rad - eb.last_rad) END AS turn_rad,
         CASE WHEN w.entry_mark IS NOT NULL THEN coalesce(w.entry_mark.control, CASE WHEN g.environment_id IS NOT NULL AND x.t_first_ns IS NULL THEN 'none' END) END AS control

@@ -2,9 +2,9 @@
 -- table lead has the nearest vehicle of them. For an ego that is out of its lane, an object beside the lane that faces the ego and is in
 -- its way is ahead, too (`outside`).
 --
--- Without a map the running lane is the ego's recorded path. Beyond the end of that path, the ego may take another bend. An actor that is only
--- perhaps in its way there has no class here, because nothing is known about it. The same holds for an actor that the ego would hit within two
--- seconds, both on its present bend and straight on, although its path passes by: it is not known whether the road bends there, or the ego swerves.
+-- Without a map, the running lane is the ego's recorded path. Beyond its end, the ego may take another bend. An actor that is only perhaps
+-- in the ego's way has no class in this table, because nothing is known about it. The same applies to an actor beside the path that the ego
+-- would hit within two seconds, both with its present curvature and straight on: the road may bend there, or the ego swerves.
 WITH
 own_way_end AS (
     SELECT drive_id, ego_id, seg AS chain_id, min(driven_m) AS driven_m
@@ -27,7 +27,8 @@ object_ahead AS (
         sign(p.d_m - e.d_m) * e.speed_mps * sin(e.heading_diff_rad) AS ego_across_mps, sign(e.d_m - p.d_m) * p.speed_mps * sin(p.heading_diff_rad) AS across_mps,
         abs(p.d_m) <= p.half_width_m OR w.may_bend_m > 0 AS is_centre_in_lane, NOT in_lane(p.d_m, p.lat_half_m + w.may_bend_m, p.half_width_m) AS outside,
         w.may_bend_m > 0 AND NOT in_lane(p.d_m, p.lat_half_m - w.may_bend_m, p.half_width_m) AS is_unsure,
-        -- In the ego's way now, or soon at the present speeds across the lane. For an oncoming object only its present place counts.
+        -- In the ego's way at this step, or soon at the present speeds across the lane. For an oncoming object, only its present position
+        -- counts.
         abs(p.d_m - e.d_m) - p.lat_half_m - e.lat_half_m
         < CASE WHEN abs(p.heading_diff_rad) < 2 * pi() / 3 THEN
             drift_s() * greatest(0.0, sign(p.d_m - e.d_m) * (e.speed_mps * sin(e.heading_diff_rad) - p.speed_mps * sin(p.heading_diff_rad)))
@@ -41,7 +42,7 @@ object_ahead AS (
         AND (
             in_lane(p.d_m, p.lat_half_m + w.may_bend_m, p.half_width_m)
             OR abs(p.heading_diff_rad) > 2 * pi() / 3 AND abs(p.d_m - e.d_m) < p.lat_half_m + e.lat_half_m
-                -- Only the ego's front reaches an object that stands there. The rest of its box follows the front.
+                -- Only the ego's front can reach an object that stands there. The other parts of its box follow the front.
                 AND (
                     (p.speed_mps <= standing_mps()) IS NOT true
                     OR abs(p.d_m - e.d_m - e.length_m / 2 * sin(e.heading_diff_rad)) < p.lat_half_m + e.width_m / 2 * cos(e.heading_diff_rad)
@@ -51,7 +52,8 @@ object_ahead AS (
         AND (p.rear_s_m >= e.front_s_m OR abs(p.d_m - e.d_m) < p.lat_half_m + e.lat_half_m)
         AND (c.t_ns IS NULL AND (n.driven_m IS NULL OR abs(p.heading_diff_rad) > 3 * pi() / 4) OR abs(p.heading_diff_rad) < pi() / 4 OR p.speed_mps <= standing_mps())
 ),
--- Without a map: actors that the present bend of the ego, or that of a moment before, would hit soon, although its path passes by.
+-- Without a map: actors that the ego would soon hit with its present curvature, or with that of a moment before, although its path passes
+-- them.
 on_course AS (
     SELECT
         p.drive_id, p.ego_id, p.t_ns, p.object_id, f.dx - e.length_m / 2 - box_half_across_m(p.width_m, p.length_m, f.turn_rad) AS gap_m, along_lane_mps(p.speed_mps, f.turn_rad) AS speed_mps,
@@ -80,7 +82,7 @@ SELECT
     o.drive_id, o.ego_id, o.t_ns, o.object_id, CASE WHEN NOT o.is_unsure AND b.is_sure IS NULL THEN o.actor_class END AS actor_class, o.gap_m, o.speed_mps, o.oncoming, o.across_m, o.ego_across_mps,
     o.across_mps, o.soon, o.outside
 FROM object_ahead o
--- Whom the ego's own way passes beside, it neither meets nor follows.
+-- The ego neither meets nor follows an object that its own path passes.
 LEFT JOIN passed_by b ON b.drive_id = o.drive_id AND b.ego_id = o.ego_id AND b.t_ns = o.t_ns AND b.object_id = o.object_id
 WHERE (o.is_centre_in_lane OR o.soon) AND b.is_sure IS DISTINCT FROM true
 UNION ALL BY NAME

@@ -1,5 +1,5 @@
--- Pairs of lanes of different roads that lie over each other in plan, while neither the heights of the map nor a junction or link say that
--- they meet: a bridge, or a map that does not say. The centre line of one lane, metre by metre, is looked up in the area of the other.
+-- Pairs of lanes of different roads that overlap in plan without evidence, from heights, junctions or links, that they meet: a bridge, or a
+-- map without this information. The centre line of one lane, metre by metre, is looked up in the area of the other.
 WITH RECURSIVE map_with_heights AS (SELECT environment_id FROM lane_point GROUP BY environment_id HAVING max(z_m) > min(z_m)),
 segment_height AS (
     SELECT p.environment_id, p.lanelet_id, p.k, p.z_m, lead(p.z_m) OVER (PARTITION BY p.environment_id, p.lanelet_id ORDER BY p.k) AS z1_m
@@ -72,7 +72,7 @@ unjoined_overlap AS MATERIALIZED (
         SELECT x.environment_id, x.road_id, y.road_id AS other_road_id FROM at_junction x JOIN at_junction y USING (environment_id, junction_id)
     ) USING (environment_id, road_id, other_road_id)
 ),
--- Two roads that cross without a junction in the map meet all the same if short lanes lead from one road to the other. A ramp is longer.
+-- Two roads that cross without a junction in the map also meet if short lanes lead from one road to the other. A ramp is longer.
 reached AS (
     SELECT environment_id, a AS start, b, 0.0::DOUBLE AS between_m, 1 AS hop
     FROM next_to
@@ -91,8 +91,8 @@ lanelet_tip AS (
     LEFT JOIN segment_height h USING (environment_id, lanelet_id, k)
     GROUP BY ALL
 ),
--- Lanes that begin or end in one point meet, too: the map may be cropped or lack the links. Two lanes that begin together and end together
--- do not: one of them may be the other one's upper deck.
+-- Lanes that begin or end in one point meet, too: the map may be cropped or lack the links. Two lanes that both begin and end together do
+-- not meet: one of them may be the upper deck of the other.
 lane_pair AS (
     SELECT o.environment_id, o.lanelet_id, o.other_id
     FROM unjoined_overlap o

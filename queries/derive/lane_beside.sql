@@ -1,7 +1,7 @@
 -- The lanelet beyond each boundary of a drivable lanelet. If the map names no neighbour, the neighbour is the drivable lane that runs along
--- the boundary, found for each piece of at most 10 m. Maps with one road per direction name no neighbour, nor do maps that divide the two
--- directions into different sections, or number their lanes separately. Junctions are left out, because lanes of all directions overlap
--- there. A narrow strip that the map draws as a lane between the two directions is skipped, as the space between two painted lines is.
+-- the boundary, found for each piece of at most 10 m. No neighbour is named in maps with one road per direction, with different sections
+-- for the two directions, or with separate lane numbers. Junctions are left out, because lanes of all directions overlap there. A narrow
+-- strip that the map draws as a lane between the two directions is skipped, like the space between two painted lines.
 WITH RECURSIVE side AS (
     SELECT n.environment_id, n.lanelet_id, n.length_m, v.side, CASE v.side WHEN 1 THEN n.left_id ELSE n.right_id END AS beside_id,
         CASE v.side WHEN 1 THEN n.left_against ELSE n.right_against END AS against
@@ -9,7 +9,8 @@ WITH RECURSIVE side AS (
     CROSS JOIN (VALUES (1), (-1)) AS v(side)
     WHERE n.drivable
 ),
--- The lanelets beyond each boundary, looked up through narrow strips: beside_id is what lies beyond the strips so far, gap_m their width.
+-- The lanelets beyond each boundary, searched across narrow strips. beside_id is the lanelet beyond the strips found so far, gap_m their
+-- total width.
 lanelet_beyond AS (
     SELECT environment_id, lanelet_id, side, lanelet_id AS from_id, beside_id, against, 0.0::DOUBLE AS gap_m, NULL::VARCHAR AS strip FROM side WHERE beside_id IS NOT NULL
     UNION ALL

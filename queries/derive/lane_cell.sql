@@ -1,5 +1,5 @@
 -- Every 2 m grid cell that the lane area of a segment may touch: the cells of its bounding box whose centre is within half a cell's
--- diagonal of that area. Each row holds the segment itself, so that one join places a point.
+-- diagonal of that area. Each row contains the segment itself, so that one join gives the position of a point.
 WITH segment_box AS (
     SELECT
         g.*, n.drivable, nullif(n.lane_type, 'unknown') IN ('sidewalk', 'walking') AS footway, greatest(hw0_m, hw1_m) + 0.1 AS reach_m,

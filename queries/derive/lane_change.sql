@@ -1,6 +1,6 @@
--- Changes of the ego to a lane beside it that is driven the same way, from the first corner over the line until the ego is wholly in the
--- new lane, with the vehicles that are in the new lane at the start. A change that is not seen to cross the line counts only if half a
--- metre of the ego is over the line when the log or a hole ends the change.
+-- Changes of the ego to an adjacent lane of the same direction, with the vehicles in the new lane at the start. A change lasts from the
+-- first corner over the line until the whole ego is in the new lane. If the crossing of the line is not seen, the change counts only if
+-- half a metre of the ego is over the line when the log or a hole ends it.
 WITH any_crossing AS (FROM lane_crossing),
 unfinished_excursion AS (FROM excursion WHERE t_back_ns IS NULL AND max_out_m >= 0.5),
 step_on_restricted_ground AS (FROM ego_aside WHERE lane_type = 'restricted' AND with_direction),
@@ -66,7 +66,7 @@ change AS MATERIALIZED (
         w.*, (row_number() OVER (PARTITION BY w.drive_id, w.ego_id ORDER BY w.t_start_ns, w.side) - 1)::INTEGER AS occurrence,
         g.environment_id, coalesce(CASE WHEN e.chain_id = w.from_chain_id THEN e.lanelet_id END, w.last_id) AS from_lanelet_id,
         e.speed_mps AS ego_speed_mps, e.s_m, e.front_s_m, e.rear_s_m, st.seg, b.t_ns AS t_before_ns,
-        -- Whether the new lane is already the running lane of that step. Otherwise it is beside the lane that is left.
+        -- Whether the new lane is already the running lane of that step. Otherwise it is beside the old lane.
         coalesce(e.chain_id = w.to_chain_id, false) AS is_in_new_lane
     FROM (SELECT * FROM crossed_change UNION ALL BY NAME SELECT * FROM unfinished_change) w
     JOIN data_log g ON g.drive_id = w.drive_id
@@ -95,7 +95,7 @@ object_at_start AS MATERIALIZED (
             ELSE in_lane(c.side * p.d_m - p.half_width_m - w.width_m / 2, p.lat_half_m, w.width_m / 2)
         END
 ),
--- Where the same object is at the step before the change, and at the two steps between which the ego's centre goes over the line.
+-- The position of the same object at the step before the change, and at the two steps between which the ego's centre crosses the line.
 later_place AS (
     SELECT
         o.drive_id, o.ego_id, o.occurrence, o.object_id, v.moment, p.s_m > e.s_m AS centre_ahead, p.rear_s_m > e.front_s_m AS clear_ahead,
@@ -106,9 +106,9 @@ later_place AS (
     JOIN pair p ON p.drive_id = o.drive_id AND p.ego_id = o.ego_id AND p.object_id = o.object_id AND p.t_ns = v.t_ns
     JOIN ego_state e ON e.drive_id = o.drive_id AND e.ego_id = o.ego_id AND e.t_ns = v.t_ns
 ),
--- An object whose centre is ahead of the ego's at the start is ahead only if the ego can tuck in behind it: it is clear of the ego's front
--- when the ego's centre goes over the line. Else the ego changes lanes into it, as into one that is behind. The order is not known
--- (behind is NULL) if it changes between two samples.
+-- An object with its centre ahead of the ego's at the start counts as ahead only if the ego can move in behind it. That is, its rear is
+-- clear of the ego's front when the ego's centre crosses the line. Else it counts as behind, because the ego changes lanes into it. The
+-- order is not known (behind is NULL) if it changes between two samples.
 object_in_new_lane AS MATERIALIZED (
     SELECT
         o.*, b.behind_gap_m AS behind_gap_before_m,
@@ -160,14 +160,14 @@ follower_braking AS (
     JOIN clock k USING (drive_id, ego_id)
     GROUP BY ALL
 ),
--- A change is a merge if the lane that the ego leaves only leads onto the new one: by its type, or because it ends and the new one goes on.
+-- A change is a merge if the old lane only leads onto the new one: by its type, or because it ends and the new lane continues.
 chain_end AS (
     SELECT c.drive_id, c.ego_id, c.chain_id, max(c.s_start_m + c.length_m) AS end_m, max({'seq': c.seq, 'id': c.lanelet_id}).id AS last_id
     FROM chain c
     GROUP BY ALL
 ),
--- It is also a merge if the two lanes become one, and the one that the ego leaves narrows to nothing on the way there: just before, it is
--- less than half as wide as the new one.
+-- It is also a merge if the two lanes become one and the old lane narrows to nothing: just before the merge, it is less than half as wide
+-- as the new lane.
 lane_merge AS (
     SELECT c.drive_id, c.ego_id, c.occurrence, min({'s_m': a.s_start_m, 'from_seq': a.seq, 'to_seq': b.seq}) AS merge_place
     FROM change c
@@ -188,8 +188,8 @@ width_ratio AS (
     JOIN last_point p ON p.environment_id = c.environment_id AND p.lanelet_id = a.lanelet_id
     JOIN last_point q ON q.environment_id = c.environment_id AND q.lanelet_id = b.lanelet_id
 ),
--- Restricted ground is on a level with the lanes, but has no chain. Of an ego that drives on it and comes from there into a lane, only the
--- end of the change is known.
+-- Restricted ground is level with the lanes, but has no chain. If the ego drives on it and then comes into a lane, only the end of the
+-- change is known.
 restricted_step AS (
     SELECT
         st.drive_id, st.ego_id, st.k, st.t_ns, st.seg, e.lanelet_id, a.lanelet_id AS aside_id, e.speed_mps, x.d_m,

@@ -1,6 +1,6 @@
--- Steps at which the running lane becomes another one: the ego's centre is over a boundary, in a lane that it drives with the traffic. A
--- chain that only ends in the map is no crossing, because the centre is still inside the lane that was left. Turning round is no crossing,
--- because the ego heads against that lane.
+-- Steps at which the running lane changes: the ego's centre is over a boundary, in a lane whose direction it follows. The end of a chain in
+-- the map is no crossing, because the centre is still inside the old lane. Turning round is no crossing, because the ego heads against the
+-- new lane.
 WITH chain_step AS (
     SELECT
         e.drive_id, e.ego_id, e.t_ns, st.k, st.seg, e.chain_id AS to_chain_id, e.lanelet_id AS to_lanelet_id,

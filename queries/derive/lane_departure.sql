@@ -1,5 +1,5 @@
--- Boundaries that the ego crosses in a manoeuvre, out of its running lane and back into it. In a manoeuvre the ego's centre crosses, too,
--- or the ego overtakes astride of the line.
+-- Boundaries that the ego crosses in a manoeuvre, out of its running lane and back into it. In a manoeuvre, the ego's centre crosses the
+-- boundary, too, or the ego overtakes astride of the line.
 WITH manoeuvre_excursion AS (
     SELECT x.*
     FROM excursion x

@@ -1,6 +1,6 @@
--- Every lanelet that contains the centre of an actor's box: the grid cell gives the candidates, arithmetic decides. The tolerance sideways
--- is 2 cm, because the bounds of neighbouring lanes are chords of different curves. Of lanes over each other, an actor is on the one at its
--- height, where the log and the map have heights.
+-- Every lanelet that contains the centre of an actor's box: the grid cell gives the candidates, arithmetic decides. The lateral tolerance
+-- is 2 cm, because the bounds of neighbouring lanes are chords of different curves. If lanes are over each other, an actor is on the lane
+-- at its height, if the log and the map have heights.
 WITH lane_candidate AS (
     SELECT
         a.drive_id, a.actor_id, a.t_ns, a.x_m, a.y_m, a.yaw_rad, c.* EXCLUDE (environment_id, cell, footway),
@@ -22,7 +22,7 @@ lane_match AS (
     FROM lane_place
     WHERE abs(d_m) <= hw0_m + u * (hw1_m - hw0_m) + 0.02
 ),
--- Lanes that lie over or under another one, under an actor with a height: whether the lane has the actor's height there.
+-- Lanes over or under another lane, below an actor with a height: whether the lane has the actor's height there.
 lane_height AS (
     SELECT p.environment_id, p.lanelet_id, p.s_m, p.z_m, lead(p.s_m) OVER w AS s_next_m, lead(p.z_m) OVER w AS z_next_m
     FROM lane_point p
@@ -45,7 +45,7 @@ match_off_level AS (
     JOIN lane_apart a ON a.environment_id = m.environment_id AND a.lanelet_id = m.lanelet_id
     JOIN (FROM match_height WHERE is_same) o ON o.drive_id = m.drive_id AND o.actor_id = m.actor_id AND o.t_ns = m.t_ns AND o.lanelet_id = a.other_id
 )
--- Lanes over each other are rare. Without any, all matches are returned directly: the anti join below would hash all of them.
+-- Lanes over each other are rare. Without such lanes, all matches are returned directly: the anti join below would hash all of them.
 SELECT * FROM lane_match WHERE (SELECT count(*) FROM match_off_level) = 0
 UNION ALL BY NAME
 SELECT * FROM lane_match ANTI JOIN match_off_level USING (drive_id, actor_id, t_ns, lanelet_id) WHERE (SELECT count(*) FROM match_off_level) > 0

@@ -1,5 +1,5 @@
--- The nearest vehicle ahead of the ego in the running lane. A row without an object says that no vehicle is there. A step has no row if an
--- actor of unknown class, or one without a position on the corridor, may be nearer, or if the ego itself has no position on it.
+-- The nearest vehicle ahead of the ego in the running lane. A row without an object means that there is no vehicle. A step has no row if an
+-- actor of unknown class, or without a position on the corridor, may be nearer, or if the ego itself has no position on it.
 WITH
 ahead AS (
     SELECT
@@ -61,8 +61,8 @@ earlier_place AS (
     ) r
     JOIN pair p ON p.drive_id = r.drive_id AND p.ego_id = r.ego_id AND p.t_ns = r.t_earlier_ns AND p.object_id = r.object_id
 ),
--- Whether the vehicle joined: one step earlier it was not ahead with its centre in the lane or in the ego's way. A vehicle that only
--- reached over the line joins when it comes in.
+-- Whether the vehicle joined: one step earlier, it was not ahead with its centre in the lane or in the ego's way. A vehicle that only
+-- reached over the line joins when its centre enters the lane.
 run_origin AS (
     SELECT b.drive_id, b.ego_id, b.run_no,
         NOT (p.rear_s_m >= e.front_s_m AND in_lane(p.d_m, p.lat_half_m, p.half_width_m) AND (abs(p.d_m) <= p.half_width_m OR abs(p.d_m - e.d_m) < p.lat_half_m + e.lat_half_m)) AS joined

@@ -29,12 +29,12 @@ step_context AS (
         lead({'seg': seg, 'seen': left_out_m IS NOT NULL}) OVER w AS step_after,
         coalesce(lag(lane_index) OVER w, lane_index) AS lane_index_before, coalesce(lead(lane_index) OVER w, lane_index) AS lane_index_after,
         lag(corridor_rad) OVER w AS corridor_before_rad, lead(corridor_rad) OVER w AS corridor_after_rad, lag(k) OVER w IS NULL OR lead(k) OVER w IS NULL AS is_outermost,
-        -- The length of the ego's path that is seen behind and ahead, up to a hole.
+        -- The length of the ego's recorded path behind and ahead of the step, up to a hole.
         travel_m - min(travel_m) OVER s AS seen_behind_m, max(travel_m) OVER s - travel_m AS seen_ahead_m
     FROM ego_step
     WINDOW w AS (PARTITION BY drive_id, ego_id ORDER BY k), s AS (PARTITION BY drive_id, ego_id, seg)
 ),
--- The least distance by which the ego is over each boundary of its lane before the step, and after it, as long as it keeps to that lane.
+-- The least distance by which the ego is over each boundary of its lane before the step, and after it, while it stays in that lane.
 least_over_line AS (
     SELECT
         drive_id, ego_id, t_ns, v.side, min(v.out_m) OVER (r ROWS UNBOUNDED PRECEDING) AS least_before_m,
@@ -70,7 +70,7 @@ line_stretch AS (
     FROM numbered_step
     GROUP BY ALL
 ),
--- Stretches in which the box lies on the line, whichever lane its centre is in, until the whole box is on one side.
+-- Stretches in which the box is on the line, in whichever lane its centre is, until the whole box is on one side.
 line_contact AS (
     SELECT
         drive_id, ego_id, seg, line_no, line_contact, contact_run_no, min(t_ns) AS t_since_ns,
@@ -98,17 +98,16 @@ hidden_step AS (
     JOIN numbered_step n USING (drive_id, ego_id, t_ns)
     WHERE h.least_m < passing_before_m(n.speed_mps) AND (h.vehicle OR is_class(h.actor_class, 'animal'))
 ),
--- Objects that are not recorded for a while and that, at some step at which they are recorded, are in the ego's lane and may be passed over
--- a solid line.
+-- Objects that are not recorded for a while and that, at another step, are seen in the ego's lane, where the ego may pass them over a solid
+-- line.
 lost_passable_object AS (
     SELECT DISTINCT p.drive_id, p.ego_id, p.object_id
     FROM pair p
     SEMI JOIN hidden h ON h.drive_id = p.drive_id AND h.ego_id = p.ego_id AND h.object_id = p.object_id AND h.late
     WHERE abs(p.d_m) - p.lat_half_m < p.half_width_m + 0.5 AND may_be_passed_over_solid_line(p.actor_class, p.length_m, p.speed_mps) IS DISTINCT FROM false
 ),
--- Steps at which an object without a position on the corridor may be the one that is passed. A vehicle that is not seen cannot be in the
--- part of the lane ahead that is in plain view. A vehicle that is certainly behind the ego is not the one that the ego goes round: that one
--- is ahead of the ego or beside it.
+-- Steps at which the ego may be passing an object without a position on the corridor. An unseen vehicle cannot be in the part of the lane
+-- ahead that is in plain view. A vehicle that is certainly behind the ego is excluded: an ego passes an actor ahead or beside it.
 possible_pass AS (
     SELECT DISTINCT n.drive_id, n.ego_id, n.t_ns
     FROM hidden h
@@ -121,8 +120,8 @@ possible_pass AS (
             AND (h.ahead IS NOT DISTINCT FROM false OR coalesce(v.vehicle_lane_m >= passing_before_m(n.speed_mps), false))
         )
 ),
--- Steps near the vehicle that the ego overtakes, or may overtake, or near a pedestrian in its lane. If that vehicle is lost meanwhile,
--- it is not known whether it was passed.
+-- Steps near the vehicle that the ego overtakes, or may overtake, or near a pedestrian in its lane. If that vehicle is lost meanwhile, it
+-- is not known whether the ego passed it.
 step_near_passed AS (
     SELECT n.drive_id, n.ego_id, n.t_ns, bool_or(CASE WHEN r.passed AND d.is_near THEN true END) AS overtaking
     FROM numbered_step n
@@ -145,8 +144,8 @@ step_near_passed AS (
         AND d.is_near IS DISTINCT FROM false AND (NOT r.is_on_foot OR coalesce(in_lane(p.d_m, p.lat_half_m, p.half_width_m), false))
     GROUP BY ALL
 ),
--- Actors for whom the ego may cross even a solid line, because they leave too little room to pass them on this side of it. In a stretch in
--- which the ego also overtakes a moving vehicle, it needs the line for that vehicle, so they do not count.
+-- Actors that allow the ego to cross even a solid line, because they leave too little room on this side of it. They do not count in a
+-- stretch in which the ego also overtakes a moving vehicle: the ego then crosses the line for that vehicle.
 passable_object AS (
     SELECT
         n.drive_id, n.ego_id, n.t_ns, n.side, min({'gap_m': p.rear_s_m - e.front_s_m, 'object_id': p.object_id}) FILTER (x.is_allowed).object_id AS passing_id,
@@ -156,7 +155,7 @@ passable_object AS (
     JOIN pair p USING (drive_id, ego_id, t_ns)
     LEFT JOIN overtaking o ON o.drive_id = n.drive_id AND o.ego_id = n.ego_id AND o.seg = n.seg AND o.line_no = n.line_no AND o.run_no = n.run_no
     CROSS JOIN LATERAL (
-        -- A thing whose centre is beside the lane, such as a post, is part of the verge.
+        -- An object whose centre is beside the lane, such as a post, is part of the verge.
         SELECT may_be_passed_over_solid_line(p.actor_class, p.length_m, p.speed_mps) AND (p.actor_class IS DISTINCT FROM 'object' OR abs(p.d_m) < p.half_width_m) AS is_allowed
     ) x
     WHERE abs(p.d_m) - p.lat_half_m < p.half_width_m + 0.5 AND n.side * p.d_m < p.half_width_m
@@ -165,9 +164,9 @@ passable_object AS (
         AND x.is_allowed IS DISTINCT FROM false AND NOT coalesce(o.is_moving, false)
     GROUP BY ALL
 ),
--- Stretches off the lanes. The ego gets to premises or a side road there if it turns off, stands, or goes further than 10 m from the lane.
--- A shoulder, bay or cycle lane is part of the road itself: an ego that stands along it, or comes back from it to lanes of the same
--- direction as before, has not left the road. An ego that turns beside the lanes and comes back to such lanes may only have turned round.
+-- Stretches off the lanes. The ego reaches premises or a side road there if it turns off, stands, or goes further than 10 m from the lane.
+-- A shoulder, bay or cycle lane is part of the road itself: an ego that stands along it, or returns from it to lanes of the same direction,
+-- has not left the road. An ego that turns beside the lanes and returns to such lanes may only have turned round.
 off_lane_stretch AS (
     SELECT
         drive_id, ego_id, seg, run_no, min(travel_m) AS from_m, max(travel_m) AS to_m,
@@ -182,7 +181,7 @@ off_lane_stretch AS (
     )
     GROUP BY ALL
 ),
--- Whether the ego gets to premises or a side road within 30 m, or comes back from there within 30 m.
+-- Whether the ego reaches premises or a side road within 30 m, or comes back from there within 30 m.
 access_check AS (
     SELECT
         n.drive_id, n.ego_id, n.t_ns, n.side, v.is_way_back,
@@ -210,7 +209,7 @@ SELECT
     n.drive_id, n.ego_id, n.t_ns, n.side_name AS side, n.out_m, b.marking,
     b.marking IN ('solid', 'solid_solid', 'solid_broken') AS forbidden,
     CASE WHEN NOT y.drivable THEN y.lane_type WHEN y.against THEN 'opposing' WHEN y.drivable THEN 'same' END AS beyond,
-    -- The two directions of a motorway are apart.
+    -- The two directions of a motorway are separated.
     CASE
         WHEN y.strip = 'median' AND n.road_type = 'motorway' THEN false
         WHEN y.beside_id IS NOT NULL THEN y.drivable AND y.against AND CASE WHEN y.gap_m <= reservation_m() AND y.strip IS DISTINCT FROM 'median' THEN true END
@@ -222,8 +221,8 @@ SELECT
     CASE
         WHEN r.has_access THEN true
         WHEN r.may_be_reached THEN NULL
-        -- To rule out access, the ego must be seen for 30 m behind and ahead. Less is enough behind if it just came from off the lanes
-        -- (r.behind), and ahead if it soon leaves them (r.ahead): it cannot have crossed the line in between.
+        -- To exclude access, the ego must be recorded for 30 m behind and ahead. A shorter distance is enough behind if it just came from
+        -- off the lanes (r.behind), and ahead if it soon leaves them (r.ahead): it cannot have crossed the line in between.
         WHEN (n.seen_behind_m >= 30 OR r.behind OR lo.least_before_m <= n.out_m - back_in_lane_m()) AND (n.seen_ahead_m >= 30 OR r.ahead OR lo.least_after_m <= n.out_m - back_in_lane_m()) THEN false
     END AS access
 FROM numbered_step n

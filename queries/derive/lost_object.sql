@@ -1,6 +1,6 @@
 -- Actors whose track ends before the log does, where they could still have been seen: near the ego, or within the sensor's range. If the
--- log is taken to record every actor in plain view (data_log.in_sight), only tracks that end near the ego count, and only until the actor
--- would have been recorded again. A track that ends further away counts if the actor may have touched the ego later: see hidden.
+-- log is assumed to record every actor in plain view (data_log.in_sight), only tracks that end near the ego count, and only until the
+-- recorder would have found the actor again. A track that ends further away counts if the actor may have touched the ego later: see hidden.
 WITH last_sample AS (
     SELECT p.drive_id, p.ego_id, p.object_id, max(p.t_ns) AS t_last_ns FROM pair p GROUP BY ALL
 ),
@@ -12,7 +12,7 @@ ended_track AS (
     LEFT JOIN track_end r ON r.drive_id = n.drive_id AND r.ego_id = n.ego_id AND r.object_id = n.object_id AND r.t_ns = n.t_last_ns AND r.lost
     ANTI JOIN (FROM track_off_level WHERE lost) l ON l.drive_id = n.drive_id AND l.ego_id = n.ego_id AND l.object_id = n.object_id
     WHERE n.t_last_ns + c.max_gap_ns < c.t_end_ns
-        -- An actor that goes out of sight, behind another box or out of range, does not come near unseen.
+        -- An actor that leaves the recorder's view, behind another box or out of range, does not come near unseen.
         AND (r.plain_ns IS NULL OR r.plain_ns > n.t_last_ns)
 ),
 lost_in_reach AS (

@@ -1,5 +1,5 @@
--- The stretches of a drive of which its log has lost something, open at both ends. One that begins within another ends with it, or later.
--- The table quality has the drives of earlier batches, too.
+-- The stretches of a drive in which its log has lost data; both ends are excluded. A stretch that begins within another ends with it or
+-- later. The table quality also contains the drives of earlier batches.
 SELECT drive_id, t_from_ns, max(t_to_ns) OVER (PARTITION BY drive_id ORDER BY t_from_ns ROWS UNBOUNDED PRECEDING) AS t_to_ns
 FROM (
     SELECT

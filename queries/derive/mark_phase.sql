@@ -1,17 +1,17 @@
--- The state that the lights of a junction, stop line or crossing on the ego's way (a mark, see way_mark) show for the ego's turn. Several
+-- The state that the lights of a junction, stop line or crossing on the ego's chain (a mark, see way_mark) show for the ego's turn. Several
 -- heads count as one if they agree; otherwise the state is not known.
 WITH signal_head AS (
     SELECT
         m.drive_id, m.ego_id, m.chain_id, m.kind, m.mark_id, m.s_start_m, m.light.signal_id, m.light.fit, r.signal_id IS NOT NULL AS is_recorded,
-        -- An arrow for the ego's turn comes before a full light. If it is not sure that the arrow is for that turn, both must show the
-        -- same.
+        -- An arrow for the ego's turn has priority over a full light. If it is not certain that the arrow is for that turn, both must show
+        -- the same state.
         CASE WHEN m.light.fit IN ('own', 'maybe') OR bool_or(m.light.fit = 'maybe') OVER w OR NOT bool_or(m.light.fit = 'own') OVER w THEN 1 ELSE 2 END AS tier
     FROM (SELECT * EXCLUDE (lights), unnest(lights) AS light FROM way_mark) m
     LEFT JOIN (SELECT DISTINCT drive_id, signal_id FROM signal_phase) r ON r.drive_id = m.drive_id AND r.signal_id = m.light.signal_id
     WHERE m.light.fit <> 'other'
     WINDOW w AS (PARTITION BY m.drive_id, m.ego_id, m.chain_id, m.kind, m.mark_id, m.s_start_m)
 ),
--- A head that is not recorded shows what another one shows, if both are surely for the same turns.
+-- A head that is not recorded has the state of another head, if both are certainly for the same turns.
 used_head AS (
     SELECT *
     FROM signal_head
@@ -35,7 +35,7 @@ state_by_priority AS (
 shown_state AS (
     SELECT
         drive_id, ego_id, chain_id, kind, mark_id, s_start_m, t_ns,
-        -- If the arrow is dark, the full light holds.
+        -- If the arrow is dark, the full light applies.
         CASE
             WHEN any_value(state) FILTER (tier = 1) = 'off' AND count(*) FILTER (tier = 2) > 0 THEN any_value(state) FILTER (tier = 2)
             ELSE any_value(state) FILTER (tier = 1)

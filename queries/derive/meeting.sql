@@ -1,7 +1,7 @@
--- Pairs of visits at which two paths may meet at an angle, found by grid alone. A visit groups the samples of one actor that lie in one
--- grid cell, one 10 s slot and one 5-degree heading step, with the box around everything that the actor covers there.
+-- Pairs of visits at which two paths may meet at an angle, found by grid alone. A visit groups the samples of one actor in one grid cell,
+-- one 10 s slot and one 5-degree heading step. Its box contains the whole area that the actor covers in these samples.
 WITH
--- An actor that never moves has no path that another one could meet. Contact with it is judged by another rule.
+-- An actor that never moves has no path to meet. Another rule judges contact with it.
 moving_actor AS (
     SELECT drive_id, actor_id, max(length_m) AS length_m, max(width_m) AS width_m, max(speed_mps) AS speed_mps
     FROM state_dynamics

@@ -1,8 +1,8 @@
 -- The steps of the ego around the marks of its chains (junctions, stop lines and crossings, see way_mark), with the positions of its
--- bumpers at the step and at the step before. The rear
--- bumper is that of its trailer, if it tows one. The first step after a hole is kept for every mark that the ego passed in the hole.
+-- bumpers at the step and at the step before. The rear bumper is that of its trailer, if it tows one. The first step after a hole is kept
+-- for every mark that the ego passed in the hole.
 WITH
--- How far a trailer reaches behind the ego's middle, see ego_state. While the trailer is not seen, its furthest reach counts.
+-- Distance from the ego's middle to the rear of its trailer, see ego_state. While the trailer is not seen, its greatest distance counts.
 trailer_reach AS (
     SELECT drive_id, ego_id, t_ns, coalesce(reach_m, max(reach_m) OVER (PARTITION BY drive_id, ego_id)) AS reach_m
     FROM (SELECT *, CASE WHEN combination_m <> length_m THEN combination_m - length_m / 2 END AS reach_m FROM ego_state)
@@ -29,7 +29,7 @@ SELECT
     w.front_s_m - m.s_start_m AS front_m, w.rear_s_m - m.s_end_m AS rear_m,
     w.previous.front_s_m - m.s_start_m AS front_before_m, w.previous.rear_s_m - m.s_end_m AS rear_before_m,
     coalesce(w.previous.k = w.k - 1 AND w.previous.seg = w.seg, false) AS joined,
-    -- An ego that is further beside the lane than the width of a lane (4 m) is on another way.
+    -- An ego that is beside the lane by more than a lane's width (4 m) is on another path.
     e.chain_id IS NOT DISTINCT FROM w.chain_id AND w.beside_m < 4 AS running
 FROM bumper_step w
 JOIN way_mark m ON m.drive_id = w.drive_id AND m.ego_id = w.ego_id AND m.chain_id = w.chain_id

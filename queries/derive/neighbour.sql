@@ -1,10 +1,10 @@
--- The actors near the ego, with their places along and across its corridor. `pair` is a large table, and few of its rows are near: every
+-- The actors near the ego, with their positions along and across its corridor. The table pair is large, and few of its rows are near: every
 -- query for neighbours reads this table instead.
 SELECT
     p.drive_id, p.ego_id, p.t_ns, st.k, st.seg, p.object_id, p.actor_class, e.chain_id,
     p.front_s_m - e.front_s_m AS ahead_m, p.rear_s_m - e.front_s_m AS gap_ahead_m, e.rear_s_m - p.front_s_m AS gap_behind_m,
     p.d_m, p.lat_half_m, p.half_width_m, p.heading_diff_rad,
-    -- If the ego heads against the corridor, its left is on the other side.
+    -- If the ego heads against the corridor, left and right are exchanged.
     CASE WHEN (p.d_m > e.d_m) = (abs(e.heading_diff_rad) <= pi() / 2) THEN 'left' ELSE 'right' END AS side,
     abs(p.d_m - e.d_m) - p.lat_half_m - e.lat_half_m AS gap_m, p.clearance_m, e.speed_mps AS ego_speed_mps, p.speed_mps,
     coalesce(g.vy_mps * cos(e.yaw_rad - e.heading_diff_rad) - g.vx_mps * sin(e.yaw_rad - e.heading_diff_rad), e.speed_mps * sin(e.heading_diff_rad)) AS ego_left_mps

@@ -1,5 +1,5 @@
--- The nearest vehicle that comes towards the ego on the lane in which it would overtake (OV, oncoming vehicle, and DA, distance ahead, of
--- Harper et al. 2021), and how far ahead this is known.
+-- The nearest vehicle that comes towards the ego in the lane in which the ego would overtake, and the distance ahead up to which this is
+-- known. OV (oncoming vehicle) and DA (distance ahead) are terms of Harper et al. 2021.
 WITH corridor_end AS (
     SELECT c.drive_id, c.ego_id, c.chain_id, max(c.s_start_m + c.length_m) AS end_m, max({'seq': c.seq, 'id': c.lanelet_id}).id AS last_id
     FROM corridor c
@@ -8,7 +8,7 @@ WITH corridor_end AS (
 ego_step AS (
     SELECT
         e.drive_id, e.ego_id, e.t_ns,
-        -- All vehicles are placed on the corridor at least so far ahead, even if the ego's own path leads further.
+        -- At least up to this distance ahead, all vehicles have positions on the corridor, even if the ego's own path is longer.
         least(r.end_m - e.front_s_m, corridor_ahead_m()) AS corridor_m,
         n.ahead_id IS NULL AND r.end_m - e.front_s_m <= corridor_ahead_m() AS map_ends, g.sensor_range_m - e.length_m / 2 AS range_m
     FROM ego_state e
@@ -24,7 +24,7 @@ nearest_vehicle AS (
     WHERE vehicle
     GROUP BY ALL
 ),
--- An object that is behind, or that goes the ego's way whenever it is seen, is not oncoming.
+-- An object that is behind the ego, or that always moves in the ego's direction when seen, is not oncoming.
 object_not_oncoming AS (
     SELECT drive_id, ego_id, t_ns, object_id FROM hidden WHERE NOT ahead OR along
 ),
@@ -37,14 +37,14 @@ doubtful_object AS (
     ) u
     ANTI JOIN object_not_oncoming b ON b.drive_id = u.drive_id AND b.ego_id = u.ego_id AND b.t_ns = u.t_ns AND b.object_id = u.object_id
     LEFT JOIN nearest_vehicle n ON n.drive_id = u.drive_id AND n.ego_id = u.ego_id AND n.t_ns = u.t_ns
-    -- A vehicle beyond the end of the map raises no doubt, because free_m ends there. A vehicle that the ego has met is behind. The nearest
-    -- OV itself raises a doubt only if it came from off the lanes, because the distance that it still had to drive is then not known.
+    -- A vehicle beyond the end of the map causes no doubt, because free_m ends there. A vehicle that the ego has already met is behind. The
+    -- nearest OV itself causes a doubt only if it came from off the lanes, because its remaining distance to the lane is then not known.
     WHERE u.code NOT IN ('beyond_map', 'lost_behind') AND (n.ov.object_id IS NULL OR n.ov.object_id <> u.object_id OR n.ov.is_coming)
     GROUP BY ALL
 )
 SELECT
     e.drive_id, e.ego_id, e.t_ns, n.ov.object_id AS object_id, n.ov.da_m AS da_m, n.ov.speed_mps AS speed_mps, n.ov.is_coming AS on_its_way,
-    -- Ground truth has no range: least() ignores its NULL, which is right here.
+    -- Ground truth has no range: least() ignores this NULL, as intended here.
     greatest(0.0, least(e.corridor_m, e.range_m)) AS free_m,
     CASE WHEN e.range_m < e.corridor_m THEN 'sensor_range' WHEN e.map_ends THEN 'map_end' ELSE 'corridor_end' END AS free_reason,
     coalesce(h.n, 0) AS n_unplaced,

@@ -1,15 +1,14 @@
--- All vehicles that come towards the ego on the lane in which it would overtake, at each step (OV, oncoming vehicle, and DA, distance
--- ahead, of Harper et al. 2021). The nearest of them need not be the one that matters most: one that waits or is slow leaves more time. One
--- that was never seen to move does not come towards the ego: it is parked, in a narrow street on either side. A horse on the road counts as
--- a vehicle. A vehicle that comes from another lane counts from 15 s before it gets to that lane, at the distance that it really drives
--- until then.
+-- All vehicles that come towards the ego in the lane in which the ego would overtake, at each step. OV (oncoming vehicle) and DA (distance
+-- ahead) are terms of Harper et al. 2021. The nearest OV may not be the critical one: if it waits or is slow, it leaves more time. A
+-- vehicle that never moved is parked and does not count. A horse on the road counts as a vehicle. A vehicle from another lane counts from
+-- 15 s before it reaches this lane, at the distance that it then really drives.
 WITH ego_step AS (
     SELECT e.drive_id, e.ego_id, e.t_ns, e.s_m, e.front_s_m, x.side, x.over_width_m
     FROM ego_state e
     JOIN ego_corridor x ON x.drive_id = e.drive_id AND x.ego_id = e.ego_id AND x.chain_id = e.chain_id AND x.t_ns = e.t_ns
     WHERE e.front_s_m IS NOT NULL AND x.side IS NOT NULL
 ),
--- Its positions and velocities may jitter, so that one moves that leaves its place, or that is seen too briefly to leave it but is fast.
+-- Recorded positions and velocities may jitter. An object moves if it leaves its place, or if it is fast and seen too briefly to leave it.
 standing_object AS (
     SELECT drive_id, actor_id AS object_id
     FROM state_dynamics
@@ -24,13 +23,13 @@ oncoming_object AS (
     ANTI JOIN standing_object o ON o.drive_id = p.drive_id AND o.object_id = p.object_id
     WHERE (may_be_vehicle(p.actor_class) OR p.actor_class = 'animal') AND p.s_m > e.s_m AND abs(p.heading_diff_rad) > 2 * pi() / 3
         AND e.side * p.d_m - p.lat_half_m < p.half_width_m + coalesce(p.over_width_m, e.over_width_m, 2 * p.half_width_m)
-        -- A vehicle that stands the wrong way round in the running lane is parked there. One that moves is oncoming.
+        -- A vehicle that stands against the direction of the running lane is parked there. A moving one is oncoming.
         AND e.side * p.d_m + p.lat_half_m > CASE WHEN p.speed_mps <= standing_mps() THEN p.half_width_m + over_boundary_m() ELSE -p.half_width_m END
 ),
 lane_entry AS (
     SELECT drive_id, ego_id, object_id, min({'t_ns': t_ns, 's_m': rear_s_m}) AS e FROM oncoming_object WHERE vehicle GROUP BY ALL
 ),
--- The distance that the vehicle has yet to drive, at each step before it gets to the lane.
+-- The distance that the vehicle still has to drive to the lane, at each step before it arrives.
 approach_step AS (
     SELECT
         p.drive_id, p.ego_id, p.t_ns, p.object_id, p.speed_mps, p.x_m, y.e.s_m AS entry_s_m,

@@ -1,6 +1,6 @@
--- Periods in which the ego is held up behind a slower vehicle with an opposing lane to overtake in, and the best moment in them for each
--- profile. Held up: within 5 s of a lead that drives at less than 80 % of the limit. The ego would pass at its own speed or, if that is
--- faster, at 10 mph more than the lead, up to the limit.
+-- Periods in which the ego is held up behind a slower vehicle, with an opposing lane in which it could overtake, and the best moment in
+-- each period for each profile. Held up: within 5 s of a lead that drives at less than 80 % of the limit. The ego would pass at its own
+-- speed or, if that is faster, at 10 mph more than the lead, up to the limit.
 WITH held_up_step AS (
     SELECT
         l.drive_id, l.ego_id, l.t_ns, st.k, st.seg, l.object_id, l.speed_mps AS v_vbp_mps, e.combination_m AS l_av_m, x.half_width_m * 2 AS lane_width_m,
@@ -30,7 +30,7 @@ judged_step AS (
     LEFT JOIN oncoming o ON o.drive_id = h.drive_id AND o.ego_id = h.ego_id AND o.t_ns = h.t_ns
     LEFT JOIN oncoming_vehicle v ON v.drive_id = h.drive_id AND v.ego_id = h.ego_id AND v.t_ns = h.t_ns AND v.vehicle
 ),
--- Of several oncoming vehicles, the one that leaves the least counts, see overtake_sda.
+-- Of several oncoming vehicles, the one that leaves the least distance counts, see overtake_sda.
 worst_ov AS (
     SELECT *
     FROM judged_step

@@ -1,17 +1,16 @@
 -- Overtakes (Harper et al. 2021, Appendix A): the ego leaves its lane towards the overtaking lane with a vehicle ahead of it. The nearest
--- vehicle counts if the ego passes it, or if it is within 100 m and the ego's centre was over the line. Less than that is a wobble, if all
--- of it was seen. Every further vehicle that is passed in the same excursion counts, too.
+-- vehicle counts if the ego passes it, or if it is within 100 m and the ego's centre crossed the line. A smaller excursion that was
+-- completely seen is only a wobble. Every further vehicle that the ego passes in the same excursion counts, too.
 WITH overtaking_excursion AS (
     SELECT x.* REPLACE (x.t_pull_ns AS t0_ns), b.k - st.k + 1 AS n_steps, e.front_s_m, e.rear_s_m, e.s_m, e.d_m, e.lat_half_m, e.width_m, e.speed_mps, e.combination_m AS length_m, e.limit_mps
     FROM excursion x
     JOIN ego_state e ON e.drive_id = x.drive_id AND e.ego_id = x.ego_id AND e.t_ns = x.t_pull_ns
     JOIN step st ON st.drive_id = x.drive_id AND st.ego_id = x.ego_id AND st.t_ns = x.t_pull_ns
     LEFT JOIN step b ON b.drive_id = x.drive_id AND b.ego_id = x.ego_id AND b.t_ns = coalesce(x.t_back_ns, x.t_end_ns)
-    -- Only excursions from the chain that is the running one at t0. From a chain that the ego enters later, it is outside all the time
-    -- before, which is no excursion.
+    -- Only excursions from the running chain at t0. The ego is outside a chain all the time before it enters it, which is no excursion.
     WHERE x.overtaking AND e.chain_id = x.chain_id
 ),
--- The places of the ego and of all objects during an excursion: all that is needed of the large table pair. From here on it is read by key.
+-- The positions of the ego and all objects during an excursion, read once from the large table pair. Later queries read these rows by key.
 pair_in_excursion AS MATERIALIZED (
     SELECT g.chain_id, g.t0_ns, e.front_s_m AS ego_front_m, e.rear_s_m AS ego_rear_m, p.*
     FROM overtaking_excursion g
@@ -30,10 +29,11 @@ ahead AS (
     WHERE may_be_vehicle_or_obstacle(p.actor_class, p.d_m - g.d_m, p.lat_half_m + g.lat_half_m) AND p.s_m > g.s_m
         AND abs(p.d_m) - p.lat_half_m < p.half_width_m - over_boundary_m()
         AND (abs(p.heading_diff_rad) < 2 * pi() / 3 OR p.speed_mps <= standing_mps())
-        -- An ego with room to pass within its lane, and part of it still in it, is not over the line for one that stands beside its way.
+        -- An ego that has room to pass a standing object within its lane, and is still partly in this lane, does not cross the line for
+        -- that object.
         AND NOT coalesce(p.speed_mps <= standing_mps() AND NOT g.centre_over AND p.half_width_m - g.side * p.d_m - p.lat_half_m >= g.width_m + room_beside_standing_m(), false)
 ),
--- Vehicles first seen after t0 that come towards the ego are not the overtaken vehicle.
+-- Vehicles that are first seen after t0 and come towards the ego: none is the overtaken vehicle.
 oncoming_object AS (
     SELECT drive_id, ego_id, t0_ns, object_id
     FROM (
@@ -49,7 +49,7 @@ oncoming_object AS (
     GROUP BY ALL
     HAVING min(t_ns) > t0_ns AND min({'t_ns': t_ns, 'towards': towards}).towards
 ),
--- An object without a position, heading or size, or with a track that ended or begins nearby, may be the overtaken vehicle, unless it was
+-- An object without a position, heading or size, or with a track that ends or begins nearby, may be the overtaken vehicle, unless it was
 -- further away or behind (table `hidden`).
 candidate_without_place AS (
     SELECT g.drive_id, g.ego_id, g.chain_id, g.t0_ns, u.object_id, NULL::DOUBLE AS gap_m, p.speed_mps, a.length_m, false AS is_placed,
@@ -66,7 +66,7 @@ candidate_without_place AS (
                 AND h.least_m <= 100 AND h.ahead IS DISTINCT FROM false)
             AND NOT EXISTS (FROM ahead a WHERE a.drive_id = g.drive_id AND a.ego_id = g.ego_id AND a.chain_id = g.chain_id AND a.t0_ns = g.t0_ns AND a.near_m <= 100)
 ),
--- An object that has a position on the corridor only later, ahead in the lane, and is passed, is an overtaken vehicle, too.
+-- An object that gets a position on the corridor only after t0, ahead in the lane, and that the ego passes, is an overtaken vehicle, too.
 late_candidate AS (
     SELECT drive_id, ego_id, chain_id, t0_ns, object_id, NULL::DOUBLE AS gap_m, NULL::DOUBLE AS speed_mps, max(length_m) AS length_m, false AS is_placed, NULL::DOUBLE AS near_m
     FROM pair_in_excursion
@@ -100,8 +100,8 @@ overtaken_vehicle AS (
     JOIN overtaking_excursion g USING (drive_id, ego_id, chain_id, t0_ns)
     LEFT JOIN passing a USING (drive_id, ego_id, chain_id, t0_ns, object_id)
     CROSS JOIN LATERAL (SELECT coalesce(a.n_seen, 0) >= g.n_steps AS is_seen) n
-    -- Beside the ego from t0 on and never passed: the ego is over the line beside it, as in a queue.
-    -- Who reaches over the boundary by a hand's breadth beside a parked car has not left its lane for it.
+    -- A vehicle beside the ego from t0 on that the ego never passes: the ego is only over the line beside it, as in a queue. An ego that
+    -- reaches slightly over the boundary beside a parked car has not left its lane for that car.
     CROSS JOIN LATERAL (SELECT coalesce(c.speed_mps <= standing_mps() AND g.max_out_m < surely_out_m() AND g.t_back_ns IS NOT NULL, false) AS is_in_lane) l
     CROSS JOIN LATERAL (SELECT coalesce(NOT a.passed AND c.near_m < 0 AND n.is_seen, false) AND g.begin_seen AND NOT g.centre_over AS is_beside) w
     WHERE NOT l.is_in_lane
@@ -132,7 +132,8 @@ SELECT
     k.drive_id, k.ego_id,
     (row_number() OVER (PARTITION BY k.drive_id, k.ego_id ORDER BY k.t0_ns, k.chain_id, k.gap_m, k.object_id) - 1)::INTEGER AS occurrence,
     k.chain_id, k.over_against AS opposing, k.side, k.object_id AS vbp_id, k.is_placed AS vbp_placed,
-    -- The ego may only have followed a vehicle that it did not pass: on the ego's own side of the road the ego changes lane, or sways, behind it.
+    -- The ego may only have followed a vehicle that it did not pass: on its own side of the road, it changes lane or sways behind that
+    -- vehicle.
     CASE WHEN k.passed THEN k.is_placed OR k.centre_over OR w.stays_out
         ELSE k.is_placed AND coalesce(k.over_against, false) AND (k.begin_seen AND k.centre_over OR w.stays_out)
     END AS sure, k.begin_seen,

@@ -1,4 +1,4 @@
--- The place where an overtake begins and ends, and the vehicle that comes up from behind when it begins.
+-- The place where an overtake begins and ends, and the vehicle that approaches from behind when it begins.
 WITH overtake_begin AS (
     SELECT
         o.drive_id, o.ego_id, o.occurrence, o.chain_id, o.side, o.vbp_id, o.passed, o.t0_ns, o.t3_ns, o.t_end_ns, g.environment_id, e.s_m, e.front_s_m, e.rear_s_m, e.speed_mps
@@ -45,7 +45,7 @@ next_crossing AS (
     WHERE w.s_start_m + x.s_end_m > w.rear_s_m
     GROUP BY ALL
 ),
--- The place of the ego's front at t0, and later where it draws level with the vehicle that it passes.
+-- The position of the ego's front at t0, and later where it draws level with the vehicle that it passes.
 front_place AS (
     SELECT drive_id, ego_id, occurrence, false AS is_level, front_s_m FROM overtake_begin
     UNION ALL
@@ -60,8 +60,8 @@ front_place AS (
     ) l
     JOIN ego_corridor x ON x.drive_id = l.drive_id AND x.ego_id = l.ego_id AND x.chain_id = l.chain_id AND x.t_ns = l.t_ns
 ),
--- The last sign or junction that the ego has passed: a sign holds until its end is signed, or until the next junction. If there is neither,
--- a sign may stand further back than the corridor reaches, or where the map begins.
+-- The last sign or junction that the ego has passed. A sign applies until its end is signed, or until the next junction. If there is
+-- neither, a sign may stand further back than the corridor extends, or before the map's beginning.
 last_sign_passed AS (
     SELECT w.drive_id, w.ego_id, w.occurrence, f.is_level, max({'s_m': w.s_m, 'holds': w.holds}).holds AS holds
     FROM (
@@ -94,16 +94,16 @@ crossed_line AS (
         AND b.s_start_m <= x.s_m - c.s_start_m AND x.s_m - c.s_start_m < b.s_end_m
     GROUP BY ALL
 ),
--- The highest speed of each actor just before t0, as far as it is known: a vehicle that comes up in the overtaking lane may have begun to
--- brake when the ego began to move over.
+-- The highest known speed of each actor just before t0: a vehicle that approaches in the overtaking lane may have begun to brake when the
+-- ego began to move over.
 earlier_speed AS (
     SELECT g.drive_id, g.ego_id, g.occurrence, p.object_id, max(p.speed_mps) AS fastest_mps, count(p.speed_mps) = count(*) AS is_whole
     FROM overtake_begin g
     JOIN pair p ON p.drive_id = g.drive_id AND p.ego_id = g.ego_id AND p.t_ns >= g.t0_ns - braked_before_ns() AND p.t_ns <= g.t0_ns
     GROUP BY ALL
 ),
--- Vehicles in the overtaking lane, or in the running lane and moving over at more than 0.3 m/s. While part of a vehicle is beside the ego,
--- it is not yet past. A vehicle whose middle is ahead of the ego's is left out, unless it is or may be faster: the ego passes it, or drives
+-- Vehicles in the overtaking lane, or in the running lane and moving over at more than 0.3 m/s. A vehicle that is partly beside the ego has
+-- not passed yet. A vehicle with its middle ahead of the ego's is excluded, unless it is or may be faster: the ego passes it, or drives
 -- beside it.
 rear_vehicle AS (
     SELECT

@@ -1,10 +1,11 @@
--- Distance ahead and safe distance ahead for every profile. The profile `observed` takes the angles and gaps that this overtake had, and
--- the distance that was driven. If several vehicles are passed in one go, each counts with the length of the whole row up to its front. The
--- formula takes one speed for the whole manoeuvre: the speed at t0 or, for the profile `observed` of a completed overtake, the mean speed.
--- An ego that sped up to overtake would have needed less than its speed at t0 says. With which of the two speeds it planned is not known.
--- If the log ends before the ego is back, it may have sped up yet: the greatest mean speed that it could still have had until it was back
--- stands for the mean speed. It is no faster than it was or than the limit allows; without a limit in the map, that of the fastest roads
--- counts. After a collision it cannot speed up.
+-- Distance ahead and safe distance ahead for every profile. The profile `observed` uses the angles and gaps of this overtake, and the
+-- driven distance. If the ego passes several vehicles in one excursion, each counts with the length of the whole row up to its front. The
+-- formula uses one speed for the whole manoeuvre: the speed at t0 or, for the profile `observed` of a completed overtake, the mean speed.
+--
+-- An ego that accelerated to overtake needed less distance than its speed at t0 gives. It is not known which of the two speeds it planned
+-- with. If the log ends before the ego is back, the greatest possible mean speed until its return replaces the mean speed. This speed is
+-- limited by the ego's highest speed or the speed limit (without a limit in the map, that of the fastest roads). After a collision, the ego
+-- cannot accelerate.
 WITH ov_candidate AS (
     SELECT o.drive_id, o.ego_id, o.occurrence, v.object_id AS ov_id, v.da_m, v.speed_mps AS v_ov_mps
     FROM overtake o
@@ -12,7 +13,7 @@ WITH ov_candidate AS (
     UNION ALL
     SELECT drive_id, ego_id, occurrence, NULL, da_m, v_ov_mps FROM overtake WHERE ov_id IS NULL
 ),
--- The ego and the OV at each step of the overtake. A standing vehicle drives no further, however long it is filmed.
+-- The ego and the OV at each step of the overtake. A standing vehicle adds no distance, however long it is recorded.
 step_with_ov AS (
     SELECT
         v.drive_id, v.ego_id, v.occurrence, v.ov_id, v.da_m, e.t_ns, coalesce(n.da_m, p.rear_s_m - e.front_s_m) AS now_m, now_m IS NOT NULL AS is_seen,
@@ -21,10 +22,11 @@ step_with_ov AS (
     JOIN ov_candidate v USING (drive_id, ego_id, occurrence)
     JOIN ego_state e ON e.drive_id = o.drive_id AND e.ego_id = o.ego_id AND e.t_ns >= o.t0_ns AND e.t_ns <= o.t_end_ns
     LEFT JOIN pair p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.t_ns = e.t_ns AND p.object_id = v.ov_id
-    -- A vehicle from another lane still has to drive round the corner; one that was met is in pair only.
+    -- A vehicle from another lane still has to drive round the corner. A vehicle that the ego has met is only in pair.
     LEFT JOIN oncoming_vehicle n ON n.drive_id = e.drive_id AND n.ego_id = e.ego_id AND n.t_ns = e.t_ns AND n.object_id = v.ov_id
 ),
--- How far the two have come towards each other until both stand, the last step that shows it, and the last step at which the ego moves.
+-- The distance by which the two have approached each other until both stand, the last step at which this is seen, and the last step at
+-- which the ego moves.
 closed_distance AS (
     SELECT s.drive_id, s.ego_id, s.occurrence, s.ov_id, s.da_m - min(s.now_m) AS closed_m, max(s.t_ns) FILTER (s.is_seen) AS t_seen_ns, any_value(m.t_ego_ns) AS t_ego_ns
     FROM step_with_ov s
@@ -49,8 +51,8 @@ highest_speed AS (
     WHERE o.status = 'truncated'
     GROUP BY ALL
 ),
--- The distance that the ego and the OV covered while the ego was out, plus the OV's stopping distance. While the OV is not seen, its speed
--- at t0 counts. If the ego, the log or a collision broke off the overtake, the whole overtake would have needed more.
+-- The distance that the ego and the OV covered during the overtake, plus the OV's stopping distance. While the OV is not seen, its speed at
+-- t0 counts. If the ego, the log or a collision ended the overtake early, the whole overtake would have needed more.
 driven_distance AS (
     SELECT
         o.drive_id, o.ego_id, o.occurrence, v.ov_id, v.da_m, v.v_ov_mps, m.v_most_mps, h.t_ns < o.t_end_ns AS stands, (h.t_ns - o.t0_ns) / 1e9 AS out_s,
@@ -82,8 +84,8 @@ formula_input AS (
     JOIN driven_distance d USING (drive_id, ego_id, occurrence)
     CROSS JOIN profile p
 ),
--- The faster the ego overtakes, the sooner it is back, and the less it can have sped up until then: of 64 speeds up to the highest, the
--- greatest one that it can have had in the mean.
+-- The faster the ego overtakes, the sooner it is back, and the less it can have accelerated until then. Of 64 speeds up to the highest, the
+-- greatest possible mean speed is taken.
 later_speed AS (
     SELECT
         *,
@@ -112,7 +114,8 @@ required_distance AS (
         coalesce(da_m <= driven_m AND (planned_m IS NULL OR driven_m > planned_m), false) AS is_driven, coalesce(da_m <= sda_m AND da_m > sped_up_m, false) AS has_sped_up
     FROM planned_distance
 ),
--- Of several oncoming vehicles, one that leaves too little comes before one of which this is not known; then the one that leaves the least.
+-- Of several oncoming vehicles, one that leaves too little distance comes first, then one for which this is not known, then the one that
+-- leaves the least distance.
 worst_ov AS (
     SELECT *
     FROM required_distance
@@ -130,8 +133,8 @@ SELECT
     ov_id IS NULL AS at_least,
     ov_id IS NULL AND n_unplaced = 0 AS nobody,
     sda_m, da_m - sda_m AS spare_m, (da_m - sda_m) / nullif(v_av_mps + v_ov_mps, 0) AS spare_s,
-    -- Without an OV, a zone is given only if every vehicle is placed and the sight line is longer than SDA. With an OV and a vehicle that
-    -- is not placed, only zone A is certain: that vehicle may leave even less.
+    -- Without an OV, a zone is given only if all vehicles have positions and the free distance is greater than SDA. With an OV and a
+    -- vehicle without a position, only zone A is certain: that vehicle may leave even less distance.
     CASE WHEN is_known AND NOT has_sped_up AND CASE WHEN ov_id IS NULL THEN n_unplaced = 0 AND da_m > sda_m ELSE n_unplaced = 0 OR da_m <= sda_m END THEN overtake_zone(da_m - sda_m, (da_m - sda_m) / nullif(v_av_mps + v_ov_mps, 0)) END AS zone,
     CASE
         WHEN NOT begin_seen THEN why('overtake_begin_unseen')

@@ -1,6 +1,6 @@
--- The danger spaces at every step of an overtake, swept along the corridor: as wide as the vehicle, at its place across the lane, and as
--- long as its stopping distance. How far a vehicle is inside a danger space is the least overlap over the axes of both boxes, in corridor
--- coordinates: a turned vehicle counts with its real outline, not with the box around it.
+-- The danger spaces at every step of an overtake, swept along the corridor: as wide as the vehicle, at its lateral position, and as long as
+-- its stopping distance. The depth of a vehicle inside a danger space is the least overlap over the axes of both boxes, in corridor
+-- coordinates: a turned vehicle counts with its real outline, not with its bounding box.
 WITH stage AS (
     SELECT
         o.drive_id, o.ego_id, o.occurrence, o.vbp_id, o.sure, e.t_ns,
@@ -10,7 +10,7 @@ WITH stage AS (
             ELSE 'cutting_in'
         END AS stage,
         e.s_m AS ego_s_m, e.d_m AS ego_d_m, cos(e.heading_diff_rad) AS c, sin(e.heading_diff_rad) AS s, e.length_m / 2 AS box_half_length_m, e.width_m / 2 AS box_half_width_m,
-        -- A trailer counts by its reach along the lane.
+        -- A trailer counts by its extent along the lane.
         d.drive_id IS NOT NULL AS has_trailer, e.front_s_m AS ego_front_m, e.rear_s_m AS ego_rear_m, e.lat_half_m AS ego_lat_half_m,
         -- The danger space is as wide as the vehicle and begins at the middle of its front bumper.
         e.s_m + e.length_m / 2 * cos(e.heading_diff_rad) AS bumper_s_m, e.d_m + e.length_m / 2 * sin(e.heading_diff_rad) AS bumper_d_m,
@@ -20,17 +20,16 @@ WITH stage AS (
     LEFT JOIN (SELECT DISTINCT drive_id, ego_id FROM ego_part WHERE part = 'trailer') d ON d.drive_id = o.drive_id AND d.ego_id = o.ego_id
     WHERE o.opposing IS DISTINCT FROM false
 ),
--- The first join is by time alone, which is a number: the keys are texts, and most of the drive is no overtake.
+-- The first join is by time alone, which is a number: the keys are texts, and most of the drive is outside overtakes.
 pair_in_overtake AS (
     SELECT
         *, danger_space_m(speed_mps) AS sd_m, cos(heading_diff_rad) AS c, sin(heading_diff_rad) AS s, length_m / 2 AS box_half_length_m, width_m / 2 AS box_half_width_m,
         s_m + length_m / 2 * cos(heading_diff_rad) AS bumper_s_m, d_m + length_m / 2 * sin(heading_diff_rad) AS bumper_d_m
     FROM pair SEMI JOIN stage USING (t_ns)
 ),
--- All oncoming vehicles except the vehicle being passed (VBP), which may stand the wrong way round. For each of the three overlaps
--- (ov_in_m, av_in_m, overlap_m)
--- the worst of them counts. If the place of a vehicle across the corridor is not known, because it is still on its way there or has no
--- size, it may be the worst one, unless the danger spaces do not even reach so far.
+-- All oncoming vehicles except the vehicle being passed (VBP), which may stand against the traffic. For each of the three overlaps
+-- (ov_in_m, av_in_m, overlap_m) the worst vehicle counts. If a vehicle's lateral position is not known, because it is still on another lane
+-- or has no size, it may be the worst one, unless the danger spaces do not reach that far.
 ov_overlap AS (
     SELECT
         s.drive_id, s.ego_id, s.occurrence, s.t_ns, v.object_id, v.da_m, o.sd_m, o.bumper_s_m, o.bumper_d_m, o.box_half_width_m,
@@ -62,7 +61,8 @@ worst_ov AS (
 )
 SELECT
     s.drive_id, s.ego_id, s.occurrence, s.t_ns, s.stage, s.vbp_id, s.sure, w.o.id AS ov_id,
-    -- That no vehicle comes is known only within the visible range: an unseen vehicle at the limit (70 mph if the map has none) must be out of reach.
+    -- It is known that no vehicle comes only within the visible range: an unseen vehicle at the speed limit (70 mph if the map has none)
+    -- must be out of reach.
     coalesce(n.n_unplaced = 0 AND (n.object_id IS NOT NULL OR n.free_m > s.sd_av_m + danger_space_m(coalesce(s.limit_mps, 31.3))), false) AS ov_known,
     CASE WHEN n.t_ns IS NULL THEN CASE WHEN s.ego_lack IS NULL THEN why('oncoming_side_unknown') ELSE why('oncoming_unknown', {'lack': s.ego_lack}) END
         WHEN n.n_unplaced > 0 THEN why('record_actor', {'lack': n.unplaced_reason})

@@ -1,9 +1,9 @@
--- The way that the ego's box centre really took, as segments of some 2 m, and beyond its end a stretch on which the ego is taken to hold
--- the bend that it was in. A hole in the log begins a new piece: how the ego came over it was not recorded.
+-- The recorded path of the ego's box centre, as segments of some 2 m, extrapolated beyond its end with the last curvature. A hole in the
+-- log begins a new piece, because the path across the hole is not recorded.
 WITH placed_step AS (
     SELECT
         st.drive_id, st.ego_id, st.seg, st.t_ns, s.x_m, s.y_m, s.yaw_rad, s.speed_mps,
-        -- The positions of a standing ego jitter, which is no way made.
+        -- The positions of a standing ego jitter, which adds no distance.
         floor(from_picometres(sum(CASE WHEN s.speed_mps > standing_mps() THEN to_picometres(coalesce(st.travel_m - lag_m, 0.0)) ELSE 0 END) OVER w) / way_point_m())::INTEGER AS bucket
     FROM (SELECT *, lag(travel_m) OVER (PARTITION BY drive_id, ego_id, seg ORDER BY t_ns) AS lag_m FROM step) st
     JOIN state_dynamics s ON s.drive_id = st.drive_id AND s.actor_id = st.ego_id AND s.t_ns = st.t_ns
@@ -22,7 +22,7 @@ way_point AS (
     FROM (
         FROM first_of_bucket
         UNION ALL
-        -- The way ends where the ego's last step is, not where the last whole bucket began.
+        -- The path ends at the ego's last step, not at the beginning of the last whole bucket.
         SELECT l.drive_id, l.ego_id, l.seg, {'t_ns': l.p.t_ns, 'x_m': l.p.x_m, 'y_m': l.p.y_m}
         FROM last_step l
         JOIN (SELECT drive_id, ego_id, seg, max(p) AS p FROM first_of_bucket GROUP BY drive_id, ego_id, seg) b USING (drive_id, ego_id, seg)
@@ -39,7 +39,7 @@ turned_point AS (
     FROM way_point
     WINDOW w AS (PARTITION BY drive_id, ego_id, seg ORDER BY t_ns ROWS UNBOUNDED PRECEDING)
 ),
--- The end of each piece: its direction is the ego's heading, if the ego drove that way, and its bend is that of the last metres.
+-- The end of each piece. Its direction is the ego's heading, if that agrees with the driven path; its curvature is that of the last metres.
 way_end AS (
     SELECT
         p.drive_id, p.ego_id, p.seg, p.t_ns, p.x_m, p.y_m, p.s_m, l.p.speed_mps AS speed_mps,

@@ -1,7 +1,7 @@
--- The ego and every other actor, one row per ego step from the actor's first sample to its last. An actor whose sample has another time
--- than the step is moved on by its own velocity while the sample is fresh. After that the actor is present but not placed. An actor that is
--- over or under the ego's road by the heights of the log has no row: the ego does not meet it there. An actor that may be over or under the
--- road is not placed: in plan it is on the road, but it is not known whether the ego meets it there.
+-- The ego and every other actor, one row per ego step from the actor's first sample to its last. If an actor's sample has another time than
+-- the step, its position is extrapolated with its own velocity while the sample is fresh. After that, the actor is present without a
+-- position. An actor that is over or under the ego's road by the log's heights has no row: the ego does not meet it there. An actor that
+-- may be over or under the road has a row without a position: in plan it is on the road, but it is not known whether the ego meets it.
 WITH sample_at_step AS (
     SELECT
         e.drive_id, e.ego_id, e.t_ns, e.k, s.actor_id AS object_id, s.actor_class, s.t_ns AS t_sample_ns, s.x_m, s.y_m, s.z_m,
@@ -23,7 +23,7 @@ track_at_steps AS (
     FROM sample_at_step
     GROUP BY ALL
 ),
--- Only actors that miss a step, or have samples between the steps, need a closer look.
+-- Only actors that lack a step, or have samples between the steps, are examined further.
 irregular_track AS (
     SELECT t.drive_id, t.ego_id, t.object_id, t.t_first_ns, t.t_last_ns
     FROM track t
@@ -40,7 +40,7 @@ last_sample AS (
     SELECT m.drive_id, m.ego_id, m.t_ns, m.object_id, (m.t_ns - s.t_ns) / 1e9 AS age_s, m.t_ns - s.t_ns <= c.max_gap_ns AS is_fresh, s.t_ns AS t_sample_ns, s.* EXCLUDE (drive_id, actor_id, t_ns)
     FROM missed_step m
     JOIN clock c USING (drive_id, ego_id)
-    -- Only the tracks that need it are sorted: to sort every track would cost more than all the rest.
+    -- Only these tracks are sorted: to sort every track would cost more than all other work.
     ASOF JOIN (
         SELECT s.* FROM state_dynamics s
         SEMI JOIN irregular_track r ON r.drive_id = s.drive_id AND r.object_id = s.actor_id
@@ -90,7 +90,7 @@ segment_candidate AS (
         along1(a.x_m, a.y_m, c.x1_m, c.y1_m, c.tx1, c.ty1) AS a1
     FROM pair_offset a
     JOIN corridor_cell c ON c.drive_id = a.drive_id AND c.ego_id = a.ego_id AND c.cell = corridor_cell_of(a.x_m, a.y_m)
-    -- The conditions repeat the expressions of a0 and a1, because DuckDB then filters before it computes the rest.
+    -- The conditions repeat the expressions of a0 and a1, because DuckDB then filters before it computes the other columns.
     WHERE a.ego_s_m IS NOT NULL
         AND along0(a.x_m, a.y_m, c.x0_m, c.y0_m, c.tx0, c.ty0) >= -c.slack0_m AND along1(a.x_m, a.y_m, c.x1_m, c.y1_m, c.tx1, c.ty1) > -c.slack1_m
 ),
@@ -105,10 +105,9 @@ object_on_strip AS (
     )
     WHERE abs(d_m) <= strip_m()
 ),
--- An ego that drives round a ring has a lanelet on its chain once per lap. `level_start_m` is the station at which the lanelet would start
--- if the object were level with the ego. The lap whose start is nearest to that station is the object's lap: from_m < level_start_m <=
--- to_m. But an object that comes the other way and is at most
--- 1.2 km ahead is still ahead, even if the shorter way round a ring leads back.
+-- An ego on a ring road has a lanelet on its chain once per lap. `level_start_m` is the station at which the lanelet would start if the
+-- object were level with the ego. The object's lap is the one whose start is nearest to this station: from_m < level_start_m <= to_m. An
+-- oncoming object at most 1.2 km ahead is always ahead, even if it is nearer round the ring in the other direction.
 lap_end AS (
     SELECT
         * EXCLUDE (next_start_m),
@@ -127,7 +126,7 @@ lap AS (
     SELECT *, lag(to_m) OVER (PARTITION BY drive_id, ego_id, chain_id, lanelet_id, is_oncoming ORDER BY s_start_m) AS from_m
     FROM lap_end
 ),
--- The laps by kilometre of level_start_m. Only what lies within about 1.2 km of the ego counts.
+-- The laps by kilometre of level_start_m. Only objects within about 1.2 km of the ego count.
 lap_bucket AS (
     SELECT
         *, unnest(range(floor(greatest(from_m, s_start_m - 2200 - length_m) / 1000)::BIGINT, floor(least(to_m, s_start_m + length_m + 2200) / 1000)::BIGINT + 1)) AS bucket,
@@ -143,14 +142,15 @@ chain_place AS MATERIALIZED (
     WHERE coalesce(b.level_start_m > c.from_m, true) AND coalesce(b.level_start_m <= c.to_m, true)
         AND floor(b.ego_s_m / 1000) BETWEEN c.first_km AND c.last_km
 ),
--- Of several places on a corridor that meets itself, the one nearest to the ego along it counts. The station decides a tie.
+-- If a corridor meets itself, an object has several positions on it. The one nearest to the ego along the corridor counts, and if two are
+-- equal, the lower station.
 pair_with_several_places AS MATERIALIZED (SELECT pair_no FROM chain_place GROUP BY pair_no HAVING count(*) > 1),
 nearest_place AS (
     SELECT
         pair_no,
         min({
             'off': abs(s_m - ego_s_m)
-                -- An object is beside the road only if it is nowhere on it: the legs of a hairpin lie in each other's strip.
+                -- An object is beside the road only if it is nowhere on it: the two arms of a hairpin bend are in each other's strip.
                 + CASE WHEN abs(d_m) > half_width_m + coalesce(over_width_m, 2 * half_width_m) THEN 1e8 ELSE 0.0 END
                 + CASE WHEN is_oncoming AND s_m < ego_s_m - exact_clearance_m() THEN 1e6 ELSE 0.0 END,
             's_m': s_m, 'd_m': d_m, 'half_width_m': half_width_m, 'lane_heading_diff_rad': lane_heading_diff_rad, 'over_width_m': over_width_m, 'over_against': over_against,
@@ -164,7 +164,7 @@ object_place AS (
     UNION ALL
     SELECT pair_no, p.s_m, p.d_m, p.half_width_m, p.lane_heading_diff_rad, p.over_width_m, p.over_against, p.lanelet_id FROM nearest_place
 ),
--- ---- levels: objects whose box lies in plan over the running lane or one lane's width beside it, if heights or the map show the level
+-- ---- levels: objects whose box, in plan, covers the running lane or one lane's width beside it, if heights or the map give the level
 drive_with_overpass AS (SELECT DISTINCT g.drive_id FROM data_log g SEMI JOIN lane_apart l ON l.environment_id = g.environment_id),
 pair_over_road AS MATERIALIZED (
     SELECT a.pair_no, a.drive_id, a.ego_id, a.chain_id, a.object_id, a.t_sample_ns, p.lane_heading_diff_rad, p.lanelet_id
@@ -178,7 +178,7 @@ pair_over_road AS MATERIALIZED (
 ),
 -- An ego that stands has several samples at one station: the lowest height is taken.
 ego_height AS (SELECT drive_id, ego_id, chain_id, s_m, min({'z_m': z_m, 't_ns': t_ns}) AS lowest FROM ego_state WHERE s_m IS NOT NULL AND z_m IS NOT NULL GROUP BY ALL),
--- Actors with a height, and whether it is that of a vehicle on a road. A simulator may let a vehicle fall through the ground.
+-- Actors with a height, and whether this is the height of a vehicle on a road. A simulator may let a vehicle fall through the ground.
 actor_height AS (
     SELECT
         s.drive_id, s.actor_id, a.height_m,
@@ -197,8 +197,8 @@ pair_with_height AS MATERIALIZED (
     LEFT JOIN object_place p USING (pair_no)
     WHERE a.z_m IS NOT NULL
 ),
--- The object's height against the ego's, where the ego comes nearest to that place, before or after. If the object has no position on the
--- corridor, its height against the ego's at that step.
+-- The object's height relative to the ego's, where the ego is nearest to that place, before or after. If the object has no position on the
+-- corridor, the height relative to the ego's at that step.
 height_difference AS MATERIALIZED (
     SELECT
         pair_no, abs(dz_m) > level_gap_m + steepest() * along_m AS is_apart, abs(dz_m) <= level_m() AND steepest() * along_m <= level_m() AS is_same,
@@ -207,7 +207,7 @@ height_difference AS MATERIALIZED (
         SELECT
             o.pair_no, o.level_gap_m, o.is_measured, o.z_m - CASE WHEN b.s_m IS NULL OR a.s_m - o.s_m < o.s_m - b.s_m THEN a.lowest.z_m ELSE b.lowest.z_m END AS dz_m,
             abs(o.t_ns - CASE WHEN b.s_m IS NULL OR a.s_m - o.s_m < o.s_m - b.s_m THEN a.lowest.t_ns ELSE b.lowest.t_ns END) / 1e9 AS later_s,
-            -- least() ignores NULL, which is right here.
+            -- least() ignores NULL, as intended here.
             least(a.s_m - o.s_m, o.s_m - b.s_m) AS along_m
         FROM pair_with_height o
         ASOF LEFT JOIN ego_height b ON b.drive_id = o.drive_id AND b.ego_id = o.ego_id AND b.chain_id = o.chain_id AND b.s_m <= o.s_m
@@ -217,12 +217,12 @@ height_difference AS MATERIALIZED (
         SELECT pair_no, level_gap_m, is_measured, z_m - ego_z_m, 0.0, distance_m FROM pair_with_height WHERE s_m IS NULL
     )
 ),
--- Pairs on different levels, or possibly so.
+-- Pairs on different levels, certainly or possibly.
 pair_off_level AS (
     SELECT pair_no FROM height_difference SEMI JOIN pair_over_road USING (pair_no) WHERE is_apart
     UNION
-    -- The object is in a lane over or under the ego's, as far as the map shows, unless it heads along the ego's lane and not along that
-    -- other one.
+    -- As far as the map shows, the object is in a lane over or under the ego's, unless it heads along the ego's lane and not along the
+    -- other lane.
     SELECT v.pair_no
     FROM pair_over_road v
     JOIN data_log g USING (drive_id)
@@ -240,7 +240,7 @@ pair_level AS (
     )
     GROUP BY pair_no
 ),
--- ---- the trailer's box belongs to the ego, too: the nearer of the two boxes counts
+-- ---- the trailer's box also belongs to the ego: the nearer of the two boxes counts
 trailer_clearance AS (
     SELECT
         pair_no,
@@ -271,7 +271,7 @@ combined_clearance AS (
     FROM (
         SELECT
             c.*, d.pair_no IS NOT NULL AS has_trailer, d.clearance_m AS trailer_m,
-            -- A contact of one of the two boxes is a contact. To rule out a contact, both clearances must be known.
+            -- A contact of either box is a contact. To exclude a contact, both clearances must be known.
             CASE
                 WHEN d.pair_no IS NULL OR c.clearance_m <= 0 THEN c.clearance_m
                 WHEN d.clearance_m <= 0 OR c.clearance_m + d.clearance_m IS NOT NULL THEN least(c.clearance_m, d.clearance_m)
@@ -287,7 +287,7 @@ pair_with_place AS (
         o.pair_no IS NOT NULL OR coalesce(p.pair_no IS NULL AND c.clearance_m <= 0 AND NOT same_level(c.z_m, c.ego_z_m), false) AS off_level
     FROM combined_clearance c
     LEFT JOIN pair_level o ON o.pair_no = c.pair_no
-    -- The join is by keys alone: a condition of the left side would make it a nested loop.
+    -- The join uses only keys: a condition on the left side would make it a nested loop.
     LEFT JOIN object_place p ON p.pair_no = CASE WHEN o.pair_no IS NULL THEN c.pair_no END
     WHERE o.is_surely_apart IS DISTINCT FROM true
 )

@@ -1,5 +1,5 @@
--- The actors that the ego went ahead of in a junction (it took the common ground first, or while they were still on it), by the direction
--- from which they came, and whether no other actor can have come.
+-- The actors that the ego went ahead of in a junction, by the direction from which they came, and whether another actor may have come. The
+-- ego went ahead of an actor if it took the common ground first, or while the actor was still on it.
 WITH passage AS (
     SELECT
         p.drive_id, p.ego_id, p.occurrence, p.t_in_ns, p.t_out_ns, coalesce(p.t_in_ns, p.t_first_ns) AS t_enter_ns, coalesce(p.t_out_ns, p.t_last_ns) AS t_leave_ns,
@@ -8,20 +8,20 @@ WITH passage AS (
     JOIN ego_state a ON a.drive_id = p.drive_id AND a.ego_id = p.ego_id AND a.t_ns = coalesce(p.t_in_ns, p.t_first_ns)
     JOIN ego_state b ON b.drive_id = p.drive_id AND b.ego_id = p.ego_id AND b.t_ns = p.t_last_ns
 ),
--- Actors that came to ground that the ego went over in the junction. People on foot count up to 12 m before and beyond the junction as
--- well: in the mouths of the roads that the ego turns out of and into.
+-- Actors on common ground with the ego in the junction. Pedestrians also count up to 12 m before and after the junction: in the mouths of
+-- the roads that the ego turns out of and into.
 encounter AS (
     SELECT
         p.drive_id, p.ego_id, p.occurrence, p.heading_rad, p.straightest_rad, c.object_id, c.actor_class, c.pet_s, c.decel_mps2, c.t_object_in_ns,
         -- An actor of unknown class may be on foot or driven.
         may_walk(c.actor_class) AS is_on_foot,
-        -- An actor into whose side the ego drove counts, too: the ego's front came onto its path before its rear was past.
+        -- An actor into whose side the ego drove counts, too: the ego's front reached the actor's path before the actor's rear had passed.
         c.actor_class IS DISTINCT FROM 'pedestrian' AND c.t_ego_out_ns >= p.t_enter_ns AND e.t_ns <= p.t_leave_ns AND (c.ego_first OR coalesce(
             (e.x_m + e.length_m / 2 * cos(e.yaw_rad) - s.x_m) * cos(s.yaw_rad) + (e.y_m + e.length_m / 2 * sin(e.yaw_rad) - s.y_m) * sin(s.yaw_rad)
                 + e.width_m / 2 * abs(sin(e.yaw_rad - s.yaw_rad)) > -s.length_m / 2,
             true
         )) AS is_driven,
-        -- The other turns into the ego's road behind the ego, sooner than rules demand of crossing vehicles.
+        -- The object turns into the ego's road behind the ego, after a time that the rules find too short for crossing vehicles.
         coalesce(c.pet_s >= merging_s() AND c.pet_s < least_junction_s() AND abs(wrap_rad(b.yaw_rad - o.yaw_rad)) < pi() / 4, false) AS merges
     FROM passage p
     JOIN conflict c ON c.drive_id = p.drive_id AND c.ego_id = p.ego_id
@@ -31,11 +31,11 @@ encounter AS (
     LEFT JOIN state_dynamics o ON o.drive_id = c.drive_id AND o.actor_id = c.object_id AND o.t_ns = c.t_object_out_ns
     WHERE ((c.t_ego_out_ns >= p.t_enter_ns AND e.t_ns <= p.t_leave_ns)
             OR (may_walk(c.actor_class) AND e.travel_m <= p.travel_m + mouth_m() AND e.travel_m >= p.travel_in_m - mouth_m()))
-        -- An actor into which the ego went counts, too: it was still there.
+        -- An actor that the ego drove into counts, too: it was still there.
         AND (c.ego_first OR c.pet_s < 0)
         AND c.actor_class IS DISTINCT FROM 'object'
 ),
--- The direction from which an actor came: its heading two seconds before it came, against the ego's heading on its way in.
+-- The direction from which an actor came: its heading two seconds before it arrived, relative to the ego's heading at its entry.
 approach AS (
     SELECT m.drive_id, m.ego_id, m.occurrence, m.object_id, m.t_object_in_ns, wrap_rad(min({'t_ns': s.t_ns, 'travel_rad': s.travel_rad}).travel_rad - m.heading_rad) AS from_rad
     FROM encounter m
@@ -100,11 +100,11 @@ unclear_object AS (
     FROM passage p
     JOIN clock c USING (drive_id, ego_id)
     JOIN incomplete_pair b ON b.drive_id = p.drive_id AND b.ego_id = p.ego_id AND b.t_ns <= p.t_leave_ns + conflict_ns()
-        -- An actor on foot may have crossed the mouth of the road behind the ego before that.
+        -- Before that, a pedestrian may have crossed the mouth of the road behind the ego.
         AND b.t_ns >= p.t_enter_ns - CASE WHEN may_walk(b.actor_class) THEN 2_000_000_000 ELSE 0 END
     GROUP BY p.drive_id, p.ego_id, p.occurrence, b.object_id, b.actor_class, p.x_m, p.y_m, p.t_enter_ns, p.t_leave_ns
 ),
--- An actor that is seen before or after at a place from which it cannot have come (at 30 m/s) does not matter.
+-- An actor that is seen before or after at a place from which it cannot have come (at 30 m/s) is excluded.
 unclear_object_near AS (
     SELECT u.drive_id, u.ego_id, u.occurrence, u.object_id, u.actor_class, u.lack
     FROM unclear_object u
@@ -124,7 +124,7 @@ track AS (
     GROUP BY s.drive_id, s.actor_id, s.actor_class
 ),
 -- Actors whose track begins or ends while the ego passes the junction, or so soon before or after that they may have come.
--- broken_track_near keeps those near the junction.
+-- broken_track_near selects those near the junction.
 broken_track AS (
     SELECT p.drive_id, p.ego_id, p.occurrence, d.actor_id AS object_id, d.actor_class, v.lack, v.t_ns, p.x_m, p.y_m,
         -- Towards the junction (1) or away from it (-1), and how long that may have taken.
@@ -177,7 +177,7 @@ passage_relation AS (
 relation_result AS (
     SELECT
         a.drive_id, a.ego_id, a.occurrence, a.relation, h.braking,
-        -- One vehicle leaves enough time. That decides nothing if another vehicle may have left too little.
+        -- If one vehicle leaves enough time, another vehicle may still have left too little.
         CASE WHEN n.merging IS NULL OR n.other.pet_s < least_junction_s() THEN n.other END AS other,
         coalesce(o.reason, CASE WHEN d.other IS NOT NULL THEN why('actor_unplaced', d.other) WHEN n.merging IS NOT NULL THEN why('turns_in_behind', n.merging) END) AS reason
     FROM passage_relation a

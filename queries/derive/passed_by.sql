@@ -1,13 +1,14 @@
--- Vehicles ahead that the map's lane puts into the ego's lane, although the ego's own way, as it was driven from here on, passes beside
--- them. A lane of a map may be wide, cut a corner, or run where no vehicle drives. The ego does not follow a vehicle that its box does not meet on its
--- way. Two kinds are listed: a vehicle that stands and leaves the middle of the lane free, and one that moves, not towards that way, is not
--- in front of the ego's box, and has no room beside it in one lane, so that the two are in two lanes.
+-- Vehicles ahead that are in the ego's lane by the map, although the ego's own path, as driven after this step, passes beside them. A lane
+-- of a map may be wide, cut a corner, or run where no vehicle drives. The ego does not follow a vehicle that its box does not meet on its
+-- path. Two kinds are listed. The first kind stands and leaves the middle of the lane free. The second kind moves, but not towards the
+-- path; it is not in front of the ego's box, and one lane has no room for both, so that the two are in different lanes.
 --
--- Where sensors measured the places, a vehicle that is met by less than `measured_meeting_m` is listed as well, as not sure.
+-- If sensors measured the positions, a vehicle that the path overlaps by less than `measured_meeting_m` is listed as well, as not certain.
 --
--- A vehicle that stands in the ego's way, and that the ego swerves round at the last moment, is not listed at any step: the ego's lane and the bend that it
--- drove, both held, led into that vehicle less than `late_s` before it, and the ego got off that course faster than in a change of lane. Beyond the end of what
--- the ego drove, it is assumed to keep its bend, and passes beside only those that it would also pass on another bend.
+-- A standing vehicle in the ego's way, round which the ego swerves at the last moment, is not listed at any step. That is: both its lane
+-- and its curvature led the ego into that vehicle less than `late_s` before it, and the ego left this course faster than in a lane change.
+-- Beyond the end of the recorded path, the ego is assumed to keep its curvature. It then passes only vehicles that it would also pass with
+-- another curvature.
 WITH candidate AS (
     SELECT
         p.drive_id, p.ego_id, p.t_ns, st.seg, p.object_id, p.x_m, p.y_m, p.yaw_rad, p.speed_mps, p.length_m, p.width_m, e.length_m AS ego_length_m, e.width_m AS ego_width_m,
@@ -29,7 +30,7 @@ segment_cell AS (
     SEMI JOIN candidate c ON c.drive_id = w.drive_id AND c.ego_id = w.ego_id
     CROSS JOIN (VALUES (-2), (-1), (0), (1), (2)) AS i(i) CROSS JOIN (VALUES (-2), (-1), (0), (1), (2)) AS j(j)
 ),
--- The first place of the ego's way that is level with the vehicle.
+-- The first point of the ego's path that is level with the vehicle.
 way_place AS (
     SELECT
         drive_id, ego_id, t_ns, object_id,
@@ -47,7 +48,8 @@ way_place AS (
     )
     GROUP BY drive_id, ego_id, t_ns, object_id
 ),
--- The bend of the way where the ego is. (A window and no ASOF join: for few rows DuckDB compares all with all there.)
+-- The curvature of the path at the ego's position. (A window instead of an ASOF join: for few rows, DuckDB would compare all rows with
+-- all.)
 bend_at_step AS (
     SELECT drive_id, ego_id, t_ns, bend_per_m
     FROM (
@@ -60,7 +62,7 @@ bend_at_step AS (
     )
     WHERE is_step AND bend_per_m IS NOT NULL
 ),
--- The most acceleration across its way with which the ego drove in the next two seconds.
+-- The greatest lateral acceleration of the ego in the next two seconds.
 across_soon AS (
     SELECT drive_id, ego_id, t_ns, max(abs(lat_accel_mps2)) OVER (PARTITION BY drive_id, ego_id ORDER BY t_ns RANGE BETWEEN CURRENT ROW AND 2_000_000_000 FOLLOWING) AS most_mps2
     FROM ego_motion
@@ -77,7 +79,7 @@ beside_way AS (
     LEFT JOIN across_soon m ON m.drive_id = c.drive_id AND m.ego_id = c.ego_id AND m.t_ns = c.t_ns
     CROSS JOIN LATERAL (
         SELECT abs(w.there.d_m) - box_half_across_m(c.length_m, c.width_m, c.yaw_rad - w.there.heading_rad) - swept_in_bend_half_m(c.ego_length_m, c.ego_width_m, w.there.bend_per_m) AS apart_m,
-            -- A vehicle that moves towards the way may be in it soon.
+            -- A vehicle that moves towards the path may soon be in it.
             passes_beside_m() + bends_otherwise_m(w.there.on_m, c.ego_speed_mps) + CASE WHEN c.speed_mps > standing_mps() THEN drift_s() * greatest(0.0, -sign(w.there.d_m) * c.speed_mps * sin(c.yaw_rad - w.there.heading_rad)) ELSE 0.0 END AS least_m
     ) a
     WHERE a.apart_m >= a.least_m AND c.has_no_room OR c.may_meet_m > 0 AND a.apart_m BETWEEN -c.may_meet_m AND passes_beside_m()
@@ -85,6 +87,7 @@ beside_way AS (
 SELECT b.drive_id, b.ego_id, b.t_ns, b.object_id, b.is_sure
 FROM beside_way b
 ANTI JOIN (FROM beside_way WHERE is_course_held AND is_sure) h ON h.drive_id = b.drive_id AND h.ego_id = b.ego_id AND h.object_id = b.object_id
--- Nor does the ego pass by a vehicle that it overtakes on the side of the oncoming traffic: until it pulls out it is behind that vehicle.
+-- The ego also does not pass by a vehicle that it overtakes on the side of the oncoming traffic: until it pulls out, it is behind that
+-- vehicle.
 ANTI JOIN (FROM excursion WHERE overtaking AND begin_seen AND over_against AND max_out_m >= surely_out_m()) x
     ON x.drive_id = b.drive_id AND x.ego_id = b.ego_id AND x.t0_ns <= coalesce(b.t_there_ns, 9223372036854775807) AND x.t_end_ns >= b.t_ns

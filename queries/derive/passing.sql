@@ -1,6 +1,6 @@
--- Passings: the ego and another road user that heads the same way change their order, measured from front bumper to front bumper. Steps at
--- which the other has no position on the corridor, and holes, are bridged: the order has changed all the same, but the stretch was not seen
--- whole. If the order before or after is not known either, and the two may have been beside each other, the order may have changed.
+-- Passings: the ego and another road user with the same direction change their order, measured from front bumper to front bumper. Steps
+-- without the other's position on the corridor, and holes, are bridged: the order has changed, but the stretch was not completely seen. If
+-- the order before or after is not known either, and the two may have been beside each other, the order may have changed.
 WITH
 -- Steps at which the ego itself has no position on the corridor are bridged, too.
 ego_place_step AS (
@@ -31,7 +31,7 @@ order_step AS (
 numbered_step AS (
     SELECT
         *,
-        -- A new stretch beside each other begins with every step that does not continue one.
+        -- Every step that does not continue a stretch beside each other begins a new stretch.
         sum((NOT coalesce(is_beside AND was_beside AND is_joined, false))::INTEGER)
             OVER (PARTITION BY drive_id, ego_id, object_id ORDER BY k ROWS UNBOUNDED PRECEDING) AS n,
         last_value(CASE WHEN front_order IS NOT NULL THEN {'front_order': front_order, 't_ns': t_ns, 'part_no': part_no} END IGNORE NULLS)

@@ -1,4 +1,4 @@
--- The stretches in which the log has the place of an actor. A hole or a lost time ends a stretch. Later parts of a drive add nothing.
+-- The stretches in which the log has the position of an actor. A hole or a lost time ends a stretch. Later parts of a drive add no rows.
 WITH
     sample AS (
         SELECT

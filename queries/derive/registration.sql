@@ -1,20 +1,23 @@
--- Does the trace fit the map? This is checked before anything is blamed on the ego. The map fits if three things hold. The ego is on a lane
--- (or on a shoulder, where some drives are for most of the time) in at least 80 % of the steps. It drives with the traffic in at least 60 %
--- of the moving steps, which on a lane that is driven both ways is either way; steps of an overtake in the opposing lane are left out,
--- because a short drive may be little else. Its median distance from the centre line is at most 1.2 m (half a lane: with a map shifted by
--- one lane, 100 % of the steps are still on a lane); the median is taken outside such an overtake if enough steps lie outside one. The map
--- also fits if at least three quarters of the other vehicles drive with their lanes, and the ego was against its own lane for longer than an
--- overtake takes: then the ego is on the wrong side. On a one-way road there is no overtaking in the opposing lane: there the ego is on the
--- wrong way if the map states the side that is driven on and no other vehicle contradicts the map. The ego may be off the lanes or far from their middle for a while. The map still fits
--- if the ego keeps to the middle of a lane before and after that time, on a road of the same direction or on two roads that cross: the map
--- fits there, and a log is not shifted against its map for a while only.
+-- Whether the trace fits the map, checked before any rule judges the ego. The map fits if three conditions hold. First, the ego is on a
+-- lane (or on a shoulder, where some drives mostly are) in at least 80 % of the steps. Second, it drives in the lane's direction in at
+-- least 60 % of the moving steps (on a lane for both directions, either way). Steps of an overtake in the opposing lane are left out,
+-- because a short drive may contain little else. Third, its median distance from the centre line is at most 1.2 m (half a lane), outside
+-- such an overtake if enough steps lie outside. This condition is needed because with a map that is shifted by one lane, 100 % of the steps
+-- are still on a lane.
+--
+-- The map also fits if at least three quarters of the other vehicles drive with their lanes, and the ego was against its own lane for
+-- longer than an overtake takes: then the ego is on the wrong side. A one-way road has no overtaking in the opposing lane: there the ego is
+-- on the wrong way if the map states the driving side and no other vehicle contradicts the map.
+--
+-- The ego may be off the lanes or far from their middle for a while. The map still fits if the ego keeps to the middle of a lane before and
+-- after that time, on a road of the same direction or on two roads that cross: a log is never shifted against its map for a while only.
 WITH opposing_step AS (
     SELECT DISTINCT x.drive_id, x.ego_id, st.t_ns
     FROM excursion x
     JOIN step st ON st.drive_id = x.drive_id AND st.ego_id = x.ego_id AND st.t_ns >= x.t0_ns AND st.t_ns <= x.t_end_ns
     WHERE x.over_against
 ),
--- Lanes with a lane of the other direction beside them. On any other lane outside a junction, no vehicle can be on the opposing side: it is one-way.
+-- Lanes with an adjacent lane of the other direction. Any other lane outside a junction is one-way: no vehicle can be on the opposing side.
 two_way_lane AS (SELECT DISTINCT environment_id, lanelet_id FROM lane_beside WHERE drivable AND against),
 ego_place AS (
     SELECT
@@ -29,7 +32,7 @@ step_count AS (
         min(s.actor_class) AS actor_class,
         count(s.x_m) AS n_steps,
         count(e.lanelet_id) AS n_on_lane,
-        -- A step without a heading does not show whether the ego drives with the traffic.
+        -- A step without a heading does not show whether the ego drives in the lane's direction.
         count(*) FILTER (e.with_traffic IS NOT NULL AND s.speed_mps > 1 AND x.t_ns IS NULL) AS n_moving,
         count(*) FILTER (e.with_traffic AND s.speed_mps > 1 AND x.t_ns IS NULL) AS n_with_direction,
         sum(st.dt_ns) FILTER (NOT e.with_traffic AND s.speed_mps > 1 AND x.t_ns IS NULL) AS against_ns,
@@ -39,9 +42,9 @@ step_count AS (
         coalesce(sum(st.dt_ns) FILTER (e.off_m IS NOT NULL AND s.speed_mps > 1 AND x.t_ns IS NULL), 0) >= 5_000_000_000
             AND 3 * count(e.off_m) FILTER (s.speed_mps > 1 AND x.t_ns IS NULL) >= count(s.x_m) AS outside_decides,
         CASE WHEN outside_decides THEN quantile_disc(e.off_m, 0.5) FILTER (s.speed_mps > 1 AND x.t_ns IS NULL)
-            -- An ego that waits at the kerb says nothing about the map while it stands.
+            -- A standing ego at the kerb gives no evidence about the map.
             ELSE coalesce(quantile_disc(e.off_m, 0.5) FILTER (s.speed_mps > 1), quantile_disc(e.off_m, 0.5)) END AS lateral_median_m,
-        -- A log that is nothing but an overtake, or in which the ego stands at the kerb, does not show that its map is moved.
+        -- A log that is only an overtake, or in which the ego stands at the kerb, does not show that its map is shifted.
         coalesce(lateral_median_m > aside_of_lane_m(), false)
             AND (outside_decides OR coalesce(sum(st.dt_ns) FILTER (s.speed_mps > 1) > longest_overtake_ns(), false)) AS is_aside
     FROM step st
@@ -64,14 +67,14 @@ map_check AS (
             WHEN n_with_direction < 0.6 * n_moving THEN why('often_against_lane', {'n_against': n_moving - n_with_direction, 'n_moving': n_moving})
             WHEN lateral_median_m > 1.2 THEN why('far_from_centre_line', {'lateral_m': lateral_median_m})
         END AS trouble,
-        -- Nobody overtakes in the opposing lane of a one-way road, and a map that states its hand states its directions.
+        -- There is no overtaking in the opposing lane of a one-way road, and a map that states the driving side also states its directions.
         coalesce(n_on_lane >= 0.8 * n_steps AND n_with_direction < 0.6 * n_moving AND lateral_median_m <= 1.2 AND m.handedness_source = 'attribute'
             AND against_one_way_ns > one_way_ns() AND against_one_way_ns >= 0.8 * against_ns, false) AS is_against_one_way,
-        -- If the ego is against its lane, the other vehicles decide, unless the log began in the middle of an overtake. If it is off the
-        -- lanes, the map may lack just its lane.
+        -- If the ego is against its lane, the other vehicles decide, unless the log began in the middle of an overtake. If the ego is off
+        -- the lanes, the map may lack just its lane.
         n_on_lane >= 0.8 * n_steps AND n_with_direction < 0.6 * n_moving AND against_ns > CASE WHEN is_against_one_way THEN one_way_ns() ELSE longest_overtake_ns() END AS is_against,
-        -- If the ego is far from the middle of its lane, the others are as well on a map that is moved across. An ego that mostly stands may
-        -- be parked beside its lane.
+        -- If the ego is far from the middle of its lane because the map is shifted sideways, the other vehicles are as well. An ego that
+        -- mostly stands may be parked beside its lane.
         n_on_lane >= 0.8 * n_steps AND NOT n_with_direction < 0.6 * n_moving AND lateral_median_m > 1.2 AND 2 * n_moving >= n_steps AS is_far
     FROM step_count c
     JOIN data_log g USING (drive_id)
@@ -91,7 +94,7 @@ vehicle_place AS (
     WHERE s.x_m IS NOT NULL
     GROUP BY ALL
 ),
--- A vehicle that stands in the middle of a lane and along it, as in a queue, is a witness as well. A vehicle parked elsewhere is not.
+-- A vehicle that stands in the middle of a lane and along it, as in a queue, is a witness as well. A vehicle parked elsewhere is none.
 other_vehicle AS (
     SELECT
         drive_id, actor_id,
@@ -101,7 +104,7 @@ other_vehicle AS (
     GROUP BY ALL
     HAVING max(t_ns) - min(t_ns) >= 3_000_000_000
 ),
--- One or two vehicles that drive beside the middle as well may make a moved map fit: across, three are needed.
+-- One or two vehicles that also drive beside the middle may make a shifted map seem to fit: for a sideways shift, three are needed.
 witness_count AS (
     SELECT j.drive_id, j.ego_id, count(*) FILTER (o.is_fitting) AS n_fit, count(*) AS n_witnesses
     FROM map_check j
@@ -110,14 +113,15 @@ witness_count AS (
     GROUP BY j.drive_id, j.ego_id, j.is_far
     HAVING n_fit >= CASE WHEN j.is_far THEN 3 ELSE 1 END AND n_fit >= 0.75 * n_witnesses
 ),
--- Other vehicles that do not keep to their lanes: if there are any, the map may be wrong about the one-way road, too.
+-- Other vehicles that do not keep to their lanes: if there is one, the map may also be wrong about the one-way road.
 misfit AS (
     SELECT DISTINCT j.drive_id, j.ego_id
     FROM map_check j
     JOIN other_vehicle o ON o.drive_id = j.drive_id AND o.actor_id <> j.ego_id
     WHERE j.is_against_one_way AND NOT o.is_fitting
 ),
--- At each step: whether the ego is well in its lane, whether it is elsewhere, and the direction of its road in twelfths of a half turn.
+-- At each step: the ego's distance from the middle of its lane, whether it is elsewhere, and the direction of its road in twelfths of a
+-- half turn.
 ego_step AS (
     SELECT
         st.drive_id, st.ego_id, st.t_ns, st.k, st.seg, s.speed_mps, st.dt_ns, (floor(s.yaw_rad / (pi() / 12))::INTEGER % 12 + 12) % 12 AS direction_no,
@@ -143,8 +147,8 @@ lane_keeping AS (
 lane_keeping_span AS (
     SELECT drive_id, ego_id, min(t_to_ns) AS t_before_ns, max(t_from_ns) AS t_after_ns, list_distinct(flatten(list(direction_nos))) AS direction_nos FROM lane_keeping GROUP BY ALL
 ),
--- A map that is shifted along a road still fits on that road. Its place is known in both directions only if the ego kept to two roads that
--- cross. Otherwise the road where the ego does not fit must have the direction of a road where it did.
+-- A map that is shifted along a road still fits on that road. Its position is known in both directions only if the ego drove on two roads
+-- that cross. Otherwise, the road where the ego does not fit must have the direction of a road where it did.
 fitting_ego AS (
     SELECT l.drive_id, l.ego_id
     FROM ego_step l

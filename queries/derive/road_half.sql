@@ -1,5 +1,5 @@
--- Roads of one direction that are halves of one road: the other direction is a road of its own beside it, along most of a lane. The first
--- of the two by its id stands for both.
+-- Roads of one direction that are halves of one road: the other direction is a separate road beside it, along most of a lane. The id that
+-- comes first stands for both roads.
 WITH one_way_road AS (
     SELECT environment_id, road_id, min(along_road) AS along_road
     FROM lanelet

@@ -1,5 +1,5 @@
--- The class of every actor, as far as its recorded class, its box and its motion show it. A thing that moves by itself may be any road user.
--- Only a thing that stands in the whole log is known to be none.
+-- The class of every actor, as shown by its recorded class, its box and its motion. An actor of class object that moves may be any road
+-- user. Only one that stands in the whole log is certainly no road user.
 WITH unclassified_actor AS (FROM actor WHERE actor_class IS NULL OR actor_class = 'object'),
 actor_motion AS (
     SELECT

@@ -1,5 +1,5 @@
--- How far the ego sees at the steps at which an object is missing: all around as far as the nearest box, and along its own lane as far as
--- nobody is in it. Where that lane is not straight, it sees no further than to the first place that a box hides.
+-- How far the ego sees at the steps at which an object is missing: around it up to the nearest box, and along its own lane up to the first
+-- actor in the lane. If the lane is not straight, the view ends at the first point that a box hides.
 WITH missing_step AS (
     SELECT DISTINCT drive_id, ego_id, t_ns
     FROM (
@@ -36,7 +36,7 @@ corridor_segment AS (
     FROM own_way w
     SEMI JOIN (FROM data_log WHERE environment_id IS NULL AND in_sight) l ON l.drive_id = w.drive_id
 ),
--- Nobody knows where the ego's lane is beyond the end of its own way.
+-- Beyond the end of its own path, the ego's lane is not known.
 own_way_end AS (
     SELECT w.drive_id, w.ego_id, w.seg AS chain_id, max(w.s0_m + w.len_m) AS end_m
     FROM own_way w
@@ -48,8 +48,7 @@ ego_segment AS (
     FROM viewpoint e
     ASOF JOIN corridor_segment p ON p.drive_id = e.drive_id AND p.ego_id = e.ego_id AND p.chain_id = e.chain_id AND p.s_m <= e.s_m
 ),
--- A lane is straight if its middle, at four distances up to the end of the range, stays near the line on which the lane goes on from the
--- ego.
+-- A lane is straight if its centre line, at four distances up to the end of the range, stays near the ego's tangent.
 straight_lane AS (
     SELECT o.drive_id, o.ego_id, o.t_ns
     FROM (
@@ -59,7 +58,7 @@ straight_lane AS (
     GROUP BY ALL
     HAVING max(abs((p.y0_m - o.y0_m) * o.tx0 - (p.x0_m - o.x0_m) * o.ty0)) < straight_m()
 ),
--- In a bend: places along the middle of the lane, and the nearest one that is behind a box.
+-- In a bend: points along the centre of the lane, and the nearest one that is behind a box.
 lane_place AS (
     SELECT o.drive_id, o.ego_id, o.t_ns, e.x_m, e.y_m, o.along_m, p.x0_m + (o.s_m + o.along_m - p.s_m) * p.tx0 - e.x_m AS dx_m, p.y0_m + (o.s_m + o.along_m - p.s_m) * p.ty0 - e.y_m AS dy_m
     FROM (
@@ -80,8 +79,8 @@ hidden_place AS (
         JOIN pair p ON p.drive_id = a.drive_id AND p.ego_id = a.ego_id AND p.t_ns = a.t_ns AND p.distance_m < x.distance_m + both_half_diagonals_m() / 2
             AND blocks_sight(p.x_m - a.x_m, p.y_m - a.y_m, a.dx_m, a.dy_m, p.yaw_rad, p.length_m, p.width_m)
         UNION ALL
-        -- A row with NULL for each step, for where nothing blocks the sight: min() ignores it otherwise. A left join with blocks_sight in
-        -- its condition would be a nested loop.
+        -- A row with NULL for each step, for steps at which nothing blocks the view; otherwise min() ignores it. A left join with
+        -- blocks_sight in its condition would be a nested loop.
         SELECT drive_id, ego_id, t_ns, NULL FROM lane_place
     )
     GROUP BY drive_id, ego_id, t_ns

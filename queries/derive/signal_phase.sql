@@ -1,5 +1,5 @@
--- The phases of every light: a state holds until the next sample. If a light was recorded all the time and then no longer, its state is not
--- known from there on. If it was recorded at its changes, its last state still holds.
+-- The phases of every light: a state applies until the next sample. If a light was recorded continuously and then not, its state is not
+-- known from then on. If it was recorded only at its changes, its last state still applies.
 WITH state_sample AS (
     SELECT
         drive_id, signal_id, t_ns,
@@ -12,7 +12,7 @@ sample_spacing AS (
     SELECT *, lead(t_ns) OVER w - t_ns AS gap_ns, lead(state) OVER w IS NOT DISTINCT FROM state AS is_repeated FROM state_sample
     WINDOW w AS (PARTITION BY drive_id, signal_id ORDER BY t_ns)
 ),
--- A light that repeats the same state is recorded all the time. Amber after a second is a change, not a repetition.
+-- A light that repeats the same state is recorded continuously. Amber after a second is a change, not a repetition.
 repeat_period AS (
     SELECT drive_id, signal_id, (max_gap_periods() * quantile_disc(gap_ns, 0.5))::BIGINT AS max_gap_ns
     FROM sample_spacing
@@ -21,7 +21,7 @@ repeat_period AS (
     HAVING quantile_disc(gap_ns, 0.5) <= 1_000_000_000
 ),
 known_state AS (
-    -- A change after a sample within a lost stretch may be lost, too.
+    -- If a sample lies within a lost stretch, the next change may be lost, too.
     SELECT k.drive_id, k.signal_id, k.t_ns, CASE WHEN l.t_to_ns > k.t_ns THEN NULL ELSE k.state END AS state
     FROM state_sample k
     ASOF LEFT JOIN lost_time l ON l.drive_id = k.drive_id AND l.t_from_ns < k.t_ns
@@ -29,10 +29,10 @@ known_state AS (
     SELECT s.drive_id, s.signal_id, s.t_ns + c.max_gap_ns + 1, NULL
     FROM sample_spacing s
     JOIN repeat_period c USING (drive_id, signal_id)
-    -- The sample after a gap that is longer by 1 ns stands at that very time.
+    -- If a gap is longer by 1 ns, the sample after it is at exactly that time.
     WHERE s.gap_ns IS NULL OR s.gap_ns > c.max_gap_ns + 1
     UNION ALL
-    -- A change may be in what the log has lost.
+    -- A change may be in the lost part of the log.
     SELECT DISTINCT s.drive_id, s.signal_id, l.t_from_ns + 1, NULL
     FROM state_sample s
     JOIN lost_time l USING (drive_id)

@@ -68,7 +68,7 @@ light_state AS (
         AND f.mark_id = p.line_ahead.id AND f.s_start_m = p.line_ahead.s_start_m
         AND f.t_from_ns <= p.t_start_ns AND p.t_start_ns < coalesce(f.t_to_ns, p.t_start_ns + 1)
 ),
--- ---- the vehicle behind which the ego stood, and how long it stood on when nothing was in its way any more
+-- ---- the vehicle behind which the ego stood, and how long it stood without an actor in its way
 stop_step AS (
     SELECT
         s.drive_id, s.ego_id, s.t_start_ns, e.t_ns, d.object_id, d.gap_m, d.speed_mps, d.t_ns IS NOT NULL AS known,

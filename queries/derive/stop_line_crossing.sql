@@ -1,4 +1,4 @@
--- The crossings of a stop line of the running lane by the ego's front, with what the ego did before and what the light showed.
+-- The crossings of a stop line of the running lane by the ego's front, with the ego's approach and the state of the light.
 WITH stop_line_step AS (SELECT * FROM near_mark WHERE kind = 'stop_line'),
 numbered_step AS (
     SELECT
@@ -7,7 +7,7 @@ numbered_step AS (
             OVER (PARTITION BY drive_id, ego_id, chain_id, mark_id, s_start_m ORDER BY t_ns ROWS UNBOUNDED PRECEDING) AS n
     FROM stop_line_step
 ),
--- A front that jitters on the line crosses it once: for another crossing it must have been half a metre back in between.
+-- A front that jitters on the line crosses it once: for another crossing, it must have been half a metre before the line in between.
 way_back AS (
     SELECT drive_id, ego_id, chain_id, mark_id, s_start_m, n + 1 AS n, min(front_m) < -0.5 AS has_been_back
     FROM numbered_step

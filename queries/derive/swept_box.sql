@@ -1,12 +1,12 @@
--- The boxes of actors whose paths may meet, where they may meet. Between two samples a box goes straight on. There are so many moments in
--- between that it never moves by more than half its length.
+-- The boxes of actors whose paths may meet, in the cells where they may meet. Between two samples, a box moves straight on. Moments are
+-- interpolated so that a box never moves by more than half its length between two of them.
 WITH
 grid_scale AS (
     SELECT drive_id, max(max_gap_ns) AS max_gap_ns, any_value(cell_m) AS cell_m
     FROM (SELECT drive_id, any_value(cell_m) AS cell_m FROM meeting GROUP BY drive_id) JOIN ego_clock USING (drive_id)
     GROUP BY drive_id
 ),
--- The cells in which either of the two may be near the other.
+-- The cells in which one of the two actors may be near the other.
 meeting_place AS (
     SELECT DISTINCT m.drive_id, m.actor_id, m.cell + cell_key(x.i, y.i) AS cell
     FROM (

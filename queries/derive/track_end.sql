@@ -1,7 +1,7 @@
--- The ends and the beginnings of tracks, and of their parts between two holes, while the log goes on. A recorder may lose an actor in plain
--- view, but not for long. After the end of a track, the recorder may merely have lost the object until plain_ns; from then on the object is
--- out of sight. Before the beginning of a track, the object is out of sight until plain_ns; from then on the recorder may merely not have
--- found it yet. An actor that leaves the recorder's range, or goes behind another box, is out of sight at once.
+-- The ends and beginnings of tracks, and of their parts between two holes, while the log continues. A recorder may lose an actor in plain
+-- view, but not for long. After the end of a track, the recorder may only have lost the object until plain_ns; after plain_ns, the object
+-- is out of sight. Before the beginning of a track, the object is out of sight until plain_ns; after plain_ns, the recorder may only not
+-- have found it yet. An actor that leaves the recorder's range, or goes behind another box, is out of sight at once.
 WITH incomplete_track AS (
     SELECT e.drive_id, e.ego_id, e.object_id, c.t_start_ns + c.max_gap_ns AS t_begin_limit_ns, c.t_end_ns - c.max_gap_ns AS t_end_limit_ns
     FROM (
@@ -27,7 +27,7 @@ track_edge AS (
     -- A track that begins or ends with the log is not lost.
     WHERE CASE WHEN lost THEN k_after IS DISTINCT FROM k + 1 AND t_ns < t_end_limit_ns ELSE k_before IS DISTINCT FROM k - 1 AND t_ns > t_begin_limit_ns END
 ),
--- The place of the object soon after its track ends, or just before it begins, at its speed there.
+-- The extrapolated position of the object soon after its track ends, or just before it begins, at its speed there.
 extrapolation AS (
     SELECT
         e.drive_id, e.ego_id, e.object_id, e.lost, e.t_ns, s.t_ns AS t_place_ns,

@@ -1,5 +1,5 @@
--- Tracks that end or begin on another level: the actor is recorded, but over or under the ego's road, where pair has no row for it. It was
--- neither lost nor did it appear.
+-- Tracks that end or begin on another level: the actor is recorded, but over or under the ego's road, where pair has no row for it. Such an
+-- actor is not lost, and it does not appear from nowhere.
 WITH drive_with_heights AS (SELECT DISTINCT drive_id FROM state_dynamics WHERE z_m IS NOT NULL),
 track_in_pair AS (
     SELECT drive_id, ego_id, object_id, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns

@@ -1,7 +1,7 @@
--- Steps at which "nobody is coming" cannot be claimed: a vehicle is present without a position, heading or size, moves off all lanes and is
--- nearer than the corridor reaches, or its track begins or ends where it must have been on the road. A vehicle that comes in over the far
--- end of the map was beyond that end until then. While the ego is far from there, this has a code of its own (beyond_map), as has a vehicle
--- that the ego has met already (lost_behind).
+-- Steps at which "no vehicle is coming" cannot be stated. A vehicle is present without a position, heading or size; or it moves off all
+-- lanes, nearer than the end of the corridor; or its track begins or ends where it must have been on the road. A vehicle that enters over
+-- the far end of the map was beyond that end until then. While the ego is far from that end, this has a code of its own (beyond_map). A
+-- vehicle that the ego has already met has one, too (lost_behind).
 WITH pair_without_position AS (
     SELECT drive_id, ego_id, t_ns, object_id, CASE WHEN off_level THEN 'off_level' ELSE 'no_position' END AS code
     FROM pair

@@ -1,10 +1,10 @@
--- Actors whose track ends or begins while the log goes on, near enough to matter, and the steps at which they may be on the road all the
--- same. `near`: when the actor was seen, it was close by, within the sensor's range, or coming towards the ego. While it is not seen, it
--- may be anywhere on the road.
+-- Actors whose track ends or begins while the log continues, near enough to matter, and the steps at which they may still be on the road.
+-- `near`: when seen, the actor was close, within the sensor's range, or coming towards the ego. While it is not seen, it may be anywhere on
+-- the road.
 WITH track AS (
     SELECT drive_id, ego_id, object_id, actor_class, min(t_ns) AS t_first_ns, max(t_ns) AS t_last_ns FROM pair GROUP BY ALL
 ),
--- The ends of the ego's corridor, and where the map ends ahead of the ego and behind it.
+-- The ends of the ego's corridor, and the ends of the map ahead of the ego and behind it.
 map_end AS (
     SELECT
         r.drive_id, r.ego_id, r.chain_id, CASE WHEN n.ahead_id IS NULL THEN r.last_lanelet.end_m END AS end_m, CASE WHEN f.behind_id IS NULL THEN r.first_lanelet.begin_m END AS begin_m,
@@ -19,8 +19,8 @@ map_end AS (
     JOIN lane_next n ON n.environment_id = g.environment_id AND n.lanelet_id = r.last_lanelet.id
     JOIN lane_next f ON f.environment_id = g.environment_id AND f.lanelet_id = r.first_lanelet.id
 ),
--- Tracks that end or begin at an end of the map: along its own lane the next sample, or the one before, lies beyond the map, and no lane
--- beside that one goes on.
+-- Tracks that end or begin at an end of the map: along the actor's own lane, the next sample (or the one before) lies beyond the map, and
+-- no adjacent lane continues.
 track_at_map_end AS (
     SELECT e.drive_id, e.ego_id, e.object_id, v.lost
     FROM track e

@@ -1,6 +1,6 @@
--- Every vehicle ahead in the running lane that the ego may hit or follow. This is first the nearest one (lead). It is not the only one if
--- it is beside the ego's way or drives in the ego's direction. Then these count as well: the nearest one in the ego's way, a nearer one
--- that is heading into it, and the nearest one that comes towards the ego, in the lane or in the ego's way beside it.
+-- Every vehicle ahead in the running lane that the ego may hit or follow. The first is the nearest one (lead). If the lead is beside the
+-- ego's way or drives in the ego's direction, further vehicles count: the nearest one in the ego's way, a nearer one that is heading into
+-- it, and the nearest oncoming one, in the lane or in the ego's way beside it.
 WITH
 lane_summary AS (
     SELECT
@@ -40,7 +40,7 @@ vehicle_or_doubt AS (
     SELECT
         l.drive_id, l.ego_id, l.t_ns, l.object_id, true AS nearest, true AS known, l.gap_m, l.speed_mps, l.accel_mps2, l.ego_speed_mps, l.in_lane, l.oncoming, l.across_m,
         l.ego_across_mps, l.across_mps, l.error_mps, CASE WHEN l.joined THEN l.t_since_ns END AS joined_ns,
-        -- If the ego changed into the lane itself, the lead was not let in.
+        -- If the ego changed into the lane itself, it did not let the lead in.
         CASE WHEN x.t_ns IS NULL THEN joined_ns END AS let_in_ns
     FROM lead l
     LEFT JOIN lane_crossing x ON x.drive_id = l.drive_id AND x.ego_id = l.ego_id AND x.t_ns = l.t_since_ns
@@ -50,7 +50,7 @@ vehicle_or_doubt AS (
         CASE WHEN f.actor_id IS NULL AND b.heading_diff_rad IS NOT NULL AND m.t_ns - h.t_half_second_ns >= 400_000_000 THEN 1e9 * (p.speed_mps - along_lane_mps(b.speed_mps, b.heading_diff_rad)) / (m.t_ns - h.t_half_second_ns) END AS accel_mps2,
         m.ego_speed_mps, m.in_lane, p.oncoming, p.across_m, p.ego_across_mps, p.across_mps,
         filtered_error_mps() * ((f.actor_id IS NOT NULL)::INTEGER + (g.actor_id IS NOT NULL)::INTEGER) AS error_mps,
-        -- greatest() ignores NULL, which is right here.
+        -- greatest() ignores NULL, as intended here.
         greatest(i.t_ns, x.t_ns) AS joined_ns, i.t_ns AS let_in_ns
     FROM further_vehicle m
     JOIN lead l ON l.drive_id = m.drive_id AND l.ego_id = m.ego_id AND l.t_ns = m.t_ns AND l.object_id IS DISTINCT FROM m.object_id
@@ -84,14 +84,14 @@ vehicle_or_doubt AS (
     LEFT JOIN hidden_vehicle d USING (drive_id, ego_id, t_ns)
     WHERE e.front_s_m IS NOT NULL AND c.outside_m IS NULL AND least(d.least_m, d.late_m, c.unclassified_m) IS NOT NULL
 ),
--- The two boxes in the frame of the ego's box, and the motion of one against the other at the present velocities.
+-- The two boxes in the frame of the ego's box, and their relative motion at the present velocities.
 relative_motion AS (
     SELECT
         t.drive_id, t.ego_id, t.t_ns, t.object_id, ttc_s(t.gap_m, t.ego_speed_mps - along_mps(t.speed_mps, t.oncoming)) AS ttc_s,
         east_m * cos(e.yaw_rad) + north_m * sin(e.yaw_rad) AS dx, north_m * cos(e.yaw_rad) - east_m * sin(e.yaw_rad) AS dy, cos(turn_rad) AS c, sin(turn_rad) AS s,
         (o.vx_mps - v.vx_mps) * cos(e.yaw_rad) + (o.vy_mps - v.vy_mps) * sin(e.yaw_rad) AS motion_x_mps,
         (o.vy_mps - v.vy_mps) * cos(e.yaw_rad) - (o.vx_mps - v.vx_mps) * sin(e.yaw_rad) AS motion_y_mps,
-        -- Where the lane bends on the way there, the ego need not go straight on. By so much the two may come nearer.
+        -- If the lane bends before the meeting, the ego may not drive straight on. The two may come nearer by this distance.
         least_apart_m() + abs(t.gap_m * wrap_rad(turn_rad + e.heading_diff_rad - p.heading_diff_rad)) AS room_m,
         e.length_m / 2 AS ego_half_length_m, e.width_m / 2 AS ego_half_width_m, p.length_m / 2 AS object_half_length_m, p.width_m / 2 AS object_half_width_m
     FROM vehicle_or_doubt t
@@ -102,8 +102,8 @@ relative_motion AS (
     CROSS JOIN LATERAL (SELECT p.x_m - e.x_m AS east_m, p.y_m - e.y_m AS north_m, p.yaw_rad - e.yaw_rad AS turn_rad) f
     WHERE t.gap_m >= 0 AND p.speed_mps IS NOT NULL
 ),
--- The boxes touch while they overlap along each of the four directions of their sides. This is checked for the boxes as they are, with
--- room_m around them (see relative_motion), and for boxes that are smaller by as little as two may be apart.
+-- The boxes touch while they overlap along each of the four directions of their sides. This is checked for three sizes: the boxes as they
+-- are, with a margin of room_m (see relative_motion), and reduced by least_apart_m.
 box_contact AS (
     SELECT drive_id, ego_id, t_ns, object_id, greatest(0.0, w[1].from_s, w[2].from_s, w[3].from_s, w[4].from_s) > least(w[1].to_s, w[2].to_s, w[3].to_s, w[4].to_s) AS is_miss
     FROM (
@@ -115,7 +115,7 @@ box_contact AS (
                 time_within(dy * c - dx * s, motion_y_mps * c - motion_x_mps * s, m + object_half_width_m + ego_half_length_m * abs(s) + ego_half_width_m * abs(c))
             ] AS w
         FROM relative_motion CROSS JOIN LATERAL (VALUES (0.0), (room_m), (-least_apart_m())) AS v(m)
-        -- Whether they meet by a hand's breadth matters where that is near.
+        -- Whether the boxes just touch or just miss matters only if the meeting is near.
         WHERE ttc_s < drift_s() AND (m >= 0 OR ttc_s < late_s())
     )
     WHERE w[1] IS NOT NULL AND w[2] IS NOT NULL AND w[3] IS NOT NULL AND w[4] IS NOT NULL

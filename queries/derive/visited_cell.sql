@@ -1,4 +1,4 @@
--- The cells in which anybody ever was: the corridor is searched only there.
+-- The cells that an actor visited at some time: the corridor is searched only there.
 SELECT drive_id, corridor_cell_of(x_m, y_m) AS cell
 FROM state_dynamics
 WHERE x_m IS NOT NULL AND y_m IS NOT NULL

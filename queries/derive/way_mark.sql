@@ -1,11 +1,11 @@
--- Junctions, stop lines and crossings along the ego's chains, and the signals that govern each.
+-- Junctions, stop lines and crossings ("marks") along the ego's chains, and the signals that govern each.
 WITH chain_lanelet AS (
     SELECT c.drive_id, c.ego_id, c.chain_id, c.seq, c.lanelet_id, c.s_start_m, c.length_m, c.t_first_ns, g.environment_id, n.junction_id
     FROM chain c
     JOIN data_log g USING (drive_id)
     JOIN lanelet n USING (environment_id, lanelet_id)
 ),
--- ---- junctions: connecting lanelets one after the other
+-- ---- junctions: sequences of connecting lanelets
 numbered_lanelet AS (
     SELECT
         *,
@@ -47,7 +47,7 @@ junction_turn AS (
     WHERE n.junction_id IS NOT NULL
     GROUP BY n.drive_id, n.ego_id, n.chain_id, n.run_no, n.environment_id, n.junction_id
 ),
--- ---- signals: a signal inside a junction holds for the way into it
+-- ---- signals: a signal inside a junction governs the entry into it
 signal_on_chain AS (
     SELECT
         l.drive_id, l.ego_id, l.chain_id, l.environment_id, l.seq, l.lanelet_id, t.signal_id, t.kind, t.turns, j.s_start_m IS NOT NULL AS is_inside,
@@ -56,7 +56,7 @@ signal_on_chain AS (
     JOIN traffic_signal t ON t.environment_id = l.environment_id AND t.lanelet_id = l.lanelet_id AND t.kind IN ('traffic_light', 'stop', 'give_way')
     LEFT JOIN junction_turn j ON j.drive_id = l.drive_id AND j.ego_id = l.ego_id AND j.chain_id = l.chain_id AND j.run_no = l.run_no
     UNION ALL
-    -- The ego may have turned off by another connecting lanelet, with lights of its own.
+    -- The ego may have turned off by another connecting lanelet, which has its own lights.
     SELECT b.drive_id, b.ego_id, b.chain_id, b.environment_id, b.seq, b.lanelet_id, t.signal_id, t.kind, t.turns, true, false, j.s_start_m
     FROM junction_turn j
     JOIN chain_lanelet b ON b.drive_id = j.drive_id AND b.ego_id = j.ego_id AND b.chain_id = j.chain_id AND b.lanelet_id = j.from_id AND b.s_start_m < j.s_start_m
@@ -65,7 +65,7 @@ signal_on_chain AS (
     JOIN traffic_signal t ON t.environment_id = n.environment_id AND t.lanelet_id = n.lanelet_id AND t.kind = 'traffic_light'
     WHERE NOT j.is_known
 ),
--- The junction that the ego comes to next decides which of the arrows it needs.
+-- The next junction ahead decides which of the arrows the ego needs.
 signal_with_turns AS (
     SELECT h.*, CASE WHEN j.is_known AND j.s_start_m - h.s_m <= turn_reach_m() THEN possible_turns(j.turn_rad) END AS ego_turns
     FROM signal_on_chain h
@@ -86,12 +86,12 @@ signal AS (
     FROM signal_with_turns h
     LEFT JOIN (SELECT DISTINCT drive_id, signal_id FROM signal_state) r ON r.drive_id = h.drive_id AND r.signal_id = h.signal_id
 ),
--- ---- lines and crossings: one that lies where two lanelets join counts once
+-- ---- lines and crossings: one at the joint of two lanelets counts once
 line_part AS (
     SELECT l.drive_id, l.ego_id, l.chain_id, s.stop_line_id AS mark_id, l.lanelet_id, l.seq, l.s_start_m + s.lane_s_m AS s_start_m, l.s_start_m + s.lane_s_m AS s_end_m
     FROM chain_lanelet l JOIN stop_line s USING (environment_id, lanelet_id)
 ),
--- A light without a stop line is itself the place to stop at.
+-- A light without a stop line is itself the place to stop.
 light_without_line AS (
     SELECT
         drive_id, ego_id, chain_id, unnest(min({'is_unrecorded': is_unrecorded, 's_start_m': s_m, 'mark_id': signal_id, 'lanelet_id': lanelet_id, 'seq': seq, 's_end_m': s_m}))
@@ -148,7 +148,7 @@ signal_in_reach AS (
             ELSE t.kind = 'traffic_light' AND t.s_m >= m.s_start_m - 15 AND t.s_m <= m.s_end_m + line_reach_m()
         END
 ),
--- A signal that stands before the way into another junction, or past the way out of this one, belongs to another mark.
+-- A signal before the entry into another junction, or beyond the exit of this one, belongs to another mark.
 own_signal AS (
     SELECT r.*
     FROM signal_in_reach r

@@ -18,6 +18,6 @@ CREATE OR REPLACE MACRO is_bicycle(actor_class, length_m) AS
     coalesce(is_class(actor_class, 'bicycle'), CASE WHEN length_m > longest_bicycle_m() THEN false END);
 -- Whether an actor may be on foot.
 CREATE OR REPLACE MACRO may_walk(actor_class) AS coalesce(is_class(actor_class, 'pedestrian'), true);
--- Whether an actor may be a vehicle, or is an object that stands in the ego's way. d_m is the distance between the two centres across the
--- road, half_m the sum of the two half widths.
+-- Whether an actor may be a vehicle, or is an object in the ego's way. d_m is the lateral distance between the two centres, half_m the sum
+-- of the two half widths.
 CREATE OR REPLACE MACRO may_be_vehicle_or_obstacle(actor_class, d_m, half_m) AS may_be_vehicle(actor_class) OR actor_class = 'object' AND abs(d_m) < half_m;

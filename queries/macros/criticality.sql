@@ -1,29 +1,29 @@
--- Measures of how near a rear-end collision is (Westhofen et al. 2023 collect the definitions). Gap in m, speeds in m/s; infinite: never.
+-- Measures of how near a rear-end collision is (definitions: Westhofen et al. 2023). Gaps in m, speeds in m/s; infinite: never.
 
--- Speed along the lane, in either direction. An actor that moves at a right angle to the lane has none.
+-- Speed along the lane, in either direction; 0 for an actor that moves at a right angle to the lane.
 CREATE OR REPLACE MACRO along_lane_mps(speed_mps, heading_diff_rad) AS speed_mps * coalesce(abs(cos(heading_diff_rad)), 1.0);
 
--- Speed along the corridor of a vehicle that heads with it, or against it (negative).
+-- Speed along the corridor: positive for a vehicle that heads in its direction, negative for one against it.
 CREATE OR REPLACE MACRO along_mps(speed_mps, oncoming) AS CASE WHEN oncoming THEN -speed_mps WHEN NOT oncoming THEN speed_mps END;
 
 -- Time to collision at present speeds.
 CREATE OR REPLACE MACRO ttc_s(gap_m, closing_mps) AS
     CASE WHEN closing_mps > 0 THEN gap_m / closing_mps WHEN closing_mps <= 0 AND gap_m IS NOT NULL THEN 'inf'::DOUBLE END;
 
--- A time longer than 600 s counts as infinite, unless the rule requires more: it comes from a speed difference that is smaller than any log
--- can resolve.
+-- A time longer than 600 s counts as infinite, unless the rule requires more: it results from a speed difference that is too small for any
+-- log to resolve.
 CREATE OR REPLACE MACRO or_never(time_s, required_s) AS
     CASE WHEN time_s > greatest(600.0, required_s) THEN 'inf'::DOUBLE ELSE time_s END;
 
--- A value, if its worst and its best case (by the errors of its inputs) are on the same side of the required value; else NULL. `sure_at_least` is
--- for a value that must be at least the required one, `sure_at_most` for a value that must be at most that.
+-- A value, if its worst and its best case (by the errors of its inputs) are on the same side of the required value; else NULL.
+-- `sure_at_least`: the value must be at least the required one. `sure_at_most`: the value must be at most the required one.
 CREATE OR REPLACE MACRO sure_at_least(value, worst, best, required) AS CASE WHEN worst >= required OR best < required THEN value END;
 CREATE OR REPLACE MACRO sure_at_most(value, worst, best, required) AS CASE WHEN worst <= required OR best > required THEN value END;
 
 -- Whether the two may still touch: false if it is known that they pass each other, unknown if they may graze each other.
 CREATE OR REPLACE MACRO may_touch(passes_by, grazes) AS CASE WHEN passes_by THEN false WHEN grazes THEN NULL ELSE true END;
 
--- Time headway: the time until the ego's front is where the other's rear is now.
+-- Time headway: the time until the ego's front reaches the present position of the other's rear.
 CREATE OR REPLACE MACRO thw_s(gap_m, v_mps) AS
     CASE WHEN v_mps > 0 THEN gap_m / v_mps WHEN v_mps <= 0 AND gap_m IS NOT NULL THEN 'inf'::DOUBLE END;
 
@@ -35,12 +35,12 @@ CREATE OR REPLACE MACRO drac_mps2(gap_m, closing_mps) AS
         WHEN closing_mps <= 0 AND gap_m IS NOT NULL THEN 0.0::DOUBLE
     END;
 
--- Time to brake: how long the ego can still wait until only full braking avoids the collision; negative: it is too late.
+-- Time to brake: how long the ego can wait until only full braking avoids the collision; negative: it is too late.
 CREATE OR REPLACE MACRO ttb_s(gap_m, closing_mps, brake_mps2) AS
     CASE WHEN closing_mps > 0 THEN gap_m / closing_mps - closing_mps / (2 * brake_mps2) ELSE ttc_s(gap_m, closing_mps) END;
 
--- Time until a gap is closed, if it closes at dv and this speed grows by da per second: the smallest positive root of gap = dv t + da t^2 /
--- 2.
+-- Time until a gap is closed, if it closes at the speed dv, which grows by da per second: the smallest positive root of gap = dv t + da t^2
+-- / 2.
 CREATE OR REPLACE MACRO gap_closed_s(gap_m, dv, da) AS
     CASE
         WHEN dv ** 2 + 2 * da * gap_m >= 0 AND dv + sqrt(greatest(dv ** 2 + 2 * da * gap_m, 0)) > 0
@@ -48,7 +48,7 @@ CREATE OR REPLACE MACRO gap_closed_s(gap_m, dv, da) AS
         WHEN dv + da + gap_m IS NOT NULL THEN 'inf'::DOUBLE
     END;
 
--- Modified time to collision (Ozbay et al. 2008): at present accelerations. A lead that brakes comes to a stand and does not reverse.
+-- Modified time to collision (Ozbay et al. 2008), at present accelerations. A braking lead stops and does not reverse.
 CREATE OR REPLACE MACRO mttc_s(gap_m, v_mps, a_mps2, v_lead_mps, a_lead_mps2) AS
     CASE
         WHEN v_lead_mps >= 0 AND a_lead_mps2 < 0 AND gap_closed_s(gap_m, v_mps - v_lead_mps, a_mps2 - a_lead_mps2) > -v_lead_mps / a_lead_mps2
@@ -56,16 +56,16 @@ CREATE OR REPLACE MACRO mttc_s(gap_m, v_mps, a_mps2, v_lead_mps, a_lead_mps2) AS
         ELSE gap_closed_s(gap_m, v_mps - v_lead_mps, a_mps2 - a_lead_mps2)
     END;
 
--- For this long the present speed across the lane predicts where an actor will be.
+-- Time for which the present lateral speed predicts an actor's position.
 CREATE OR REPLACE MACRO drift_s() AS 3.0;
 
--- Whether the lead is ahead of the ego's own box: the two boxes overlap across the corridor. NULL if one of them is not placed. A lead
+-- Whether the lead is ahead of the ego's own box: the two boxes overlap across the corridor. NULL if one of them has no position. A lead
 -- alongside the ego is not ahead.
 CREATE OR REPLACE MACRO lead_is_ahead(gap_m, d_m, lat_half_m, lead_d_m, lead_lat_half_m) AS
     gap_m >= 0 AND abs(d_m - lead_d_m) < lat_half_m + lead_lat_half_m;
 
--- Whether the lead will still be ahead when the ego gets there, at the present speeds across the lane (positive to the left, by the heading
--- against the corridor). The ego does not close in on a vehicle if one of the two pulls out or comes in beside the other.
+-- Whether the lead will still be ahead when the ego arrives, at the present lateral speeds (positive to the left, from the heading relative
+-- to the corridor). It will not if one of the two pulls out or comes in beside the other.
 CREATE OR REPLACE MACRO on_course(gap_m, ttc_s, d_m, lat_half_m, lat_mps, lead_d_m, lead_lat_half_m, lead_lat_mps) AS
     gap_m >= 0 AND abs(d_m - lead_d_m + (lat_mps - lead_lat_mps) * CASE WHEN isinf(ttc_s) THEN 0.0 WHEN ttc_s < drift_s() THEN ttc_s WHEN ttc_s >= drift_s() THEN drift_s() END)
         < lat_half_m + lead_lat_half_m;
@@ -77,7 +77,7 @@ CREATE OR REPLACE MACRO time_within(p, v, r) AS
         WHEN abs(p) <= r THEN {'from_s': '-inf'::DOUBLE, 'to_s': 'inf'::DOUBLE}
         WHEN abs(p) > r THEN {'from_s': 'inf'::DOUBLE, 'to_s': '-inf'::DOUBLE}
     END;
--- Boxes that pass each other at a smaller distance than this may touch: headings are not known more exactly.
+-- Boxes that pass each other at a smaller distance than this may touch: headings are not known more accurately.
 CREATE OR REPLACE MACRO least_apart_m() AS 0.1;
 
 -- Whether at least one of the two moves. The recorded speeds of standing vehicles jitter, even of two in contact.
@@ -86,8 +86,8 @@ CREATE OR REPLACE MACRO either_moves(ego_mps, lead_mps) AS ego_mps > standing_mp
 -- Whether a vehicle ahead comes towards the ego. A vehicle that stands facing the ego does not.
 CREATE OR REPLACE MACRO comes(speed_mps, oncoming) AS oncoming AND speed_mps > standing_mps();
 
--- Whether the ego follows its lead: part of the ego is in the lane, and the lead is neither alongside nor comes towards it. A lead that is
--- parked facing the ego counts: it is in the way all the same.
+-- Whether the ego follows its lead: part of the ego is in the lane, and the lead is neither alongside nor moving towards the ego. A lead
+-- that is parked facing the ego counts: it is in the way, too.
 CREATE OR REPLACE MACRO follows(in_lane, gap_m, speed_mps, oncoming) AS in_lane AND gap_m >= 0 AND NOT comes(speed_mps, oncoming);
 
 -- Whether the lead comes towards the ego in its lane.

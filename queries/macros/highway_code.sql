@@ -24,8 +24,8 @@ CREATE OR REPLACE MACRO safe_distance_ahead_m(w, beta, theta, headroom, clearanc
     + v_av * passing_time_s(w, beta, headroom, clearance, l_av, l_vbp, v_av, v_vbp)
     + v_ov * overtaking_time_s(w, beta, theta, headroom, clearance, l_av, l_vbp, v_av, v_vbp);
 
--- The way of a vehicle in t_s that has the speed v and speeds up to v_most by at most 3.5 m/s2 (a brisk start), and the greatest mean speed
--- that it can have over total_s if it drove gone_m in the first gone_s of it and has the speed v then.
+-- The distance that a vehicle drives in t_s if it has the speed v and accelerates to v_most by at most 3.5 m/s2 (a brisk start). The second
+-- macro: the greatest possible mean speed over total_s, if the vehicle drove gone_m in the first gone_s and then has the speed v.
 CREATE OR REPLACE MACRO speeding_up_m(t_s, v_mps, v_most_mps) AS
     v_mps * t_s + 3.5 * least(t_s, greatest(v_most_mps - v_mps, 0) / 3.5) * (t_s - least(t_s, greatest(v_most_mps - v_mps, 0) / 3.5) / 2);
 CREATE OR REPLACE MACRO most_mean_mps(total_s, gone_s, gone_m, v_mps, v_most_mps) AS
@@ -35,8 +35,8 @@ CREATE OR REPLACE MACRO most_mean_mps(total_s, gone_s, gone_m, v_mps, v_most_mps
 CREATE OR REPLACE MACRO overtake_zone(spare_m, spare_s) AS
     CASE WHEN spare_m <= 0 THEN 'A' WHEN spare_s < 0.5 THEN 'B' WHEN spare_s <= 2.5 THEN 'C' WHEN spare_s > 2.5 THEN 'D' END;
 
--- Whether an actor may be passed over a line that must not be crossed (UKHC R129): vehicles and things that stand, and cyclists and horses at
--- 10 mph or less.
+-- Whether an actor may be passed over a line that must not be crossed (UKHC R129): standing vehicles and objects, and cyclists and horses
+-- at 10 mph or less.
 CREATE OR REPLACE MACRO may_be_passed_over_solid_line(actor_class, length_m, speed_mps) AS
     (is_vehicle(actor_class) OR is_class(actor_class, 'object')) AND speed_mps <= standing_mps()
     OR (is_bicycle(actor_class, length_m) OR is_class(actor_class, 'animal')) AND speed_mps <= 4.4704;
@@ -44,19 +44,19 @@ CREATE OR REPLACE MACRO may_be_passed_over_solid_line(actor_class, length_m, spe
 -- Room to leave beside a passed actor: the width of a door, 1.5 m for a cyclist and 2 m for a horse (UKHC R163).
 CREATE OR REPLACE MACRO passing_room_m(actor_class) AS CASE actor_class WHEN 'animal' THEN 2.0 WHEN 'bicycle' THEN 1.5 ELSE 1.0 END;
 
--- Factor by which the stopping distance and the two seconds grow with the weather: 2 in the wet (Rule 227), up to 10 on ice (Rule 230).
--- Weather that is not known counts as dry: a vehicle that is too close in the dry is too close in any weather.
+-- Factor by which the stopping distance and the two seconds increase with the weather: 2 in the wet (Rule 227), up to 10 on ice (Rule 230).
+-- Unknown weather counts as dry: a vehicle that is too close in the dry is too close in any weather.
 CREATE OR REPLACE MACRO stopping_factor(weather) AS CASE weather WHEN 'wet' THEN 2.0::DOUBLE WHEN 'ice' THEN 10.0::DOUBLE ELSE 1.0::DOUBLE END;
 
--- An actor of unknown class may be the vehicle ahead. That matters within this distance, 20 s at the ego's speed: the two seconds grow to
--- 20 on ice.
+-- An actor of unknown class may be the vehicle ahead. That matters within this distance, 20 s at the ego's speed: on ice, the two seconds
+-- become 20.
 CREATE OR REPLACE MACRO unsure_reach_m(v_mps) AS greatest(lost_near_m(), 20.0 * coalesce(v_mps, 70.0));
 
 -- The side on which to overtake: the opposite of the side to which traffic keeps.
 CREATE OR REPLACE MACRO overtaking_side(handedness) AS CASE handedness WHEN 'lht' THEN 'right' WHEN 'rht' THEN 'left' END;
 
 -- Speed limits of Rule 124 for a class of vehicle outside built-up areas, in mph. road: single, dual or motorway. The 70 mph for buses on
--- motorways holds for a length of up to 12 m.
+-- motorways apply up to a length of 12 m.
 CREATE OR REPLACE MACRO class_limit_mph(vehicle_class, length_m, nation, road) AS
     CASE
         WHEN vehicle_class IN ('car', 'motorcycle') THEN CASE road WHEN 'single' THEN 60 ELSE 70 END
@@ -65,9 +65,9 @@ CREATE OR REPLACE MACRO class_limit_mph(vehicle_class, length_m, nation, road) A
         ELSE CASE road WHEN 'single' THEN 50 ELSE 60 END
     END;
 
--- The highest and the lowest limit of Rule 124, in m/s, that can hold if some of the arguments are not known. signed: the map gives a
--- limit, which then replaces the one for built-up areas (20 mph in Wales, else 30). A town map without limits may be of any country: the
--- nation must be given before the built-up limit counts as the highest.
+-- The highest and the lowest limit of Rule 124, in m/s, that may apply if some arguments are not known. signed: the map states a limit,
+-- which replaces the limit for built-up areas (20 mph in Wales, else 30). A town map without limits may be of any country: the built-up
+-- limit counts as the highest only if the nation is given.
 CREATE OR REPLACE MACRO most_limit_mps(vehicle_class, length_m, nation, road_type, carriageway, area, signed) AS
     0.44704 * CASE
         WHEN NOT signed AND area = 'built_up' AND nation IS NOT NULL THEN CASE nation WHEN 'gb-wls' THEN 20 ELSE 30 END

@@ -8,14 +8,14 @@ CREATE OR REPLACE MACRO forbids(state) AS state IN ('red', 'red_amber');
 CREATE OR REPLACE MACRO stands_near_m() AS 10.0;
 CREATE OR REPLACE MACRO moves_up_mps() AS 1.0;
 
--- Whether the ego stands in a queue: a slow vehicle is close ahead in its lane. `known`: no other vehicle can be nearer. Result NULL:
--- cannot be told.
+-- Whether the ego stands in a queue: a slow vehicle is close ahead in its lane. `known`: no other vehicle can be nearer. Result NULL: not
+-- known.
 CREATE OR REPLACE MACRO queued(ahead_id, ahead_gap_m, ahead_speed_mps, known, near_m, slow_mps) AS
     ((ahead_id IS NOT NULL AND ahead_gap_m <= near_m AND ahead_speed_mps <= slow_mps) OR CASE WHEN known THEN false END);
 
--- Whether the ego stands because its way out is full. The ego stands where it must keep clear, and its rear has yet to go `clear_m` to get
--- out. A short stand (less than `long_s`): true if a slow vehicle is within `near_m` or within `clear_m`. A longer stand: true if a slow
--- vehicle is within `near_m` of where the ego would be just out; else NULL, because what holds up the ego for so long is not known.
+-- Whether the ego stands because its exit is full. The ego stands where it must keep clear, and its rear still has to drive `clear_m` to
+-- leave. A short stand (less than `long_s`): true if a slow vehicle is within `near_m` or within `clear_m`. A longer stand: true if a slow
+-- vehicle is within `near_m` of the place where the ego would just have left; else NULL, because the cause of so long a stand is not known.
 CREATE OR REPLACE MACRO exit_full(ahead_id, ahead_gap_m, ahead_speed_mps, known, clear_m, stood_ns, near_m, slow_mps, long_s) AS
     CASE
         WHEN ahead_id IS NULL THEN CASE WHEN known THEN false END
@@ -23,9 +23,9 @@ CREATE OR REPLACE MACRO exit_full(ahead_id, ahead_gap_m, ahead_speed_mps, known,
         WHEN ahead_speed_mps <= slow_mps AND ahead_gap_m <= near_m + coalesce(clear_m, 0) THEN true
     END;
 
--- A post-encroachment time (PET) that was seen while another actor could not be placed (`reason`) is an upper bound: it can show that the
+-- A post-encroachment time (PET) that was measured while another actor had no position (`reason`) is an upper bound: it can show that the
 -- PET is too short, but not that it is long enough. `concerns`: the rule is about an actor of this class. If that is not known, a PET that
--- is long enough keeps the rule, and one that is too short does not break it.
+-- is long enough keeps the rule, and a short one does not break it.
 CREATE OR REPLACE MACRO pet_known(pet_s, reason, enough_s, concerns) AS
     CASE WHEN pet_s < enough_s THEN CASE WHEN concerns THEN pet_s END WHEN reason IS NULL THEN pet_s END;
 
@@ -38,8 +38,8 @@ CREATE OR REPLACE MACRO met_reason(object_id, pet_s, decel_mps2) AS CASE WHEN ob
 CREATE OR REPLACE MACRO made_to_brake(decel_mps2, pet_s, other_cause, hard_mps2, enough_s) AS
     CASE WHEN coalesce(decel_mps2 > hard_mps2 AND pet_s < enough_s, false) THEN CASE WHEN other_cause IS NULL THEN true END ELSE false END;
 
--- The PET that counts: that with the actor that the ego met or, if smaller, that with the actor that it made to brake. If it is not known
--- whether it made an actor brake, the PET is known only if it is too short.
+-- The PET that counts: the lower of the PET with the actor that the ego met and the PET with the actor that the ego made brake. If it is
+-- not known whether the ego made an actor brake, the PET is known only if it is too short.
 CREATE OR REPLACE MACRO pet_forced(pet_s, forced, forced_pet_s, enough_s) AS
     CASE WHEN forced THEN least(pet_s, forced_pet_s) WHEN NOT forced OR pet_s < enough_s THEN pet_s END;
 

@@ -1,7 +1,7 @@
 -- Models of the German rules and of UN R157. Speeds in m/s, decelerations positive.
 
 -- Gap that lets a follower stop behind its leader when both brake as hard as they can, the follower after its reaction time (Maierhofer et
--- al. 2020, R_G1; StVO 4(1)). Behind a leader that gets away no gap is needed.
+-- al. 2020, R_G1; StVO 4(1)); 0 if the leader's braking distance is longer.
 CREATE OR REPLACE MACRO stvo_safe_gap_m(v_mps, v_lead_mps, reaction_s, brake_mps2, brake_lead_mps2) AS
     CASE WHEN v_mps * reaction_s + v_mps ** 2 / (2 * brake_mps2) < v_lead_mps ** 2 / (2 * brake_lead_mps2) THEN 0.0::DOUBLE
     ELSE v_mps * reaction_s + v_mps ** 2 / (2 * brake_mps2) - v_lead_mps ** 2 / (2 * brake_lead_mps2) END;

@@ -172,7 +172,7 @@ def test_a_margin_says_its_time_its_unit_and_its_finding(drives: Path) -> None:
     # a window in which one step suffices may have others that fail
     without = {step["rule_id"] for step in steps if step["holds"] is False and step["finding_id"] is None}
     assert without == {"ukhc.r103.signal-means-go"}
-    assert found.margins.describe().rows()[-1]["meaning"].startswith("the finding of which it is a failing step")
+    assert found.margins.describe().rows()[-1]["meaning"].startswith("the finding to which this failing step belongs")
 
 
 def test_the_tables_are_those_of_the_files(checked: drivelint.CheckResult, tmp_path: Path) -> None:

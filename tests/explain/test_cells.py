@@ -8,8 +8,8 @@ from drivelint.sql import store
 
 def test_a_null_says_what_it_means() -> None:
     text = store.column_comments()["following"]["joined_ns"]
-    assert _comment(text, None) == "NULL: it was ahead before, or how it came was not seen"
-    assert _comment(text, 7_000_000_000).startswith("see vehicle_ahead; since when the gap is new")
+    assert _comment(text, None) == "NULL: the vehicle was ahead before, or its arrival was not seen"
+    assert _comment(text, 7_000_000_000).startswith("see vehicle_ahead: the time since which the gap is new")
     assert len(_comment(text, 7_000_000_000)) <= 70
 
 
