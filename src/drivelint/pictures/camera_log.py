@@ -6,7 +6,7 @@ import mmap
 import struct
 from contextlib import ExitStack
 from functools import lru_cache
-from typing import TYPE_CHECKING, Final, NamedTuple, Self
+from typing import TYPE_CHECKING, Final, NamedTuple, Protocol, Self
 
 import numpy as np
 
@@ -14,13 +14,15 @@ from drivelint.errors import TraceError
 from drivelint.formats.mcap.chunk import ChunkError, chunk_head, chunk_records
 from drivelint.formats.mcap.counts import MESSAGE_INDEX_HEAD
 from drivelint.formats.mcap.summary import Summary, read_index, read_summary
-from drivelint.pictures.frames import FrameError, ahead_first, camera_name, is_camera, read_frame
+from drivelint.pictures.frames import FrameError, VideoFrame, ahead_first, camera_name, is_camera, read_frame
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from drivelint.pictures.frames import Frame
+    from PIL.Image import Image
+
+    from drivelint.pictures.frames import EncodedImage, Frame, RawImage
 
 _RECORD: Final = struct.Struct("<BQ")
 _MESSAGE: Final = struct.Struct("<HIQQ")
@@ -36,6 +38,25 @@ class Place(NamedTuple):
     channel: int
     chunk: int
     at: int
+
+
+class FrameSource(Protocol):
+    """The frames of the cameras of one log, by time. Errors of all methods: `FrameError`."""
+
+    def __enter__(self) -> Self:
+        """Open the log."""
+
+    def __exit__(self, *_error: object) -> None:
+        """Close the log."""
+
+    def places(self, topic: str, since_ns: int, until_ns: int) -> list[Place]:
+        """Return the places of a camera's frames with log times from `since_ns` to `until_ns`, in time order."""
+
+    def stamp_ns(self, place: Place) -> int | None:
+        """Return when the frame at a place was taken, if the frame contains its time."""
+
+    def picture(self, topic: str, place: Place) -> EncodedImage | RawImage | Image:
+        """Return the image at a place."""
 
 
 def camera_topics(files: Sequence[Path]) -> tuple[str, ...]:
@@ -98,6 +119,19 @@ class CameraLog:
             raise FrameError("an index that does not fit its messages")
         channel = summary.channels[place.channel]
         return read_frame(channel, summary.schemas[channel.schema_id], body[_MESSAGE.size :])
+
+    def stamp_ns(self, place: Place) -> int | None:
+        """Return when the frame at a place was taken, by its message; None: the message has no time."""
+        return self.frame(place).stamp_ns
+
+    def picture(self, topic: str, place: Place) -> EncodedImage | RawImage | Image:
+        """Return the image at a place; a frame of a video is decoded."""
+        image = self.frame(place).image
+        if not isinstance(image, VideoFrame):
+            return image
+        from drivelint.pictures.video import video_image
+
+        return video_image(self, topic, place)
 
     def _message_index(self, file: int, chunk: int, channel: int) -> list[tuple[int, int]]:
         """Return log time and offset of each message of a channel in a chunk."""

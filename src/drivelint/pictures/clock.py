@@ -10,7 +10,7 @@ from drivelint.pictures.frames import FrameError
 
 if TYPE_CHECKING:
     from drivelint.drive.trace import FrameTimes
-    from drivelint.pictures.camera_log import CameraLog, Place
+    from drivelint.pictures.camera_log import FrameSource, Place
 
 SEARCHED_NS: Final = 2_000_000_000
 """Frames are searched up to this far from a time in the log: a frame may be recorded up to a second after it was taken."""
@@ -43,7 +43,7 @@ class DriveClock:
         return not self._ahead_ns.any()
 
 
-def nearest_frame(log: CameraLog, topic: str, clock: DriveClock, t_ns: int) -> tuple[Place, int] | None:
+def nearest_frame(log: FrameSource, topic: str, clock: DriveClock, t_ns: int) -> tuple[Place, int] | None:
     """Return the frame of a camera nearest to a time of the drive, and the frame's time; None: no frame is near.
 
     The time of a frame is its message's stamp, if that is on the drive's clock, else its log time. Errors: `FrameError`.
@@ -69,12 +69,12 @@ def nearest_frame(log: CameraLog, topic: str, clock: DriveClock, t_ns: int) -> t
     return (places[best], times_by_index[best]) if off_ns(best) <= NEAR_NS else None
 
 
-def _time_of(log: CameraLog, place: Place, clock: DriveClock, ahead_ns: int) -> int:
+def _time_of(log: FrameSource, place: Place, clock: DriveClock, ahead_ns: int) -> int:
     logged_ns = place.log_ns + ahead_ns
     if clock.is_of_log:
         return logged_ns
     try:
-        stamp_ns = log.frame(place).stamp_ns
+        stamp_ns = log.stamp_ns(place)
     except FrameError:
         return logged_ns  # decoding the frame reports the problem
     return logged_ns if stamp_ns is None or abs(stamp_ns - logged_ns) > _SAME_CLOCK_NS else stamp_ns

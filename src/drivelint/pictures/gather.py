@@ -2,37 +2,44 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
+import numpy as np
 import pyarrow as pa
 
+from drivelint.drive.trace import FrameTimes
 from drivelint.formats.mcap import trace as mcap
 from drivelint.formats.mcap.bag import mcap_files
 from drivelint.pictures.camera_log import CameraLog, camera_topics
 from drivelint.pictures.clock import DriveClock, nearest_frame
-from drivelint.pictures.frames import FrameError, VideoFrame
+from drivelint.pictures.frames import FrameError
 from drivelint.pictures.shots import SHOTS_NS, planned_shots
 from drivelint.result.counts import group_rows
 from drivelint.result.schemas import empty_table
 from drivelint.sql.store import arrow_schemas
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
     from pathlib import Path
 
     import duckdb
 
+    from drivelint.drive.trace import Trace
     from drivelint.engine.batch import Drive
-    from drivelint.pictures.camera_log import Place
+    from drivelint.pictures.camera_log import FrameSource, Place
     from drivelint.pictures.shots import Shot
     from drivelint.result.model import Result
 
 
+D123: Final = "123d"
+"""The format of `drivelint.formats.d123`, whose modules are imported only for its logs."""
+
+
 class DriveCameras(NamedTuple):
-    """The log of a drive that has cameras: its files, the drive's clock, and the topics of the cameras in the order of importance."""
+    """The log of a drive that has cameras: how to open it, the drive's clock, and the names of the cameras in the order of importance."""
 
     path: Path
-    files: tuple[Path, ...]
+    open_log: Callable[[], FrameSource]
     clock: DriveClock
     topics: tuple[str, ...]
 
@@ -55,11 +62,8 @@ class Camerawork:
         for drive in drives:
             trace = drive.trace
             (format_,) = trace.tables["data_log"]["format"].to_pylist()
-            if format_ not in mcap.formats or trace.drive_id in self._drives:
-                continue
-            files = tuple(mcap_files(trace.path))
-            if topics := camera_topics(files):
-                self._drives[trace.drive_id] = DriveCameras(trace.path, files, DriveClock(trace.frame_times), topics)
+            if trace.drive_id not in self._drives and (cameras := _cameras(trace, format_)) is not None:
+                self._drives[trace.drive_id] = cameras
 
     @property
     def topics(self) -> dict[str, tuple[str, ...]]:
@@ -74,7 +78,7 @@ class Camerawork:
         for drive_id, shots in sorted(of_drives.items()):
             drive = self._drives[drive_id]
             try:
-                with CameraLog(drive.files) as log:
+                with drive.open_log() as log:
                     for moment in sorted({(shot.t_ns, shot.camera_no) for shot in shots}):
                         asked = [shot for shot in shots if (shot.t_ns, shot.camera_no) == moment]
                         rows += _picture_rows(log, drive, asked, troubles)
@@ -85,8 +89,26 @@ class Camerawork:
         return pa.Table.from_pylist(rows, schema=arrow_schemas()["picture"]), list(troubles)
 
 
+def _cameras(trace: Trace, format_: str) -> DriveCameras | None:
+    """Return the cameras of a log; None: it has none."""
+    if format_ in mcap.formats:
+        files = tuple(mcap_files(trace.path))
+        if topics := camera_topics(files):
+            return DriveCameras(trace.path, lambda: CameraLog(files), DriveClock(trace.frame_times), topics)
+    elif format_ == D123:
+        from drivelint.formats.d123.reader import log_clock
+        from drivelint.pictures.d123_log import D123Log, camera_names
+
+        if not (topics := camera_names(trace.path)):
+            return None
+        zero_ns = log_clock(trace.path).zero_us * 1000
+        times = FrameTimes(np.array([0]), np.array([zero_ns], np.uint64))
+        return DriveCameras(trace.path, lambda: D123Log(trace.path), DriveClock(times), topics)
+    return None
+
+
 def _picture_rows(
-    log: CameraLog, drive: DriveCameras, shots: Sequence[Shot], troubles: dict[Trouble, None]
+    log: FrameSource, drive: DriveCameras, shots: Sequence[Shot], troubles: dict[Trouble, None]
 ) -> list[dict[str, Any]]:
     """Return the rows of the shots of one moment by one camera, in time order; no frame is used twice."""
     from drivelint.pictures.images import small_jpeg
@@ -100,13 +122,7 @@ def _picture_rows(
             if frame is None or frame[0] in shown_places:
                 continue
             shown_places.add(frame[0])
-            image = log.frame(frame[0]).image
-            if isinstance(image, VideoFrame):
-                from drivelint.pictures.video import video_image
-
-                picture = small_jpeg(video_image(log, topic, frame[0]))
-            else:
-                picture = small_jpeg(image)
+            picture = small_jpeg(log.picture(topic, frame[0]))
         except FrameError as error:
             troubles.setdefault(Trouble(drive.path, f"camera {topic}: no picture of {error}"))
             continue

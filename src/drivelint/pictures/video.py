@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any, Final
 from drivelint.pictures.frames import FrameError, VideoFrame
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from PIL.Image import Image
 
     from drivelint.pictures.camera_log import CameraLog, Place
@@ -20,10 +22,7 @@ _ENTRY_UNITS: Final = {"h264": lambda head: head & 0x1F == 5, "hevc": lambda hea
 
 def video_image(log: CameraLog, topic: str, place: Place) -> Image:
     """Return a frame of a video, decoded from the last key frame up to it. Errors: `FrameError`."""
-    try:
-        import av
-    except ImportError:
-        raise FrameError("a video, for which PyAV is not installed (pip install av)") from None
+    av = _pyav()
     waiting: list[VideoFrame] = []
     for each in reversed(log.places(topic, place.log_ns - _LOOKED_BACK_NS, place.log_ns)):
         image = log.frame(each).image
@@ -39,6 +38,33 @@ def video_image(log: CameraLog, topic: str, place: Place) -> Image:
     if decoded is None:
         raise FrameError("a video without a frame that needs no other in the 10 s before")
     return decoded
+
+
+def file_image(path: Path, number: int) -> Image:
+    """Return a frame of a video file by its number, from 0, decoded from the last key frame up to it. Errors: `FrameError`."""
+    av = _pyav()
+    try:
+        with av.open(str(path)) as container:
+            stream = container.streams.video[0]
+            times = sorted(packet.pts for packet in container.demux(stream) if packet.pts is not None)
+            if not 0 <= number < len(times):
+                raise FrameError(f"frame {number} of a video of {len(times)} frames")
+            container.seek(times[number], stream=stream)
+            for decoded in container.decode(stream):
+                if decoded.pts == times[number]:
+                    image: Image = decoded.to_image()
+                    return image
+    except (av.FFmpegError, OSError, IndexError, ValueError) as error:
+        raise FrameError(f"a video that cannot be decoded ({error})") from error
+    raise FrameError(f"a video without its frame {number}")
+
+
+def _pyav() -> Any:
+    try:
+        import av
+    except ImportError:
+        raise FrameError("a video, for which PyAV is not installed (pip install av)") from None
+    return av
 
 
 def is_entry(frame: VideoFrame) -> bool:

@@ -18,7 +18,7 @@ from drivelint.errors import TraceError
 from drivelint.formats.d123 import boxes as box_file
 from drivelint.formats.d123 import ego as ego_file
 from drivelint.formats.d123 import facts
-from drivelint.formats.d123.arrow_files import BOXES, EGO_STATE, SYNC, integers, path_of, sync_table
+from drivelint.formats.d123.arrow_files import BOXES, EGO_STATE, LIGHTS, SYNC, integers, modality, path_of, sync_table
 from drivelint.formats.d123.clock import clock
 from drivelint.formats.d123.lights import light_states, read_lights
 from drivelint.formats.d123.map_file import find_map
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
     from drivelint.arrays import Indices, Mask, Times
     from drivelint.formats.d123.arrow_files import LogInfo, Modality
+    from drivelint.formats.d123.clock import Clock
     from drivelint.formats.probe import Probe
 
 NAME: Final = "123d"
@@ -101,6 +102,14 @@ def read(probe: Probe) -> Recording:
     recording.findings += findings
     recording.notes += notes
     return recording
+
+
+def log_clock(folder: Path) -> Clock:
+    """Return the clock with which `read` reads a log. Errors: as `read`."""
+    sync, info = sync_table(folder)
+    files = [modality(folder, name, {}) for name in (EGO_STATE, BOXES, LIGHTS)]
+    times = [file.columns["timestamp_us"] for file in files if file is not None]
+    return clock(folder, [sync["timestamp_us"], *times], utc=facts.dataset(info.dataset).utc)
 
 
 _NO_STATES: Final = States([], np.zeros(0, np.int32), np.zeros(0, np.int64), {}, {}, np.zeros(0, np.bool_))

@@ -1,0 +1,115 @@
+"""Finds the frames of the cameras of a 123D log by time: a file per camera, of which only the times are read until a frame is requested.
+
+py123d 0.7.0 keeps frames as JPEG or PNG in the file, as numbers of frames of a video beside it, or as paths into the original data set.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, NamedTuple, Self
+
+import numpy as np
+import pyarrow as pa
+
+from drivelint.formats.d123.arrow_files import path_of
+from drivelint.pictures.camera_log import Place
+from drivelint.pictures.frames import EncodedImage, FrameError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from PIL.Image import Image
+
+    from drivelint.arrays import Times
+
+_PREFIX: Final = "camera."
+_DIRECTIONS: Final = {"f": 0, "l": 2, "r": 2, "b": 3, "d": 3}
+"""First letter of the place of a camera (front, left, right, back, down) -> its rank; other cameras have rank 1."""
+
+
+class _CameraFile(NamedTuple):
+    """The open file of a camera. `t_us`: the times of its frames, `batches` and `rows`: where each is in the file, in time order."""
+
+    name: str
+    reader: pa.RecordBatchFileReader
+    t_us: Times
+    batches: Times
+    rows: Times
+
+
+def camera_names(folder: Path) -> tuple[str, ...]:
+    """Return the names of the cameras of a log; cameras that look ahead come first. Depth and label images are no camera pictures."""
+    names = [path.name.removesuffix(".arrow") for path in folder.glob(f"{_PREFIX}*.arrow")]
+    return tuple(sorted(names, key=_ahead_first))
+
+
+def _ahead_first(name: str) -> tuple[int, str]:
+    _, _, place = name.rpartition("_")
+    return _DIRECTIONS.get(place[:1], 1) if place[1:].isdigit() else 1, name
+
+
+class D123Log:
+    """The camera files of a 123D log, open for reading frames; its methods are those of `CameraLog`."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._files: list[_CameraFile] = []
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        self._files.clear()
+
+    def places(self, topic: str, since_ns: int, until_ns: int) -> list[Place]:
+        """Return the places of a camera's frames with times of the log from `since_ns` to `until_ns`, in time order."""
+        number, file = self._file(topic)
+        first, last = np.searchsorted(file.t_us, [-(-since_ns // 1000), until_ns // 1000 + 1])
+        return [
+            Place(int(file.t_us[n]) * 1000, number, 0, int(file.batches[n]), int(file.rows[n]))
+            for n in range(first, last)
+        ]
+
+    def stamp_ns(self, place: Place) -> int | None:
+        """Return None: the time of a frame is that of its row."""
+
+    def picture(self, topic: str, place: Place) -> EncodedImage | Image:
+        """Return the image at a place; a frame of a video is decoded."""
+        file = self._files[place.file]
+        try:
+            data = file.reader.get_batch(place.chunk).column(f"{topic}.data")[place.at].as_py()
+        except (pa.ArrowException, KeyError, IndexError, OSError) as error:
+            raise FrameError(f"a file that cannot be read ({error})") from error
+        if isinstance(data, bytes):
+            return EncodedImage(data)
+        if isinstance(data, int):
+            from drivelint.pictures.video import file_image
+
+            return file_image(self._folder / f"{topic}.mp4", data)
+        raise FrameError("a path into the original data set: convert it with the frames as JPEG" if data else "nothing")
+
+    def _file(self, name: str) -> tuple[int, _CameraFile]:
+        for number, file in enumerate(self._files):
+            if file.name == name:
+                return number, file
+        try:
+            self._files.append(_opened(self._folder, name))
+        except (pa.ArrowException, KeyError, OSError) as error:
+            raise FrameError(f"a file that cannot be read ({error})") from error
+        return len(self._files) - 1, self._files[-1]
+
+
+def _opened(folder: Path, name: str) -> _CameraFile:
+    """Open a camera's file and read the times of its frames, without the frames."""
+    source = pa.memory_map(str(path_of(folder, name)))
+    column = pa.ipc.open_file(source).schema.get_field_index(f"{name}.timestamp_us")
+    if column < 0:
+        raise KeyError(f"no column {name}.timestamp_us")
+    times_alone = pa.ipc.open_file(source, options=pa.ipc.IpcReadOptions(included_fields=[column]))
+    times = [
+        times_alone.get_batch(n).column(0).to_numpy(zero_copy_only=False) for n in range(times_alone.num_record_batches)
+    ]
+    t_us = np.concatenate([np.zeros(0, np.int64), *times]).astype(np.int64)
+    batches = np.repeat(np.arange(len(times)), [len(part) for part in times])
+    rows = np.concatenate([np.zeros(0, np.int64), *(np.arange(len(part)) for part in times)]).astype(np.int64)
+    order = np.argsort(t_us, kind="stable")
+    return _CameraFile(name, pa.ipc.open_file(source), t_us[order], batches[order], rows[order])
