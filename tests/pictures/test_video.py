@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from drivelint.pictures.camera_log import Place
-from drivelint.pictures.frames import Frame, FrameError, VideoFrame
+from drivelint.pictures.frames import Frame, FrameError, Place, VideoFrame
 from drivelint.pictures.images import small_jpeg
 from drivelint.pictures.video import video_image
 from tests.pictures.camera_bag import bars, number_in

@@ -6,7 +6,7 @@ import mmap
 import struct
 from contextlib import ExitStack
 from functools import lru_cache
-from typing import TYPE_CHECKING, Final, NamedTuple, Protocol, Self
+from typing import TYPE_CHECKING, Final, Self
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from drivelint.errors import TraceError
 from drivelint.formats.mcap.chunk import ChunkError, chunk_head, chunk_records
 from drivelint.formats.mcap.counts import MESSAGE_INDEX_HEAD
 from drivelint.formats.mcap.summary import Summary, read_index, read_summary
-from drivelint.pictures.frames import FrameError, VideoFrame, ahead_first, camera_name, is_camera, read_frame
+from drivelint.pictures.frames import FrameError, Place, VideoFrame, ahead_first, camera_name, is_camera, read_frame
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,35 +28,6 @@ _RECORD: Final = struct.Struct("<BQ")
 _MESSAGE: Final = struct.Struct("<HIQQ")
 _CHUNKS_KEPT: Final = 4
 """How many unpacked chunks are kept: frames of the same time are often in the same chunk."""
-
-
-class Place(NamedTuple):
-    """The place of a frame: its log time, file, channel, chunk, and offset in the unpacked chunk."""
-
-    log_ns: int
-    file: int
-    channel: int
-    chunk: int
-    at: int
-
-
-class FrameSource(Protocol):
-    """The frames of the cameras of one log, by time. Errors of all methods: `FrameError`."""
-
-    def __enter__(self) -> Self:
-        """Open the log."""
-
-    def __exit__(self, *_error: object) -> None:
-        """Close the log."""
-
-    def places(self, topic: str, since_ns: int, until_ns: int) -> list[Place]:
-        """Return the places of a camera's frames with log times from `since_ns` to `until_ns`, in time order."""
-
-    def stamp_ns(self, place: Place) -> int | None:
-        """Return when the frame at a place was taken, if the frame contains its time."""
-
-    def picture(self, topic: str, place: Place) -> EncodedImage | RawImage | Image:
-        """Return the image at a place."""
 
 
 def camera_topics(files: Sequence[Path]) -> tuple[str, ...]:

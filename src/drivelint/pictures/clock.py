@@ -10,7 +10,7 @@ from drivelint.pictures.frames import FrameError
 
 if TYPE_CHECKING:
     from drivelint.drive.trace import FrameTimes
-    from drivelint.pictures.camera_log import FrameSource, Place
+    from drivelint.pictures.frames import FrameSource, Place
 
 SEARCHED_NS: Final = 2_000_000_000
 """Frames are searched up to this far from a time in the log: a frame may be recorded up to a second after it was taken."""

@@ -11,8 +11,7 @@ import numpy as np
 import pyarrow as pa
 
 from drivelint.formats.d123.arrow_files import path_of
-from drivelint.pictures.camera_log import Place
-from drivelint.pictures.frames import EncodedImage, FrameError
+from drivelint.pictures.frames import EncodedImage, FrameError, Place
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -92,13 +91,13 @@ class D123Log:
             if file.name == name:
                 return number, file
         try:
-            self._files.append(_opened(self._folder, name))
+            self._files.append(_open_camera(self._folder, name))
         except (pa.ArrowException, KeyError, OSError) as error:
             raise FrameError(f"a file that cannot be read ({error})") from error
         return len(self._files) - 1, self._files[-1]
 
 
-def _opened(folder: Path, name: str) -> _CameraFile:
+def _open_camera(folder: Path, name: str) -> _CameraFile:
     """Open a camera's file and read the times of its frames, without the frames."""
     source = pa.memory_map(str(path_of(folder, name)))
     column = pa.ipc.open_file(source).schema.get_field_index(f"{name}.timestamp_us")

@@ -9,13 +9,14 @@ import base64
 import json
 import struct
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, Protocol, Self
 
 from drivelint.formats.ros2.cdr import BYTE_ORDERS, HEADER_BYTES
 from drivelint.formats.ros2.types import short_type_name
 
 if TYPE_CHECKING:
     from mcap.records import Channel, Schema
+    from PIL.Image import Image
 
 
 class FrameError(Exception):
@@ -51,6 +52,45 @@ class Frame(NamedTuple):
 
     stamp_ns: int | None
     image: EncodedImage | RawImage | VideoFrame
+
+
+class Place(NamedTuple):
+    """The place of a frame: its log time, file, channel, chunk, and offset in the unpacked chunk."""
+
+    log_ns: int
+    file: int
+    channel: int
+    chunk: int
+    at: int
+
+
+class FrameSource(Protocol):
+    """The frames of the cameras of one log, by time. Errors of all methods: `FrameError`."""
+
+    def __enter__(self) -> Self:
+        """Open the log."""
+
+    def __exit__(self, *_error: object) -> None:
+        """Close the log."""
+
+    def places(self, topic: str, since_ns: int, until_ns: int) -> list[Place]:
+        """Return the places of a camera's frames with log times from `since_ns` to `until_ns`, in time order."""
+
+    def stamp_ns(self, place: Place) -> int | None:
+        """Return when the frame at a place was taken, if the frame contains its time."""
+
+    def picture(self, topic: str, place: Place) -> EncodedImage | RawImage | Image:
+        """Return the image at a place."""
+
+
+class MessageSource(Protocol):
+    """The messages of the cameras of one log, by time. Errors of all methods: `FrameError`."""
+
+    def places(self, topic: str, since_ns: int, until_ns: int) -> list[Place]:
+        """Return the places of a camera's frames with log times from `since_ns` to `until_ns`, in time order."""
+
+    def frame(self, place: Place) -> Frame:
+        """Return the content of the message at a place."""
 
 
 _KINDS: Final = {

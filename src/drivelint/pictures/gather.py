@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from drivelint.drive.trace import Trace
     from drivelint.engine.batch import Drive
-    from drivelint.pictures.camera_log import FrameSource, Place
+    from drivelint.pictures.frames import FrameSource, Place
     from drivelint.pictures.shots import Shot
     from drivelint.result.model import Result
 

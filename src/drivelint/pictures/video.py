@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     from PIL.Image import Image
 
-    from drivelint.pictures.camera_log import CameraLog, Place
+    from drivelint.pictures.frames import MessageSource, Place
 
 _LOOKED_BACK_NS: Final = 10_000_000_000
 """How far back a key frame, which can be decoded alone, is searched."""
@@ -20,7 +20,7 @@ _ENTRY_UNITS: Final = {"h264": lambda head: head & 0x1F == 5, "hevc": lambda hea
 """Codec -> whether a unit with this first byte belongs to a key frame."""
 
 
-def video_image(log: CameraLog, topic: str, place: Place) -> Image:
+def video_image(log: MessageSource, topic: str, place: Place) -> Image:
     """Return a frame of a video, decoded from the last key frame up to it. Errors: `FrameError`."""
     av = _pyav()
     waiting: list[VideoFrame] = []
