@@ -1,4 +1,4 @@
-"""`drivelint docs`: the guides and the reference, printed or as a site."""
+"""`drivelint docs`: prints the guides and the reference, or writes them as a site."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def docs(
 
 
 def _commands(command: Any, name: str) -> Iterator[Command]:
-    """Yield the commands of a group with the content of their help, depth first."""
+    """Yield the command, or all commands below a group, with the texts of their help, depth first."""
     from drivelint.guide.site import Command
 
     if hasattr(command, "commands"):
@@ -82,7 +82,7 @@ def _commands(command: Any, name: str) -> Iterator[Command]:
     for param in command.get_params(about):
         if (record := param.get_help_record(about)) is not None:
             words, meaning = record
-            # without the type in Python's words
+            # remove the Python type
             said[param.param_type_name].append((words.partition(" <")[0], meaning))
     usage = " ".join([name, *command.collect_usage_pieces(about)])
     yield Command(usage, command.help or "", tuple(said["argument"]), tuple(said["option"]))
