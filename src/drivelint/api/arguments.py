@@ -57,7 +57,7 @@ _KINDS: Final[dict[str, tuple[Callable[[Any], bool], str]]] = {
 
 
 def typed(function: Callable[_P, _R]) -> Callable[_P, _R]:
-    """Return the function with checked arguments: `UsageError` for an unknown keyword or an argument of another type.
+    """Return the function with argument checks: it raises `UsageError` for an unknown keyword or an argument of another type.
 
     Annotations are texts, since the functions' modules import `annotations` from `__future__`.
     """

@@ -30,7 +30,7 @@ _SCHEMAS = {"verdicts": "verdict", "findings": "finding", "drives": "drive", "ru
 class AuditResult(TableSet):
     """The result of an audit: its tables, its gate, and its rates. In the tables, logs with the same content are one drive.
 
-    The tables are the same as for a check, and two more. `events`: one finding per event; a touch of two egos, or an overtake under
+    `verdicts`, `findings`, `drives`, `rules`: as for a check. `events`: one finding per event; a touch of two egos, or an overtake under
     several profiles, is one event. `logs`: the path and the tags of each drive's log. All rows are in memory: about 0.3 MB per drive,
     if all rules were run.
     """
@@ -76,7 +76,7 @@ class AuditResult(TableSet):
     def rates(self, by: str | None = None) -> Table:
         """Return the rates of events per 100 km, per hour and per occasion, one row per rule and profile.
 
-        `by`: a tag or situation; then one row per rule, profile and value of it. Each rate is a struct of `rate`, `low` and `high` (95 %).
+        `by`: a tag or situation, to have one row per rule, profile and value. Each rate is a struct of `rate`, `low` and `high` (95 %).
         Errors: `DriveLintError` for a tag that no drive has.
         """
         with open_audits(self._dest) as (con, _, _):

@@ -58,7 +58,7 @@ class Comparison:
 def diff(base: CheckResult | AnyPath, new: CheckResult | AnyPath, *, fail_on: FailOn | None = None) -> Comparison:
     """Compare two results, or the folders with them: new, fixed, changed and unchanged findings.
 
-    `fail_on`: lowest severity of a new finding that causes exit code 1; None: the severity of `new`. Errors: `DriveLintError`.
+    `fail_on`: lowest severity of a new finding that causes exit code 1; None: the `fail_on` of the check `new`. Errors: `DriveLintError`.
     """
     (earlier, base_name), (later, name) = _result(base, "base"), _result(new, "new")
     least = later.fail_on if fail_on is None else one_of("fail_on", fail_on, FailOn)

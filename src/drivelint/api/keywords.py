@@ -19,7 +19,7 @@ _OPTION: Final = re.compile(
 
 @contextmanager
 def errors_name_keywords() -> Iterator[None]:
-    """Change the message of an error inside the block, such as `--overwrite` to `overwrite=True`."""
+    """Rewrite options in the message of an error inside the block as keywords: `--overwrite` becomes `overwrite=True`."""
     try:
         yield
     except DriveLintError as error:

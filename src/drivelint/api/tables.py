@@ -145,8 +145,8 @@ class TableSet:
     def sql(self, query: str, params: object = None) -> Table:
         """Return the rows of a DuckDB query over the tables, by their names. `params`: values for `?` or `$name`.
 
-        If the query contains `geom`, `geom_lonlat` or a function `ST_...`, the spatial extension is loaded, and tables with a geometry have
-        these columns (GEOMETRY); a geometry in the result is WKB. A query cannot change the tables, and tables that it creates are lost
+        For a query with `geom`, `geom_lonlat` or a function `ST_...`, the spatial extension is loaded, and tables with a geometry have
+        these columns (GEOMETRY). A geometry in the result is WKB. A query cannot change the tables, and tables that it creates are lost
         afterwards. Repeated column names, as after a join, get numbers: `t_start_ns_1`.
         Errors: `DriveLintError` for a query that DuckDB refuses, or a statement that returns no table.
         """

@@ -47,7 +47,7 @@ class Figure:
 
 
 class Timeline(Table):
-    """A row per time stamp from 5 s before to 5 s after the worst step of a finding, and per judged step.
+    """One row per time stamp from 5 s before to 5 s after the worst step of a finding, and one row per judged step.
 
     `t_ns`: time on the log's clock; `t_s`: seconds since the drive's first time stamp. `gap_m`: distance of the boxes, 0 if they touch.
     Speeds and accelerations are in m/s and m/s2, at most five values per second. `observed`, `required` and `margin`: values of the rule,

@@ -1,6 +1,6 @@
 """Checks a rule's SQL without running it: one SELECT, known tables and functions only, bound parameters, named columns.
 
-The module compares DuckDB's syntax tree with the lists in `allowed_sql`, since DuckDB also parses and serialises statements that are not
+The module compares DuckDB's syntax tree with the lists in `allowed_sql`. DuckDB itself also parses and serialises statements that are not
 allowed (such as two statements, DESCRIBE, `query('...')` and `FROM '/etc/passwd'`).
 """
 
@@ -112,8 +112,8 @@ def complained_line(error: duckdb.Error, text: str) -> int | None:
 def check_query(sql: str, file: str, line: int = 1) -> Query:
     """Check the SQL of one section, which begins at `line` of `file`, and return its parts.
 
-    Errors: `RuleError` with file and line if the section is not exactly one SELECT, uses an element that `allowed_sql` does not list, or
-    has a CTE with the name of a table or a name that begins with `_`, like those of the engine.
+    Errors: `RuleError` with file and line if the section is not exactly one SELECT, or uses an element that `allowed_sql` does not list.
+    Also for a CTE with the name of a table, or with a name that begins with `_`, like the engine's tables.
     """
     text = _Text(sql, file, line)
     statement, node = _parsed(text)

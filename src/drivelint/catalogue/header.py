@@ -103,9 +103,9 @@ class Header(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     """Signals without which the rule can fail, but not pass."""
     reference: str | None = None
     without_time: str | None = None
-    """A clause that states what the log does not show if the time of a reference point is unknown."""
+    """Words for a sentence: what the log does not show if the time of a reference point is unknown."""
     without_anchor: str | None = None
-    """The same clause for an anchor with an unknown time."""
+    """Words for a sentence: what the log does not show if the time of an anchor is unknown."""
     exempt_after_s: Seconds = 0.0
     merge_gap_s: Seconds = 1.0
     tags: tuple[str, ...] = ()
@@ -149,7 +149,7 @@ def parse_header(text: str, where: str) -> Header:
 
 
 def _explained(error: msgspec.ValidationError, text: str, where: str) -> RuleError:
-    """Return an error for msgspec's error, on one line with file, line and the nearest known key."""
+    """Convert msgspec's error to a `RuleError` on one line, with file, line and the nearest known key."""
     message = str(error)
     place = re.search(r"at `\$\.?([^`]*)`", message)
     path = place[1] if place else ""

@@ -81,8 +81,8 @@ def _resolved(path: Path) -> Path:
 def read_rule(file: Path, *, with_words: bool = True) -> Rule:
     """Read and check one rule file, and return the rule. Errors: `RuleError` with file and line.
 
-    `with_words`: also check the words in its SQL, see `check_words`. For shipped rules the tests do this: at each start, this check would
-    take a third of the time for reading them.
+    `with_words`: also check the words in its SQL, see `check_words`. Only the tests do this for shipped rules, since it needs a third of
+    the time for reading them.
     """
     pack = _pack_folder(file)
     if not file.is_file():

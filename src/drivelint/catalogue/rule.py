@@ -23,7 +23,7 @@ class Rule(Header, frozen=True, forbid_unknown_fields=True, kw_only=True):
     quantities: frozenset[str]
     """The quantities of actors that it uses (position, size, ...), as declared by the columns that it reads."""
     is_named: bool = True
-    """Whether the user selected this rule by its id. If the log lacks a needed signal, a named rule is unknown, others do not apply."""
+    """Whether the user selected the rule by its id. If the log lacks a needed signal, such a rule is unknown; else it does not apply."""
     occasion_needs: frozenset[str]
     """Tables that must have rows, else the rule has no reference point (or, for an invariant with @applies, no step to judge)."""
 
@@ -39,7 +39,7 @@ class Rule(Header, frozen=True, forbid_unknown_fields=True, kw_only=True):
 
     @property
     def looks_at_others(self) -> bool:
-        """Whether the rule reads or returns other actors than the ego; also true if a section's columns are unknown (`*`)."""
+        """Whether the rule reads about other actors than the ego, or returns their ids; true if a section's columns are unknown (`*`)."""
         whole = self.columns.keys() >= self.sections.keys()
         return (
             ROAD_USERS in self.needed_signals

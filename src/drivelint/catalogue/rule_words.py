@@ -34,7 +34,7 @@ def check_words(sections: Mapping[str, str], params: Mapping[str, Param], place:
 
 
 def parameter_problem(sections: Mapping[str, str], name: str, value: object) -> str | None:
-    """Return why a parameter's value is invalid: a column that the rule compares with the parameter never has it; None: it is valid."""
+    """Return why a column that the rule compares with this parameter can never have this value; None if the value is possible."""
     if not isinstance(value, str):
         return None
     given = Words(literals={value: Literal(None)}, direct=True)

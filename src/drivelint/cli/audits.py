@@ -117,7 +117,7 @@ def audit(
     Results are stored as soon as they are computed. After an interruption, the same command continues with the rest.
     A manifest has a column log, and may have map, ego and environment (weather=wet;light=night). Other columns are tags.
 
-    Exit codes: as those of check; 4 also if a drive cannot be judged or kills its worker.
+    Exit codes: those of check; 4 also if a drive cannot be judged or kills its worker.
     """
     from drivelint.audit import AuditRequest, JudgeSettings
     from drivelint.audit import audit as audited

@@ -38,8 +38,8 @@ def docs(
     Without TOPIC: lists the guides. With TOPIC: prints that guide as Markdown.
 
     docs dictionary [TABLE] prints the tables that rules read, with the meaning of each column. docs catalogue prints the
-    shipped rules as Markdown, docs reasons every reason code with its words, docs macros the macros that rules can call,
-    docs settings-schema the JSON schema of drivelint.toml, for editors.
+    shipped rules as Markdown; docs reasons prints every reason code with its words; docs macros prints the macros that rules
+    can call; docs settings-schema prints the JSON schema of drivelint.toml, for editors.
 
     With --html: writes one offline site with the guides, the rule catalogue, the data dictionary and the command line, and
     prints the name of its first page.

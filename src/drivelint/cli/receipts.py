@@ -1,7 +1,7 @@
 """The receipts of `check`: repeats the output of an earlier run with the same inputs, and stores a receipt of this run.
 
-A run is stored if its result depends only on its inputs, and if it wrote only stdout and the files of a result. So a run is not stored if
-it keeps its database or packs evidence, was interrupted, did not judge a drive, had a rule in error, or reads its own outputs as logs.
+A run is stored if its result depends only on its inputs, and if it wrote only stdout and the files of a result. So it is not stored with
+--keep-db or --evidence, after an interruption, with an unjudged drive or a rule in error, or if its logs are its own outputs.
 """
 
 from __future__ import annotations

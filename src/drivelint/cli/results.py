@@ -1,4 +1,4 @@
-"""`drivelint report`, `diff` and `explain`. Results of `check --out` are handled in `checks`, of `audit --out` in `fleets`."""
+"""`drivelint report`, `diff` and `explain`. The module `checks` handles results of `check --out`; `fleets` handles audits."""
 
 from __future__ import annotations
 
@@ -86,9 +86,9 @@ def report(
     For an audit: fleet.html or fleet.md, with rates, worst drives, coverage, and what could not be judged; beside fleet.html, a page
     for each of the worst drives.
 
-    With --incident: writes a sheet about one finding, for your files. The sheet has time and place, both parties with their speeds
-    and braking second by second, what each of them did by the same rules, how sure the finding is, and what the recording lacks.
-    To write it, the log is judged again.
+    With --incident: writes a sheet about one finding, for the records. The sheet has time and place, and both parties with their speeds
+    and braking second by second. It states what each party did by the same rules, how sure the finding is, and what the recording
+    lacks. To write it, the log is judged again.
     """
     from drivelint.fleet_report.audit_views import destination, is_audit
 
@@ -186,9 +186,9 @@ def explain(
 ) -> None:
     """Show the reason for one verdict.
 
-    Prints the clause, the SQL with its numbers, the rows that it read, the margin over time, the smallest change of a number
-    that changes the verdict, and how often the verdict stays the same with small errors in positions, clocks and map. If a rule
-    has several verdicts, the worst is shown, unless --ego, --verdict, --profile, --object or --at choose another.
+    Prints the clause, the SQL with its numbers, the rows that it read, and the margin over time. Also prints the smallest change of
+    a number that changes the verdict, and how often the verdict stays the same with small errors in positions, clocks and map. If a
+    rule has several verdicts, the worst is shown, unless --ego, --verdict, --profile, --object or --at choose another.
 
     explain judges the drive again by that rule. It reads the database of check --keep-db, or else the log.
     """

@@ -150,7 +150,7 @@ def _judgeable(
     *,
     memory: int | None,
 ) -> tuple[list[model.Ego], list[model.Quality]]:
-    """Return the egos of a drive with their decidable rules, and the data-quality findings; the library tables are derived for it."""
+    """Derive the library tables of a drive; return its egos with their decidable rules, and its data-quality findings."""
     known = _Knowledge()
     with store.workspace(memory) as con:
         session = JudgingSession(con, (), {}, None, observers=[known], memory=Memory(con, memory))

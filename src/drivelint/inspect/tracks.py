@@ -73,7 +73,7 @@ def actors(trace: Trace) -> list[Actor]:
 
 
 def count_classes(trace_actors: Sequence[Actor]) -> list[ClassCount]:
-    """Return the number of actors per class, the largest first."""
+    """Return the counts of actors per class, the largest class first."""
     counts = [
         ClassCount(
             actor_class=name,

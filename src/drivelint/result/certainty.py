@@ -21,7 +21,7 @@ def certainty(finding: Mapping[str, Any], least_share: float = LEAST_SHARE) -> s
 
 
 def doubt(row: Mapping[str, Any]) -> str:
-    """Return a phrase for a finding that is only possible; '' for a sure or unexamined finding, and for a verdict."""
+    """Return in words that a finding is only possible, and in how many copies; '' for other findings and for verdicts."""
     if row.get("n_copies") is None or certainty(row) == SURE:
         return ""
     return f"possible, in {row['n_stays']} of {row['n_copies']} copies with recording errors"

@@ -73,10 +73,11 @@ def unrecorded(verdicts: pa.Table) -> pa.Table:
 
 
 def one_per_event(findings: Iterable[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-    """Return one finding per event, in the order of the rows: counts of findings count these.
+    """Return one finding per event, in the order of the rows. Numbers of findings in reports count these.
 
-    Findings of one rule at the same time are one event if they have the same ego and object under several profiles, or if each of two
-    egos is the object of the other. A sure finding represents the event before a possible finding, and an earlier row before a later row.
+    Findings of one rule at the same time are one event in two cases: they have the same ego and object under several profiles, or each
+    of two egos is the object of the other. A sure finding represents the event before a possible finding, and an earlier row before a
+    later row.
     `queries/fleet/event.sql` does the same for audits.
     """
     rows = list(findings)

@@ -1,7 +1,8 @@
 """The folder that `check --out` writes; a later run replaces the whole result. Files that drivelint did not write are not changed.
 
-`files.json` lists these files, with the sha256 of the tables and the summary. A run works in its own subfolder. An earlier result must not
-be taken for the result of a failed run: its reports are removed when a run begins, and its other files move to `earlier/` if the run fails.
+`files.json` lists the files that drivelint wrote, with the sha256 of the tables and the summary. A run works in its own subfolder. An
+earlier result must not be taken for the result of a failed run. So its reports are removed when a run begins, and its other files move to
+`earlier/` if the run fails.
 """
 
 from __future__ import annotations
@@ -107,7 +108,7 @@ def _identity(path: Path) -> tuple[int, int] | None:
 def _locked(out: Path) -> Iterator[bool]:
     """Lock a folder for this process; yield whether the lock was obtained: not every file system has locks.
 
-    The operating system releases a lock when the process ends. Process ids would not do: every container has a process 1.
+    The operating system releases a lock when the process ends. A file with a process id is no substitute: every container has a process 1.
     Errors: `UsageError` if another process has locked the folder.
     """
     try:
@@ -175,7 +176,7 @@ def changed_files(out: Path) -> list[str]:
 
 
 def left_by_killed_run(out: Path) -> Path | None:
-    """Return the working folder of a killed run: the result in `out` is of an earlier run; None without one, or while a run works."""
+    """Return the working folder that a killed run left, so that the result in `out` is of an earlier run; else None."""
     left = sorted(out.glob(f"{_WORK}.*"))
     if not left:
         return None

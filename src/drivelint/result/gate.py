@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 DIFF_STATUSES: Final = ("new", "changed", "unchanged", "fixed", "elsewhere", "unknown", "lost")
 """The statuses of findings in a comparison of two results, BASE and NEW.
 
-Findings of NEW are new, changed or unchanged. Findings that only BASE has are fixed (NEW finds the rule kept or not applicable), elsewhere
-(the rule fails in NEW at another step or place), unknown (NEW cannot decide) or lost (NEW did not judge the rule there)."""
+Findings of NEW are new, changed or unchanged. Findings that only BASE has are one of these: fixed (NEW finds the rule kept or not
+applicable); elsewhere (in NEW the rule fails at another step or place); unknown (NEW cannot decide); lost (NEW did not judge there)."""
 NOT_FIXED: Final = {"unknown": "unknown now", "lost": "not judged now", "elsewhere": "still failing elsewhere"}
 """Status of a finding that only BASE has and that is not fixed -> words."""
 GATE_VERSION: Final = 1
@@ -198,7 +198,7 @@ class Gate:
         return self.standing(finding_id) in {"new", "open"}
 
     def standing(self, finding_id: str) -> str:
-        """Return the state for counting a finding: waived, known, possible, or else new with a baseline and open without one."""
+        """Return the status of a finding at the gate: waived, known (in the baseline), possible; else new, or open without a baseline."""
         if finding_id in self.waived:
             return "waived"
         if self.in_baseline(finding_id):

@@ -99,8 +99,8 @@ def exit_status(result: Result) -> ExitStatus:
     """Return the exit code, by the precedence 130 > 2 > 1 > 4 > 3 > 0, and its reason.
 
     Only stable rules gate: verdicts of draft rules are shown but do not change the exit code. A rule in error always gives 2. A rule that
-    exceeded its limits gives 4, since it has not judged. For exit code 1, the reason also names drives and rules that were not judged, and
-    lossy input: otherwise the user would meet them only in the next run.
+    exceeded its limits gives 4, since it has not judged. For exit code 1, the reason also states the first of these: drives or rules that
+    were not judged, or lossy input. Otherwise the user would see it only in the next run, after correcting the failure.
     """
     status = next(_outcomes(result))
     hidden = next(chain(_not_judged(result), _lossy(result)), None) if status.code is ExitCode.FAILED else None
@@ -239,7 +239,7 @@ def too_little_decided(result: Result) -> str | None:
 def decided_share(verdicts: pa.Table) -> float | None:
     """Return the share of decided rules among the rules that may apply; None if no rule may apply.
 
-    Each rule is counted per drive and ego. It is decided if any of its verdicts there is pass or fail.
+    Each rule is counted per drive and ego. It is decided if any of its verdicts for this drive and ego is pass or fail.
     """
     kinds = verdicts["verdict"].to_pylist()
     lacking = pc.starts_with(verdicts["reason_code"], UNRECORDED_PREFIX).to_pylist()

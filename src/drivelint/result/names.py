@@ -26,7 +26,7 @@ TABLE_OF_FILE: Final = {
 }
 """Stem of the Parquet file -> table of the schema."""
 PICTURES: Final = {"pictures": "picture"}
-"""The same for the file that only results with camera pictures have."""
+"""Stem of the Parquet file that only results with camera pictures have -> table of the schema."""
 REPORT_FILES: Final = {
     "html": "report.html",
     "junit": "junit.xml",

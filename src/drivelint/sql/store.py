@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 _TABLE = re.compile(r"^CREATE TABLE (\w+) \(\n(.*?)^\);", re.DOTALL | re.MULTILINE)
 _LIFETIME = re.compile(r"^-- lifetime: (\w+)\nCREATE TABLE (\w+) \(", re.MULTILINE)
 LIFETIMES: Final = ("map", "drive", "part", "run")
-"""How long the rows of a table stay: `map`, until a batch needs other maps; `drive`, while the batch is judged; `part`, while the
-egos of one part of a drive are judged; `run`, until the end of the run."""
+"""How long the rows of a table stay. `map`: until a batch needs other maps. `drive`: while the batch is judged. `part`: while the egos of
+one part of a drive are judged. `run`: until the end of the run."""
 ACTOR_ID_COLUMNS = frozenset({"ego_id", "object_id", "actor_id"})
 """Columns with the id of an actor."""
 _AS_TOLD = frozenset({"margin"})
@@ -142,8 +142,8 @@ def lock(con: duckdb.DuckDBPyConnection) -> None:
     """Forbid a database to open files, use the network or change settings, before rules run in it.
 
     Attached databases stay attached, Arrow tables can still be registered, and spilling still works. Only `memory_limit` and `threads`
-    can be set: a batch that runs out of memory is repeated with more, and one thread is best for few rows. A locked database is not
-    changed.
+    can be set: a batch that runs out of memory is repeated with more memory, and one thread is best for few rows. A database that is
+    already locked is not changed.
     """
     if con.execute("SELECT current_setting('lock_configuration')").fetchall()[0][0]:
         return

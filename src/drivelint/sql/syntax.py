@@ -74,7 +74,7 @@ def tables_read(tree: Node) -> Names:
 
 
 def tables_needing_rows(tree: Node) -> Names:
-    """Return tables that must have rows for the SELECT to return rows; a table missing from the answer only costs time."""
+    """Return tables that must have rows for the SELECT to return rows. The answer may be incomplete, which only costs time."""
     return _query(tree, {}, beside=False)
 
 
@@ -170,7 +170,7 @@ def column_name(item: Node) -> str:
 
 
 def offset_of(part: Any) -> int | None:
-    """Return the byte offset in the SQL of a node, or of the first inner node with an offset; None if the tree has none."""
+    """Return a node's byte offset in the SQL, or that of its first inner node with an offset; None without any offset."""
     todo = [part]
     while todo:
         node = todo.pop(0)

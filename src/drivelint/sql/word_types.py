@@ -74,7 +74,7 @@ class StructOf:
 
 @dataclass(frozen=True)
 class Parameter:
-    """A parameter `$name`."""
+    """A parameter `$name` in the SQL."""
 
     name: str
 
