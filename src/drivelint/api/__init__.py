@@ -98,7 +98,8 @@ def check(
 
     The keywords are the options of `drivelint check`, see `drivelint check --help`. A repeatable option takes one value or several;
     `env` and `param` also take a dictionary, and pairs of numbers may be a tuple. `drivelint.toml` is not read. `progress`: show a
-    progress bar. Errors: `DriveLintError` for invalid arguments, or if no drive could be judged; `out` then has a result with the reason.
+    progress bar. Errors: `DriveLintError` for invalid arguments, or if no drive could be judged. In the second case, `out` has a result
+    with the reasons.
     """
     with errors_name_keywords():
         paths, folder = options.texts(traces), options.path(out)

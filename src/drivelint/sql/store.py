@@ -318,7 +318,7 @@ def recreate_with_enums(
 ) -> None:
     """Recreate tables empty, with the ids of drives and actors as ENUM columns.
 
-    Nearly every join is on these ids; as numbers, they make derivations a fifth faster. The values of the ENUM are sorted, so ENUM and
+    Nearly every join is on these ids; with numbers, derivations take a fifth less time. The values of the ENUM are sorted, so ENUM and
     text have the same order. `drives`, `actors`: all ids that the tables will contain.
     """
     old = _codes(con)
