@@ -1,4 +1,4 @@
-"""The Python interface: the commands of the command line as functions, which return or raise and never exit."""
+"""The Python interface: the commands of the command line as functions, which return a result or raise an error, and never exit."""
 
 from __future__ import annotations
 
@@ -96,10 +96,10 @@ def check(
 ) -> CheckResult:
     """Judge recorded drives against the rules.
 
-    The keywords are the options of `drivelint check`, which `drivelint check --help` describes: one value or several where an
-    option is repeatable; `env` and `param` also as a dictionary, pairs of numbers also as a tuple. `drivelint.toml` is not read.
-    `progress`: show a bar. Errors: `DriveLintError` for what was asked, or if no drive at all could be judged; then `out` has a result that
-    says so.
+    The keywords are the options of `drivelint check`, see `drivelint check --help`. A repeatable option takes one value or several;
+    `env` and `param` also take a dictionary, and pairs of numbers may be a tuple. `drivelint.toml` is not read. `progress`: show a
+    progress bar. Errors: `DriveLintError` for invalid arguments, or if no drive could be judged. In the second case, `out` has a result
+    with the reasons.
     """
     with errors_name_keywords():
         paths, folder = options.texts(traces), options.path(out)
@@ -173,7 +173,7 @@ def check(
 
 
 def _interruptible(settings: run.CheckOptions, listener: NoteKeeper, keep: Callable[[Result], Result]) -> Result:
-    """Run a check; an interrupt is `KeyboardInterrupt`, which DuckDB hides in an error of its own."""
+    """Run a check and return its result. Errors: also `KeyboardInterrupt`, which DuckDB would hide in a `RuntimeError`."""
     try:
         return run.check(settings, listener, keep=keep)
     except RuntimeError as error:
@@ -186,7 +186,7 @@ def _interruptible(settings: run.CheckOptions, listener: NoteKeeper, keep: Calla
 def open(folder: AnyPath) -> CheckResult:  # noqa: A001 - read as drivelint.open
     """Return the result in a folder that `check --out` wrote.
 
-    Errors: `DriveLintError` for a folder without a whole result, or one of another version.
+    Errors: `DriveLintError` for a folder without a complete result, or a result of another version.
     """
     place = Path(folder)
     run_options = request.load(place) if (place / RUN_FILE).is_file() else None
@@ -196,9 +196,9 @@ def open(folder: AnyPath) -> CheckResult:  # noqa: A001 - read as drivelint.open
 
 @typed
 def write_demo(folder: AnyPath) -> list[Path]:
-    """Write six recorded drives and their road into a folder, and return their paths; the road's name is `road.xodr`.
+    """Write six recorded drives and their road, `road.xodr`, into a folder, and return the paths of the files.
 
-    Errors: `DriveLintError` where a file of such a name is not of an earlier demo, or the folder cannot be written.
+    Errors: `DriveLintError` if the folder cannot be written, or has a file of the same name that is not from an earlier demo.
     """
     with errors_name_keywords():
         return demo.write(Path(folder))
@@ -221,11 +221,11 @@ def read_trace(
     ego_size: str | tuple[float, ...] | None = None,
     env: Assignments = None,
 ) -> TraceTables:
-    """Read one recorded drive into tables, checked and in SI units, as `check` reads it; the ego may be missing.
+    """Read one recorded drive into tables, checked and in SI units, as `check` reads it, and return them; the ego may be missing.
 
-    With a map, given or embedded in the log, its lanes are the table `lanes`, and the drive is in the map's coordinates.
-    Errors: `DriveLintError` for a log that is missing, unreadable or has nothing to judge, a bad mapping, or a map that cannot be
-    read or is of another place.
+    With a map, given or embedded in the log, the table `lanes` has its lanes, and the drive is in the map's coordinates.
+    Errors: `DriveLintError` for a log that is missing, unreadable or has nothing to judge, an invalid mapping, or a map that cannot be
+    read or does not cover the drive.
     """
     with errors_name_keywords():
         asked = DriveInput(

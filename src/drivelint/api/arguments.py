@@ -1,4 +1,4 @@
-"""Refuses arguments of the wrong type, by name: a value from a notebook is often a text."""
+"""Refuses arguments of the wrong type, with an error that names the argument: values in a notebook are often texts."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def _are_numbers(value: object) -> bool:
 
 
 def _are_paths(value: object) -> bool:
-    return _is_path(value) or isinstance(value, Iterable)  # what an iterator yields is looked at when it is read
+    return _is_path(value) or isinstance(value, Iterable)  # items of an iterator are checked later, when they are read
 
 
 _KINDS: Final[dict[str, tuple[Callable[[Any], bool], str]]] = {
@@ -53,13 +53,13 @@ _KINDS: Final[dict[str, tuple[Callable[[Any], bool], str]]] = {
     "Pair": (lambda given: given is None or isinstance(given, str) or _are_numbers(given), "two numbers"),
     "tuple[float, ...]": (_are_numbers, "numbers"),
 }
-"""A type as signatures write it -> whether a value has it, and how it is called. Words to choose from are looked at elsewhere."""
+"""Annotation in a signature -> test of a value, and the name of the type in messages. `options.one_of` checks `Literal` types."""
 
 
 def typed(function: Callable[_P, _R]) -> Callable[_P, _R]:
-    """Raise `UsageError` for a keyword that there is not, and for an argument of another type than its annotation.
+    """Return the function with argument checks: it raises `UsageError` for an unknown keyword or an argument of another type.
 
-    An annotation is a text: its module postpones annotations.
+    Annotations are texts, since the functions' modules import `annotations` from `__future__`.
     """
     signature = inspect.signature(function)
     kinds = {name: str(parameter.annotation).split(" | ") for name, parameter in signature.parameters.items()}

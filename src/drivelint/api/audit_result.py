@@ -1,4 +1,4 @@
-"""The result of an audit, for Python."""
+"""The result of an audit as a Python object."""
 
 from __future__ import annotations
 
@@ -28,10 +28,11 @@ _SCHEMAS = {"verdicts": "verdict", "findings": "finding", "drives": "drive", "ru
 
 
 class AuditResult(TableSet):
-    """The result of an audit: its tables, in which logs of one content are one drive, its gate, and its rates.
+    """The result of an audit: its tables, its gate, and its rates. In the tables, logs with the same content are one drive.
 
-    The tables are those of a check; `events` has the findings that count (a touch of two egos once, and one overtake under several
-    profiles), and `logs` where the log of each drive is, and its tags. All rows are in memory: some 0.3 MB a drive of all rules.
+    `verdicts`, `findings`, `drives`, `rules`: as for a check. `events`: one finding per event; a touch of two egos, or an overtake under
+    several profiles, is one event. `logs`: the path and the tags of each drive's log. All rows are in memory: about 0.3 MB per drive,
+    if all rules were run.
     """
 
     verdicts: Table
@@ -43,7 +44,7 @@ class AuditResult(TableSet):
 
     @typed
     def __init__(self, folder: AnyPath) -> None:
-        """Open what `audit --out` wrote. Errors: `DriveLintError` where no audit is."""
+        """Open a folder that `audit --out` wrote. Errors: `DriveLintError` for a folder without an audit."""
         self._dest = destination(Path(folder))
         if not is_audit(self._dest):
             raise UsageError(f"{folder}: no audit is here: name the folder that drivelint audit --out wrote")
@@ -63,19 +64,20 @@ class AuditResult(TableSet):
 
     @property
     def exit_code(self) -> int:
-        """The exit code that the findings, the unknown verdicts and the gate of the last `drivelint audit` make."""
+        """The exit code from the findings, the unknown verdicts, and the gate of the last `drivelint audit`."""
         return int(exit_status(self._result).code)
 
     @property
     def why(self) -> str:
-        """Why it is what it is, in one sentence."""
+        """The reason for the exit code, in one sentence."""
         return exit_status(self._result).why
 
     @typed
     def rates(self, by: str | None = None) -> Table:
-        """Return a row per rule and profile, with `by` also per value of a tag or situation: events per 100 km, per hour, and per occasion.
+        """Return the rates of events per 100 km, per hour and per occasion, one row per rule and profile.
 
-        Rates have the columns `rate`, `low` and `high` (95 %) in a struct. Errors: `DriveLintError` for a tag that no drive has.
+        `by`: a tag or situation, to have one row per rule, profile and value. Each rate is a struct of `rate`, `low` and `high` (95 %).
+        Errors: `DriveLintError` for a tag that no drive has.
         """
         with open_audits(self._dest) as (con, _, _):
             rows = [_row(rate) for rate in rates.rates(con, by)]
@@ -83,7 +85,7 @@ class AuditResult(TableSet):
 
     @typed
     def report(self, *, to: str) -> str:
-        """Return a report as text. `to`: junit or sarif; `drivelint report` writes the pages of a fleet."""
+        """Return a report as text. `to`: junit or sarif. For the pages of a fleet, use `drivelint report`."""
         if to not in gated.FORMATS:
             raise UsageError(f"to={to!r}: of an audit there are {listed(gated.FORMATS)}")
         return REPORT_FORMATS[to][1](self._result).decode()
@@ -93,7 +95,7 @@ class AuditResult(TableSet):
 
 
 def _row(rate: rates.Rate) -> dict[str, Any]:
-    """Return a rate as a row, its estimates as structs."""
+    """Return a rate as a row, with its estimates as structs."""
     told = asdict(rate)
     for name in ("per_100km", "per_hour", "per_occasion", "per_ego"):
         told[name] = getattr(rate, name)._asdict()

@@ -1,4 +1,4 @@
-"""The result of a check, for Python."""
+"""The result of a check as a Python object."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ _MARGINS: Final = "margins.parquet"
 
 
 class CheckResult(TableSet):
-    """The result of `check`, or of the folder that it wrote: its tables, its outcome, and reports of it.
+    """The result of `check`, or of `open`: its tables, its exit code, and its reports.
 
-    The tables are those of the result files: `drivelint docs columns` describes their columns. `notes`: what the command line
-    would have said on stderr. `folder`: where its files are; None: they are not written.
+    The tables are those of the result files: `drivelint docs columns` describes their columns. `notes`: the messages that the command
+    line prints on stderr. `folder`: the folder of the result files; None if they were not written.
     """
 
     verdicts: Table
@@ -63,28 +63,28 @@ class CheckResult(TableSet):
         self.notes = tuple(map(in_keywords, notes))
         self.folder = folder
         self._result = replace(result, margins_file=None)
-        self._scratch = scratch  # its folder, with the margins, is removed with the last reference to the result
+        self._scratch = scratch  # the folder, with the margins, is removed with the last reference to the result
         margins = result.margins_file if folder is None else folder / _MARGINS
         self._margins_file = margins if margins is not None and margins.is_file() else None
 
     @property
     def result(self) -> Result:
-        """The tables as the package itself has them; no part of the interface."""
+        """The internal form of the result; not part of the public interface."""
         return self._result
 
     @property
     def exit_code(self) -> int:
-        """The exit code of the command line: 0 nothing failed, 1 something failed, 3 lossy, 4 not judged, 2 a rule could not be run."""
+        """The exit code of `drivelint check`: 0 nothing failed, 1 something failed, 2 rule error, 3 lossy input, 4 not judged."""
         return int(exit_status(self._result).code)
 
     @property
     def why(self) -> str:
-        """Why the exit code is what it is, in one sentence."""
+        """The reason for the exit code, in one sentence."""
         return in_keywords(exit_status(self._result).why)
 
     @property
     def margins(self) -> Table | None:
-        """Every judged step; None: `check` ran without `margins`."""
+        """The table of every judged step; None if `check` ran without `margins`."""
         if self._margins_file is None:
             return None
         import pyarrow.parquet as pq
@@ -97,9 +97,9 @@ class CheckResult(TableSet):
     def report(self, path: AnyPath, *, to: ReportFormat = "html") -> Path: ...
     @typed
     def report(self, path: AnyPath | None = None, *, to: ReportFormat = "html") -> str | Path:
-        """Return a report as text; or write it to a file and return its path.
+        """Return a report as text; or, with `path`, write it to this file and return the path.
 
-        `to`: html, junit, sarif, xqar, markdown. Errors: `DriveLintError` when the file cannot be written.
+        `to`: html, junit, sarif, xqar, markdown. Errors: `DriveLintError` if the file cannot be written.
         """
         _, render = outputs.REPORT_FORMATS[one_of("to", to, ReportFormat)]
         content = render(self._result)
@@ -113,10 +113,11 @@ class CheckResult(TableSet):
 
     @typed
     def write(self, folder: AnyPath, *, overwrite: bool = False) -> Path:
-        """Write the result files into a folder, as `check --out` does, and return it; into its own, it writes nothing.
+        """Write the result files into a folder, as `check --out` does, and return the folder.
 
-        The logs with their verdicts and the kept database need the log: `check` writes them itself, into its `out`.
-        Errors: `DriveLintError` when the folder cannot be written, or without `overwrite` has such files that are not drivelint's.
+        Nothing is written if the result is already in this folder. Annotated logs and the kept database are not written: they need the
+        logs, so only `check` writes them, into its `out`. Errors: `DriveLintError` if the folder cannot be written, or, without
+        `overwrite`, has result files that drivelint did not write.
         """
         if not str(folder).strip():
             raise UsageError("an empty folder name was given: name the folder")
@@ -143,10 +144,11 @@ class CheckResult(TableSet):
         trace: AnyPath | None = None,
         map: AnyPath | None = None,  # noqa: A002 - the option's name
     ) -> Explained:
-        """Explain one verdict, as `drivelint explain` does: its drive is judged again by that rule.
+        """Explain one verdict, as `drivelint explain` does: the rule judges the drive again.
 
-        `name`: a finding's id or how it begins; or a rule, or rule@drive, or how they begin. The others choose among several
-        verdicts. `trace`, `map`: where they are, if they were moved. Errors: `DriveLintError`.
+        `name`: the id of a finding, RULE or RULE@DRIVE, each of which may be shortened to its beginning. `profile`, `object`, `ego`,
+        `verdict` and `at` choose among several verdicts. `trace`, `map`: the new paths of the log and the map, if they were moved.
+        Errors: `DriveLintError`.
         """
         wanted = VerdictFilter(profile, _text(object), at, _text(ego), verdict)
         with TemporaryDirectory(prefix="drivelint-") as scratch:
@@ -155,9 +157,9 @@ class CheckResult(TableSet):
 
     @typed
     def timeline(self, finding: str) -> Timeline:
-        """Return a finding over time: gap, speeds, accelerations, and the measure of its rule.
+        """Return a finding over time: gap, speeds, accelerations, and the measured value of its rule.
 
-        `finding`: its id or how it begins; or a rule, or rule@drive. `.plot()` shows it. Errors: `DriveLintError`.
+        `finding`: its id or the beginning of its id, RULE or RULE@DRIVE. `.plot()` draws the timeline. Errors: `DriveLintError`.
         """
         return timeline(self._result, finding)
 
@@ -166,7 +168,7 @@ class CheckResult(TableSet):
         if self._margins_file is not None:
             import pyarrow.dataset as ds
 
-            queried["margins"] = ds.dataset(self._margins_file)  # only what the query needs of it is read
+            queried["margins"] = ds.dataset(self._margins_file)  # a query reads only the parts that it needs
         return queried
 
     def __repr__(self) -> str:

@@ -1,4 +1,4 @@
-"""The difference of two results, for Python."""
+"""The difference of two results as a Python object."""
 
 from __future__ import annotations
 
@@ -31,20 +31,20 @@ class Comparison:
 
     @property
     def exit_code(self) -> int:
-        """The exit code of `drivelint diff`. 1: a new finding that gates; 4: no such finding, but an earlier one is gone and not fixed."""
+        """The exit code of `drivelint diff`. 1: a new finding that gates; 4: none, but an earlier finding is absent and not fixed."""
         return int(descriptions.exit_code(self._difference, self._failing, self._least))
 
     @property
     def text(self) -> str:
-        """The output of the command line."""
+        """The text that `drivelint diff` prints."""
         return descriptions.difference_text(self._difference, self._failing, self._least, self._gate)
 
     def findings(self) -> list[dict[str, Any]]:
-        """Return every finding of both; `standing`: new, changed, unchanged, fixed, elsewhere, unknown or lost."""
+        """Return every finding of both results. `standing`: new, changed, unchanged, fixed, elsewhere, unknown or lost."""
         return [asdict(entry) for entry in self._difference.entries]
 
     def data(self) -> dict[str, Any]:
-        """Return the output of `--format json` as plain data."""
+        """Return the output of `drivelint diff --format json` as plain data."""
         told: dict[str, Any] = json.loads(descriptions.to_json(self._difference, self._failing, self._least))
         return told
 
@@ -56,9 +56,9 @@ class Comparison:
 
 
 def diff(base: CheckResult | AnyPath, new: CheckResult | AnyPath, *, fail_on: FailOn | None = None) -> Comparison:
-    """Compare two results, or the folders that hold them: new, fixed, changed and unchanged findings.
+    """Compare two results, or the folders with them: new, fixed, changed and unchanged findings.
 
-    `fail_on`: least severity of a new finding that makes exit code 1; None: that of `new`. Errors: `DriveLintError`.
+    `fail_on`: lowest severity of a new finding that causes exit code 1; None: the `fail_on` of the check `new`. Errors: `DriveLintError`.
     """
     (earlier, base_name), (later, name) = _result(base, "base"), _result(new, "new")
     least = later.fail_on if fail_on is None else one_of("fail_on", fail_on, FailOn)
@@ -67,7 +67,7 @@ def diff(base: CheckResult | AnyPath, new: CheckResult | AnyPath, *, fail_on: Fa
 
 
 def _result(source: CheckResult | AnyPath, name: str) -> tuple[Result, str]:
-    """Return a result and its name: that of its folder, if it has one."""
+    """Return a result and its name: the name of its folder, else `name`."""
     if isinstance(source, CheckResult):
         return source.result, name if source.folder is None else source.folder.resolve().name
     if not isinstance(source, str | PathLike):

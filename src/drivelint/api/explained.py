@@ -1,4 +1,4 @@
-"""The reason for one verdict, for Python."""
+"""The explanation of one verdict as a Python object."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ _WIDTH: Final = 120
 
 
 class Explained:
-    """An explanation as `drivelint explain` gives it: as text, or as data."""
+    """The explanation that `drivelint explain` prints, as text or as data."""
 
     def __init__(self, explanation: Explanation) -> None:
         self._explanation = explanation
 
     @property
     def text(self) -> str:
-        """The output of the command line."""
+        """The text that `drivelint explain` prints."""
         from rich.console import Console
 
         console = Console(width=_WIDTH, highlight=False, color_system=None, force_jupyter=False)
@@ -31,7 +31,7 @@ class Explained:
         return "\n".join(line.rstrip() for line in captured.get().splitlines())
 
     def data(self) -> dict[str, Any]:
-        """Return the output of `--format json` as plain data: the numbers in full."""
+        """Return the output of `drivelint explain --format json` as plain data, with all digits of the numbers."""
         told: dict[str, Any] = json.loads(text.to_json(self._explanation))
         return told
 

@@ -1,4 +1,4 @@
-"""Error messages for callers in Python: options are named as keywords."""
+"""Converts messages for Python callers: they name keywords instead of command line options."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _OPTION: Final = re.compile(
 
 @contextmanager
 def errors_name_keywords() -> Iterator[None]:
-    """Let an error say `overwrite=True` where the command line says `--overwrite`."""
+    """Rewrite options in the message of an error inside the block as keywords: `--overwrite` becomes `overwrite=True`."""
     try:
         yield
     except DriveLintError as error:
@@ -28,7 +28,7 @@ def errors_name_keywords() -> Iterator[None]:
 
 
 def in_keywords(text: str) -> str:
-    """Return a message with its options as keywords; those of a command that is named (`check --out`) stay."""
+    """Return a message with options changed to keywords; an option after its command (`check --out`) is not changed."""
     return _OPTION.sub(_keyword, text)
 
 

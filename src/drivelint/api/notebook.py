@@ -1,4 +1,4 @@
-"""The view of a result in a notebook: the verdict, map and logs, the counts, refused logs and the worst findings."""
+"""The HTML view of a result in a notebook: outcome, map and logs, counts, refused logs and the worst findings."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ MOST_REFUSED: Final = 10
 
 
 def one_line(result: Result) -> str:
-    """Return the verdict, whether the map fits, whether the logs are complete, and what was not judged."""
+    """Return on one line: the outcome, whether the map fits, whether the logs are complete, and what was not judged."""
     return f"{in_keywords(verdict_line(result))}; {_inputs(result)}"
 
 
@@ -38,12 +38,12 @@ def _inputs(result: Result) -> str:
 
 
 def block_html(text: str) -> str:
-    """Return text whose columns stay one under the other, whatever the style of the page that it is shown in."""
+    """Return text as HTML whose columns stay aligned, independently of the style of the page around it."""
     return f'<pre><span style="display: inline-block; font-family: monospace; line-height: 1.2">{escape(text)}</span></pre>'
 
 
 def summary_html(result: Result) -> str:
-    """Return the summary as HTML, everything from a log escaped."""
+    """Return the summary of a result as HTML, with all text from logs escaped."""
     found = worst_gating(result)
     rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
     starts = result.start_times

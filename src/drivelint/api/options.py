@@ -1,4 +1,4 @@
-"""Reads the keywords of the Python interface: the options of the command line, in the types that Python has for them."""
+"""Converts the keywords of the Python interface, which are the options of the command line with Python types."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ AnyPath = str | PathLike[str]
 Paths = AnyPath | Iterable[AnyPath]
 Texts = str | Iterable[str] | None
 Assignments = Mapping[str, object] | Texts
-"""KEY=VALUE as texts, or as a dictionary."""
+"""Texts KEY=VALUE, or a dictionary."""
 Pair = str | tuple[float, float] | None
 FailOn = Literal["critical", "major", "minor", "never"]
 Handedness = Literal["auto", "lht", "rht"]
@@ -27,7 +27,7 @@ _Word = TypeVar("_Word", bound=str)
 
 
 def texts(value: Paths | None) -> tuple[str, ...]:
-    """Return one text or path, or several, as texts."""
+    """Return one or several texts or paths as a tuple of texts."""
     if value is None:
         return ()
     several = (value,) if isinstance(value, str | PathLike) else tuple(value)
@@ -38,19 +38,19 @@ def texts(value: Paths | None) -> tuple[str, ...]:
 
 
 def path(value: AnyPath | None) -> Path | None:
-    """Return a path, or None."""
+    """Return the value as a `Path`; None stays None."""
     return None if value is None else Path(value)
 
 
 def assignments(value: Assignments) -> tuple[str, ...]:
-    """Return `KEY=VALUE` for each entry of a dictionary; texts as they are."""
+    """Return `KEY=VALUE` for each entry of a dictionary; texts are returned unchanged."""
     if isinstance(value, Mapping):
         return tuple(f"{key}={_WORDS[v] if isinstance(v, bool) else v}" for key, v in value.items())
     return texts(value)
 
 
 def one_of(name: str, value: _Word, kind: Any) -> _Word:
-    """Return a word, if it is one of those of a `Literal`. Errors: `UsageError` with the nearest."""
+    """Return the word, if the `Literal` type `kind` contains it. Errors: `UsageError` with the nearest valid word."""
     if value not in get_args(kind):
         raise UsageError(f"{name}={value!r}: {hint(str(value), get_args(kind))}")
     return value
@@ -66,7 +66,7 @@ def drive_input(
     ego_size: str | tuple[float, ...] | None,
     env: Assignments,
 ) -> dict[str, Any]:
-    """Return the fields of `DriveInput` about the log. Errors: `UsageError` for a value that is none."""
+    """Return the fields of `DriveInput` about the log. Errors: `UsageError` for an invalid value."""
     return {
         "ego": None if ego is None else str(ego),
         "mapping": None if mapping is None else fspath(mapping),
@@ -81,7 +81,7 @@ def drive_input(
 def map_input(
     *, map_: AnyPath | None, map_dir: AnyPath | None, map_offset: Pair, map_origin: Pair, handedness: Handedness
 ) -> dict[str, Any]:
-    """Return the fields of `DriveInput` about the map. Errors: `UsageError` for a value that is none."""
+    """Return the fields of `DriveInput` about the map. Errors: `UsageError` for an invalid value."""
     return {
         "map": path(map_),
         "map_dir": path(map_dir),
@@ -92,5 +92,5 @@ def map_input(
 
 
 def _with_commas(value: str | tuple[float, ...] | None) -> str | None:
-    """Return numbers as the command line takes them, so that it is one place that judges them."""
+    """Return numbers in the format of the command line, so that the same parser checks them."""
     return value if value is None or isinstance(value, str) else ",".join(map(str, value))

@@ -1,4 +1,4 @@
-"""Progress for a caller in Python: nothing is shown unless requested, and the notes are kept."""
+"""Progress for Python callers: it stores the pipeline's notes, and shows a progress bar only if requested."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class NoteKeeper(Progress):
-    """Keeps the notes of the pipeline, and hands all on to another `Progress`."""
+    """Stores the notes of the pipeline, and forwards every call to another `Progress`."""
 
     def __init__(self, display: Progress) -> None:
         self.notes: list[str] = []
@@ -23,22 +23,22 @@ class NoteKeeper(Progress):
         self._display.stage(name, total)
 
     def advance(self, n: int = 1) -> None:
-        """Report units done."""
+        """Report `n` finished units."""
         self._display.advance(n)
 
     def doing(self, activity: str, part: float = 0.0) -> None:
-        """Say what is done."""
+        """Report the current activity."""
         self._display.doing(activity, part)
 
     def note(self, text: str) -> None:
-        """Keep the note."""
+        """Store a note."""
         self.notes.append(text)
         self._display.note(text)
 
 
 @contextmanager
 def kept_notes(show: bool) -> Iterator[NoteKeeper]:
-    """Keep the notes; `show`: with a bar on stderr, as the command line has it."""
+    """Yield a progress object that stores notes; with `show`, it also shows the command line's progress bar on stderr."""
     if not show:
         yield NoteKeeper(Silent())
         return

@@ -1,4 +1,4 @@
-"""Tables for Python: kept in Arrow, returned as Arrow, polars or pandas, queried with SQL."""
+"""Tables for Python: stored as Arrow tables, returned as Arrow, polars or pandas, queried with SQL."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ if TYPE_CHECKING:
 _SANDBOX_SETTINGS = (
     "SET python_enable_replacements = false; SET enable_external_access = false; SET lock_configuration = true"
 )
-"""A query sees the tables and nothing else, and can write no file."""
+"""Settings with which a query can read only the tables, and cannot write files."""
 
 
 class Table:
-    """Rows with named columns. pyarrow, polars, pandas and DuckDB take it as it is, too (Arrow's PyCapsule interface)."""
+    """Rows with named columns. pyarrow, polars, pandas and DuckDB also accept this object itself (Arrow's PyCapsule interface)."""
 
     __slots__ = ("_rows", "_schema_table")
 
@@ -41,7 +41,7 @@ class Table:
         return tuple(self._rows.column_names)
 
     def describe(self) -> Table:
-        """Return a row per column: `column`, `type`, and `meaning` with the unit, empty for the columns of a query."""
+        """Return a row per column: `column`, `type`, and `meaning` with the unit; `meaning` is empty for the result of a query."""
         import pyarrow as pa
 
         meanings = store.column_comments().get(self._schema_table, {})
@@ -57,7 +57,7 @@ class Table:
         return iter(self.rows())
 
     def __getitem__(self, column: str) -> pl.Series:
-        """Return a column as a series of polars. Errors: `KeyError` with the nearest name."""
+        """Return a column as a polars Series. Errors: `KeyError` with the nearest name."""
         import polars as pl
 
         if column not in self.columns:
@@ -65,17 +65,17 @@ class Table:
         return pl.Series(column, self._rows[column])
 
     def arrow(self) -> pa.Table:
-        """Return the rows as a table of pyarrow."""
+        """Return the rows as a pyarrow Table."""
         return self._rows
 
     def pl(self) -> pl.DataFrame:
-        """Return the rows as a frame of polars."""
+        """Return the rows as a polars DataFrame."""
         import polars as pl
 
         return pl.DataFrame(self._rows)
 
     def df(self) -> pd.DataFrame:
-        """Return the rows as a frame of pandas. Errors: `DriveLintError` where pandas is not installed."""
+        """Return the rows as a pandas DataFrame. Errors: `DriveLintError` if pandas is not installed."""
         try:
             import pandas  # noqa: F401, ICN001 - pyarrow needs it
         except ImportError as error:
@@ -85,11 +85,11 @@ class Table:
         return self._rows.to_pandas()
 
     def geo(self) -> gpd.GeoDataFrame:
-        """Return the rows with their geometries as a frame of geopandas.
+        """Return the rows with their geometries as a GeoDataFrame of geopandas.
 
         `geom` is in the map's metres, `geom_lonlat` in degrees of longitude and latitude.
 
-        Errors: `DriveLintError` where geopandas is not installed, and for a table without a geometry.
+        Errors: `DriveLintError` if geopandas is not installed, or the table has no geometry.
         """
         if self._schema_table not in SHAPES:
             raise UsageError(
@@ -123,7 +123,7 @@ class Table:
 
 
 def _told_apart(names: Sequence[str]) -> list[str]:
-    """Return column names of which each is there once: a later one of the same name gets a number, as DuckDB numbers them in a table."""
+    """Return unique column names: a repeated name gets a number, as DuckDB numbers the columns of a table."""
     told: list[str] = []
     for name in names:
         n, free = 0, name
@@ -135,20 +135,20 @@ def _told_apart(names: Sequence[str]) -> list[str]:
 
 
 class TableSet:
-    """Tables by name, which `sql` queries together."""
+    """Several tables with names, and SQL queries over them."""
 
     def __init__(self, tables: Mapping[str, pa.Table], schema_tables: Mapping[str, str]) -> None:
-        """`schema_tables`: name -> table of the schema that describes its columns and the geometry of its rows."""
+        """Store the tables. `schema_tables`: name -> table of the schema that describes its columns and geometry."""
         self.tables = {name: Table(rows, schema_tables.get(name)) for name, rows in tables.items()}
         self._shapes = {name: table for name, table in schema_tables.items() if table in SHAPES}
 
     def sql(self, query: str, params: object = None) -> Table:
-        """Return the rows of a DuckDB query over the tables, by their names; `params` fill in `?` or `$name`.
+        """Return the rows of a DuckDB query over the tables, by their names. `params`: values for `?` or `$name`.
 
-        A query with `geom`, `geom_lonlat` or a function `ST_...` has the spatial extension, and these columns (GEOMETRY) in the tables that
-        have them; a geometry in the result is WKB. The tables stay as they are, and nothing that a query creates is there for the next.
-        Of columns with one name, as of a join, the later ones get numbers: `t_start_ns_1`.
-        Errors: `DriveLintError` for a query that DuckDB refuses, or that returns no rows and columns.
+        For a query with `geom`, `geom_lonlat` or a function `ST_...`, the spatial extension is loaded, and tables with a geometry have
+        these columns (GEOMETRY). A geometry in the result is WKB. A query cannot change the tables, and tables that it creates are lost
+        afterwards. Repeated column names, as after a join, get numbers: `t_start_ns_1`.
+        Errors: `DriveLintError` for a query that DuckDB refuses, or a statement that returns no table.
         """
         has_geometry = re.search(r"\bgeom(_lonlat)?\b|\bst_", query, re.IGNORECASE) is not None
         with store.open_as_is() if has_geometry else duckdb.connect() as con:
@@ -168,7 +168,7 @@ class TableSet:
                 rows = answer.to_arrow_table()
                 return Table(rows.rename_columns(_told_apart(rows.column_names)))
             except duckdb.Error as error:
-                raise UsageError(f"the query failed: {error}") from None  # DuckDB's error says nothing else
+                raise UsageError(f"the query failed: {error}") from None  # the message has DuckDB's error already
 
     def _queried(self) -> dict[str, Any]:
         return {name: table.arrow() for name, table in self.tables.items()}

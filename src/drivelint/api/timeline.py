@@ -1,4 +1,4 @@
-"""A finding over time: a table to compute with, and charts to look at."""
+"""The timeline of a finding: a table for computing, and charts for people."""
 
 from __future__ import annotations
 
@@ -30,28 +30,28 @@ _PAGE = """{% import 'macros.html.j2' as m with context %}<!doctype html><html l
 
 
 class Figure:
-    """A drawing that a notebook shows, and that can be saved as a page of its own."""
+    """A drawing that a notebook shows, and that can be saved as an HTML page."""
 
     def __init__(self, page: str, height: int) -> None:
         self._page, self._height = page, height
 
     def save(self, path: AnyPath) -> Path:
-        """Write the drawing as an HTML page, which opens offline."""
+        """Write the drawing as an HTML page that opens offline, and return its path."""
         file = Path(path)
         file.write_text(self._page, encoding="utf-8")
         return file
 
     def _repr_html_(self) -> str:
-        """Return it in a frame of its own, so that its style and that of the notebook leave each other alone."""
+        """Return the drawing in an iframe, so that its style and the notebook's style do not affect each other."""
         return f'<iframe srcdoc="{escape(self._page)}" width="640" height="{self._height}" style="border: 0"></iframe>'
 
 
 class Timeline(Table):
-    """A row per time stamp, from 5 s before the worst step of a finding to 5 s after it, and per judged step.
+    """One row per time stamp from 5 s before to 5 s after the worst step of a finding, and one row per judged step.
 
-    `t_ns`, `t_s`: the log's clock, and since the drive's first time stamp. `gap_m`: from box to box, 0 where they touch. Speeds and
-    accelerations in m/s and m/s2, at most five values a second. `observed`, `required`, `margin`: of the rule, in its unit, at the
-    steps that it judged. NULL: not known, or not at this time stamp.
+    `t_ns`: time on the log's clock; `t_s`: seconds since the drive's first time stamp. `gap_m`: distance of the boxes, 0 if they touch.
+    Speeds and accelerations are in m/s and m/s2, at most five values per second. `observed`, `required` and `margin`: values of the rule,
+    in its unit, at the steps that it judged. NULL: unknown, or no value at this time stamp.
     """
 
     __slots__ = ("_strips", "_title")
@@ -61,7 +61,7 @@ class Timeline(Table):
         self._strips, self._title = strips, title
 
     def plot(self) -> Figure | None:
-        """Return the charts of the report: speeds, gap, and the measure of the rule; None if the ego's path is not known."""
+        """Return the charts of the report: speeds, gap, and the rule's measured value; None if the ego's path is unknown."""
         if self._strips is None:
             return None
         template = page_environment(()).from_string(_PAGE)
@@ -71,7 +71,7 @@ class Timeline(Table):
 
 
 def timeline(result: Result, name: str) -> Timeline:
-    """Return the timeline of a finding. `name`: as `explain` takes it. Errors: `UsageError` for one that is not there."""
+    """Return the timeline of a finding. `name`: as in `CheckResult.timeline`. Errors: `UsageError` for an unknown finding."""
     finding = named_finding(result, name)
     row, start_ns = finding.row, finding.start_ns
     at = {"drive_id": row["drive_id"], "ego_id": row["ego_id"], "t_ns": row["t_worst_ns"]}
@@ -104,7 +104,7 @@ def _rows(table: pa.Table, of: Mapping[str, object]) -> list[Row]:
 
 
 def _add_ways(values: dict[int, dict[str, float | None]], scene: Row, object_id: str | None) -> None:
-    """Add the speeds and accelerations of ego and object, and the gap between them."""
+    """Add the speeds and accelerations of ego and object, and the gap between them, to `values`."""
     ego = scene["actors"][0]
     met = next((each for each in scene["actors"][1:] if each["actor_id"] == object_id), None)
     for who, actor in (("ego", ego), ("object", met)):

@@ -1,4 +1,4 @@
-"""The tables of one recorded drive, for Python."""
+"""The tables of one recorded drive as a Python object."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ _LANES: Final = "lane_shape"
 
 
 class TraceTables(TableSet):
-    """One drive as the tables that rules are judged on: metres, seconds, radians, box centres; one row of `data_log`.
+    """The tables of one drive on which rules are judged, in metres, seconds and radians, with positions of box centres.
 
-    `drivelint docs dictionary` describes the columns. `lanes`: those of its map between their bounds, as `drivelint docs columns`
-    describes them; empty without a map. `embedded_map`: OpenDRIVE that the log holds, or None. `notes`: what the
-    reader had to say about the log.
+    `data_log` has one row. `drivelint docs dictionary` describes the columns. `lanes`: the lanes of the drive's map with their bounds, see
+    `drivelint docs columns`; empty without a map. `embedded_map`: OpenDRIVE from the log, or None. `notes`: the reader's messages
+    about the log.
     """
 
     data_log: Table

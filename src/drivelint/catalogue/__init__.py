@@ -1,4 +1,4 @@
-"""The rule catalogue: rule files found by glob, read, checked and selected. An assertion is data: nothing runs here."""
+"""The rule catalogue: finds, reads, checks and selects rule files. It treats a rule as data, and runs none."""
 
 from __future__ import annotations
 

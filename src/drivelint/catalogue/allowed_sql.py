@@ -1,4 +1,4 @@
-"""Lists the allowed elements of a rule's SQL, from `allowed.toml`; everything else is refused, because a rule is untrusted code."""
+"""The allowed elements of a rule's SQL, from `allowed.toml`. All other elements are refused, because a rule is untrusted code."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from drivelint.facts import toml_beside
 from drivelint.sql import store
 
 ENGINE_TABLES: Final = frozenset({"reference", "reference_step"})
-"""Tables that the engine makes for a rule: its reference points, and the steps at which each is judged."""
+"""Tables that the engine makes for a rule: its reference points, and the steps at which each reference point is judged."""
 
 _FACTS: Final = toml_beside(__file__, "allowed.toml")
 NODES, SOURCES, EXPRESSIONS, TABLE_FUNCTIONS, REFUSED_NAMES, ORDERED = (
@@ -20,23 +20,23 @@ NODES, SOURCES, EXPRESSIONS, TABLE_FUNCTIONS, REFUSED_NAMES, ORDERED = (
 )
 _STOCK: Final = frozenset[str](chain.from_iterable(_FACTS["functions"].values()))
 _MACRO = re.compile(r"\bMACRO\s+(\w+)", re.IGNORECASE)
-_OUTPUTS = ("verdict", "evidence", "output")  # what a run writes is not what a rule reads
+_OUTPUTS = ("verdict", "evidence", "output")  # files of schemas/ with tables that a run writes
 
 
 @cache
 def macros() -> frozenset[str]:
-    """Return the names of the library's macros, in lower case."""
+    """Return the names of the macros in `queries/macros`, in lower case."""
     return frozenset(name.lower() for name in _MACRO.findall(store.macro_definitions()))
 
 
 @cache
 def functions() -> frozenset[str]:
-    """Return the scalar, aggregate and window functions and macros that a rule may call, in lower case."""
+    """Return the names of the functions and macros that a rule may call, in lower case."""
     return _STOCK | macros()
 
 
 @cache
 def tables() -> frozenset[str]:
-    """Return the tables that a rule may read: those of schemas/ but the outputs, and the engine's own two."""
+    """Return the tables that a rule may read: the tables of `schemas/` except outputs, and `ENGINE_TABLES`."""
     outputs = {table for file in _OUTPUTS for table in store.column_comments(file)}
     return frozenset(store.column_comments().keys() - outputs) | ENGINE_TABLES

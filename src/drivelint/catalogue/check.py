@@ -1,6 +1,6 @@
-"""Mechanical checks of a rule's SQL: one SELECT, known tables and functions only, bound parameters, named columns.
+"""Checks a rule's SQL without running it: one SELECT, known tables and functions only, bound parameters, named columns.
 
-The content of DuckDB's syntax tree is compared with the lists in `allowed_sql`: DuckDB can parse and serialise statements that are not
+The module compares DuckDB's syntax tree with the lists in `allowed_sql`. DuckDB itself also parses and serialises statements that are not
 allowed (such as two statements, DESCRIBE, `query('...')` and `FROM '/etc/passwd'`).
 """
 
@@ -32,9 +32,9 @@ _DEEP = "too deeply nested to be checked: split it into CTEs"
 class Query(NamedTuple):
     """The parts of one SELECT.
 
-    `places`: table or `$parameter` -> `file:line` of its first mention. `columns` is None where a star hides them.
-    `needs`: tables that must have rows for it to have any. `column_names`: the names of columns that stand in it, but for
-    those that only word a reason, in lower case. `by_name`: the other branches of a UNION BY NAME may have columns besides.
+    `places`: table or `$parameter` -> `file:line` of its first mention. `columns`: its columns, None if it uses `*`.
+    `needs`: tables that must have rows for the SELECT to return rows. `column_names`: all column names in the SELECT, in lower case,
+    except names used only in the text of a reason. `by_name`: it is a UNION BY NAME, whose later branches may add columns.
     """
 
     tables: frozenset[str]
@@ -48,7 +48,10 @@ class Query(NamedTuple):
 
 
 class GivenReason(NamedTuple):
-    """A code that the SQL gives as a reason by `why(code, {...})`, the names of its arguments (None: not written out) and `file:line`."""
+    """A reason that the SQL gives by `why(code, {...})`: its code, argument names and place (`file:line`).
+
+    `arguments` is None if the second argument is no STRUCT literal.
+    """
 
     code: str
     arguments: frozenset[str] | None
@@ -56,26 +59,26 @@ class GivenReason(NamedTuple):
 
 
 class _Text(NamedTuple):
-    """SQL and where in which file it stands."""
+    """SQL, with its file and the line of the file on which it begins."""
 
     sql: str
     file: str
     line: int
 
     def at(self, offset: int | None) -> str:
-        """Return file:line of a byte of the SQL; of its first line where that is not known."""
+        """Return `file:line` of a byte offset in the SQL; the first line of the SQL if the offset is None."""
         before = b"" if offset is None else self.sql.encode()[:offset]
         return f"{self.file}:{self.line + before.count(10)}"
 
     def of(self, error: duckdb.Error) -> str:
-        """Return file:line of DuckDB's error."""
+        """Return `file:line` of an error of DuckDB."""
         line = re.search(r"^LINE (\d+):", str(error), re.MULTILINE)
         return f"{self.file}:{self.line + (int(line[1]) - 1 if line else 0)}"
 
 
 @contextmanager
 def noted(problems: list[str]) -> Iterator[None]:
-    """Add the refusal inside the block to the problems, so that an author sees all of them."""
+    """Add the message of a `RuleError` inside the block to the problems, so that an author sees all problems."""
     try:
         yield
     except RuleError as error:
@@ -83,21 +86,21 @@ def noted(problems: list[str]) -> Iterator[None]:
 
 
 def refuse(problems: Sequence[str]) -> None:
-    """Refuse a rule for all problems of its file, a line each. Errors: `RuleError`, where there are any."""
+    """Raise `RuleError` with one line per problem, if there are problems."""
     if problems:
         raise RuleError("\n".join(dict.fromkeys(problems)))
 
 
 def complaint(error: duckdb.Error) -> str:
-    """Return DuckDB's error in one line, with the names that it suggests, without the part of the SQL."""
+    """Return DuckDB's error message on one line, with the names that it suggests, without its SQL excerpt."""
     said = re.split(r"^LINE \d+:", str(error), maxsplit=1, flags=re.MULTILINE)[0]
     return " ".join(said.split())
 
 
 def complained_line(error: duckdb.Error, text: str) -> int | None:
-    """Return the line of a file with the part of the SQL that DuckDB shows; None: no such line, or several.
+    """Return the line number in the file `text` of the SQL excerpt in DuckDB's error; None if no line or several lines match.
 
-    The statement that failed may be composed of parts of the file, so that its own number of the line says nothing.
+    DuckDB's own line number is useless if the failed statement was composed from parts of the file.
     """
     shown = re.search(r"^LINE \d+: (.*)$", str(error), re.MULTILINE)
     part = shown[1].strip().removeprefix("...").removesuffix("...").strip() if shown else ""
@@ -105,12 +108,12 @@ def complained_line(error: duckdb.Error, text: str) -> int | None:
     return found[0] if len(found) == 1 else None
 
 
-@lru_cache(maxsize=2048)  # a process that judges twice reads the same rules again
+@lru_cache(maxsize=2048)  # a process may judge several times, with the same rules
 def check_query(sql: str, file: str, line: int = 1) -> Query:
     """Check the SQL of one section, which begins at `line` of `file`, and return its parts.
 
-    Errors: `RuleError` with file and line when it is not exactly one SELECT, or reads, calls or is built of anything that
-    `allowed_sql` does not name, or has a CTE named like a table of ours or like the engine's own (`_...`).
+    Errors: `RuleError` with file and line if the section is not exactly one SELECT, or uses an element that `allowed_sql` does not list.
+    Also for a CTE with the name of a table, or with a name that begins with `_`, like the engine's tables.
     """
     text = _Text(sql, file, line)
     statement, node = _parsed(text)
@@ -156,13 +159,13 @@ def _parsed(text: _Text) -> tuple[duckdb.Statement, Node]:
 
 
 def _parameter(sql: str, name: str) -> int | None:
-    """Return the byte at which a parameter stands first; the syntax tree does not say."""
+    """Return the byte offset of a parameter's first use, which the syntax tree does not contain."""
     found = re.search(rf"\${re.escape(name)}\b", sql)
     return len(sql[: found.start()].encode()) if found else None
 
 
 class _SyntaxFindings:
-    """Collects forbidden elements of a syntax tree (`refusals`), the tables read (name -> file:line), the columns and the reasons."""
+    """Collects from a syntax tree: forbidden elements (`refusals`), tables (name -> `file:line`), column names and reasons."""
 
     def __init__(self, text: _Text) -> None:
         self._text = text
@@ -173,7 +176,7 @@ class _SyntaxFindings:
         self._worded: set[int] = set()
 
     def meet(self, part: Node, ctes: frozenset[str]) -> None:
-        """Look at one node; `ctes`: the names of those in sight."""
+        """Process one node. `ctes`: names of the CTEs in its scope."""
         kind = part.get("type")
         if part.get("sample"):
             self._refuse(part, "a sample differs every time: a rule may not use one")
@@ -217,7 +220,7 @@ class _SyntaxFindings:
             code, *rest = part["children"]
             arguments = _fields(rest[0]) if rest else frozenset[str]()
             self.reasons += [GivenReason(each, arguments, place) for each in _results(code)]
-            # what only words a reason decides nothing; a parent is met before its children
+            # columns that are used only in the text of a reason decide nothing; the walk visits a parent before its children
             self._worded.update(id(each) for each, _ in walk(part["children"]) if each.get("class") == "COLUMN_REF")
         if kind == "COLUMN_REF" and id(part) not in self._worded:
             self.column_names.add(part["column_names"][-1].lower())
@@ -251,12 +254,12 @@ class _SyntaxFindings:
 
 
 def _is_ordered(part: Node) -> bool:
-    """Whether an aggregate or a window function has an order of its rows."""
+    """Return whether an aggregate or a window function has an ORDER BY."""
     return bool(part.get("orders") or (part.get("order_bys") or {}).get("orders"))
 
 
 def _results(part: Node) -> list[str]:
-    """Return the texts that an expression may give: itself, or those of the branches of a CASE."""
+    """Return the texts that an expression may return: a constant, or the constants in the branches of a CASE."""
     if part["class"] == "CONSTANT":
         return [str(part["value"]["value"])]
     if part["class"] != "CASE":
@@ -266,14 +269,14 @@ def _results(part: Node) -> list[str]:
 
 
 def _fields(part: Node) -> frozenset[str] | None:
-    """Return the names in a literal of a STRUCT; None: it is none."""
+    """Return the field names of a STRUCT literal; None for another expression."""
     if str(part.get("function_name", "")).lower() != "struct_pack":
         return None
     return frozenset(str(child["alias"]) for child in part["children"])
 
 
 def _is_foreign(part: Node) -> bool:
-    """Whether a node is a source of rows or a query, and none of those that a rule may be made of."""
+    """Return whether a node is a source of rows or a query of a type that a rule may not use."""
     kind = str(part.get("type"))
     if {"alias", "sample"} <= part.keys():
         return kind not in allowed_sql.SOURCES
@@ -285,7 +288,7 @@ def _plain(kind: object) -> str:
 
 
 def _is_by_name(node: Node) -> bool:
-    """Whether a SELECT is a UNION BY NAME, or its first branch is one."""
+    """Return whether a query is a UNION BY NAME, or its first branch is one."""
     while node["type"] == "SET_OPERATION_NODE":
         if node["setop_type"] == "UNION_BY_NAME":
             return True
@@ -294,7 +297,7 @@ def _is_by_name(node: Node) -> bool:
 
 
 def _columns(node: Node) -> tuple[str, ...] | None:
-    """Names of the columns of a SELECT (of the first branch of a UNION); None where they cannot be read off."""
+    """Return the column names of a SELECT, or of the first branch of a UNION; None if a column has no name or is a `*`."""
     while node["type"] == "SET_OPERATION_NODE":
         node = branches(node)[0]
     if node["type"] != "SELECT_NODE":

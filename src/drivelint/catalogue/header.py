@@ -1,4 +1,4 @@
-"""Parses the header of a rule file: TOML in its leading comment lines; unknown keys are refused."""
+"""Parses the header of a rule file: TOML in the leading comment lines. Unknown keys are refused."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 Kind = Literal["invariant", "execution", "precondition", "postcondition"]
 Seconds = float | str
-"""Seconds, or the name of the rule's parameter that holds them."""
+"""Seconds, or the name of the rule's parameter with the seconds."""
 
 _NAME = re.compile(r"[a-z][a-z0-9_]*")
 _TABLE = re.compile(r"\s*\[([^\[\]=,]+)\]\s*(?:#.*)?$")
@@ -30,7 +30,7 @@ _KEY = re.compile(r"\s*([\w.\"' \t-]+?)\s*=")
 
 
 class Param(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A number, switch or word of a rule that a user may change: bound as `$name`, never formatted into SQL."""
+    """A number, switch or word of a rule that a user may change. It is bound as `$name`, never formatted into SQL."""
 
     default: float | bool | str
     unit: str
@@ -39,7 +39,7 @@ class Param(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Conditions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The conditions in which a rule applies, see `ego_condition`; all must hold; none given: it always applies."""
+    """The conditions under which a rule applies, see `ego_condition`. All must be true; without conditions, the rule always applies."""
 
     road_type: tuple[str, ...] = ()
     carriageway: tuple[str, ...] = ()
@@ -49,9 +49,9 @@ class Conditions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     light: tuple[str, ...] = ()
     vehicle_class: tuple[str, ...] = ()
     limit_min_mps: float | None = None
-    """The least speed limit in m/s, itself included."""
+    """The least speed limit in m/s, inclusive."""
     limit_max_mps: float | None = None
-    """The greatest speed limit in m/s, itself included."""
+    """The greatest speed limit in m/s, inclusive."""
 
     @property
     def restricting(self) -> dict[str, tuple[str, ...]]:
@@ -65,13 +65,13 @@ class Conditions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 CONTACT: Final = "contact"
-"""Tag of the rules whose findings are contacts: of the boxes, or found from the speeds."""
+"""Tag of the rules whose findings are contacts, found from touching boxes or from the speeds."""
 STANDING: Final = "standing"
-"""Tag of the rules that an ego which never moves is judged by, too."""
+"""Tag of the rules that also judge an ego that never moves."""
 EXCUSES: Final = "excuses"
-"""Tag of the rules that may be kept although their title is false, as their hypothesis says: leaving the lane to overtake."""
+"""Tag of the rules that may be kept although their title is false. The hypothesis states the excuse, such as overtaking."""
 ROAD_USERS: Final = "road_users"
-"""The signal that every rule about other actors needs: the actors around the ego were recorded."""
+"""The signal that every rule about other actors needs: the log records the actors around the ego."""
 
 
 class Header(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -80,7 +80,7 @@ class Header(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     title: str
     """A statement that is true when the rule is kept."""
     breach: str | None = None
-    """What happened when it is broken, as the title of its findings; None: their title is "Not kept" and that of the rule."""
+    """The title of its findings: what happened when the rule is broken. None: "Not kept: " and the rule's title."""
     clause: str
     hypothesis: str
     kind: Kind
@@ -95,43 +95,43 @@ class Header(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     sense: Literal[">=", ">", "<=", "<", "holds"]
     unit: str | None = None
     observes: str | None = None
-    """The name of `observed`, as a short noun phrase, for the sentence of a verdict."""
+    """A short noun phrase for the quantity `observed`, for the sentence of a verdict."""
     near_margin: float | None = None
     reads: tuple[str, ...]
     requires: tuple[str, ...] = ()
     pass_requires: tuple[str, ...] = ()
-    """Signals without which the rule can be found broken, but not kept."""
+    """Signals without which the rule can fail, but not pass."""
     reference: str | None = None
     without_time: str | None = None
-    """What the log does not show if the time of a reference point is not known, as a clause."""
+    """Words for a sentence: what the log does not show if the time of a reference point is unknown."""
     without_anchor: str | None = None
-    """The same for an anchor without a time."""
+    """Words for a sentence: what the log does not show if the time of an anchor is unknown."""
     exempt_after_s: Seconds = 0.0
     merge_gap_s: Seconds = 1.0
     tags: tuple[str, ...] = ()
-    """The tags by which reports recognise a rule: `contact`, its findings are contacts; `danger_space`, its pictures show danger spaces."""
+    """Tags by which reports recognise kinds of rules, such as `contact`, or `danger_space`: its pictures show danger spaces."""
     unaffected_by: tuple[Quantity, ...] = ()
-    """Quantities that may be doubted without making a step unknown, although the rule reads columns made of them."""
+    """Quantities whose uncertainty does not make a step unknown, although the rule reads columns computed from them."""
     law: tuple[str, ...] = ()
-    """The nations whose law the rule is: it is not applicable where the nation is known to be another; empty: no nation's own."""
+    """The nations whose law contains the rule: it is not applicable in another known nation. Empty: it applies in all nations."""
     applies: Conditions = Conditions()
     params: dict[str, Param] = {}
     reasons: dict[str, ReasonText] = {}
-    """The codes that only this rule gives as reasons (the macro `why`), with their words."""
+    """Reason code -> its text, for codes that only this rule gives by the macro `why`."""
 
 
 _OF: Final = {"params": Param, "applies": Conditions, "reasons": ReasonText}
 
 
 def json_schema() -> dict[str, Any]:
-    """Return the JSON schema of a rule's header, for editors and for authors of packs."""
+    """Return the JSON schema of a rule's header, for editors and authors of packs."""
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **msgspec.json.schema(Header)}
 
 
 def parse_header(text: str, where: str) -> Header:
     """Parse the TOML `text`, whose line n is line n of the file `where`.
 
-    Errors: `RuleError` naming file and line for bad TOML, an unknown key (with the nearest known one), a wrong type, or
+    Errors: `RuleError` with file and line for invalid TOML, an unknown key (with the nearest known key), a wrong type, or
     fields that contradict each other.
     """
     try:
@@ -149,7 +149,7 @@ def parse_header(text: str, where: str) -> Header:
 
 
 def _explained(error: msgspec.ValidationError, text: str, where: str) -> RuleError:
-    """Turn msgspec's message into one line with file, line and the nearest known key."""
+    """Convert msgspec's error to a `RuleError` on one line, with file, line and the nearest known key."""
     message = str(error)
     place = re.search(r"at `\$\.?([^`]*)`", message)
     path = place[1] if place else ""
@@ -168,9 +168,9 @@ def _explained(error: msgspec.ValidationError, text: str, where: str) -> RuleErr
 
 
 def line_of(text: str, key: str) -> int:
-    """Return the line of the header that sets a key, such as `reads` or `params.near_m.unit`; `*` in it is any name.
+    """Return the line of the header that sets a key, such as `reads` or `params.near_m.unit`; `*` in the key matches any name.
 
-    Where no line sets it: that of the table or key that it would be in, else 1.
+    If no line sets the key, return the line of the table or key that would contain it, else 1.
     """
     wanted = key.split(".")
     table: list[str] = []
@@ -191,7 +191,7 @@ def _parts(name: str) -> list[str]:
 
 
 def _kind_problems(h: Header) -> Iterator[tuple[str, str]]:
-    """Yield keys with their problems: fields that do not go with the kind or the sense."""
+    """Yield (key, problem) for the fields that contradict the rule's kind or sense."""
     later, measured = h.kind in {"precondition", "postcondition"}, h.sense != "holds"
     if later != (h.subtype is not None):
         key = "subtype" if h.subtype else "kind"

@@ -1,4 +1,4 @@
-"""Finding rule files: `<pack>/<rule>.sql` is the rule `<pack>.<rule>`. What was read and checked once is kept."""
+"""Finds and loads rule files: `<pack>/<rule>.sql` is the rule `<pack>.<rule>`. Rules that were read and checked are cached."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ class _Pack(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def load_rules(dirs: Sequence[Path] = ()) -> dict[str, Rule]:
-    """Return every rule by id, sorted: the shipped packs and those of the folders in `dirs`.
+    """Return id -> rule, sorted, for all rules of the shipped packs and of the packs in `dirs`.
 
-    Errors: `RuleError` with file and line, for two rules with one id, and for a folder without rules.
+    Errors: `RuleError` with file and line, also for two rules with the same id and for a folder without rules.
     """
     rules: dict[str, Rule] = {}
     for file, is_shipped in _all_files(dirs):
@@ -38,24 +38,24 @@ def load_rules(dirs: Sequence[Path] = ()) -> dict[str, Rule]:
 
 
 def load_rule(rule_id: str, dirs: Sequence[Path] = ()) -> Rule | None:
-    """Return one rule of the shipped packs and the folders in `dirs`, without reading the others; None: there is none of this id.
+    """Return the rule with this id from the shipped packs or `dirs`, without reading other rules; None for an unknown id.
 
-    Errors: `RuleError` with file and line, and for a folder without rules.
+    Errors: `RuleError` with file and line, also for a folder without rules.
     """
     files = ((file, is_shipped) for file, is_shipped in _all_files(dirs) if rule_id_of(file) == rule_id)
     return next((read_rule(file, with_words=not is_shipped) for file, is_shipped in files), None)
 
 
 def _all_files(dirs: Sequence[Path]) -> Iterator[tuple[Path, bool]]:
-    """Yield the files of rules, and whether each is shipped."""
+    """Yield each rule file, and whether it is shipped with drivelint."""
     for n, root in enumerate((folder("queries") / "assertions", *dirs)):
         yield from ((file, n == 0) for file in rule_files(root))
 
 
 def rule_files(root: Path) -> list[Path]:
-    """Return the rule files of a folder, which holds packs (`<pack>/<rule>.sql`) or is one (`<rule>.sql`).
+    """Return the rule files of a folder that contains packs (`<pack>/<rule>.sql`) or is a pack (`<rule>.sql`).
 
-    Errors: `RuleError` where there is none.
+    Errors: `RuleError` for a folder without rules.
     """
     found = sorted(root.glob("*.sql")) + sorted(root.glob("*/*.sql"))
     if not found:
@@ -69,7 +69,7 @@ def rule_id_of(file: Path) -> str:
 
 
 def _pack_folder(file: Path) -> Path:
-    """Return the folder of a rule: of a link, that of the file to which it leads."""
+    """Return the folder of a rule file; for a symbolic link, the folder of its target."""
     return file.resolve().parent if file.is_symlink() else _resolved(file.parent)
 
 
@@ -79,10 +79,10 @@ def _resolved(path: Path) -> Path:
 
 
 def read_rule(file: Path, *, with_words: bool = True) -> Rule:
-    """Read and check one rule file. Errors: `RuleError` with file and line.
+    """Read and check one rule file, and return the rule. Errors: `RuleError` with file and line.
 
-    `with_words`: the words in its SQL too, see `check_words`. Of the shipped rules the tests do so: at each start, it would take a third of
-    the time to read them.
+    `with_words`: also check the words in its SQL, see `check_words`. Only the tests do this for shipped rules, since it needs a third of
+    the time for reading them.
     """
     pack = _pack_folder(file)
     if not file.is_file():
@@ -91,13 +91,13 @@ def read_rule(file: Path, *, with_words: bool = True) -> Rule:
 
 
 _RULES: Final = Memo[Rule]("rules", Rule)
-"""By the file and its content: to read and check all rules takes longer than to judge by one."""
+"""Cached rules, by file and content: reading and checking all rules takes longer than judging by one rule."""
 
 
-@lru_cache(maxsize=1024)  # a process that checks many times reads its rules each time, and they seldom change
+@lru_cache(maxsize=1024)  # a process may load the same rules many times, and they seldom change
 def _known_rule(file: Path, pack: str, pack_title: str, content: bytes, *, with_words: bool) -> Rule:
     def parse_rule() -> Rule:
-        from drivelint.catalogue.rule_file import checked_rule  # and with it what reads SQL
+        from drivelint.catalogue.rule_file import checked_rule  # imported here, since it imports the SQL parser
 
         return checked_rule(file, pack, pack_title, content, with_words=with_words)
 
@@ -106,7 +106,7 @@ def _known_rule(file: Path, pack: str, pack_title: str, content: bytes, *, with_
 
 @cache
 def _title(folder_: Path) -> str:
-    """Return the title of a pack from its `pack.toml`; '' if it has none. Errors: `RuleError`."""
+    """Return the title of a pack from its `pack.toml`; '' without this file. Errors: `RuleError` for an invalid file."""
     file = folder_ / "pack.toml"
     if not file.is_file():
         return ""

@@ -1,4 +1,4 @@
-"""`<rule>.parts.toml`, beside a rule that has one: the parts of its requirement, for readers of one verdict.
+"""Reads `<rule>.parts.toml`, an optional file beside a rule: it splits the rule's required value into parts, to explain a verdict.
 
     sql = "SELECT drive_id, ego_id, t_ns, thinking_m, braking_m FROM ..."
 
@@ -6,9 +6,9 @@
     thinking_m = "thinking"
     braking_m = "braking"
 
-The SELECT has a row for each place at which the rule may require something: its keys (`object_id` and `profile` too, where the
-requirement depends on them) and its parts, which add up to what is required there; NULL is no part of it. It reads what the rule
-reads, and its parameters.
+The SELECT has a row for each step at which the rule may require something. Its columns are the keys (with `object_id` and `profile` if
+the requirement depends on them) and the parts, whose sum is the required value; NULL counts as no part. It may read the rule's tables and
+parameters.
 """
 
 from __future__ import annotations
@@ -30,31 +30,31 @@ _REQUIRED: Final = frozenset({"drive_id", "ego_id", "t_ns"})
 
 
 class RequirementParts(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The parts of a requirement: column of `sql` -> its name in words."""
+    """The parts of a rule's required value. `parts`: column of `sql` -> name of the part in words."""
 
     sql: str
     parts: dict[str, str]
 
     @property
     def keys(self) -> tuple[str, ...]:
-        """The keys of its rows."""
+        """The key columns that the SELECT returns."""
         return tuple(key for key in KEYS if key in (check_query(self.sql, "parts").columns or ()))
 
     @property
     def parameters(self) -> frozenset[str]:
-        """The rule's parameters that it binds."""
+        """The rule's parameters that the SELECT uses."""
         return check_query(self.sql, "parts").parameters
 
 
 def parts_path(rule: Rule) -> Path:
-    """Return the file of the parts of a rule's requirement, which need not be there."""
+    """Return the path of a rule's parts file, which may not exist."""
     return rule.path.with_suffix(".parts.toml")
 
 
 def read_parts(rule: Rule) -> RequirementParts | None:
-    """Return the parts of a rule's requirement; None: no file defines them.
+    """Return the parts of a rule's required value; None without a parts file.
 
-    Errors: `RuleError` for a file that cannot be understood, or that reads, binds or returns what it may not.
+    Errors: `RuleError` for an invalid file, or a SELECT with a table, parameter or column that is not allowed.
     """
     file = parts_path(rule)
     if not file.is_file():

@@ -1,4 +1,4 @@
-"""One rule, as the rest of the program uses it."""
+"""The class `Rule`: one rule, read and checked."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from drivelint.catalogue.header import ROAD_USERS, Header
 
 
 class Rule(Header, frozen=True, forbid_unknown_fields=True, kw_only=True):
-    """One rule: its header, its SQL, and what is known about it without running it."""
+    """One rule: its header, its SQL, and facts that were found by parsing its SQL."""
 
     id: str
     pack: str
@@ -17,29 +17,29 @@ class Rule(Header, frozen=True, forbid_unknown_fields=True, kw_only=True):
     version: str
     sections: dict[str, str]
     columns: dict[str, tuple[str, ...]]
-    """Section -> its columns; @reference is missing here when it selects a star, or unites by name."""
+    """Section -> its columns; without @reference if that section selects `*` or is a UNION BY NAME."""
     reason_codes: frozenset[str]
-    """The codes that its SQL names as reasons."""
+    """The reason codes in its SQL."""
     quantities: frozenset[str]
-    """What of the actors it uses (position, size, ...), as the columns that it reads declare."""
+    """The quantities of actors that it uses (position, size, ...), as declared by the columns that it reads."""
     is_named: bool = True
-    """The user named this rule. If the log lacks a signal that it needs, it is unknown; without being named, it does not apply."""
+    """Whether the user selected the rule by its id. If the log lacks a needed signal, such a rule is unknown; else it does not apply."""
     occasion_needs: frozenset[str]
-    """Tables without whose rows it has no reference point or, if it is an invariant with @applies, no step to judge."""
+    """Tables that must have rows, else the rule has no reference point (or, for an invariant with @applies, no step to judge)."""
 
     @property
     def per_profile(self) -> bool:
-        """Whether it is judged against each profile."""
+        """Whether the rule is judged against each profile."""
         return "profile" in self.columns["condition"]
 
     @property
     def per_object(self) -> bool:
-        """Whether its condition is about an object."""
+        """Whether the condition of the rule is about an object."""
         return "object_id" in self.columns["condition"]
 
     @property
     def looks_at_others(self) -> bool:
-        """Whether it reads of others than the ego, or names them; of a section with a star that is not known, and taken to be so."""
+        """Whether the rule reads about other actors than the ego, or returns their ids; true if a section's columns are unknown (`*`)."""
         whole = self.columns.keys() >= self.sections.keys()
         return (
             ROAD_USERS in self.needed_signals
@@ -49,11 +49,11 @@ class Rule(Header, frozen=True, forbid_unknown_fields=True, kw_only=True):
 
     @property
     def needed_signals(self) -> tuple[str, ...]:
-        """The signals that it needs: those that it requires, and `road_users` if it is about other actors."""
-        from drivelint.sql.derivations import with_sources  # and with it the database
+        """The signals that the rule needs: `requires`, and `road_users` if it is about other actors."""
+        from drivelint.sql.derivations import with_sources  # imported here, since it imports the database
 
         return (*self.requires, *((ROAD_USERS,) if "pair" in with_sources(self.reads) else ()))
 
     def has_column(self, column: str) -> bool:
-        """Whether the condition returns this column."""
+        """Return whether the condition returns this column."""
         return column in self.columns["condition"]

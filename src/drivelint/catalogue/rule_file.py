@@ -1,4 +1,4 @@
-"""Reads the text of one rule file, and checks it: header, sections, and whether they fit each other."""
+"""Reads one rule file and checks its header, its sections, and whether header and sections agree."""
 
 from __future__ import annotations
 
@@ -41,9 +41,9 @@ class Section(NamedTuple):
 
 
 def checked_rule(file: Path, pack: str, pack_title: str, content: bytes, *, with_words: bool) -> Rule:
-    """Return the rule that a file holds.
+    """Check the content of a rule file and return the rule. Errors: `RuleError` with file and line.
 
-    `pack`, `pack_title`: those of its folder; `with_words`: check the words in its SQL too. Errors: `RuleError` with file and line.
+    `pack`, `pack_title`: name and title of its pack; `with_words`: also check the words in its SQL.
     """
     for part, what, pattern in ((pack, "folder", PACK_NAME), (file.stem, "file", RULE_NAME)):
         if not pattern.fullmatch(part):
@@ -98,9 +98,9 @@ def checked_rule(file: Path, pack: str, pack_title: str, content: bytes, *, with
 
 
 def _quantities(header: Header, queries: dict[str, Query]) -> frozenset[str]:
-    """Return the quantities of actors that a rule uses: those of the columns that it names, and existence."""
+    """Return the quantities of actors that a rule uses: existence, identity, and the quantities of the columns that it names."""
     declared = store.column_quantities()
-    # a table of events that the header names hands over all its columns: those count that the other sections name
+    # an event table named in the header provides all its columns: only columns that other sections name count
     named = {
         name
         for section, query in queries.items()
@@ -114,9 +114,9 @@ def _quantities(header: Header, queries: dict[str, Query]) -> frozenset[str]:
 
 
 def split_sections(text: str, where: str) -> tuple[str, dict[str, Section]]:
-    """Return the header's TOML (line n of it is line n of the file) and the sections by name.
+    """Return the header's TOML (its line n is line n of the file), and name -> section.
 
-    Errors: `RuleError` for SQL before the first section, an unknown, repeated or empty section.
+    Errors: `RuleError` for SQL before the first section, and for an unknown, repeated, empty or missing section.
     """
     lines = text.splitlines()
     marks = [(n, match[1]) for n, line in enumerate(lines) if (match := _MARK.match(line))]
@@ -151,7 +151,7 @@ def _uncomment(line: str, n: int, where: str) -> str:
 
 
 def _event_table(table: str, sections: dict[str, Section], file: Path, line: int) -> Section:
-    """Return the section @reference for which the header's `reference = "table"` stands: all of that event table."""
+    """Return the section @reference that the header's `reference = "table"` abbreviates: a SELECT of that whole event table."""
     if "reference" in sections:
         raise RuleError(
             f"{file}:{sections['reference'].line}: the header names an event table already: drop it or @reference"
@@ -167,7 +167,7 @@ def _event_table(table: str, sections: dict[str, Section], file: Path, line: int
 def _check_sections(
     header: Header, sections: dict[str, Section], queries: dict[str, Query], file: Path
 ) -> Iterator[str]:
-    """Check which sections stand here, and the columns of each."""
+    """Yield the problems of missing or surplus sections, and of each section's columns."""
     wanted = {"reference": header.kind != "invariant", "anchor": header.subtype == "physical"}
     for name, needed in wanted.items():
         if needed != (name in sections):
@@ -209,7 +209,7 @@ def _check_columns(
 
 
 def _check_condition(header: Header, query: Query, where: str) -> Iterator[str]:
-    """Check the condition against the header: its sense, its reference, its objects."""
+    """Yield contradictions between condition and header: sense, reference, and `combine`."""
     columns = query.columns or ()
     wrong = {"observed", "required", "at_least", "error"} if header.sense == "holds" else {"holds"}
     if found := sorted(wrong & set(columns)):
@@ -221,7 +221,7 @@ def _check_condition(header: Header, query: Query, where: str) -> Iterator[str]:
 
 
 def _check_reads(header: Header, queries: dict[str, Query], reads: str) -> Iterator[str]:
-    """Check that the header's `reads`, which stands at file:line `reads`, is what the SQL reads."""
+    """Yield differences between the header's `reads` and the tables that the SQL reads. `reads`: `file:line` of that key."""
     given = {"condition": ENGINE_TABLES, "anchor": frozenset({"reference"})} if header.kind != "invariant" else {}
     for name, query in queries.items():
         if early := sorted(query.tables & ENGINE_TABLES - given.get(name, frozenset())):
@@ -262,7 +262,7 @@ def _check_words(header: Header, sections: dict[str, Section], file: Path, toml:
 
 
 def _check_reasons(header: Header, queries: dict[str, Query], file: Path, toml: str) -> Iterator[str]:
-    """Check that every code that the SQL gives has words, and that these have their arguments."""
+    """Yield the problems of reason codes: codes without a text, texts without their arguments, and unused codes."""
     known = {**shared_texts(), **header.reasons}
     given = [reason for query in queries.values() for reason in query.reasons]
     for code, arguments, place in given:

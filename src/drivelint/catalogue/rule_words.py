@@ -1,4 +1,4 @@
-"""Refuses a rule that compares a column with a word that it never has: such a rule never applies, and passes everything."""
+"""Refuses a rule that compares a column with a word that the column never has: such a rule would never apply or never fail."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 
 
 def check_words(sections: Mapping[str, str], params: Mapping[str, Param], place: Callable[[str, int], str]) -> None:
-    """Check the words in the SQL of a rule, by section, and in the defaults of its parameters.
+    """Check the words in the SQL of a rule's sections, and in the defaults of its parameters.
 
-    `place`: section and byte of its SQL, or `params.NAME.default` and 0 -> file:line.
-    Errors: `RuleError` for the first wrong word, with the nearest good one.
+    `place`: function from a section and a byte offset in its SQL, or from `params.NAME.default` and 0, to `file:line`.
+    Errors: `RuleError` for the first wrong word, with the nearest valid word.
     """
     try:
         found = _check_sections(sections)
@@ -34,7 +34,7 @@ def check_words(sections: Mapping[str, str], params: Mapping[str, Param], place:
 
 
 def parameter_problem(sections: Mapping[str, str], name: str, value: object) -> str | None:
-    """Return why no column that a rule compares with this parameter ever has this value, with the nearest good word; None: one may."""
+    """Return why a column that the rule compares with this parameter can never have this value; None if the value is possible."""
     if not isinstance(value, str):
         return None
     given = Words(literals={value: Literal(None)}, direct=True)
@@ -46,7 +46,7 @@ def parameter_problem(sections: Mapping[str, str], name: str, value: object) -> 
 
 
 def _check_sections(sections: Mapping[str, str]) -> dict[str, word_check.CheckedQuery]:
-    """Return each section with its words checked; the others see the columns of @reference in the engine's tables."""
+    """Return section -> its checked query. For the other sections, the engine's tables have the columns of @reference."""
     found: dict[str, word_check.CheckedQuery] = {}
     tables: dict[str, Relation] = {}
     for name in sorted(sections, key=lambda each: each != "reference"):

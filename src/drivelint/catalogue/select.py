@@ -6,10 +6,10 @@ A selector is a property of a rule, or several properties joined by commas, all 
     ukhc.r162.*                         a glob over ids
     ukhc                                a pack
     kind:invariant                      a word of the header: kind, subtype, severity, status, legal, derivation
-    clause:R162                         named at the head of its clause or in its id
-    requires:indicator                  a signal that it requires
+    clause:R162                         a clause at the beginning of `clause` or in the id
+    requires:indicator                  a signal that the rule requires
     all                                 every rule
-    ukhc,severity:critical              both
+    ukhc,severity:critical              both properties
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 
 DEFAULT_PACK: Final = "ukhc"
-"""Without `--rules`, drives everywhere are judged by its stable rules; rules of one nation's law apply only there."""
+"""The pack whose stable rules judge drives in all nations if `--rules` is not given."""
 
 
 def select_rules(
@@ -47,10 +47,9 @@ def select_rules(
 ) -> list[Rule]:
     """Return the selected rules, sorted by id.
 
-    A rule is `is_named` where its id is in `named_ids`; None: where a selector is or contains its id.
-
-    Selectors: see the module. None given: the stable rules of `default_pack`. A deprecated rule is chosen only by its full
-    id or as `status:deprecated`. Errors: `UsageError` for a selector that matches nothing, or when nothing is left.
+    The module describes the selectors. An empty `include` selects the stable rules of `default_pack`. A deprecated rule is selected only
+    by its full id or by `status:deprecated`. `is_named` of a rule is true if its id is in `named_ids`, or, for None, if a selector is or
+    contains the id. Errors: `UsageError` if a selector matches no rule, or no rule is left.
     """
     if include:
         chosen = {rule.id: rule for selector in include for rule in _matching(rules, selector)}
@@ -67,7 +66,7 @@ def select_rules(
 
 
 def default_packs(rules: Mapping[str, Rule], nation: str | None) -> tuple[str, ...]:
-    """Return the packs whose stable rules judge in a nation without `--rules`: the pack for everywhere, and those of its law."""
+    """Return the packs that judge by default in a nation: `DEFAULT_PACK`, and the packs with stable rules of the nation's law."""
     of_its_law = {
         rule.pack
         for rule in rules.values()
@@ -79,11 +78,10 @@ def default_packs(rules: Mapping[str, Rule], nation: str | None) -> tuple[str, .
 def required_rules(
     rules: Mapping[str, Rule], selected: Iterable[Rule], required: Sequence[str], ignore: Sequence[str]
 ) -> tuple[str, ...]:
-    """Return the ids of the stable rules that these selectors name, sorted: those that may not be unknown.
+    """Return the sorted ids of the stable rules that may not be unknown: the selected rules that match the selectors `required`.
 
-    What `ignore` names is not required, unless a selector is its id. Of a selector that is no id only what is selected is required.
-    Errors: `UsageError` for a required id that is not selected, a selector of which nothing is, or one that names no stable rule, as
-    others do not gate.
+    Rules that match `ignore` are not required, unless a selector is their id. Errors: `UsageError` for a required id that is not
+    selected, a selector without a selected rule, or a selector without a stable rule, since other rules do not gate.
     """
     chosen = {rule.id for rule in selected}
     left_out = {rule.id for selector in ignore for rule in _matching(rules, selector)}
@@ -92,7 +90,7 @@ def required_rules(
         stable = {rule.id for rule in _matching(rules, selector) if rule.status == "stable"}
         if not stable:
             raise UsageError(f"--require {selector!r}: is not a stable rule, and other rules cannot fail a run")
-        # a selector of many rules is about those of the run: a severity has rules of every pack
+        # a selector such as a severity matches rules of every pack: only the selected rules of the run are required
         lacking = sorted(stable - chosen - (left_out - {selector}))
         if not stable & chosen and not lacking:
             raise UsageError(f"--require {selector!r}: --ignore excludes all of its rules")
@@ -130,7 +128,7 @@ def _being(rules: Mapping[str, Rule], part: str) -> list[Rule]:
 
 
 def _by_method(rules: Mapping[str, Rule], method: str, word: str) -> list[Rule]:
-    """Return the rules of which this word is true. Errors: `UsageError` naming the methods, or the words in use."""
+    """Return the rules with this word for a property (`method`). Errors: `UsageError` that lists valid properties or words."""
     if method not in _METHODS:
         raise UsageError(f"rules are not selected by {method!r}; {hint(method, _METHODS)}")
     words = {rule.id: _METHODS[method](rule) for rule in rules.values()}
@@ -143,7 +141,7 @@ def _by_method(rules: Mapping[str, Rule], method: str, word: str) -> list[Rule]:
 
 
 def clause_names(rule: Rule) -> set[str]:
-    """Return the lower-case clause names by which a rule can be selected, from its `clause` and its id."""
+    """Return the clause names, in lower case, by which a rule can be selected; from its `clause` and its id."""
     named = re.findall(r"[A-Za-z]*\d[\w.()]*", rule.clause.split(":", 1)[0])
     inside = rule.id.split(".")[1:2] if rule.id.count(".") > 1 else []
     return {name.rstrip(".").casefold() for name in [*named, *inside]}
@@ -162,19 +160,19 @@ _MAX_LISTED_WORDS: Final = 12
 
 
 def _nearest(word: str, candidates: Iterable[str]) -> str:
-    """Return '; did you mean ...?', or ''. A rule may also be meant by a part of its id."""
+    """Return '; did you mean ...?' or ''. A word that is part of a rule's id also suggests this rule."""
     names = {name: name for name in candidates}
     names |= {name.split(".", 1)[1]: name for name in list(names) if "." in name}
-    holding = sorted((len(name), name) for name in names.values() if word in name)  # r162: the rule, not one alike
+    holding = sorted((len(name), name) for name in names.values() if word in name)  # r162: a rule with it in the id
     near = [holding[0][1]] if holding else [names[n] for n in get_close_matches(word, names, n=1, cutoff=0.4)]
     return f"; did you mean {near[0]!r}?" if near else ""
 
 
 def parse_params(rules: Iterable[Rule], settings: Sequence[str]) -> dict[str, dict[str, float | str | bool]]:
-    """Read `RULE.PARAM=VALUE` settings into rule id -> parameter -> value, typed like the parameter's default.
+    """Parse settings `RULE.PARAM=VALUE` and return rule id -> parameter -> value, with the type of the parameter's default.
 
-    Errors: `UsageError` for a setting without '=', an unknown rule or parameter (with the nearest one), or a value of
-    another type.
+    Errors: `UsageError` for a setting without '=', an unknown rule (with the nearest id) or parameter (with the known ones), or a wrong
+    value.
     """
     known = {rule.id: rule for rule in rules}
     values: dict[str, dict[str, float | str | bool]] = {}
@@ -190,7 +188,7 @@ def parse_params(rules: Iterable[Rule], settings: Sequence[str]) -> dict[str, di
             names = ", ".join(params) or "none"
             raise UsageError(f"--param {setting!r}: {rule_id} has no parameter {param!r}; it has: {names}")
         value = _typed(text.strip(), params[param].default, setting)
-        from drivelint.catalogue.rule_words import parameter_problem  # and with it what reads SQL
+        from drivelint.catalogue.rule_words import parameter_problem  # imported here, since it imports the SQL parser
 
         if problem := parameter_problem(known[rule_id].sections, param, value):
             raise UsageError(f"--param {setting!r}: {problem}")

@@ -1,4 +1,4 @@
-"""The command line: a thin shell over the pipeline, one module per group of commands."""
+"""The command line: a thin layer over the pipeline, with one module per group of commands."""
 
 from drivelint.cli.app import app, main
 

@@ -1,6 +1,6 @@
-"""The command line: parse, call, print, exit. stdout is data, stderr is progress and diagnostics.
+"""The command line: it parses arguments, calls the pipeline, prints the result and exits. stdout has data, stderr progress and diagnostics.
 
-Everything heavy is imported inside the commands, so that `--help` stays fast.
+Slow imports are inside the commands, so that `--help` stays fast.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ app = typer.Typer(
     help="Checks recorded drives against the rules of the road.",
     epilog="To begin: `drivelint demo` writes drives to try it on and prints the command that checks them; "
     "`drivelint inspect TRACE` shows what a log of yours can decide; `drivelint docs` lists the guides.",
-    rich_markup_mode=None,  # two columns of text: frames and types leave a help of 80 columns no room for words
+    rich_markup_mode=None,  # plain text in two columns: in 80 columns, frames and types would leave too little width for the help
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
@@ -53,7 +53,7 @@ def _version(value: bool) -> None:
 def _root(
     ctx: typer.Context,
     *,
-    version: Annotated[  # noqa: ARG001 - its callback acts
+    version: Annotated[  # noqa: ARG001 - the callback handles it
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and exit.")
     ] = False,
 ) -> None:
@@ -97,7 +97,7 @@ def inspect(
 ) -> None:
     """Show the content of a log, and the rules that it can decide.
 
-    Also whether it fits the map, the problems that were found, and what to provide so that more rules can be decided.
+    Also shows whether the log fits the map, the problems of the log, and what to provide so that more rules can be decided.
     """
     from drivelint import inspect as inspection
 
@@ -141,7 +141,7 @@ def convert(
     """Convert a log to OSI in MCAP, or to Parquet.
 
     The new log is in metres, seconds and box centres, and includes its map. It needs no mapping and has the same verdicts.
-    A clip is judged alone. It is as long as needed for the same finding.
+    A clip is long enough that, judged alone, it has the same finding.
     """
     from drivelint import convert as converter
     from drivelint.engine.memory import DEFAULT_MEMORY
@@ -176,11 +176,11 @@ app.command("docs")(docs_.docs)
 
 
 GARBAGE_AFTER: Final = 50_000
-"""New objects after which Python looks for those that hold each other: with its 700, a short command spends 4 % of its time on that."""
+"""Number of new objects before a garbage collection: with Python's default of 700, short commands spend 4 % of their time on it."""
 
 
 def main() -> NoReturn:
-    """Run the command line; every mistake of a user ends in one line on stderr and its exit code."""
+    """Run the command line; for every mistake of a user, print one line on stderr and exit with its code."""
     from typer.exceptions import TyperException
 
     streams.prepare()
@@ -197,13 +197,13 @@ def main() -> NoReturn:
     except TyperException as error:
         found = find_settings()
         also = "" if found is None else f" and {found}{' in this folder' if found.parent == Path() else ''}"
-        words = error.format_message().replace("Value error, ", "")  # the library's, not ours
+        words = error.format_message().replace("Value error, ", "")  # a prefix from the library
         _fail(f"{words} (see drivelint {_command_words(error)}--help{also})", ExitCode.USAGE)
     except (KeyboardInterrupt, typer.Abort):
         code = ExitCode.INTERRUPTED
     except streams.ReaderLeftError:
         code = streams.READER_LEFT
-    except Exception as error:  # noqa: BLE001 - Python's own exit code for it is that of a broken rule
+    except Exception as error:  # noqa: BLE001 - Python's exit code for it would be 1, which means a failed rule
         import traceback
 
         if (told := of_the_machine(error)) is not None:
@@ -213,14 +213,14 @@ def main() -> NoReturn:
     if code == ExitCode.INTERRUPTED:
         streams.say("drivelint: error: interrupted")
         temporary.remove_all()
-        os._exit(code)  # the database may still be computing in its thread: there is nothing to wait for
+        os._exit(code)  # without waiting for the database, which may still compute in its thread
     sys.exit(code or 0)
 
 
 def _part_of(word: str) -> typer.Typer:
     """Return the command line with only the command or group of this name: building all takes longer than some commands run.
 
-    Return all commands if none has this name, and for `docs`, which describes all.
+    Return all commands if none has this name, and for `docs`, which describes all commands.
     """
     if word == "docs":
         return app
@@ -235,7 +235,7 @@ def _name_of(command: CommandInfo) -> str:
 
 
 def _command_words(error: Exception) -> str:
-    """Return the words of the command with the mistake, each followed by a space; '' for none."""
+    """Return the words of the command in which the error occurred, each followed by a space; '' without a command."""
     about, words = getattr(error, "ctx", None), ""
     while about is not None and about.parent is not None:
         about, words = about.parent, f"{about.info_name} {words}"
@@ -243,13 +243,13 @@ def _command_words(error: Exception) -> str:
 
 
 _WITHOUT_SETTING_OF_MAP: Final = frozenset({"--map", "--map-dir", "--help", "-h"})
-"""Options of the command line with which the map of the settings file is not read."""
+"""If one of these options is given, the map in the settings file is not used."""
 
 
 def _settings() -> dict[str, Any]:
-    """Return the options of the settings file for `check`, or for another command that reads a log.
+    """Return the options of the settings file for `check`, `inspect` or `convert`.
 
-    Other commands use only options about the log and its map, not those about the output of `check`.
+    `inspect` and `convert` do not use the options about the output of `check`.
     """
     name = "".join(sys.argv[1:2])
     if name not in {"check", "inspect", "convert"} or (file := find_settings()) is None:

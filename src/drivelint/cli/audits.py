@@ -117,7 +117,7 @@ def audit(
     Results are stored as soon as they are computed. After an interruption, the same command continues with the rest.
     A manifest has a column log, and may have map, ego and environment (weather=wet;light=night). Other columns are tags.
 
-    Exit codes: as those of check; 4 also if a drive cannot be judged or kills its worker.
+    Exit codes: those of check; 4 also if a drive cannot be judged or kills its worker.
     """
     from drivelint.audit import AuditRequest, JudgeSettings
     from drivelint.audit import audit as audited
@@ -180,7 +180,7 @@ def audit(
 
 
 def _stored_results_sentence(out: str) -> str:
-    """Return a sentence with the number of drives that have a result."""
+    """Return a sentence with the number of drives that have a result in `out`."""
     from tempfile import TemporaryDirectory
 
     from drivelint.audit.store import open_store
@@ -189,7 +189,7 @@ def _stored_results_sentence(out: str) -> str:
     try:
         with TemporaryDirectory(prefix="drivelint-kept-") as home:
             n = n_results(open_store(out), Path(home))
-    except (DriveLintError, OSError):  # The user interrupts to stop: an error of the store does not matter then.
+    except (DriveLintError, OSError):  # the user wants to stop, so an error of the store is not reported
         return f"results so far stay in {inert_line(out)}: the same command continues with the rest"
     if not n:
         return f"no drive has a result in {inert_line(out)} yet (drives are judged some at a time): the same command begins again"
@@ -202,7 +202,7 @@ def merge(
 ) -> None:
     """Pack the results of audits with --shard or --claim, when all of them have ended.
 
-    Exit codes: 0; 4 if a shard is missing or drives could not be judged; 3 for lossy input. Findings do not change it.
+    Exit codes: 0; 4 if a shard is missing or drives could not be judged; 3 for lossy input. Findings do not change the exit code.
     """
     from drivelint.audit import merge as merged
     from drivelint.audit.text import summary_text

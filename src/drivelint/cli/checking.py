@@ -148,8 +148,8 @@ def check(
 
     Exit codes: 0 nothing failed at or above --fail-on; 1 something failed (with --baseline, --waivers or --confidence:
     something new, not waived, and sure); 2 usage or rule error; 3 judged on lossy input; 4 some drives not judged, or nothing
-    could be decided (with --strict or --require: some rule unknown; with --min-judged: too many); 75 the machine failed, try
-    again; 130 interrupted: results so far are kept.
+    could be decided (with --strict or --require: some rule unknown; with --min-judged: too few rules decided); 75 the machine
+    failed, try again; 130 interrupted: results so far are kept.
     """
     arguments = dict(locals())
 
@@ -223,7 +223,7 @@ def check(
         result = gate_and_write(judged)
         stdout, code = _stdout(result, format_, out, verbose=verbose), int(exit_status(result).code)
         receipts.keep(result, stdout, code, grown_files=grown, gate=gate_inputs, interruption=interruption)
-        if memory is not None and jobs == 1 and (most := peak_bytes()) is not None:  # of this process
+        if memory is not None and jobs == 1 and (most := peak_bytes()) is not None:  # the peak of this process only
             progress.note(
                 f"{format_bytes(most)} of memory were taken at most, with everything that is not the database's"
             )

@@ -1,4 +1,4 @@
-"""What reads the result of a check: `report` and `diff` for a folder that `check --out` wrote."""
+"""The commands `report` and `diff` for the result of a check: a folder that `check --out` wrote."""
 
 from __future__ import annotations
 
@@ -34,7 +34,10 @@ def report_check(folder: Path, to: str, base_url: str | None) -> None:
 
 
 def write_incident_sheet(request: IncidentRequest) -> None:
-    """Write the incident sheet of a finding, print the names of its files, and say on stderr in which other drives the rule has one."""
+    """Write the incident sheet of a finding and print the names of its files.
+
+    If the name fits findings in several drives, print the other drives on stderr.
+    """
     from drivelint.incident import other_drives, write_incident
 
     for path in run_interruptible(lambda: write_incident(request)):
@@ -48,7 +51,7 @@ def write_incident_sheet(request: IncidentRequest) -> None:
 
 
 def diff_checks(base: Path, new: Path, format_: str, fail_on: str | None) -> None:
-    """Print the difference of two checks, and exit by it."""
+    """Print the difference of two checks, and exit with its exit code."""
     from drivelint.gate import compare_results, descriptions
     from drivelint.result.load import load_result
     from drivelint.result.one_line import on_one_line
@@ -72,7 +75,7 @@ def diff_checks(base: Path, new: Path, format_: str, fail_on: str | None) -> Non
 
 
 def warn_of_partial(folder: Path, result: Result) -> None:
-    """Say on stderr that a result is of an interrupted run."""
+    """Print a warning on stderr if a result is from an interrupted run."""
     if result.interrupted:
         from drivelint.result.model import partial_sentence
 

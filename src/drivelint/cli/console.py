@@ -1,4 +1,4 @@
-"""Shared by the commands: a job beside the main thread, progress, printing for a person."""
+"""Functions that commands share: run a job in a second thread, show progress, print formatted text."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ T = TypeVar("T")
 def run_interruptible(job: Callable[[], T], interrupt: Callable[[], None] | None = None) -> T:
     """Run `job` in a second thread, so that Ctrl-C interrupts it while the database computes.
 
-    It wakes several times a second, because some libraries make the system restart a wait that a signal interrupted.
-    With `interrupt`, the first Ctrl-C calls `interrupt` until the job has ended by itself; only the second one leaves.
+    The main thread wakes several times a second, because some libraries make the system restart a wait that a signal interrupted.
+    With `interrupt`, the first Ctrl-C calls `interrupt` repeatedly until the job ends; a second Ctrl-C raises `KeyboardInterrupt`.
     """
     running = ThreadPoolExecutor(max_workers=1).submit(job)
     with ending_signals.noted_only() as asked:
@@ -51,14 +51,14 @@ def run_interruptible(job: Callable[[], T], interrupt: Callable[[], None] | None
 
 
 def say_nothing_kept(out: Path | None, *, judged_none: bool) -> None:
-    """Print that an interrupted check has no result, and what its folder contains."""
+    """Print on stderr why an interrupted check has no result, and that its folder contains none."""
     why = "nothing was judged yet" if judged_none else "left at once: nothing is kept"
     typer.echo(f"drivelint: {why}{'' if out is None else f'; {inert_line(str(out))} holds no result'}", err=True)
 
 
 @contextmanager
 def tells_of_earlier(out: Path | None) -> Iterator[None]:
-    """After a run without a result, print where an earlier result is."""
+    """Print where the earlier result is, if the run inside the block ends without a result."""
     from drivelint.result.folder import EARLIER
 
     try:
@@ -70,14 +70,14 @@ def tells_of_earlier(out: Path | None) -> Iterator[None]:
 
 
 def say_kept(statuses: Sequence[str], out: Path | None) -> None:
-    """Print how much of an interrupted check is kept."""
+    """Print how many drives an interrupted check has judged and kept."""
     where = "" if out is None else f" in {inert_line(str(out))}"
     kept = f"kept {statuses.count('judged')} of {plural(len(statuses), 'drive')}{where}"
     typer.echo(f"drivelint: {kept}", err=True)
 
 
 def progress(quiet: bool) -> AbstractContextManager[Progress]:
-    """Return a progress bar if stderr is a terminal; otherwise only the notes of the pipeline are printed, as lines."""
+    """Return a progress bar if stderr is a terminal; else an object that prints only the pipeline's notes, as lines."""
     from drivelint.report.progress import Silent, bar, notes
 
     if quiet:
@@ -86,7 +86,7 @@ def progress(quiet: bool) -> AbstractContextManager[Progress]:
 
 
 def _inert_console() -> type[Console]:
-    """Return a console on which the words of a log cannot control the terminal; only rich's own styles can."""
+    """Return a console class that removes terminal control sequences from text, so that only rich's styles control the terminal."""
     from rich.console import Console
 
     class InertConsole(Console):
@@ -98,12 +98,15 @@ def _inert_console() -> type[Console]:
 
 
 def print_rich(content: RenderableType | Callable[[int], RenderableType], *, soft_wrap: bool = False) -> None:
-    """Print on stdout for a person, formatted by `rich_text`."""
+    """Print on stdout, formatted by `rich_text`."""
     typer.echo(rich_text(content, soft_wrap=soft_wrap), nl=False)
 
 
 def rich_text(content: RenderableType | Callable[[int], RenderableType], *, soft_wrap: bool = False) -> str:
-    """Return the text for a person on stdout: plain and wide if stdout is not a terminal. `content` may depend on the width."""
+    """Return formatted text for stdout: plain and 120 columns wide if stdout is not a terminal.
+
+    `content`: a renderable, or a function from the width to a renderable.
+    """
     terminal = sys.stdout.isatty()
     console = _inert_console()(width=None if terminal or "COLUMNS" in os.environ else 120, highlight=False)
     with console.capture() as captured:

@@ -1,4 +1,4 @@
-"""`drivelint docs`: the guides and the reference, printed or as a site."""
+"""`drivelint docs`: prints the guides and the reference, or writes them as a site."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ def docs(
     Without TOPIC: lists the guides. With TOPIC: prints that guide as Markdown.
 
     docs dictionary [TABLE] prints the tables that rules read, with the meaning of each column. docs catalogue prints the
-    shipped rules as Markdown, docs reasons every reason code with its words, docs macros the macros that rules can call,
-    docs settings-schema the JSON schema of drivelint.toml, for editors.
+    shipped rules as Markdown; docs reasons prints every reason code with its words; docs macros prints the macros that rules
+    can call; docs settings-schema prints the JSON schema of drivelint.toml, for editors.
 
     With --html: writes one offline site with the guides, the rule catalogue, the data dictionary and the command line, and
     prints the name of its first page.
@@ -70,7 +70,7 @@ def docs(
 
 
 def _commands(command: Any, name: str) -> Iterator[Command]:
-    """Yield the commands of a group with the content of their help, depth first."""
+    """Yield the command, or all commands below a group, with the texts of their help, depth first."""
     from drivelint.guide.site import Command
 
     if hasattr(command, "commands"):
@@ -82,7 +82,7 @@ def _commands(command: Any, name: str) -> Iterator[Command]:
     for param in command.get_params(about):
         if (record := param.get_help_record(about)) is not None:
             words, meaning = record
-            # without the type in Python's words
+            # remove the Python type
             said[param.param_type_name].append((words.partition(" <")[0], meaning))
     usage = " ".join([name, *command.collect_usage_pieces(about)])
     yield Command(usage, command.help or "", tuple(said["argument"]), tuple(said["option"]))

@@ -1,8 +1,8 @@
-"""Ctrl-C, SIGTERM and SIGHUP end a command, wherever its main thread is.
+"""Signal handlers: Ctrl-C, SIGTERM and SIGHUP end a command, whatever its main thread is doing.
 
-Python's own handler raises `KeyboardInterrupt` where the main thread happens to be. In a callback of an import or of the garbage collector
-that error is printed, and is gone; between two statements of a library's lock it leaves the lock closed. So a signal is noted, too, and
-while another thread works, it raises nothing: whoever waits for that thread asks.
+Python's handler raises `KeyboardInterrupt` at the current statement of the main thread. In a callback of an import or of the garbage
+collector, Python only prints this error and continues; within a library's locking code, it leaves the lock locked. So the handlers here
+also record each signal. While another thread works, they only record it: the main thread polls the record while it waits.
 """
 
 from __future__ import annotations
@@ -15,12 +15,15 @@ from typing import TYPE_CHECKING, Final
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-_NAMES: Final = ("SIGINT", "SIGTERM", "SIGHUP")  # the last one is not on Windows
+_NAMES: Final = ("SIGINT", "SIGTERM", "SIGHUP")  # Windows has no SIGHUP
 _noted: Final[list[int]] = []
 
 
 def install() -> None:
-    """Let SIGTERM, and SIGHUP of a terminal that is gone, end a command as Ctrl-C does: what is judged is kept. `nohup` holds."""
+    """Make SIGTERM, and SIGHUP from a closed terminal, end a command like Ctrl-C: results so far are kept.
+
+    Ignored signals stay ignored, as with `nohup`, except SIGTERM.
+    """
     _noted.clear()
     for name in _NAMES:
         number = getattr(signal, name, None)
@@ -30,8 +33,11 @@ def install() -> None:
 
 @contextmanager
 def noted_only() -> Iterator[Callable[[], int]]:
-    """Let signals raise nothing inside the block; yield what returns how many came, those before it that were lost included."""
-    if threading.current_thread() is not threading.main_thread():  # signals are the main thread's
+    """Only record signals inside the block, without an exception; yield a function that returns the number of recorded signals.
+
+    The number includes signals before the block whose exception was lost.
+    """
+    if threading.current_thread() is not threading.main_thread():  # Python handles signals only in the main thread
         yield lambda: 0
         return
     numbers = [getattr(signal, name) for name in _NAMES if hasattr(signal, name)]

@@ -30,7 +30,7 @@ def report_audit(
     moments: int | None,
     quiet: bool,
 ) -> None:
-    """Write the fleet page of an audit into its folder, and print the name of the page."""
+    """Write a report of an audit into its folder, and print the name of the file."""
     from drivelint.fleet_report import gated, page
     from drivelint.fleet_report.audit_views import destination
     from drivelint.fleet_report.drive_pages import MOST_DRIVES
@@ -60,7 +60,7 @@ def report_audit(
 
 
 def diff_audits(base: str, new: str, format_: str, fail_on: str | None, rows: Path | None) -> None:
-    """Print the difference of two audits."""
+    """Print the difference of two audits, and exit with its exit code."""
     from drivelint.fleet_report import difference_text
     from drivelint.fleet_report.audit_views import opened_both
     from drivelint.fleet_report.difference import difference, write_rows
@@ -118,7 +118,7 @@ def trend(
 
     A log that several audits have counts in the first of them only, so a growing audit gives its additions.
 
-    Exit codes: 0; 2 usage error; 4 an audit has not ended, or no rule has a rate to compare. Findings do not change it.
+    Exit codes: 0; 2 usage error; 4 an audit has not ended, or no rule has a rate to compare. Findings do not change the exit code.
     """
     from drivelint.fleet_report.audit_views import destination
     from drivelint.fleet_report.trend import audit_trend, to_json, to_text
@@ -137,6 +137,6 @@ def trend(
 
 
 def _warn(audit: Audit) -> None:
-    """Print on stderr that an audit has not ended."""
+    """Print an audit's warning on stderr, such as that it has not ended."""
     if audit.warning:
         typer.echo(f"drivelint: {inert_line(audit.warning)}", err=True)

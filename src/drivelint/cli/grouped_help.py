@@ -1,4 +1,4 @@
-"""The help of `check` and `watch`, with their options under headings."""
+"""The help of `check` and `watch`, with the options grouped under headings."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _GROUPS: Final = {
         "quiet",
     ),
 }
-"""Heading -> parameters, in the order of the command; an option that is in none comes last."""
+"""Heading -> parameters. The help keeps the command's order within a heading; options without a heading come last."""
 
 
 class GroupedCommand(TyperCommand):

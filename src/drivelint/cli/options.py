@@ -1,4 +1,4 @@
-"""The options of several commands, each defined once: those of `DriveInput` belong to every command that reads a log."""
+"""Options that several commands share. The options of `DriveInput` belong to every command that reads a log."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 Format = Literal["text", "json"]
-"""The formats of results on stdout."""
+"""Formats of a result on stdout."""
 ConvertTarget = Literal["mcap", "parquet"]
 ReportFormat = Literal["html", "junit", "sarif", "xqar", "markdown"]
 SqlFormat = Literal["text", "csv", "json"]
 DiffFormat = Literal["text", "json", "markdown"]
 RuleKind = Literal["invariant", "execution", "precondition", "postcondition"]
 FailOn = Literal["critical", "major", "minor", "never"]
-"""The least severity that makes exit code 1."""
+"""The lowest severity that causes exit code 1."""
 Texts = list[str] | None
 """The value of an option that may be repeated."""
 
@@ -39,17 +39,17 @@ def option(flag: str, metavar: str | None, words: str, **more: Any) -> Any:
 
 
 def rules(words: str) -> Any:
-    """Return the option for the rules to judge by."""
+    """Return the option `--rules`, which selects the rules to judge by."""
     return option("--rules", "SEL", words, autocompletion=completion.rule_ids)
 
 
 def profile(words: str) -> Any:
-    """Return the option for the profiles to judge by."""
+    """Return the option `--profile`, which selects the profiles to judge by."""
     return option("--profile", "NAME", words)
 
 
 def robustness(words: str) -> Any:
-    """Return the option on copies of a drive with recording errors."""
+    """Return the option `--robustness`: whether to judge copies of a drive with recording errors."""
     return option("--robustness/--no-robustness", None, words)
 
 
@@ -118,7 +118,7 @@ DriveInputValues = dict[str, Any]
 
 
 class _DriveOption(NamedTuple):
-    """A field of `DriveInput` as an option, and the function that parses its value from the command line."""
+    """A command line option for a field of `DriveInput`, and the function that parses its value."""
 
     type: Any
     annotation: Any

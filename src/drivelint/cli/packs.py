@@ -65,8 +65,8 @@ def pack(
     """Pack the result of a check or an audit as evidence: hashed, signed, and verifiable by others.
 
     Writes a BagIt folder with the tables, the reports and the rules; for each finding the rows that its rule read, and SQL that
-    computes its margin in any DuckDB; and an in-toto statement of the logs, the map, the rules and the results. The logs of these
-    findings are judged again for it. The same command gives the same bytes.
+    computes its margin in any DuckDB; and an in-toto statement of the logs, the map, the rules and the results. To find these rows,
+    the logs with findings are judged again. The same command gives the same bytes.
     """
     from drivelint.pack import MOST_FINDINGS, PackRequest
 
@@ -87,7 +87,7 @@ def pack(
 
 
 def write_and_tell(request: PackRequest, *, err: bool = False) -> None:
-    """Write a pack and print its content, with `err` on stderr."""
+    """Write a pack and print a summary of its content; with `err` on stderr."""
     from drivelint.pack import write_pack
 
     told = run_interruptible(lambda: write_pack(request))
@@ -137,9 +137,9 @@ def verify(
 ) -> None:
     """Verify an evidence pack: its files, its signature and its statements; and judge the logs again.
 
-    If there is no log in the pack and no --trace, nothing is judged again, and the output states it. Each problem has a line of its
-    own. Without --key, exit code 0 does not prove who made the pack; with --require-signature it is then 1. An older pack of the
-    same signer is equally valid: the output states its date, and with --not-before an older pack has exit code 1.
+    If there is no log in the pack and no --trace, nothing is judged again, and the output states this. The output has one line per
+    problem. Without --key, exit code 0 does not prove who made the pack; with --require-signature, the exit code is then 1. An older
+    pack of the same signer is equally valid: the output states its date, and with --not-before an older pack has exit code 1.
 
     Exit codes: 0 unchanged; 1 something is wrong; 2 usage error.
     """

@@ -1,7 +1,7 @@
-"""The receipts of `check`: shows the result of an earlier run with the same inputs again, and keeps that of this run.
+"""The receipts of `check`: repeats the output of an earlier run with the same inputs, and stores a receipt of this run.
 
-A run is kept if its inputs alone decide its result, and if it wrote only stdout and the files of a result: a run is not kept if it keeps
-its database or packs evidence, was interrupted, did not judge a drive, had a rule in error, or if its logs are its own outputs.
+A run is stored if its result depends only on its inputs, and if it wrote only stdout and the files of a result. So it is not stored with
+--keep-db or --evidence, after an interruption, with an unjudged drive or a rule in error, or if its logs are its own outputs.
 """
 
 from __future__ import annotations
@@ -32,21 +32,21 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
 
 _WITHOUT_EFFECT: Final = frozenset({"cache", "jobs", "quiet", "today"})
-"""Options on which nothing depends that is kept; the day counts where there are waivers."""
+"""Options that do not affect a stored result. With waivers, the receipt stores the day separately."""
 _UNNAMED: Final = (SETTINGS_FILE, "proj.ini")
-"""What is read in the working folder without a name; the second by the database's library of projections, if it is there."""
+"""Files of the working folder that are read although no option names them: settings, and PROJ's configuration, if it exists."""
 _SUBFOLDERS: Final = frozenset({"annotated", folder.EARLIER, f"{folder.EARLIER}/annotated"})
 _AGAIN: Final = "nothing has changed since an earlier run: these are its verdicts (--no-cache judges again)"
 
 
 class Outputs:
-    """The files that `check` writes into a folder; None: it writes none."""
+    """The files that `check` writes into the folder `out`; None: it writes no files."""
 
     def __init__(self, out: Path | None) -> None:
         self._root = None if out is None else os.path.realpath(out)
 
     def __call__(self, path: str) -> bool:
-        """Whether a path without links is that of an output, or of a folder of outputs only below that of the results."""
+        """Return whether a path is an output, or a subfolder of `out` with outputs only. `path`: absolute, links resolved."""
         if self._root is None or not path.startswith(self._root + os.sep):
             return False
         name = path[len(self._root) + 1 :].replace(os.sep, "/")
@@ -58,9 +58,9 @@ class Outputs:
 
 
 class CheckReceipts:
-    """The receipt of an earlier run of one check, and the one that this run leaves.
+    """The receipt of an earlier run of a check, and the receipt that this run stores.
 
-    `asked`: the options of `check`; `settings`: the file that gives some of them.
+    `options`: the options of `check`; `settings`: the settings file that sets some of them; `day`: the date for waivers.
     """
 
     def __init__(self, options: Mapping[str, Any], day: date, settings: Path | None) -> None:
@@ -89,9 +89,9 @@ class CheckReceipts:
             self._key = question_sha256({**counted, "places": places})
 
     def earlier(self) -> store.Receipt | None:
-        """Write the output of an earlier run with the same inputs, and return its receipt; None: there is none.
+        """Write the files of an earlier run with the same inputs, and return its receipt; None without such a run.
 
-        Errors: as those of any run whose folder cannot be written.
+        Errors: `UsageError` or `OutputError` if the folder cannot be written, as for any run.
         """
         if self._key is None:
             return None
@@ -116,7 +116,7 @@ class CheckReceipts:
 
     @contextmanager
     def recording(self) -> Iterator[None]:
-        """Record the files that are read inside the block, if the run may be kept."""
+        """Record the files that are read inside the block, if a receipt of the run may be stored."""
         if self._key is None:
             yield
             return
@@ -133,7 +133,7 @@ class CheckReceipts:
         gate: GateInputs | None,
         interruption: Interruption,
     ) -> None:
-        """Keep a run that has ended. `grown_files`: those of its files that grew during the run."""
+        """Store a receipt of a finished run, if possible. `grown_files`: the result files that were written during judging."""
         if self._key is None or self._recorder is None or interruption.requested or not _is_of_inputs(result):
             return
         if result.run_options is None or self._has_outputs(result.run_options.traces.values()):
@@ -153,6 +153,6 @@ class CheckReceipts:
 
 
 def _is_of_inputs(result: Result) -> bool:
-    """Whether a result is complete and depends only on its inputs: a drive or a rule in error may not fail again."""
+    """Return whether a result is complete and depends only on its inputs: a drive or rule in error may succeed next time."""
     judged = set(result.drives["status"].to_pylist()) <= {"judged"}
     return judged and not result.interrupted and "error" not in result.verdicts["verdict"].unique().to_pylist()

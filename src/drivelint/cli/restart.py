@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from drivelint.report.progress import Progress
 
 DEAF_RULES_VARIABLE: Final = "DRIVELINT_DEAF_RULES"
-"""The environment variable by which the next process knows: JSON, task -> rule -> limit."""
+"""The environment variable that passes the rules that cannot be interrupted to the next process: JSON, task -> rule -> limit."""
 _EXCESS_TEXTS: Final[dict[Excess, str]] = {
     "rule_timeout": "takes longer than --rule-timeout",
     "out_of_memory": "takes more memory than there is",
@@ -29,9 +29,9 @@ _EXCESS_TEXTS: Final[dict[Excess, str]] = {
 
 
 class Restart:
-    """Holds the rules that did not end.
+    """The rules that could not be interrupted, and the restart without them.
 
-    `work`: the folder with the files of this run. The next run writes them again.
+    `work`: the folder with the files of this run, which is removed before a restart.
     """
 
     def __init__(self, progress: Progress, work: Path | None) -> None:
@@ -41,15 +41,15 @@ class Restart:
 
     @classmethod
     def if_possible(cls, progress: Progress, work: Path | None) -> Restart | None:
-        """Return one where a process can be replaced; Windows starts another one beside it."""
+        """Return a `Restart` on POSIX; None on Windows, where `exec` starts a second process instead of replacing this one."""
         return cls(progress, work) if os.name == "posix" else None
 
     def excesses(self, task: str) -> dict[str, Excess]:
-        """Return the rules that did not end in an earlier process, and the limit that they went beyond."""
+        """Return rule id -> exceeded limit, for the rules of a task that an earlier process could not interrupt."""
         return self._known.get(task, {})
 
     def restart_without(self, task: str, rule_id: str, excess: Excess) -> NoReturn:
-        """Replace this process by one that does not try this rule."""
+        """Replace this process by a new process that does not run this rule."""
         self._progress.note(f"rule {rule_id} {_EXCESS_TEXTS[excess]} and cannot be stopped: starting again without it")
         temporary.remove_all()
         if self._work is not None:
@@ -57,6 +57,6 @@ class Restart:
         known = {**self._known, task: {**self.excesses(task), rule_id: excess}}
         self._progress.leave()
         sys.stderr.flush()
-        os.execve(  # noqa: S606 - this very command
+        os.execve(  # noqa: S606 - the same command
             sys.executable, [sys.executable, *sys.orig_argv[1:]], {**os.environ, DEAF_RULES_VARIABLE: json.dumps(known)}
         )

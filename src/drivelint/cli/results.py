@@ -1,4 +1,4 @@
-"""`drivelint report`, `diff` and `explain`. What `check --out` wrote goes to `checks`, what `audit --out` wrote to `fleets`."""
+"""`drivelint report`, `diff` and `explain`. The module `checks` handles results of `check --out`; `fleets` handles audits."""
 
 from __future__ import annotations
 
@@ -86,9 +86,9 @@ def report(
     For an audit: fleet.html or fleet.md, with rates, worst drives, coverage, and what could not be judged; beside fleet.html, a page
     for each of the worst drives.
 
-    With --incident: a sheet about one finding, to be filed. It has time and place, both parties with their speeds and braking second
-    by second, what each of them did by the same rules, how sure the finding is, and what the recording lacks. The log is judged
-    again for it.
+    With --incident: writes a sheet about one finding, for the records. The sheet has time and place, and both parties with their speeds
+    and braking second by second. It states what each party did by the same rules, how sure the finding is, and what the recording
+    lacks. To write it, the log is judged again.
     """
     from drivelint.fleet_report.audit_views import destination, is_audit
 
@@ -133,9 +133,9 @@ def diff(
     change the exit code. For two audits, the other differences (software, rules, parameters, data, map, tool) and the changed rates
     are printed too.
 
-    Exit codes: 0 no new finding of a stable rule at or above --fail-on; 1 there is one; 2 usage error; 4 there is none so far, but
-    findings of BASE are unknown or were not looked for in NEW, or a run has not ended. For two audits without a common drive, and
-    without --fail-on: 1 if the rate of such a rule is higher than chance explains, 0 if none is, 4 if no rule has a rate in both.
+    Exit codes: 0 no new finding of a stable rule at or above --fail-on; 1 such a finding; 2 usage error; 4 no such finding so far,
+    but findings of BASE are unknown or were not looked for in NEW, or a run has not ended. For two audits without a common drive, and
+    without --fail-on: 1 if the rate of a stable rule rose by more than chance explains, 0 if no rate did, 4 if no rule has a rate in both.
     """
     from drivelint.fleet_report.audit_views import destination, is_audit
 
@@ -186,9 +186,9 @@ def explain(
 ) -> None:
     """Show the reason for one verdict.
 
-    Prints the clause, the SQL with its numbers, the rows that it read, the margin over time, the smallest change of a number
-    that changes the verdict, and how often the verdict stays the same with small errors in positions, clocks and map. If a rule
-    has several verdicts, the worst is shown, unless --ego, --verdict, --profile, --object or --at choose another.
+    Prints the clause, the SQL with its numbers, the rows that it read, and the margin over time. Also prints the smallest change of
+    a number that changes the verdict, and how often the verdict stays the same with small errors in positions, clocks and map. If a
+    rule has several verdicts, the worst is shown, unless --ego, --verdict, --profile, --object or --at choose another.
 
     explain judges the drive again by that rule. It reads the database of check --keep-db, or else the log.
     """

@@ -26,7 +26,7 @@ def list_(
 
     Example: drivelint rules list ukhc,status:stable clause:R162
 
-    With --format json, also the clause of each rule and the signals that it requires.
+    With --format json, also prints the clause of each rule and the signals that it requires.
     """
     from drivelint.catalogue import load_rules, select_rules
     from drivelint.report import rules_text
@@ -71,9 +71,9 @@ def new(
         option("--kind", None, "When the rule is judged: at every step, or at, before or after a reference point."),
     ] = "invariant",
 ) -> None:
-    """Write a new rule as a start.
+    """Write a small new rule, to be edited.
 
-    DIR/PACK/NAME.sql and NAME.cases.yml: a small rule with its cases, which runs as it is. Nothing is overwritten.
+    Writes DIR/PACK/NAME.sql and NAME.cases.yml: a rule that already runs, and its test cases. Nothing is overwritten.
     """
     from drivelint.casefile import commands
 
@@ -89,8 +89,8 @@ def page_(
 ) -> None:
     """Write the catalogue as one Markdown page.
 
-    A table per pack: what each rule asserts and requires, its numbers and their sources; which clauses are covered; and how
-    logs and maps contain what rules require.
+    The page has a table per pack: what each rule asserts and requires, its numbers and their sources; which clauses are covered;
+    and where logs and maps contain the signals that rules require.
     """
     from drivelint.catalogue import load_rules
     from drivelint.report.catalogue_page import page
@@ -120,10 +120,10 @@ def run_tests(
 ) -> None:
     """Run the test cases beside the rules.
 
-    Each case is a small scene with the expected verdict. With --mutate: checks whether the cases notice a wrong sense,
+    Each case is a small scene with the expected verdict. With --mutate: checks whether the cases detect a wrong sense,
     threshold or window, or a missing condition.
 
-    Exit codes: 0 all passed; 1 some verdict is not the expected one, or no case notices a mutant of a stable rule; 2 a rule
+    Exit codes: 0 all passed; 1 some verdict is not the expected one, or no case detects a mutant of a stable rule; 2 a rule
     or its cases cannot be used.
     """
     from threading import Event
@@ -131,7 +131,7 @@ def run_tests(
     from drivelint.casefile import commands
 
     test = commands.mutation_test if mutate else commands.case_test
-    out = None if sys.stdout.isatty() else sys.stdout  # None: above the bar, where both are on the terminal
+    out = None if sys.stdout.isatty() else sys.stdout  # None: printed above the progress bar on the terminal
     with progress(quiet=not mutate) as shown:
         shown.stage("judging mutants")
 

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 _NOT_IN_A_FILE: Final = frozenset({"help", "today"})
-"""A day that stands in a file would keep waivers from expiring."""
+"""Options that a settings file may not set: with a fixed `today`, waivers would never expire."""
 _TYPES: Final = {bool: "boolean", float: "number", int: "integer"}
 _WAIVER: Final = {
     "type": "array",
@@ -29,19 +29,19 @@ _WAIVER: Final = {
 
 
 def known_settings(params: Iterable[Any]) -> dict[str, Any]:
-    """Return the parameters of `check` that a settings file may set, by their names without the leading dashes."""
+    """Return name without the leading dashes -> parameter of `check`, for the parameters that a settings file may set."""
     options = {p.opts[0].lstrip("-"): p for p in params if p.param_type_name == "option"}
     return {name: param for name, param in options.items() if name not in _NOT_IN_A_FILE}
 
 
 def path_settings(params: Iterable[Any]) -> set[str]:
-    """Return the names of settings that are paths, or may be."""
+    """Return the names of the settings whose values are or may be paths."""
     known = known_settings(params)
     return {name for name, param in known.items() if _annotation(param) in {Path, list[Path]}} | {"mapping"}
 
 
 def settings_schema(params: Iterable[Any]) -> str:
-    """Return the JSON schema of `drivelint.toml`, with a final newline. `params`: those of `check`."""
+    """Return the JSON schema of `drivelint.toml`, with a final newline. `params`: the parameters of `check`."""
     properties = {
         name: {**_kind(_annotation(param)), "description": param.help} for name, param in known_settings(params).items()
     }

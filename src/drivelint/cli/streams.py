@@ -1,4 +1,4 @@
-"""The standard streams of the command: lines on stderr, and a stdout that may be closed, full or without a reader."""
+"""Handles the standard streams: prints lines on stderr, and handles a stdout that is closed, full or without a reader."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from typing import Final
 from drivelint.errors import DriveLintError, ExitCode
 
 READER_LEFT: Final = 141
-"""The exit code if the reader of stdout leaves before its end, as `head` does: the code that a shell returns for SIGPIPE."""
+"""The exit code if the reader of stdout closes it early, as `head` does: the code that a shell returns for SIGPIPE."""
 
 
 class ReaderLeftError(Exception):
-    """No program reads stdout any more. Not an OSError, because libraries turn that into exit code 1."""
+    """The reader of stdout has closed it. The class is no OSError, because libraries turn an OSError into exit code 1."""
 
 
 class StdoutError(DriveLintError):
@@ -25,7 +25,7 @@ class StdoutError(DriveLintError):
 
 
 class _Stdout(io.TextIOWrapper):
-    """Stdout that raises our errors."""
+    """A stdout that raises `ReaderLeftError` and `StdoutError` in place of OSErrors."""
 
     def write(self, text: str) -> int:
         try:
@@ -41,16 +41,16 @@ class _Stdout(io.TextIOWrapper):
 
 
 def _stdout_error(error: OSError) -> Exception:
-    _to_nowhere(1)  # Python tries to write the rest at its end
+    _to_nowhere(1)  # at exit, Python tries to write the remaining buffer
     if isinstance(error, BrokenPipeError):
         return ReaderLeftError()
     return StdoutError(f"stdout cannot be written: {error.strerror}")
 
 
 def prepare() -> None:
-    """Make both streams writable, whatever the caller did: a write to a closed stream is dropped.
+    """Make stdout and stderr writable even if the caller closed them: output to a closed stream is discarded.
 
-    Some programs report a terminal of 0 columns; its width is then not known.
+    Also removes a variable COLUMNS of 0, which some programs set: the width is then unknown.
     """
     if not os.environ.get("COLUMNS", "").strip().lstrip("0"):
         os.environ.pop("COLUMNS", None)
@@ -59,14 +59,14 @@ def prepare() -> None:
             setattr(sys, name, os.fdopen(_to_nowhere(no), "w", encoding="utf-8"))
         stream = getattr(sys, name)
         if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="replace")  # a log's words may not fit the terminal's encoding
-    if isinstance(sys.stdout, io.TextIOWrapper) and sys.stdout is sys.__stdout__:  # not a stream that replaced it
+            stream.reconfigure(errors="replace")  # text from a log may have characters outside the terminal's encoding
+    if isinstance(sys.stdout, io.TextIOWrapper) and sys.stdout is sys.__stdout__:  # stdout was not replaced
         encoding, buffered = sys.stdout.encoding, sys.stdout.line_buffering
         sys.stdout = _Stdout(sys.stdout.detach(), encoding, errors="replace", line_buffering=buffered)
 
 
 def say(line: str) -> None:
-    """Print a line on stderr if possible; the exit code is correct in any case."""
+    """Print a line on stderr if possible; ignore errors, so that the exit code stays correct."""
     with suppress(OSError):
         print(line, file=sys.stderr, flush=True)
 

@@ -1,4 +1,4 @@
-"""`drivelint watch`: a drive is judged while it is recorded."""
+"""`drivelint watch`: judges a drive while it is recorded."""
 
 from __future__ import annotations
 
@@ -124,15 +124,15 @@ def watch(
     memory: options.MemorySize = None,
     quiet: options.Quiet = False,
 ) -> None:
-    """Judge a drive while it is recorded: alarms at once, verdicts at its end.
+    """Judge a drive while it is recorded: print alarms at once, verdicts at the end.
 
     Prints one JSON object per line: alarm, over, warning, mode, halt, note; at the end checked, verdict and end. An alarm is
     a preliminary finding; at the end, the check of the whole recording confirms it or not, and prints the verdicts.
 
     This is not a safety function of a vehicle: drivelint docs watching describes its limits and its speed.
 
-    Exit codes: as check, for the whole recording; 1 also if an alarm halted it. Ctrl-C ends the recording, which is then checked;
-    a second Ctrl-C ends watch at once.
+    Exit codes: those of check, for the whole recording; 1 also if an alarm halted the watch. Ctrl-C ends the recording, which is
+    then checked; a second Ctrl-C ends watch at once.
     """
     from drivelint.engine.interruption import NothingJudgedError
     from drivelint.errors import DriveLintError, ExitCode
@@ -186,12 +186,12 @@ def watch(
 
 
 class _Printer:
-    """Prints messages. If the reader leaves, the watch continues, for its result and to halt."""
+    """Prints messages. If the reader closes stdout, the watch continues, to write its result and to halt at alarms."""
 
     has_left = False
 
     def __call__(self, message: Message) -> None:
-        """Print a message as a line of JSON."""
+        """Print a message as one line of JSON."""
         try:
             if not self.has_left:
                 typer.echo(inert_json(json.dumps(message, ensure_ascii=False, allow_nan=False)))
@@ -208,7 +208,7 @@ def _watch_and_check(
     *,
     overwrite: bool,
 ) -> int:
-    """Watch a source, then check the recording. Return the exit code. `work`: the folder in which the result is written."""
+    """Watch a source, check the recording, and return the exit code. `work`: the folder in which the result is made."""
     from drivelint.report.outputs import write
     from drivelint.result.model import exit_status
     from drivelint.watch import messages
@@ -220,7 +220,7 @@ def _watch_and_check(
 
     with (
         temporary_folder() as folder,
-        # rules and map are read here: a fault in them ends the watch before the source or COMMAND starts
+        # reads rules and map, so that an error in them ends the watch before the source or COMMAND starts
         WindowJudge(settings) as judge,
         open_server(settings.serve, judge.rules, settings.allow_origin) as server,
         open_source(settings, progress) as opened,

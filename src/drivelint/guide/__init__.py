@@ -1,4 +1,4 @@
-"""The guides that `drivelint docs` prints and `drivelint docs --html` writes as a site: one Markdown file per topic, beside this one."""
+"""The guides that `drivelint docs` prints and `drivelint docs --html` writes as a site: one Markdown file per topic in this folder."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ TOPICS: Final = (
     "fleets", "fleet-machines", "fleet-results", "fleet-costs", "writing-a-rule", "scenes", "rule-durations", "rule-reference",
     "adding-a-format", "architecture",
 )  # fmt: skip
-"""The topics in reading order; each is the stem of a file."""
+"""The topics in reading order; each is the name of a Markdown file without its suffix."""
 FOLDER: Final = Path(__file__).parent
 REFERENCE_TOPICS: Final = ("dictionary", "catalogue", "reasons", "macros")
 """The topics of `drivelint docs` besides the guides: the tables, the rules, the reason codes and the macros."""
 OUTPUT_TABLES_MARK: Final = "<!-- tables: output -->"
-"""The line of a guide that stands for the columns of every output file."""
+"""A line in a guide that is replaced by the columns of every output file."""
 _MARK = re.compile(r"^<!-- .* -->\n", re.MULTILINE)
 
 
@@ -41,9 +41,9 @@ def topics() -> tuple[Topic, ...]:
 
 
 def text(name: str, table: str | None = None) -> str:
-    """Return a guide as Markdown, the columns of the output files filled in; or the reference: `table` is of the dictionary.
+    """Return a guide or a reference topic as Markdown. `table`: one table of the topic `dictionary`.
 
-    Errors: `UsageError` with the nearest topic or table.
+    In a guide, the columns of the output files are filled in. Errors: `UsageError` with the nearest topic or table.
     """
     if name not in TOPICS + REFERENCE_TOPICS:
         raise UsageError(f"no guide {name!r}: {hint(name, TOPICS + REFERENCE_TOPICS)}")
@@ -62,7 +62,7 @@ def text(name: str, table: str | None = None) -> str:
 
 
 def listing() -> str:
-    """Return a line per topic: its name and its sentence."""
+    """Return one line per guide: its name and its first sentence."""
     width = max(map(len, TOPICS))
     return "\n".join(f"{topic.name:<{width}}  {topic.sentence}" for topic in topics())
 

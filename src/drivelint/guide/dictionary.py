@@ -1,6 +1,6 @@
-"""The data dictionary: every table of `schemas/*.sql` with its columns, their words, and the tables that it is derived from.
+"""Makes the reference from the sources: the data dictionary, the reason codes with their texts, and the macros for SQL.
 
-Beside it, as made from the sources too: every reason code with its words, and every macro that SQL can call.
+The data dictionary has every table of `schemas/*.sql` with its columns, their vocabularies, and the tables from which it is derived.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ _GROUPS: Final = {
     "output": "Drives and rules",
     "evidence": "Evidence for the report",
 }
-"""File of `schemas/` -> its heading."""
+"""File of `schemas/` -> the heading of its tables."""
 _LIVES: Final = {
     "map": "as long as batches use the map",
     "drive": "while its batch of drives is judged",
@@ -58,7 +58,7 @@ _LIVES: Final = {
 
 
 def page() -> str:
-    """Return the data dictionary as Markdown. Errors: `DriveLintError` for a file of `schemas/` without a heading here."""
+    """Return the data dictionary as Markdown. Errors: `DriveLintError` for a file of `schemas/` without a heading in `_GROUPS`."""
     read = tables_read()
     filters: dict[str, Any] = {
         "about": _about,
@@ -77,7 +77,7 @@ def page() -> str:
 
 
 def text() -> str:
-    """Return the data dictionary as plain text: a block per table, a line per column."""
+    """Return the data dictionary as plain text, with a block per table and a line per column."""
     groups = (
         f"{heading.upper()}\n\n" + "\n".join(map(table_text, column_comments(file)))
         for file, heading in _GROUPS.items()
@@ -87,9 +87,10 @@ def text() -> str:
 
 
 def table_text(name: str) -> str:
-    """Return one table as plain text: its name, its description, and a line per column with its type and meaning; or one vocabulary.
+    """Return one table, or one vocabulary, as plain text.
 
-    Errors: `UsageError` with the nearest table or vocabulary.
+    The text of a table has its name, its description, and a line per column with type and meaning. Errors: `UsageError` with the nearest
+    table or vocabulary.
     """
     if name in vocabularies() and name not in column_comments():
         return _vocabulary_text(name)
@@ -105,13 +106,13 @@ def table_text(name: str) -> str:
 
 
 def _vocabulary_text(name: str) -> str:
-    """Return a vocabulary as plain text: its name, its words and what they mean."""
+    """Return a vocabulary as plain text: its name, its words and their meaning."""
     known = vocabularies()[name]
     return f"[{name}]\n  {', '.join(known.words)}{'' if known.is_listed else ', ...'}\n  {known.says}\n"
 
 
 def escaped(text: str) -> str:
-    """Return text that Markdown shows as it is."""
+    """Return text with Markdown's special characters escaped."""
     return _MARKUP.sub(r"\\\1", text)
 
 
@@ -123,7 +124,7 @@ def output_tables() -> str:
 
 @cache
 def tables_read() -> Mapping[str, tuple[str, ...]]:
-    """Return, for each derived table, the tables that its SELECT reads, in the order of derivation."""
+    """Return derived table -> tables that its SELECT reads, in the order of derivation."""
     return {
         name: tuple(sorted(syntax.tables_read(syntax.parse_select(each.sql, name)) & column_comments().keys() - {name}))
         for name, each in derivations().items()
@@ -131,7 +132,7 @@ def tables_read() -> Mapping[str, tuple[str, ...]]:
 
 
 def derivation_levels(tables_read: Mapping[str, Iterable[str]]) -> list[list[str]]:
-    """Return the derived tables by level; a table reads only recorded tables and tables of lower levels."""
+    """Return the derived tables per level; each table reads only recorded tables and tables of lower levels."""
     level: dict[str, int] = {}
     for name, tables in tables_read.items():
         level[name] = 1 + max((level.get(each, 0) for each in tables), default=0)
@@ -141,7 +142,10 @@ def derivation_levels(tables_read: Mapping[str, Iterable[str]]) -> list[list[str
 def _facts(
     name: str, tables_read: Mapping[str, tuple[str, ...]], listed: Callable[[Iterable[str]], str], quote: str = ""
 ) -> list[str]:
-    """Return the sentences about a table: how long it is kept, its file, what it reads and what reads it."""
+    """Return sentences about a table: how long it is kept, its file, the tables it reads, and the tables and rules that read it.
+
+    `listed`: a function that joins names; `quote`: the mark around the file name.
+    """
     sentences = [f"Kept {_LIVES[lifetimes()[name]]}."]
     if files := [stem for stem, of in {**TABLE_OF_FILE, **PICTURES}.items() if of == name]:
         sentences.append(f"Written to {quote}{files[0]}.parquet{quote}.")
@@ -160,7 +164,7 @@ def _rule_reads() -> list[tuple[str, tuple[str, ...]]]:
 
 
 def _about(name: str) -> str:
-    """Return the comment at the head of the SELECT that fills a table; '' for none."""
+    """Return the comment before the SELECT that fills a table; '' without one."""
     if name not in derivations():
         return ""
     head = re.match(r"(?:--.*\n)*", derivations()[name].sql)
@@ -179,7 +183,7 @@ def _columns(name: str, *, in_file: bool = False) -> str:
 
 @cache
 def _types() -> dict[tuple[str, str], str]:
-    """Return (table, column) -> its type, with NOT NULL where the column has it."""
+    """Return (table, column) -> its SQL type, including NOT NULL."""
     with store.connect() as con:
         rows = con.execute("SELECT table_name, column_name, data_type, is_nullable FROM duckdb_columns()").fetchall()
     return {(name, column): kind if nullable else f"{kind} NOT NULL" for name, column, kind, nullable in rows}
@@ -190,12 +194,15 @@ def _links(names: Iterable[str]) -> str:
 
 
 def reasons_page() -> str:
-    """Return every reason code as Markdown: those of all rules, then those of one rule each."""
+    """Return every reason code as Markdown: first the codes that rules share, then the codes of single rules."""
     return text_template(__file__, "reasons.md.j2").render(shared=shared_texts(), rules=sorted(load_rules(()).items()))
 
 
 def macros_page() -> str:
-    """Return every macro as Markdown, by file: its parameters, else its value, and the comment above it, which may be about several."""
+    """Return every macro as Markdown, grouped by file: its parameters, and the comment above it.
+
+    A macro without parameters is shown with its value. Macros without a comment have the comment of the macro above.
+    """
     files: dict[str, list[tuple[str, str]]] = {}
     for file in sorted((folder("queries") / "macros").glob("*.sql")):
         about = ""
@@ -211,4 +218,4 @@ REFERENCE: Final[dict[str, Callable[[], str]]] = {
     "reasons": reasons_page,
     "macros": macros_page,
 }
-"""The topics of `drivelint docs` besides the guides, and the page of each."""
+"""Topic of `drivelint docs` that is no guide -> the function that returns its text."""

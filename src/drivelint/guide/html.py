@@ -1,4 +1,4 @@
-"""Markdown to an HTML page that opens offline: beside it lie one stylesheet, and the scripts of the search."""
+"""Converts Markdown to HTML pages that open offline. Their stylesheet and search scripts are in the same folder."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 STYLESHEET: Final = "style.css"
 _MARKDOWN: Final = MarkdownIt("commonmark", {"html": False}).enable("table")
 _LONG: Final = 60
-"""Characters beyond which a cell should not be narrow."""
+"""Number of characters above which a table cell counts as long, and gets a larger least width."""
 _ELSEWHERE: Final = (("../../../queries/README.md", "catalogue.html"), ("../../../schemas/", "dictionary.html"))
-"""What a guide links to in the repository, and the page of the site that has it."""
+"""(Prefix of a link target in the repository, page of the site with its content)."""
 
 
 def parse(markdown: str) -> list[Token]:
-    """Return the tokens of a page: its headings have ids, and its links lead to pages of the site."""
+    """Return the tokens of a page, with ids for its headings and with links to pages of the site."""
     tokens = _MARKDOWN.parse(markdown)
     _name_headings(tokens)
     _lead_to_pages(tokens)
@@ -36,9 +36,9 @@ def parse(markdown: str) -> list[Token]:
 def page(
     tokens: Sequence[Token], *, name: str, pages: Iterable[tuple[str, Sequence[tuple[str, str]]]], footer: str
 ) -> str:
-    """Return the page `name` of a site. `pages`: heading -> (name, title) of each page under it, for the navigation."""
+    """Return the page `name` of a site as HTML. `pages`: for the navigation, headings with the (name, title) of their pages."""
     body = str(_MARKDOWN.renderer.render(tokens, _MARKDOWN.options, {}))
-    body = body.replace("&lt;br&gt;", "<br>")  # the only HTML that the catalogue's cells have
+    body = body.replace("&lt;br&gt;", "<br>")  # the only HTML in the catalogue's cells
     body = body.replace("<table>", '<div class="wide"><table>').replace("</table>", "</table></div>")
     titles = (words(inline) for opening, inline in pairwise(tokens) if opening.tag == "h1")
     return text_template(__file__, "page.html.j2").render(
@@ -52,7 +52,7 @@ def words(inline: Token) -> str:
 
 
 def _name_headings(tokens: Sequence[Token]) -> None:
-    """Give every heading the id by which GitHub links to it."""
+    """Give every heading the same id as GitHub does."""
     seen: Counter[str] = Counter()
     for opening, inline in pairwise(tokens):
         if opening.type == "heading_open":
@@ -64,7 +64,7 @@ def _name_headings(tokens: Sequence[Token]) -> None:
 
 
 def _lead_to_pages(tokens: Sequence[Token]) -> None:
-    """Turn links to files of the repository into links to pages of the site."""
+    """Change links to files of the repository to links to pages of the site."""
     for token in tokens:
         for child in token.children or ():
             if child.type == "link_open":
@@ -72,7 +72,7 @@ def _lead_to_pages(tokens: Sequence[Token]) -> None:
 
 
 def _label_cells(tokens: Sequence[Token]) -> None:
-    """Note at each cell what the stylesheet needs: its column's heading, for narrow screens, and whether its text is long."""
+    """Set attributes of table cells for the stylesheet: the column's heading, for narrow screens, and a class for long text."""
     head: list[str] = []
     column = 0
     for opening, inline in pairwise(tokens):

@@ -1,10 +1,10 @@
-// The search of the site. It needs no server: the index is a script, which is loaded when somebody begins to search.
+// The search of the site. It needs no server: the index is a script, which is loaded when the search field gets the focus.
 'use strict';
 const MOST_HITS = 12;
 const form = document.querySelector('header form');
 const field = form.querySelector('input');
 const list = document.getElementById('hits');
-let sections = null; // of all pages, in their order; null: the index is not loaded
+let sections = null; // sections of all pages, in order; null: the index is not loaded
 
 function drivelintPages(pages) {
   sections = pages.flatMap(([page, parts]) => parts.map(([anchor, heading, words], n) => ({
@@ -14,7 +14,7 @@ function drivelintPages(pages) {
   show();
 }
 
-// How well a section fits a word; 0: it does not have it.
+// Returns how well a section matches a word; 0: the section does not contain it.
 function fit(section, word) {
   if (section.name.includes(` ${word} `)) return section.first ? 6 : 5;
   if (section.name.includes(word)) return section.first ? 4 : 3;
@@ -53,7 +53,7 @@ form.addEventListener('submit', (event) => {
   event.preventDefault();
   list.querySelector('a')?.click();
 });
-// a page of the site that was opened from its own list keeps no list open
+// a click on a hit closes the list, also if the hit is on the same page
 list.addEventListener('click', () => { list.hidden = true; });
 document.addEventListener('click', (event) => { if (!form.contains(event.target)) list.hidden = true; });
 document.addEventListener('keydown', (event) => {

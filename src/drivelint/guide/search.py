@@ -1,4 +1,4 @@
-"""The search of the site: an index of its sections as a script, because a page that was opened from a file may fetch nothing."""
+"""Makes the search index of the site, as a script: browsers do not let a page that was opened from a file fetch other data."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _WORD: Final = re.compile(r"\w+(?:[.\-]+\w+)*")
 
 
 class Section(NamedTuple):
-    """A heading of a page and what stands under it. `words`: each once, in lower case."""
+    """A section of a page: its heading and the words below it. `words`: distinct words in lower case, separated by spaces."""
 
     anchor: str
     heading: str
@@ -28,13 +28,13 @@ class Section(NamedTuple):
 
 
 def index(pages: Mapping[str, Sequence[Token]]) -> bytes:
-    """Return the script that `search.js` loads: (name, sections) of every page, as `html.parse` read it."""
+    """Return the script that `search.js` loads: the (name, sections) of every page. `pages`: name -> tokens from `html.parse`."""
     entries = [[name, list(sections(tokens))] for name, tokens in pages.items()]
     return f"drivelintPages({json.dumps(entries, ensure_ascii=False, separators=(',', ':'))});\n".encode()
 
 
 def sections(tokens: Sequence[Token]) -> Iterator[Section]:
-    """Yield the sections of a page in its order."""
+    """Yield the sections of a page in order."""
     anchor, heading = "", ""
     texts: list[str] = []
     for before, token in pairwise(tokens):

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 PICTURES: Final = ("log.svg",)
-"""The pictures of the guides."""
+"""Picture files of the guides."""
 REFERENCE_PAGES: Final = {
     "catalogue": (
         "The rule catalogue",
@@ -30,7 +30,7 @@ REFERENCE_PAGES: Final = {
     "macros": ("Macros", "What the SQL of a rule can call."),
     "commands": ("The command line", "Every command with its arguments and options."),
 }
-"""Page -> its title and content."""
+"""Page -> its title and a sentence about its content."""
 
 
 class Command(NamedTuple):
@@ -48,7 +48,7 @@ class Command(NamedTuple):
 
 
 def write(folder: Path, commands: Iterable[Command]) -> Path:
-    """Write the site into `folder`; return its first page. Errors: `UsageError` where `folder` is a file, `OutputError`."""
+    """Write the site into `folder` and return its first page. Errors: `UsageError` if `folder` is a file; `OutputError`."""
     if folder.exists() and not folder.is_dir():
         raise UsageError(f"--html {folder}: is a file: give a folder for the pages")
     publish(folder, contents(commands), {})
@@ -56,7 +56,7 @@ def write(folder: Path, commands: Iterable[Command]) -> Path:
 
 
 def contents(commands: Iterable[Command]) -> dict[str, bytes]:
-    """Return every file of the site, name -> bytes: the same for the same version."""
+    """Return file name -> bytes for every file of the site; one version of drivelint always gives the same bytes."""
     pages = {name: guide.text(name) for name in (*guide.TOPICS, "catalogue", "reasons", "macros")}
     pages["dictionary"] = dictionary.page()
     pages["commands"] = text_template(__file__, "commands.md.j2", shown=_help_as_markdown).render(commands=commands)
@@ -78,5 +78,5 @@ def contents(commands: Iterable[Command]) -> dict[str, bytes]:
 
 
 def _help_as_markdown(text: str) -> str:
-    """Return help text as Markdown, the options in it as code."""
+    """Return help text as Markdown, with its options as code."""
     return re.sub(r"(?<![\w-])(--[a-z][\w-]*)", r"`\1`", dictionary.escaped(text))

@@ -1,4 +1,4 @@
-"""Inspects a log: its content, its problems and the rules that it can decide, without judging."""
+"""Inspects a log without judging it: its content, its problems, and the rules that it can decide."""
 
 from __future__ import annotations
 
@@ -42,20 +42,20 @@ _SEVERITIES: Final = ("error", "warning", "info")
 
 @dataclass(frozen=True)
 class InspectRequest(DriveInput):
-    """A request to `inspect`; the names are those of its options."""
+    """The options of `inspect`, with the same names."""
 
     trace: str
     rules: tuple[str, ...] = ()
     rules_dirs: tuple[Path, ...] = ()
     memory: int | None = DEFAULT_MEMORY
-    """Bytes that the database keeps to before it uses the disk; None: 80 % of the machine's."""
+    """Memory of the database in bytes before it uses the disk; None: 80 % of the machine's memory."""
 
 
 def inspect(request: InspectRequest) -> model.Inspection:
-    """Return an inspection of a log; if it cannot be read as a drive, `problem` says why.
+    """Return the inspection of a log; if the log cannot be read as a drive, `problem` states why.
 
-    Errors: `TraceError` for a file that is not there, `UsageError`, `RuleError`, and `MapError` for a map that cannot be
-    read; a map of another place is reported in the result.
+    Errors: `TraceError` for a missing file, `UsageError`, `RuleError`, and `MapError` for an unreadable map. The result reports a map
+    that does not cover the drive.
     """
     library, known = MapLibrary(request), catalogue.load_rules(request.rules_dirs)
     selection = request.rules or packs_of_nation(known, request, library)
@@ -83,7 +83,7 @@ def inspect(request: InspectRequest) -> model.Inspection:
 
 
 def to_json(inspection: model.Inspection) -> str:
-    """Return an inspection as JSON: the structure of `schemas/inspect.schema.json`."""
+    """Return an inspection as JSON with the structure of `schemas/inspect.schema.json`."""
     return msgspec.json.format(msgspec.json.encode(inspection), indent=2).decode()
 
 
@@ -98,7 +98,7 @@ def exit_code(inspection: model.Inspection) -> ExitCode:
 def _content_of_unread(path: Path, options: IngestOptions) -> model.Content:
     try:
         return content(path, None, [], has_reader=not may_be_mapped_table(path, options))
-    except (TraceError, OSError):  # the problem that the reader has reported already
+    except (TraceError, OSError):  # the reader has already reported this problem
         return model.Content()
 
 
@@ -150,7 +150,7 @@ def _judgeable(
     *,
     memory: int | None,
 ) -> tuple[list[model.Ego], list[model.Quality]]:
-    """Fill the database with the drive, derive the library tables, and read from them the facts about its egos and data."""
+    """Derive the library tables of a drive; return its egos with their decidable rules, and its data-quality findings."""
     known = _Knowledge()
     with store.workspace(memory) as con:
         session = JudgingSession(con, (), {}, None, observers=[known], memory=Memory(con, memory))
@@ -193,7 +193,7 @@ def _judgeable(
 
 
 class _Knowledge:
-    """Reads, while the tables exist, which facts about each ego are known at some step: conditions, and the limit."""
+    """Collects, while the tables exist, which conditions of each ego, including the speed limit, are known at any step."""
 
     def __init__(self) -> None:
         self.of: dict[str, dict[str, bool]] = {}

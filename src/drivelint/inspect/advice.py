@@ -1,4 +1,4 @@
-"""The rules that a log and a map cannot decide, and the signals that they lack."""
+"""Finds the rules that a log and a map cannot decide, and the missing signals."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SIGNALS_NEEDING_MAP: Final = frozenset(
         "traffic_lights", "stop_lines", "crossings",
     }
 )  # fmt: skip
-"""Signals that need a map: if there is none, the map is missing."""
+"""Signals that need a map. Without a map, the missing signal is `map` instead of these."""
 MISSING_ON_ROUTE: Final = {
     "road_types": "the map does not state the kind of the roads on which the ego drives",
     "speed_limits": "the map has no readable speed limit for the lanes on which the ego drives",
@@ -26,9 +26,9 @@ MISSING_ON_ROUTE: Final = {
 
 
 def never_known(knowledge: Mapping[str, bool], lacking: Mapping[str, str]) -> dict[str, str]:
-    """Return, per signal or condition that is unknown at every step of the ego, the reason.
+    """Return signal or condition -> reason, for those that are unknown at every step of the ego.
 
-    What the log or the map lacks as a whole, `lacking` says already.
+    `lacking`: signal -> reason, for signals that the whole log or map lacks; its reasons take precedence.
     """
     found = {}
     for name in (name for name, known in knowledge.items() if not known):
@@ -38,7 +38,7 @@ def never_known(knowledge: Mapping[str, bool], lacking: Mapping[str, str]) -> di
 
 
 def undecided_rules(rules: Sequence[Rule], lacking: Mapping[str, str], never: Mapping[str, str]) -> list[Undecided]:
-    """Return the rules that cannot be decided because a signal is lacking or a condition is never known."""
+    """Return the rules that cannot be decided because a signal is missing or a condition is never known."""
     found = []
     for rule in rules:
         conditions = {SIGNAL_OF_CONDITION.get(name, name) for name in rule.applies.restricting}
@@ -57,7 +57,7 @@ def undecided_rules(rules: Sequence[Rule], lacking: Mapping[str, str], never: Ma
 def missing_signals(
     undecided: Sequence[Undecided], lacking: Mapping[str, str], log_format: str, advice: Mapping[str, str]
 ) -> list[MissingSignal]:
-    """Return the missing signals with the rules that need them, the most needed first. `advice`: signal -> advice of its reason."""
+    """Return the missing signals with the rules that need them, the signal with most rules first. `advice`: signal -> advice."""
     by_signal: dict[str, list[Undecided]] = {}
     for rule in undecided:
         for signal in rule.missing_signals:

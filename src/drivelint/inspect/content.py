@@ -1,4 +1,4 @@
-"""The content of a file, whether or not it can be read as a drive: channels, tables, columns and what is read of them."""
+"""Lists the content of a file, even if it cannot be read as a drive: channels, tables, columns, and how they are read."""
 
 from __future__ import annotations
 
@@ -47,11 +47,11 @@ _ROLES: Final[dict[str, dict[tuple[str, str], str]]] = {
     "ros2": {(name, "cdr"): role for name, role in bag.ROS_ROLES.items()},
     "foxglove": {(name, kind): role for name, role in bag.FOXGLOVE_ROLES.items() for kind in ("protobuf", "json")},
 }
-"""Message family -> (schema, encoding) -> what its messages are read as."""
+"""Message family -> (schema, encoding) -> how drivelint reads these messages."""
 
 
 def size_bytes(path: Path) -> int:
-    """Return the bytes of a file, or of the files of a folder that are read as one drive."""
+    """Return the size in bytes of a file, or of all files of a folder that is read as one drive."""
     files = drive_files(path)
     if is_bag(path):
         files = [file for file in path.iterdir() if file.suffix.lower() == ".mcap"]
@@ -59,13 +59,16 @@ def size_bytes(path: Path) -> int:
 
 
 def content(path: Path, mapping: str | None, notes: list[str], *, has_reader: bool) -> Content:
-    """Return the channels, tables and columns of a file, and what is read from them."""
+    """Return the channels, tables and columns of a file, and how they are read.
+
+    `mapping`: the mapping that reads a table, or None. `has_reader`: a reader recognises the file, so no mapping is drafted.
+    """
     if path.is_dir():
         if is_bag(path):
             return Content(channels=_channels(path), notes=notes)
         return Content(sheets=[sheet for file in drive_files(path) if (sheet := _table_file(file))], notes=notes)
     if is_pipe_or_device(path):
-        return Content(notes=notes)  # reading it as a drive reports the fault
+        return Content(notes=notes)  # the reader of drives reports the fault
     with path.open("rb") as file:
         head = file.read(_HEAD_BYTES)
     if head.startswith(MAGIC[:5]):
@@ -89,7 +92,7 @@ def _of_table(path: Path, head: bytes, mapping: str | None, notes: list[str], *,
         )
         return Content(sheets=[sheet], notes=notes, draft_mapping=guess)
     if has_reader or b"\0" in head or not head.strip() or head.lstrip()[:1] in {b"<", b"{"}:
-        return Content(notes=notes)  # no table, or a text that another reader has read
+        return Content(notes=notes)  # not a table, or a text file with a reader of its own
     table = CsvSheet(path, TextLayout())
     sheet = Sheet(name=path.name, rows=None, columns=_unread(table.names))
     draft = draft_mapping(table.names, lambda name: _texts(table, name))
@@ -97,12 +100,12 @@ def _of_table(path: Path, head: bytes, mapping: str | None, notes: list[str], *,
 
 
 def _texts(sheet: CsvSheet | ParquetSheet, column: str) -> list[str]:
-    """Return the distinct texts of a column; none if it cannot be read."""
+    """Return the distinct texts of a column; empty if the column cannot be read."""
     try:
         sheet.load([column])
         return sorted(sheet.text(column).unique().drop_null().to_pylist())
     except TraceError:
-        return []  # the table cannot be read either, for the same reason, which is reported
+        return []  # reading the table fails for the same reason, and reports it
 
 
 def _unread(names: Iterable[str]) -> list[Column]:
@@ -114,7 +117,7 @@ def _plain(path: Path) -> Sheet:
 
 
 def _table_file(path: Path) -> Sheet | None:
-    """Return a file of a folder as a table; None: it is none."""
+    """Return the columns of a table file in a folder; None for another file."""
     if path.suffix == ".parquet":
         return _plain(path)
     if path.suffix in {".feather", ".arrow"}:
@@ -124,7 +127,7 @@ def _table_file(path: Path) -> Sheet | None:
 
 
 def _mapped(path: Path, mapping: Mapping) -> Sheet:
-    """Return a table's columns, those that the mapping reads first."""
+    """Return a table's columns, first the columns that the mapping reads."""
     sheet = open_sheet(path, mapping)
     columns = _read(mapping)
     shapes = [re.compile(re.escape(c.name).replace(re.escape(GROUP_PLACEHOLDER), r"\d+")) for c in columns]
@@ -137,7 +140,7 @@ def _mapped(path: Path, mapping: Mapping) -> Sheet:
 
 
 def _filmed(path: Path, film: VideoMapping) -> Sheet:
-    """Return the columns of a table of detections, those that its mapping reads first."""
+    """Return the columns of a table of video detections, first the columns that the mapping reads."""
     names = CsvSheet(path, TextLayout()).names
     read = {film.frames.column: ["time"]} | {
         str(actor.ahead): [f"distance ahead of {actor.id}"] for actor in film.actor
@@ -169,7 +172,7 @@ class _Count:
 
 
 def _channels(path: Path) -> list[Channel]:
-    """Count the messages of every channel, of a bag over all its parts; of a damaged file those that can be read."""
+    """Return every channel with its number of messages: over all parts of a bag, and the readable messages of a damaged file."""
     counts: dict[tuple[str, str, str, str], _Count] = {}
     try:
         for file in bag.mcap_files(path):
@@ -182,18 +185,18 @@ def _channels(path: Path) -> list[Channel]:
                     count.first_ns = min(count.first_ns, packet.log_time_ns)
                     count.last_ns = max(count.last_ns, packet.log_time_ns)
             finally:
-                # a channel without messages may stand in the index alone
+                # a channel without messages may occur only in the index
                 for part in (container, read_index(file)):
                     for channel in part.channels.values():
                         counts.setdefault(_key(part, channel), _Count())
     except TraceError:
-        pass  # the drive cannot be read either, for the same reason, which is reported
+        pass  # reading the drive fails for the same reason, and reports it
     roles = _roles(path)
     return [_channel(key, counts[key], roles) for key in sorted(counts)]
 
 
 def _key(container: Container | Summary, channel: records.Channel) -> tuple[str, str, str, str]:
-    """Return topic, schema, encoding and the schema's encoding; channels that share them are one."""
+    """Return topic, schema, encoding and the schema's encoding; channels with the same key are counted together."""
     schema = container.schemas.get(channel.schema_id)
     return channel.topic, schema.name if schema else "", channel.message_encoding, schema.encoding if schema else ""
 
@@ -215,7 +218,7 @@ def _channel(key: tuple[str, str, str, str], count: _Count, roles: dict[tuple[st
 
 
 def _roles(path: Path) -> dict[tuple[str, str], str]:
-    """Return what is read of a log, by schema and encoding: if it has several kinds, only the best one is read."""
+    """Return (schema, encoding) -> how messages are read; if a log has several message families, only the best is read."""
     try:
         return _ROLES[bag.message_family(path)]
     except TraceError:

@@ -1,4 +1,4 @@
-"""Guesses a mapping from the column names of a table; the user must correct it before use."""
+"""Drafts a mapping from the column names of a table; the user must correct the draft before use."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ _ORDER: Final = (
 
 
 def draft_mapping(columns: Sequence[str], texts_of: Callable[[str], Sequence[str]]) -> str | None:
-    """Return a mapping as TOML, a comment where something has to be filled in; None where there are fewer columns than it needs.
+    """Return a draft mapping as TOML, with comments at the places to fill in; None for a table with too few columns.
 
-    `texts_of`: returns the distinct texts of a column.
+    `texts_of`: a function that returns the distinct texts of a column.
     """
     found: dict[str, str] = {}
     for column in columns:
@@ -60,12 +60,12 @@ def draft_mapping(columns: Sequence[str], texts_of: Callable[[str], Sequence[str
 
 
 def _class_of(text: str) -> str | None:
-    """Return the class that a text names, however it is written; None: it is none."""
+    """Return the actor class that a text names, ignoring case, spaces and hyphens; None if it names no class."""
     return vocabularies()["actor_class"].spelled("_".join(text.split()).replace("-", "_"))
 
 
 def _meaning(column: str) -> str | None:
-    """Return which of a mapping's fields the column's name speaks of."""
+    """Return the field of a mapping that a column's name suggests; None without a suggestion."""
     words = _split(column)
     bare = words - set(_UNIT_WORDS) - _FILLERS
     axes = words & {"x", "y", "z"}
@@ -100,6 +100,6 @@ def _unit(column: str, unit_factors: Mapping[str, float]) -> str | None:
 
 
 def _text(value: str) -> str:
-    """Return a TOML string."""
+    """Return a text as a TOML string."""
     escaped = value.replace("\\", "\\\\").replace('"', '\\"')
     return '"' + "".join(c if c.isprintable() else f"\\U{ord(c):08x}" for c in escaped) + '"'

@@ -1,6 +1,6 @@
-"""The result of `inspect`, as its JSON has it: `schemas/inspect.schema.json` is made from here.
+"""The result of `inspect`, with the structure of its JSON; `schemas/inspect.schema.json` is generated from this module.
 
-Times are seconds; those named `t_...` or `..._at_s` count from the first time stamp of the log. Lengths are metres.
+Times are in seconds; times named `t_...` or `..._at_s` count from the first time stamp of the log. Lengths are in metres.
 """
 
 from __future__ import annotations
@@ -11,11 +11,11 @@ import msgspec
 from msgspec import Meta
 
 INSPECT_SCHEMA: Final = 1
-"""Raised when a key changes its meaning or goes; new keys do not raise it."""
+"""Version of the JSON: raised when a key changes its meaning or is removed, but not for new keys."""
 
 
 def described(meaning: str) -> Meta:
-    """Return the meaning of a key, for the schema."""
+    """Return metadata with the description of a key, for the schema."""
     return Meta(description=meaning)
 
 
@@ -43,7 +43,7 @@ class Channel(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Column(msgspec.Struct, frozen=True, kw_only=True):
-    """One column of a table; of a wide table one for all its groups, `{k}` standing for the group's number."""
+    """One column of a table. In a wide table, one entry stands for the column in all groups, with `{k}` for the group's number."""
 
     name: str
     read_as: Annotated[
@@ -123,7 +123,7 @@ class MapRegistration(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Undecided(msgspec.Struct, frozen=True, kw_only=True):
-    """A rule that will be unknown, or that can at most be found broken."""
+    """A rule that cannot be decided, or that can fail but not pass."""
 
     rule_id: str
     title: str
@@ -134,7 +134,7 @@ class Undecided(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class MissingSignal(msgspec.Struct, frozen=True, kw_only=True):
-    """A signal that some rule requires and this log and map do not give."""
+    """A signal that a rule requires, but that neither the log nor the map provides."""
 
     signal: str
     reason: Annotated[str, described("what is wrong or missing")]

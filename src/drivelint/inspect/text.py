@@ -1,4 +1,4 @@
-"""Prints an inspection for a person, one label and text per line."""
+"""Formats an inspection as text for the terminal, with one label and text per line."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ if TYPE_CHECKING:
     from drivelint.inspect import model
 
 MAX_ROWS: Final = 12
-"""Lines shown of a list; the JSON has them all."""
+"""Largest number of lines shown of a list; the JSON has all of them."""
 _MAX_LISTED_NAMES: Final = 6
-"""Egos that a line names before it says how many more there are."""
+"""Largest number of egos or selectors that a line names; it then states how many more there are."""
 _DRAFT: Final = " (draft)"
 _STYLE: Final = {"error": "bold red", "warning": "yellow", "info": "dim"}
 _READER_NOTE_PREFIX: Final = "read through"
-"""Reader notes that begin with this repeat the content section, and are left out."""
+"""Reader notes that begin with these words repeat the content section, so they are not shown."""
 _SOURCES: Final = {
     "option": "as --handedness says",
     "attribute": "as the map says",
@@ -41,12 +41,12 @@ _SOURCES: Final = {
     "traces": "as the log's traffic drives",
     "default": "only by the standard's default: set it with --handedness",
 }
-"""Source of the side that is driven on -> its words."""
+"""Source of the handedness (side of the road that is driven on) -> its words."""
 Line = tuple[str, Text]
 
 
 def render(inspection: model.Inspection, trace: str) -> Group:
-    """Return the whole inspection; `trace` is the user's name of the log."""
+    """Return the whole inspection as a renderable. `trace`: the log as the user named it."""
     draft = inspection.content.draft_mapping
     inspection = msgspec.convert(flat(msgspec.to_builtins(inspection)), type(inspection))
     lines = [*_content(inspection.content)]
@@ -85,7 +85,7 @@ def _size(n: int) -> str:
 
 
 def _labelled(lines: Sequence[Line]) -> Table:
-    """Return lines with their labels in a column of their own, each label once."""
+    """Return a table of labels and texts; a label that repeats the previous one is not shown."""
     grid = _grid("bold", no_wrap=True)
     previous = None
     for label, text in lines:
@@ -95,7 +95,7 @@ def _labelled(lines: Sequence[Line]) -> Table:
 
 
 def _grid(style: str, **label: Any) -> Table:
-    """Return a grid of labels in this style and texts."""
+    """Return an empty table with a column of labels in this style, and a column of texts."""
     grid = Table.grid(padding=(0, 2, 0, 0))
     grid.add_column(style=style, **label)
     grid.add_column(overflow="fold", ratio=1)
@@ -103,7 +103,7 @@ def _grid(style: str, **label: Any) -> Table:
 
 
 def _first_of(label: str, texts: Sequence[Text]) -> Iterator[Line]:
-    """Yield the first texts, and how many more there are."""
+    """Yield the first `MAX_ROWS` texts, and a line with the number of further texts."""
     for text in texts[:MAX_ROWS]:
         yield label, text
     if len(texts) > MAX_ROWS:
@@ -149,7 +149,7 @@ def _sheet(sheet: model.Sheet) -> Text:
 
 
 def _cell(column: model.Column, *, per_actor: bool) -> str:
-    """Return the quantity that a column is read as; with its own name, unless it is the same or one of many groups."""
+    """Return the quantity that a column is read as. The column's name is added if it differs, except in a wide table."""
     meant = " and ".join(column.read_as)
     unit = f" in {column.unit}" if column.unit else ""
     return f"{meant}{unit}" if per_actor or meant == column.name else f"{column.name}{unit} as {meant}"
@@ -252,7 +252,7 @@ def _finding(finding: model.Quality) -> Text:
 
 
 def _decidable_rules(drive: model.Drive, log: str) -> Group:
-    """Return the rules that each ego can and cannot decide; egos that lack the same signals share a paragraph."""
+    """Return the rules that can and cannot be decided for each ego; egos with the same missing signals share a paragraph."""
     egos_told = drive.egos or ([drive.supposed] if drive.supposed else [])
     alike = group_rows(egos_told, lambda ego: tuple(item.signal for item in ego.missing_signals))
     parts: list[RenderableType] = []
@@ -283,7 +283,7 @@ def _about(drive: model.Drive, egos: list[model.Ego], log: str) -> list[Renderab
 
 
 def _how_many(ego: model.Ego, drive: model.Drive, selection: str) -> str:
-    """Return how many rules can be decided; those that `check` runs by itself are counted apart from drafts."""
+    """Return in words how many rules can be decided; drafts are counted separately from the rules that `check` runs by default."""
     n, n_drafts = len(drive.rules), len(drive.drafts)
     if not n_drafts:
         return f"{len(ego.can)} of {n} rules ({selection})"
@@ -293,7 +293,7 @@ def _how_many(ego: model.Ego, drive: model.Drive, selection: str) -> str:
 
 
 def _short(rule_id: str, drive: model.Drive) -> str:
-    """Return a rule's id without its pack where all are of one."""
+    """Return a rule's id; without its pack if all requested rules are of one pack."""
     packs = {rule.partition(".")[0] for rule in drive.rules}
     return rule_id.partition(".")[2] if len(packs) == 1 else rule_id
 
@@ -312,7 +312,7 @@ def _by_signal(ego: model.Ego) -> Table:
 
 
 def _by_rule(ego: model.Ego, drafts: Sequence[str]) -> Table:
-    """Return the undecidable rules, those that lack the same signals in one row."""
+    """Return a table of the undecidable rules, with one row per set of missing signals."""
     grid = _grid("yellow", overflow="fold")
     waiting = group_rows(ego.cannot, lambda rule: tuple(rule.missing_signals))
     for missing, rules in sorted(waiting.items(), key=lambda item: (-len(item[1]), item[0])):

@@ -1,4 +1,4 @@
-"""The log's clock, and every actor's track in a few numbers."""
+"""Summarises the log's time stamps, and the track of every actor."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import Trace
 
 MIN_MOVED_M = 1.0
-"""An actor that moved by less stood still: positions of parked cars are noisy."""
+"""An actor that moved by less counts as not moving, because positions of parked cars are noisy."""
 
 
 def clock(trace: Trace) -> Clock:
@@ -44,8 +44,8 @@ def clock(trace: Trace) -> Clock:
 
 
 def actors(trace: Trace) -> list[Actor]:
-    """Return every actor with states, by id."""
-    states = trace.tables["actor_state"]  # by actor, then time
+    """Return every actor that has states, sorted by id."""
+    states = trace.tables["actor_state"]  # sorted by actor, then time
     start = pc.min(states["t_ns"]).as_py()
     encoded = states["actor_id"].combine_chunks().dictionary_encode()
     code = encoded.indices.to_numpy()
@@ -73,7 +73,7 @@ def actors(trace: Trace) -> list[Actor]:
 
 
 def count_classes(trace_actors: Sequence[Actor]) -> list[ClassCount]:
-    """Count actors by class, the most numerous first."""
+    """Return the counts of actors per class, the largest class first."""
     counts = [
         ClassCount(
             actor_class=name,
@@ -87,7 +87,7 @@ def count_classes(trace_actors: Sequence[Actor]) -> list[ClassCount]:
 
 
 def ego_candidates(trace_actors: Sequence[Actor]) -> list[Actor]:
-    """Return the possible egos: motor vehicles and actors of unknown class, the longest track first."""
+    """Return the possible egos, the longest track first: motor vehicles, else actors of unknown class, else all actors."""
     likely = [a for a in trace_actors if a.actor_class in MOTOR_VEHICLES] or [
         a for a in trace_actors if a.actor_class is None
     ]

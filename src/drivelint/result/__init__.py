@@ -1,1 +1,1 @@
-"""A result: the tables that a run writes, and reading them again."""
+"""The result of a run: its tables, and the modules that write and read them."""

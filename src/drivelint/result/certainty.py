@@ -1,4 +1,4 @@
-"""Says whether a finding is sure or only possible, from how many copies with the errors of the recording keep it."""
+"""Classifies a finding as sure or only possible, by the share of the drive's copies with recording errors that keep it."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ if TYPE_CHECKING:
 SURE: Final = "sure"
 POSSIBLE: Final = "possible"
 LEAST_SHARE: Final = 0.95
-"""A finding that fewer of its copies keep is only possible."""
+"""The share of copies that must keep a finding; below that share the finding is only possible."""
 
 
 def certainty(finding: Mapping[str, Any], least_share: float = LEAST_SHARE) -> str | None:
-    """Return `SURE` or `POSSIBLE` of a row of the table `finding`; None: no copies of it were judged."""
+    """Return `SURE` or `POSSIBLE` for a row of the table `finding`; None if no copies were judged."""
     if finding["n_copies"] is None:
         return None
     return SURE if finding["n_stays"] >= least_share * finding["n_copies"] else POSSIBLE
 
 
 def doubt(row: Mapping[str, Any]) -> str:
-    """Return, in words, that a finding is only possible; '' if it is sure or was not examined, and for a verdict."""
+    """Return in words that a finding is only possible, and in how many copies; '' for other findings and for verdicts."""
     if row.get("n_copies") is None or certainty(row) == SURE:
         return ""
     return f"possible, in {row['n_stays']} of {row['n_copies']} copies with recording errors"

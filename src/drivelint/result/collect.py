@@ -1,4 +1,4 @@
-"""The output tables: verdicts, findings and drives, taken from a database that has been judged, and the rules that were selected."""
+"""Makes output tables: verdicts, findings and drives, from a database with verdicts; and the selected rules."""
 
 from __future__ import annotations
 
@@ -25,30 +25,30 @@ ORDER_OF_VERDICTS: Final = (
 )
 ORDER_OF_FINDINGS: Final = f"{ORDER_OF_VERDICTS}, finding_id"
 
-_ONLY: Final = "coalesce(list_contains($only::VARCHAR[], drive_id), true)"  # no list: every drive
+_ONLY: Final = "coalesce(list_contains($only::VARCHAR[], drive_id), true)"  # NULL selects every drive
 
 
 def verdicts(con: duckdb.DuckDBPyConnection, only: list[str] | None = None) -> pa.Table:
-    """Return the table `verdict`, of these drives or all, totally ordered."""
+    """Return the table `verdict`, totally ordered, for the drives `only`; None: for all drives."""
     rows = con.execute(f"SELECT * FROM verdict WHERE {_ONLY} ORDER BY {ORDER_OF_VERDICTS}", {"only": only})
     return conform(rows.to_arrow_table(), "verdict")
 
 
 def findings(con: duckdb.DuckDBPyConnection, only: list[str] | None = None) -> pa.Table:
-    """Return the table `finding`, of these drives or all, totally ordered."""
+    """Return the table `finding`, totally ordered, for the drives `only`; None: for all drives."""
     rows = con.execute(f"SELECT * FROM finding WHERE {_ONLY} ORDER BY {ORDER_OF_FINDINGS}", {"only": only})
     return conform(rows.to_arrow_table(), "finding")
 
 
 def drives(con: duckdb.DuckDBPyConnection, only: list[str] | None = None) -> pa.Table:
-    """Return one row of the table `drive` per log in the database, or per named one: judged, and on what; ordered."""
+    """Return the table `drive`, ordered, with one row per drive in `only`; None: one row per drive in the database."""
     make_reason_table(con, "SELECT NULL AS rule_no, reason AS cause, 0 AS start_ns FROM capability WHERE NOT available")
     rows = con.execute(statement("evidence/drive"), {"only": only, "losses": LOSS_CHECKS, "aside_check": ASIDE_OF_LANE})
     return conform(rows.to_arrow_table(), "drive")
 
 
 def unjudged_drive(drive_id: str, file_name: str, reason: str, sha256: str | None = None) -> pa.Table:
-    """Return the row of the table `drive` for a log that could not be judged at all, and why."""
+    """Return the row of the table `drive`, including the reason, for a log that could not be judged at all."""
     schema = arrow_schemas()["drive"]
     row = dict.fromkeys(schema.names)
     row |= {key: [] for key in ("conditions", "exposure", "occasions", "quality", "not_judged", "recorded")}
@@ -56,13 +56,13 @@ def unjudged_drive(drive_id: str, file_name: str, reason: str, sha256: str | Non
     said = {"drive_id": drive_id, "file_name": file_name, "status_reason": reason}
     row |= {
         key: text.encode("utf-8", "backslashreplace").decode() for key, text in said.items()
-    }  # a name may be any bytes
+    }  # a file name may contain any bytes
     row |= {"sha256": sha256, "km": 0.0, "lossy": False, "status": "not_judged"}
     return pa.Table.from_pylist([row], schema=schema)
 
 
 def rule_table(rules: Sequence[Rule], params: Mapping[str, Mapping[str, object]], profiles: Sequence[str]) -> pa.Table:
-    """Return one row of the table `rule` per rule, with the parameters that were used, sorted by id."""
+    """Return the table `rule`, sorted by id: one row per rule, with the parameters that the run used."""
     rows = [_rule_row(rule, params.get(rule.id, {}), profiles) for rule in sorted(rules, key=lambda r: r.id)]
     return pa.Table.from_pylist(rows, schema=arrow_schemas()["rule"])
 

@@ -1,4 +1,4 @@
-"""Keeps compiled templates: to compile those of a report takes longer than to judge a short drive."""
+"""Caches compiled templates: compiling the templates of a report takes longer than judging a short drive."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from drivelint.memo import Memo
 if TYPE_CHECKING:
     from jinja2.bccache import Bucket
 
-# what is filled in while a template is compiled is of this code
+# compiled templates contain values from these files, so a change of the files must invalidate the cache
 _COMPILED: Final = Memo[bytes](
     "templates", bytes, ("*.py", "report/html/*.py", "result/*.py", "incident/*.py", "fleet_report/*.py")
 )
 
 
 class CompiledTemplates(BytecodeCache):
-    """The compiled templates of one kind of environment: one template may be compiled otherwise in another."""
+    """The compiled templates of one kind of Jinja environment; another kind may compile the same template differently."""
 
     def __init__(self, kind: str) -> None:
-        """Take the kind's name."""
+        """Store the name of the kind."""
         self._kind = kind
 
     def load_bytecode(self, bucket: Bucket) -> None:

@@ -1,4 +1,4 @@
-"""Counts verdicts by any column (each count has all verdicts), and groups rows."""
+"""Counts verdicts by any column, including verdicts with zero rows; counts findings, one per event; and groups rows."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def total(verdicts: pa.Table) -> dict[str, int]:
 
 
 def tally(rows: pa.Table, values: tuple[str, ...], column: str) -> dict[str, int]:
-    """Return value -> number of rows whose `column` has it, for each of `values`."""
+    """Return value -> number of rows with this value in `column`, for each of `values`."""
     found = {str(item["values"]): int(item["counts"]) for item in pc.value_counts(rows[column]).to_pylist()}
     return {value: found.get(value, 0) for value in values}
 
@@ -38,7 +38,7 @@ def count_assuming(verdicts: pa.Table, assumption: str) -> int:
 
 
 def verdicts_by(verdicts: pa.Table, key: str) -> dict[str, dict[str, int]]:
-    """Return key's value -> verdict -> number of rows, zeros included; so has a key without rows."""
+    """Return value of the column `key` -> verdict -> number of rows, zeros included; values without rows give zeros."""
     counted: dict[str, dict[str, int]] = defaultdict(lambda: dict.fromkeys(VERDICTS, 0))
     for row in distinct_rows(verdicts, [key, "verdict"]):
         counted[row[key]][row["verdict"]] = row["count_all"]
@@ -46,7 +46,7 @@ def verdicts_by(verdicts: pa.Table, key: str) -> dict[str, dict[str, int]]:
 
 
 def verdicts_by_pack(rules: pa.Table, verdicts: pa.Table) -> dict[str, dict[str, int]]:
-    """Return pack -> verdict -> number of rows, zeros included; packs in the order of `rules`."""
+    """Return pack -> verdict -> number of rows, zeros included, with the packs in the order of `rules`."""
     told = verdicts_by(verdicts, "rule_id")
     found: dict[str, dict[str, int]] = {}
     for rule in rules.select(["rule_id", "pack"]).to_pylist():
@@ -57,7 +57,7 @@ def verdicts_by_pack(rules: pa.Table, verdicts: pa.Table) -> dict[str, dict[str,
 
 
 def distinct_rows(rows: pa.Table, columns: Sequence[str]) -> list[dict[str, Any]]:
-    """Return the distinct values of these columns in the order of their first rows, each with its number as `count_all`."""
+    """Return the distinct rows of these columns, in the order of first occurrence, each with its number of rows as `count_all`."""
     counted = rows.group_by(list(columns), use_threads=False).aggregate([([], "count_all")])
     return list(counted.to_pylist())
 
@@ -68,15 +68,16 @@ def undecided(verdicts: pa.Table) -> pa.Table:
 
 
 def unrecorded(verdicts: pa.Table) -> pa.Table:
-    """Return the verdicts that are not applicable because the log lacks a signal: their situation may have happened."""
+    """Return the verdicts that are not applicable because the log lacks a signal: the rule's situation may still have occurred."""
     return verdicts.filter(pc.starts_with(verdicts["reason_code"], UNRECORDED_PREFIX))
 
 
 def one_per_event(findings: Iterable[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-    """Return one finding of each event, in the order of the rows: these are counted as findings.
+    """Return one finding per event, in the order of the rows. Numbers of findings in reports count these.
 
-    Findings of one rule at the same time are one event if they are about one ego and object under several profiles, or if each of two
-    egos is the object of the other. A sure one stands for it before one that is only possible, and an earlier row before a later one.
+    Findings of one rule at the same time are one event in two cases: they have the same ego and object under several profiles, or each
+    of two egos is the object of the other. A sure finding represents the event before a possible finding, and an earlier row before a
+    later row.
     `queries/fleet/event.sql` does the same for audits.
     """
     rows = list(findings)
@@ -86,7 +87,7 @@ def one_per_event(findings: Iterable[Mapping[str, Any]]) -> list[Mapping[str, An
 
 
 def counted_places(findings: Sequence[Mapping[str, Any]]) -> list[int]:
-    """Return for each finding the place of the one that is counted for its event, see `one_per_event`."""
+    """Return for each finding the index of the finding that represents its event, see `one_per_event`."""
     ordered = sorted(enumerate(findings), key=lambda item: (certainty(item[1]) == POSSIBLE, item[0]))
     seen: dict[tuple[str, str, frozenset[str | None]], list[int]] = defaultdict(list)
     places = list(range(len(findings)))
@@ -98,20 +99,23 @@ def counted_places(findings: Sequence[Mapping[str, Any]]) -> list[int]:
 
 
 def by_severity(findings: Iterable[Mapping[str, Any]]) -> str:
-    """Return how many findings there are of each severity; '' for none."""
+    """Return the number of findings of each severity as text; '' without findings."""
     found = [row["severity"] for row in findings]
     return ", ".join(f"{found.count(severity)} {severity}" for severity in SEVERITIES if severity in found)
 
 
 def rows_of_findings(rows: Sequence[Mapping[str, Any]], events: Sequence[Mapping[str, Any]]) -> str:
-    """Return why a table of these rows has more of them than there are findings; '' where it has not."""
+    """Return why a table has more rows (`rows`) than there are findings (`events`); '' if the numbers are equal."""
     told = {row["finding_id"] for row in events}
     left_out = [row for row in rows if row["finding_id"] not in told]
     return rows_sentence(len(rows), len(events), is_of_profiles=any(row["profile"] is not None for row in left_out))
 
 
 def rows_sentence(n_rows: int, n_findings: int, *, is_of_profiles: bool) -> str:
-    """Return how many findings so many rows are, and why; '' where each row is one. `is_of_profiles`: some are, else all are touches."""
+    """Return how many findings the rows represent, and why; '' if each row is a finding.
+
+    `is_of_profiles`: some rows repeat a finding under another profile; else every repeated row is a touch of two egos.
+    """
     if n_rows == n_findings:
         return ""
     what = "an overtake under two profiles" if is_of_profiles else "a touch of two egos"
@@ -120,14 +124,14 @@ def rows_sentence(n_rows: int, n_findings: int, *, is_of_profiles: bool) -> str:
 
 
 def _is_same_event(other_finding: Mapping[str, Any], finding: Mapping[str, Any]) -> bool:
-    """Whether two findings of one rule and the same parties are of one event."""
+    """Return whether two findings of the same rule and parties belong to one event."""
     at_once = other_finding["t_start_ns"] <= finding["t_end_ns"] and finding["t_start_ns"] <= other_finding["t_end_ns"]
     of_other_profile = other_finding["profile"] != finding["profile"]
     return bool(at_once and of_other_profile == (other_finding["ego_id"] == finding["ego_id"]))
 
 
 def group_rows(rows: Iterable[_Row], key: Callable[[_Row], _Key]) -> dict[_Key, list[_Row]]:
-    """Return key -> its rows, both in the order of the rows."""
+    """Return key -> rows with this key; keys and rows keep the order of `rows`."""
     groups: dict[_Key, list[_Row]] = {}
     for row in rows:
         groups.setdefault(key(row), []).append(row)

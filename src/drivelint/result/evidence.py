@@ -1,6 +1,7 @@
-"""Evidence for pictures and charts, taken from the database while a batch is in it, into tables that stay until the end of the run.
+"""Evidence for pictures and charts: copied from a batch of drives into tables that stay in the database until the end of the run.
 
-Scenes of findings and near misses with lanes and danger spaces; tracks; overtakes and opportunities. (Courses are the evaluation's.)
+The evidence: scenes of findings and near misses with lanes and danger spaces; tracks; overtakes and opportunities. The folder `evaluate`
+makes the courses.
 """
 
 from __future__ import annotations
@@ -34,24 +35,24 @@ ORDER: Final = {
     "overtakes": "drive_id, ego_id, occurrence",
     "opportunities": "drive_id, ego_id, occurrence, style, profile",
 }
-"""Table of evidence in a result -> the order of its rows."""
+"""Evidence table of a result -> the order of its rows."""
 PATH_S: Final = 5.0
-"""The time before and after the moment for which paths are kept."""
+"""Paths in a scene extend this long before and after the moment of the scene."""
 PATH_STEP_NS: Final = 200_000_000
 """A path has at most one point per time step of this length."""
 REACH_M: Final = (60.0, 300.0)
-"""Least and largest reach of a scene around the ego."""
+"""Least and largest radius of a scene around the ego."""
 SCENES_AT_ONCE: Final = 400
-"""Moments whose scenes are made at once: their ways are lists, which the database holds in memory."""
+"""Number of scenes made in one statement: their paths are lists, which the database keeps in memory."""
 SCENES_PER_RULE: Final = 20
-"""Scenes per ego, rule and profile: those with the worst margins."""
+"""Largest number of scenes per ego, rule and profile: the scenes with the worst margins."""
 SIMPLIFY_TOLERANCE_M: Final = 0.1
 
 
 def gather(con: duckdb.DuckDBPyConnection) -> None:
     """Add the evidence of the batch that was just judged.
 
-    Reads `finding` and `verdict` (of which those of this batch have their states in `ego_state` and `pair`).
+    Reads `finding` and `verdict`, of all batches; only drives of this batch have states in `ego_state` and `pair`.
     """
     _scenes(con)
     _lane_shapes(con)
@@ -62,7 +63,7 @@ def gather(con: duckdb.DuckDBPyConnection) -> None:
 
 
 def tables(con: duckdb.DuckDBPyConnection) -> dict[str, pa.Table]:
-    """Return the tables of evidence under the names that `Result` has for them, totally ordered."""
+    """Return field of `Result` -> evidence table, totally ordered."""
     return {
         name: con.execute(f"SELECT * FROM {TABLE_OF_FILE[name]} ORDER BY {keys}").to_arrow_table()
         for name, keys in ORDER.items()
@@ -70,7 +71,7 @@ def tables(con: duckdb.DuckDBPyConnection) -> dict[str, pa.Table]:
 
 
 def _scenes(con: duckdb.DuckDBPyConnection) -> None:
-    """Add the scenes of the batch that was just judged, and the danger spaces in them."""
+    """Add the scenes of the batch that was just judged, and the danger spaces of the scenes."""
     least, most = REACH_M
     con.execute(statement("evidence/every_moment"), {"per_rule": SCENES_PER_RULE, "least_m": least, "most_m": most})
     counts = con.execute("SELECT ego_no, count(*) FROM _every_moment GROUP BY ego_no ORDER BY ego_no").fetchall()
@@ -84,7 +85,7 @@ def _scenes(con: duckdb.DuckDBPyConnection) -> None:
 
 
 def _some(counts: Sequence[tuple[int, int]]) -> Iterator[tuple[int, int]]:
-    """Cut egos, given with their numbers of moments, into runs [first, end) of at most `SCENES_AT_ONCE` moments or one ego."""
+    """Cut egos into groups [first, end) with at most `SCENES_AT_ONCE` moments, or with one ego. `counts`: (ego, number of moments)."""
     first, n = 1, 0
     for ego, moments in counts:
         if n and n + moments > SCENES_AT_ONCE:
@@ -96,7 +97,7 @@ def _some(counts: Sequence[tuple[int, int]]) -> Iterator[tuple[int, int]]:
 
 
 def _rings(edges: pa.Table) -> pa.Table:
-    """Return a danger space per ring: its edges' left points forth and right points back, without those that add nothing."""
+    """Return one danger space per ring: the left points of its edges forwards, then the right points backwards, both simplified."""
     _, first, ring = np.unique(edges["ring"].to_numpy(), return_index=True, return_inverse=True)
     left, right = (_simplified(edges[f"{side}x_m"], edges[f"{side}y_m"], ring) for side in "lr")
     x, y = _coordinates(np.column_stack([left, shapely.reverse(right)]), len(first))
@@ -105,13 +106,13 @@ def _rings(edges: pa.Table) -> pa.Table:
 
 
 def _lane_shapes(con: duckdb.DuckDBPyConnection) -> None:
-    """Add the shapes of lanes near scenes that are not in `lane_shape` yet."""
+    """Add the shapes of the lanes near scenes, except lanes already in `lane_shape`."""
     con.execute(statement("evidence/near_lane"))
     store.insert(con, "lane_shape", _shapes_of_near(con))
 
 
 def lanes_of_map(environment: MapTables) -> pa.Table:
-    """Return the table `lane_shape` of every lane of a map, totally ordered."""
+    """Return the table `lane_shape` for all lanes of a map, totally ordered."""
     with store.workspace(None) as con:
         for table in ("lanelet", "lane_boundary", "lane_point"):
             store.insert(con, table, environment.tables[table])
@@ -120,7 +121,7 @@ def lanes_of_map(environment: MapTables) -> pa.Table:
 
 
 def _shapes_of_near(con: duckdb.DuckDBPyConnection) -> pa.Table:
-    """Return the shapes of the lanes of `_near`."""
+    """Return the shapes of the lanes in the table `_near`."""
     lanes = con.execute(statement("evidence/lane")).to_arrow_table()
     if not lanes.num_rows:
         return empty_table("lane_shape")
@@ -133,13 +134,13 @@ def _shapes_of_near(con: duckdb.DuckDBPyConnection) -> pa.Table:
 
 
 def _simplified(x_m: Any, y_m: Any, line: NDArray[np.intp]) -> NDArray[np.object_]:
-    """Return lines, given as their points and which line each is of, with only the points that keep them true."""
+    """Return the lines, simplified to `SIMPLIFY_TOLERANCE_M`. `line`: for each point, the number of its line."""
     lines = shapely.linestrings(np.column_stack([x_m, y_m]), indices=line)
     return np.asarray(shapely.simplify(lines, SIMPLIFY_TOLERANCE_M))
 
 
 def _coordinates(lines: NDArray[np.object_], n: int) -> tuple[pa.ListArray, pa.ListArray]:
-    """Return the x and y, in centimetres, of `n` shapes of one or more lines each (m, k), as a list per shape."""
+    """Return x and y in metres, rounded to centimetres, as one list per shape. `lines` (m, k): `n` shapes of k lines each."""
     points, index = shapely.get_coordinates(lines.ravel(), return_index=True)
     offsets = pa.array(np.searchsorted(index // lines.shape[1], np.arange(n + 1)), pa.int32())
     x, y = np.round(points, 2).T

@@ -1,4 +1,4 @@
-"""The tables of a result as the bytes of Parquet files."""
+"""Converts the tables of a result to the bytes of Parquet files."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ ROW_GROUP: Final = 1 << 17
 
 
 def parquet_bytes(rows: pa.Table, table: str) -> bytes:
-    """Return an output table as Parquet; its columns are those of `schemas/`, whatever the chunks and metadata of `rows` were."""
+    """Return an output table as Parquet, with the columns of `schemas/`; chunks and metadata of `rows` do not change the bytes."""
     about = {"drivelint.table": table, "drivelint.output_schema": str(OUTPUT_VERSION)}
     return described_parquet(conform(rows, table), table, about)
 
@@ -28,7 +28,7 @@ def parquet_bytes(rows: pa.Table, table: str) -> bytes:
 def described_parquet(rows: pa.Table, table: str, about: Mapping[str, str]) -> bytes:
     """Return a table of `schemas/` as Parquet with the metadata `about`: the same bytes for the same rows.
 
-    Every column carries its comment from `schemas/` as Arrow field metadata (`comment`). Tables that have a geometry are GeoParquet.
+    Every column has its comment from `schemas/` as Arrow field metadata (`comment`). Tables with a geometry are GeoParquet.
     """
     comments = column_comments()[table]
     described = rows.schema.with_metadata(about)

@@ -1,7 +1,8 @@
-"""The folder that `check --out` writes, replaced as one by a later run. What drivelint did not write there is never touched.
+"""The folder that `check --out` writes; a later run replaces the whole result. Files that drivelint did not write are not changed.
 
-`files.json` lists what drivelint wrote, and the sha256 of tables and summary. A run works in a folder of its own within. An earlier result
-must not pass for that of a run that ended without one: its reports go when the run begins, the rest moves to `earlier/` when it fails.
+`files.json` lists the files that drivelint wrote, with the sha256 of the tables and the summary. A run works in its own subfolder. An
+earlier result must not be taken for the result of a failed run. So its reports are removed when a run begins, and its other files move to
+`earlier/` if the run fails.
 """
 
 from __future__ import annotations
@@ -26,18 +27,18 @@ if TYPE_CHECKING:
 _HASHES: Final = "sha256"
 _WORK: Final = ".drivelint.work"
 EARLIER: Final = "earlier"
-"""The folder, within that of results, of an earlier result after a run that ended without one; the next result replaces it."""
+"""The subfolder for an earlier result after a run that ended without a result. The next result replaces the earlier one."""
 
 
 @contextmanager
 def working_folder(
     out: Path, patterns: Sequence[str], reports: Sequence[str], mark: str, *, overwrite: bool = False
 ) -> Iterator[Path]:
-    """Make the folder `out` and yield an empty one within for the files of a run, which goes afterwards.
+    """Create the folder `out` and yield an empty subfolder for the files of a run; the subfolder is removed at the end.
 
-    `patterns`: globs of the names that a result may have; `reports`: names of those that the tables give again, which a build server
-    shows; `mark`: as in `replace`. Errors: `UsageError` where `out` is a file, or has such names that drivelint
-    did not write, unless they may be overwritten; `OutputError`.
+    `patterns`: globs of the file names of a result; `reports`: names of the reports, which can be made again from the tables and which a
+    build server shows; `mark`: as in `replace`. Errors: `UsageError` if `out` is a file, or, without `overwrite`, has files that match
+    `patterns` but were not written by drivelint; `OutputError`.
     """
     prepare_folder(out)
     present = _present(out, patterns)
@@ -49,7 +50,7 @@ def working_folder(
         )
     with _locked(out) as is_ours:
         for left in out.glob(f"{_WORK}.*") if is_ours else ():
-            shutil.rmtree(left, ignore_errors=True)  # of a run that was killed
+            shutil.rmtree(left, ignore_errors=True)  # left by a killed run
         work, before, is_done = out / f"{_WORK}.{os.getpid()}", _identity(out / mark), False
         try:
             work.mkdir()
@@ -63,9 +64,9 @@ def working_folder(
 
 
 def _set_aside(out: Path, patterns: Sequence[str], mark: str, *, overwrite: bool) -> None:
-    """Move an earlier result into its folder within `out`; without its mark there is no result in `out` from the first move on."""
+    """Move an earlier result into the subfolder `EARLIER`. The mark moves first: without it, `out` has no result."""
     earlier = out / EARLIER
-    with suppress(OutputError):  # what stays there is replaced; why the run ended must not be hidden by it
+    with suppress(OutputError):  # files that remain are replaced below; this error must not hide why the run ended
         _remove(earlier, sorted(_result_files(earlier, patterns, overwrite=False)))
     names = _result_files(out, patterns, overwrite=overwrite)
     try:
@@ -74,12 +75,12 @@ def _set_aside(out: Path, patterns: Sequence[str], mark: str, *, overwrite: bool
                 (earlier / name).parent.mkdir(parents=True, exist_ok=True)
                 (out / name).replace(earlier / name)
     except OSError:
-        _remove(out, [mark])  # what cannot be moved is no result
+        _remove(out, [mark])  # without the mark, the files that cannot be moved are no result
     _remove_empty(out, names)
 
 
 def _remove(out: Path, names: Sequence[str]) -> None:
-    """Remove these files of a folder, and the folders that they leave empty. Errors: `OutputError`."""
+    """Remove these files of a folder, and the subfolders that are empty afterwards. Errors: `OutputError`."""
     try:
         for name in names:
             (out / name).unlink(missing_ok=True)
@@ -90,12 +91,12 @@ def _remove(out: Path, names: Sequence[str]) -> None:
 
 def _remove_empty(out: Path, names: Iterable[str]) -> None:
     for folder in {(out / name).parent for name in names} - {out}:
-        with suppress(OSError):  # a foreign file is there
+        with suppress(OSError):  # another program's file is there
             folder.rmdir()
 
 
 def _identity(path: Path) -> tuple[int, int] | None:
-    """Return an identity that distinguishes a file from its replacement; None: there is none."""
+    """Return inode and modification time, which distinguish a file from its replacement; None without a file."""
     try:
         said = path.stat()
     except OSError:
@@ -105,10 +106,10 @@ def _identity(path: Path) -> tuple[int, int] | None:
 
 @contextmanager
 def _locked(out: Path) -> Iterator[bool]:
-    """Hold a folder for this process alone; show whether that is so, which not every file system can.
+    """Lock a folder for this process; yield whether the lock was obtained: not every file system has locks.
 
-    The system ends a lock with its process. Numbers of processes would not show it: every container has a process 1.
-    Errors: `UsageError` where another process has the folder.
+    The operating system releases a lock when the process ends. A file with a process id is no substitute: every container has a process 1.
+    Errors: `UsageError` if another process has locked the folder.
     """
     try:
         import fcntl
@@ -141,14 +142,14 @@ def replace(
     *,
     overwrite: bool,
 ) -> None:
-    """Replace the result in `out` by these files. It is whole when `mark` is there: until then no result is.
+    """Replace the result in `out` by these files. The file `mark` appears last: without it, `out` has no result.
 
-    What drivelint wrote there earlier and these files lack goes; with `overwrite` whatever has the name of a result does.
+    Other files that drivelint wrote there earlier are removed; with `overwrite`, every other file that matches `patterns`.
     Errors: `OutputError`.
     """
     names = {*contents, *finished_files}
     before = _result_files(out, patterns, overwrite=overwrite)
-    # should the machine fail halfway, the next run knows both the old and the new files
+    # if the machine fails halfway, the list has both the old and the new files for the next run
     publish(out, {MANIFEST: manifest(before | names)}, {})
     unused_files: dict[str, Path | None] = dict.fromkeys(sorted(before - names))
     hashed = {name: data for name, data in contents.items() if name == mark or name.endswith(".parquet")}
@@ -160,7 +161,7 @@ def replace(
         earlier,
         [*sorted(_result_files(earlier, patterns, overwrite=False)), *([MANIFEST] if written_files(earlier) else [])],
     )
-    with suppress(OSError):  # a foreign file is there, or there is none
+    with suppress(OSError):  # another program's file is in the folder, or the folder does not exist
         earlier.rmdir()
 
 
@@ -170,12 +171,12 @@ def add(out: Path, name: str, content: bytes) -> None:
 
 
 def changed_files(out: Path) -> list[str]:
-    """Return the tables, and the summary, of a result that are not as they were written; none where nothing says how they were."""
+    """Return the names of the tables and the summary that were changed after drivelint wrote them; empty without stored hashes."""
     return [name for name, said in _hashes(out).items() if _sha256(out / name) != said]
 
 
 def left_by_killed_run(out: Path) -> Path | None:
-    """Return the working folder of a run that was killed, so that the result in `out` is an earlier one; None where a run goes on."""
+    """Return the working folder that a killed run left, so that the result in `out` is of an earlier run; else None."""
     left = sorted(out.glob(f"{_WORK}.*"))
     if not left:
         return None
@@ -187,7 +188,7 @@ def left_by_killed_run(out: Path) -> Path | None:
 
 
 def _sha256(path: Path) -> str | None:
-    """Return the hash of a file; None where none can be read: its name may come from a damaged list."""
+    """Return the hash of a file; None if the file cannot be read: a damaged list may have given a wrong name."""
     try:
         with path.open("rb") as file:
             return file_digest(file, "sha256").hexdigest()
@@ -200,7 +201,7 @@ def _present(out: Path, patterns: Sequence[str]) -> set[str]:
 
 
 def _result_files(out: Path, patterns: Sequence[str], *, overwrite: bool) -> set[str]:
-    """Return the names of an earlier result's files, without their list: those that are listed, or all that may be overwritten."""
+    """Return the files of an earlier result, except `files.json`: the listed files, or with `overwrite` all that match `patterns`."""
     present = _present(out, patterns) - {MANIFEST}
     return present if overwrite else present & written_files(out)
 
@@ -209,11 +210,11 @@ def _hashes(out: Path) -> dict[str, str]:
     try:
         return hashes_in((out / MANIFEST).read_bytes())
     except OSError:
-        return {}  # copied without it
+        return {}  # the result was copied without its list
 
 
 def hashes_in(content: bytes) -> dict[str, str]:
-    """Return name -> sha256 from `files.json`; nothing for one of an older version, or a damaged one."""
+    """Return name -> sha256 from the content of `files.json`; empty for a damaged file or one of an older version."""
     try:
         return {str(name): str(said) for name, said in json.loads(content)[_HASHES].items()}
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError):

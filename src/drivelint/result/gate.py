@@ -1,6 +1,6 @@
-"""Defines the gate's data, the comparison with a baseline and the waivers; reads and writes it as `gate.json`.
+"""The gate's data: the comparison with a baseline, and the waivers. Reads and writes `gate.json`.
 
-The file is there only if a baseline or waivers were given.
+The file exists only if a baseline or waivers were given.
 """
 
 from __future__ import annotations
@@ -20,21 +20,23 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 DIFF_STATUSES: Final = ("new", "changed", "unchanged", "fixed", "elsewhere", "unknown", "lost")
-"""Of NEW's findings: new, changed, unchanged. Of BASE's that NEW has not: fixed (kept there, or never applicable), elsewhere (the rule
-fails there at another step or place), unknown (NEW cannot decide), lost (NEW did not judge it). None of the last three is fixed."""
+"""The statuses of findings in a comparison of two results, BASE and NEW.
+
+Findings of NEW are new, changed or unchanged. Findings that only BASE has are one of these: fixed (NEW finds the rule kept or not
+applicable); elsewhere (in NEW the rule fails at another step or place); unknown (NEW cannot decide); lost (NEW did not judge there)."""
 NOT_FIXED: Final = {"unknown": "unknown now", "lost": "not judged now", "elsewhere": "still failing elsewhere"}
-"""Status of a finding that is gone but not fixed -> words."""
+"""Status of a finding that only BASE has and that is not fixed -> words."""
 GATE_VERSION: Final = 1
-"""Version of the file: raised when a key changes its meaning or goes."""
+"""Version of the file: raised when a key changes its meaning or is removed."""
 
 
 @dataclass(frozen=True)
 class ComparedFinding:
-    """One finding as compared between two results.
+    """One finding as compared between two results, BASE and NEW.
 
-    `finding_id`, place in time and margin are those of NEW, where it has the finding, else those of BASE; `base_id` is
-    None for a new one. `there`: what the other result says there (verdict, or none). `stable`: its rule gates. `worse`: its margin
-    is less than it was, by more than can be overlooked.
+    `finding_id`, time and margin are from NEW if it has the finding, else from BASE; `base_id` is None for a new finding. `standing`: one
+    of `DIFF_STATUSES`. `there`: the verdict of the other result at that time, or `none`. `stable`: the rule is stable, so it gates.
+    `worse`: the margin is smaller than in BASE by more than the tolerance.
     """
 
     standing: str
@@ -55,17 +57,17 @@ class ComparedFinding:
     why: str
     worse: bool = False
     event: str = ""
-    """Id of the finding that is counted for it in its result; '': itself."""
+    """Id of the finding that represents this one's event in its result; '': this finding itself."""
 
     @property
     def counted_id(self) -> str:
-        """The id of the finding that is counted for it."""
+        """The id of the finding that represents this one's event."""
         return self.event or self.finding_id
 
 
 @dataclass(frozen=True)
 class NewUnknowns:
-    """Verdicts of one drive, ego, rule and profile that are unknown or errors now and were not in the baseline."""
+    """Verdicts of one drive, ego, rule and profile of which more are unknown or errors (`n`) than in the baseline (`base_n`)."""
 
     drive_id: str
     ego_id: str
@@ -78,15 +80,16 @@ class NewUnknowns:
 
 
 def n_findings(entries: Iterable[ComparedFinding]) -> int:
-    """Return how many findings these are, one of each event."""
+    """Return the number of findings, counting one per event."""
     return len({entry.counted_id for entry in entries})
 
 
 class Difference(msgspec.Struct, frozen=True):
-    """Two results side by side: every finding of both is one entry, NEW's first.
+    """The comparison of two results, BASE and NEW: every finding is one entry, first the findings of NEW.
 
-    `base_verdicts`, `verdicts`: verdict -> rows, zeros included. `base_only`, `new_only`: drives that the other has not.
-    `undecided`: severity -> verdicts that were pass or fail in BASE and are unknown in NEW. `rules_not_run`: rules of BASE only.
+    `base_verdicts`, `verdicts`: verdict -> number of rows in BASE and NEW, zeros included. `base_only`, `new_only`: drives that only BASE
+    or only NEW has. `undecided`: severity -> number of verdicts that were pass or fail in BASE and are unknown in NEW. `rules_not_run`:
+    rules that only BASE has.
     """
 
     entries: tuple[ComparedFinding, ...]
@@ -98,15 +101,15 @@ class Difference(msgspec.Struct, frozen=True):
     base_name: str = "base"
     name: str = "new"
     is_partial: bool = False
-    """The newer run was interrupted."""
+    """The run of NEW was interrupted."""
     undecided: dict[str, int] = msgspec.field(default_factory=dict)
     rules_not_run: tuple[str, ...] = ()
     n_both: int | None = None
-    """Drives that both have."""
+    """The number of drives that both results have."""
     other_maps: tuple[str, ...] = ()
     """Drives of NEW that BASE judged on another map, or without one."""
     shorter: tuple[str, ...] = ()
-    """Drives of NEW that last less than nine tenths of what they last in BASE."""
+    """Drives of NEW that are shorter than nine tenths of their duration in BASE."""
 
     def counts(self) -> dict[str, int]:
         """Return diff status -> number of findings, zeros included."""
@@ -114,27 +117,27 @@ class Difference(msgspec.Struct, frozen=True):
         return {standing: found[standing] for standing in DIFF_STATUSES}
 
     def event_counts(self) -> dict[str, int]:
-        """Return diff status -> number of findings, one of each event; of a known event that changed in a part, it is changed."""
+        """Return diff status -> number of findings, one per event; an event with a changed and an unchanged finding is changed."""
         changed = {entry.counted_id for entry in self.with_diff_status("changed")}
         as_before = [entry for entry in self.with_diff_status("unchanged") if entry.counted_id not in changed]
         found = {status: n_findings(self.with_diff_status(status)) for status in DIFF_STATUSES}
         return found | {"unchanged": n_findings(as_before)}
 
     def with_diff_status(self, status: str) -> list[ComparedFinding]:
-        """Return the findings of one status."""
+        """Return the findings with this status."""
         return [entry for entry in self.entries if entry.standing == status]
 
     def not_fixed(self) -> list[ComparedFinding]:
-        """Return BASE's findings that NEW has not, and that are not fixed."""
+        """Return the findings that only BASE has and that are not fixed."""
         return [entry for status in NOT_FIXED for entry in self.with_diff_status(status)]
 
 
 @dataclass(frozen=True)
 class Waiver:
-    """Findings that an owner accepts until a date: they are shown, and do not fail a run.
+    """Findings that an owner accepts until a date: reports show them, but they do not fail a run.
 
     `where`: file and line. `from_s`, `to_s`: seconds since the drive's first time stamp. `expires`: last day, ISO.
-    `state`: active, expired (it waives nothing), unmatched (no finding is like that). `findings`: how many are.
+    `state`: active, expired (waives nothing), unmatched (no finding matches). `findings`: number of findings that match.
     """
 
     where: str
@@ -151,16 +154,16 @@ class Waiver:
     state: str = "active"
     findings: int = 0
     unknown_rule: str = ""
-    """That no rule has its id, and which one is meant; '': one has, or rules of other packs may have."""
+    """A sentence that no rule has the id `rule`, with the id that may be meant; '' if a rule has the id or another pack may have it."""
 
 
 @dataclass(frozen=True)
 class Gate:
-    """The baseline and the waivers that keep a finding from failing a run.
+    """The baseline, the waivers and the confidence that prevent a finding from failing a run.
 
     `today`: the date for the expiry of waivers, None without waivers. `waived`: finding_id -> index of its waiver.
-    `confidence`: the share of its copies that must keep a finding that may fail a run; None: it is not asked. `possible`: the ids
-    of findings of which fewer do.
+    `confidence`: the least share of copies that must keep a finding before it may fail a run; None: no least share. `possible`: ids of
+    the findings with a smaller share.
     """
 
     today: str | None = None
@@ -173,15 +176,15 @@ class Gate:
     @cached_property
     def _standing(self) -> dict[str, ComparedFinding]:
         entries = self.baseline.entries if self.baseline else ()
-        # of those with one id the first counts
+        # if several entries have the same id, the first one wins
         return {e.finding_id: e for e in reversed(entries) if e.standing in {"new", "changed", "unchanged"}}
 
     def compared(self, finding_id: str) -> ComparedFinding | None:
-        """Return the finding as compared with the baseline; None without one."""
+        """Return the finding as compared with the baseline; None without a baseline."""
         return self._standing.get(finding_id)
 
     def waiver(self, finding_id: str) -> Waiver | None:
-        """Return the waiver of a finding."""
+        """Return the waiver of a finding; None if it is not waived."""
         number = self.waived.get(finding_id)
         return None if number is None else self.waivers[number]
 
@@ -191,11 +194,11 @@ class Gate:
         return entry is not None and entry.standing != "new"
 
     def is_gating(self, finding_id: str) -> bool:
-        """Return whether a finding may fail a run: it is neither waived nor in the baseline nor only possible."""
+        """Return whether a finding may fail a run: it is not waived, not in the baseline, and not only possible."""
         return self.standing(finding_id) in {"new", "open"}
 
     def standing(self, finding_id: str) -> str:
-        """Return the one standing by which a finding is counted: waived, known, possible, or else new; open without a baseline."""
+        """Return the status of a finding at the gate: waived, known (in the baseline), possible; else new, or open without a baseline."""
         if finding_id in self.waived:
             return "waived"
         if self.in_baseline(finding_id):
@@ -205,7 +208,7 @@ class Gate:
         return "open" if self.baseline is None else "new"
 
     def is_possible(self, finding_id: str) -> bool:
-        """Return whether too few of a finding's copies keep it for the asked confidence."""
+        """Return whether the share of copies that keep a finding is below the requested confidence."""
         return finding_id in self._possible
 
     @cached_property
@@ -220,12 +223,12 @@ class _File:
 
 
 def render(gate: Gate) -> bytes:
-    """Return a gate as UTF-8 JSON with a final newline; numbers that are not finite are null."""
+    """Return a gate as UTF-8 JSON with a final newline; NaN and infinity become null."""
     return msgspec.json.format(msgspec.json.encode(_File(GATE_VERSION, gate)), indent=2) + b"\n"
 
 
 def load(folder: Path) -> Gate | None:
-    """Return the gate of a result folder; None: there was none. Errors: `UsageError` for a file of another kind."""
+    """Return the gate of a result folder; None if it has no gate. Errors: `UsageError` for an unreadable `gate.json`."""
     path = folder / GATE_FILE
     try:
         found = msgspec.json.decode(path.read_bytes(), type=_File)

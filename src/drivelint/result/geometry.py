@@ -1,7 +1,7 @@
-"""Adds geometries to result files: columns of GeoParquet that are made of the columns with coordinates.
+"""Adds GeoParquet geometry columns to result files, made from the columns with coordinates.
 
-`geom` is in the map's metres: x to the east, y to the north, without a coordinate reference system, since a map need not have one and
-a result may be of several maps. `geom_lonlat` is in degrees of longitude and latitude (WGS 84), where map or log give them.
+`geom` is in the map's metres: x to the east, y to the north. It has no coordinate reference system, since a map may lack one and a
+result may use several maps. `geom_lonlat` is in degrees of longitude and latitude (WGS 84), if map or log give them.
 """
 
 from __future__ import annotations
@@ -24,11 +24,14 @@ if TYPE_CHECKING:
 
 COLUMN: Final = "geom"
 EARTH_COLUMN: Final = "geom_lonlat"
-_RING_POINTS: Final = 4  # the last is the first again
+_RING_POINTS: Final = 4  # the least number: a triangle with its first point repeated
 
 
 class Shape(NamedTuple):
-    """A geometry of a table: its type in GeoParquet, its meaning, and the function that makes it from the rows (None if there is none)."""
+    """A geometry column of a table: its type in GeoParquet, its meaning, and the function that makes it from the rows.
+
+    The function returns None for rows without a geometry.
+    """
 
     kind: str
     comment: str
@@ -36,9 +39,9 @@ class Shape(NamedTuple):
 
 
 def with_geometry(rows: pa.Table, table: str) -> pa.Table:
-    """Return the rows of a schema table with its geometries as WKB and with the metadata of GeoParquet 1.1 in the schema.
+    """Return the rows of a schema table with its geometries as WKB, and the metadata of GeoParquet 1.1 in the schema.
 
-    Tables that have none come back as they are.
+    Tables without geometries are returned unchanged.
     """
     if not (shapes := SHAPES.get(table)):
         return rows
@@ -48,7 +51,7 @@ def with_geometry(rows: pa.Table, table: str) -> pa.Table:
         wkb = shapely.to_wkb(shape.make(rows), output_dimension=2, byte_order=1)
         field = pa.field(column, pa.binary(), metadata={"comment": f"{shape.kind}: {shape.comment}"})
         rows = rows.append_column(field, pa.array(wkb, pa.binary(), from_pandas=True))
-        # without the key, coordinates are longitude and latitude; with null, nothing is said of them
+        # no key "crs" means longitude and latitude; null means that the reference system is unknown
         frame = {} if column == EARTH_COLUMN else {"crs": None}
         about[column] = {"encoding": "WKB", "geometry_types": [shape.kind], **frame}
     geo = {"version": "1.1.0", "primary_column": next(iter(shapes)), "columns": about}
@@ -56,7 +59,7 @@ def with_geometry(rows: pa.Table, table: str) -> pa.Table:
 
 
 def without_geometry(rows: pa.Table) -> pa.Table:
-    """Return rows as they were before `with_geometry`."""
+    """Return the rows without the columns that `with_geometry` added."""
     return rows.drop_columns([name for name in (COLUMN, EARTH_COLUMN) if name in rows.column_names])
 
 
@@ -81,7 +84,7 @@ def _rings(rows: pa.Table) -> Geometries:
 
 
 def _lanes(rows: pa.Table) -> Geometries:
-    """Return the area between the bounds: along the left one, and back along the right one to where it began."""
+    """Return the area between the bounds as a closed ring: along the left bound, then back along the right bound."""
     left, left_offsets = _coordinates(rows, "left_")
     right, right_offsets = _coordinates(rows, "right_")
     begins = np.flatnonzero(np.diff(left_offsets))
@@ -96,7 +99,7 @@ def _lanes(rows: pa.Table) -> Geometries:
 
 
 def _boxes(rows: pa.Table) -> Geometries:
-    """Return the ground under the boxes of each scene's actors; those of unknown size are left out."""
+    """Return the areas of the boxes of each scene's actors in plan view; actors of unknown size are omitted."""
     actors = rows["actors"].combine_chunks()
     if isinstance(actors, pa.ChunkedArray):  # no rows
         return np.empty(0, object)
@@ -110,7 +113,7 @@ def _boxes(rows: pa.Table) -> Geometries:
     known = np.isfinite(corners).all(axis=(1, 2))
     boxes = shapely.polygons(corners[known])
     covered = _by_row(shapely.multipolygons, boxes, row[known], rows.num_rows)
-    overlapping = ~shapely.is_valid(covered) & ~shapely.is_missing(covered)  # a contact
+    overlapping = ~shapely.is_valid(covered) & ~shapely.is_missing(covered)  # two actors are in contact
     covered[overlapping] = shapely.buffer(covered[overlapping], 0)
     one = shapely.get_type_id(covered) == shapely.GeometryType.POLYGON
     covered[one] = shapely.multipolygons(covered[one][:, None])
@@ -118,7 +121,7 @@ def _boxes(rows: pa.Table) -> Geometries:
 
 
 def _tracks(rows: pa.Table) -> Geometries:
-    """Return a line per row through its known places; of a single one, a line from there to itself."""
+    """Return one line per row through its known positions; a single position gives a line of zero length."""
     xy, row = _known_places(rows)
     single = np.bincount(row, minlength=rows.num_rows)[row] == 1
     return _by_row(shapely.linestrings, np.repeat(xy, 1 + single, axis=0), np.repeat(row, 1 + single), rows.num_rows)
@@ -130,23 +133,23 @@ def _moments(rows: pa.Table) -> Geometries:
 
 
 def _by_row(make: Callable[..., Geometries], parts: NDArray[Any], row: NDArray[np.int64], n: int) -> Geometries:
-    """Return the geometries (n) that are made of the parts of each row, None where a row has none.
+    """Return the geometries (n) that `make` builds from the parts of each row; None for a row without parts.
 
-    Of no parts at all, shapely would make no geometries, whatever it is given to write into.
+    With no parts at all, shapely would return an empty array, even with `out`.
     """
     made = np.full(n, None, object)
     return np.asarray(make(parts, indices=row, out=made)) if len(parts) else made
 
 
 def _known_places(rows: pa.Table) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Return the places that are known, and the row of each."""
+    """Return the known positions, and the row of each position."""
     xy, offsets = _coordinates(rows, "")
     known = np.isfinite(xy).all(axis=1)
     return xy[known], _row_of(offsets)[known]
 
 
 def _coordinates(rows: pa.Table, prefix: str) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Return the points of lists of coordinates, and where those of each row begin."""
+    """Return the points of all rows' lists of coordinates, and the offsets at which the points of each row begin."""
     columns = [rows[f"{prefix}{axis}_m"] for axis in "xy"]
     lengths = np.asarray(pa.compute.list_value_length(columns[0]).fill_null(0), np.int64)
     xy = np.column_stack([floats(pa.compute.list_flatten(column)) for column in columns])
@@ -154,7 +157,7 @@ def _coordinates(rows: pa.Table, prefix: str) -> tuple[NDArray[np.float64], NDAr
 
 
 def _polygons(xy: NDArray[np.float64], offsets: NDArray[np.int64]) -> Geometries:
-    """Return a polygon for each ring that is known as a whole, else None."""
+    """Return a polygon for each ring; None for a ring with too few or unknown points."""
     n_points, row = np.diff(offsets), _row_of(offsets)
     n_unknown = np.bincount(row[~np.isfinite(xy).all(axis=1)], minlength=len(n_points))
     whole = (n_points >= _RING_POINTS) & (n_unknown == 0)
@@ -181,4 +184,4 @@ SHAPES: Final[Mapping[str, Mapping[str, Shape]]] = {
     "track": {COLUMN: Shape("LineString", "the way", _tracks)},
     "course": {COLUMN: Shape("MultiPoint", "the ego at the judged steps", _moments)},
 }
-"""Table of the schema -> its geometries in the file, by column; a viewer shows the first."""
+"""Table of the schema -> column in the file -> its geometry. Viewers show the first column."""

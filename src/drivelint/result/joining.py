@@ -1,4 +1,4 @@
-"""Joins the results of parts of a run: the tables are those of a run over all of its logs."""
+"""Joins the results of parts of a run: the joined tables equal the tables of one run over all logs."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ _ORDER: Final = {
 
 
 def join(results: Sequence[Result]) -> Result:
-    """Return one result of several whose drives are different; settings and notes are those of the first.
+    """Return one result from several results without common drives; settings and notes are from the first result.
 
-    A map that several of them have is included once.
+    The lanes of a map that occurs in several results are included once.
     """
     first = results[0]
     with store.connect(threads=1) as con:

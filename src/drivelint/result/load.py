@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 def load_result(folder: Path) -> Result:
     """Return the result that `check --out` wrote into a folder.
 
-    Errors: `UsageError` for a folder without a whole result, one of another version, or one that a run was to replace which was killed.
+    Errors: `UsageError` for an incomplete or changed result, a result of another version, or an earlier result that a killed run
+    should have replaced.
     """
     summary = _summary(folder)
     if left := left_by_killed_run(folder):
@@ -43,7 +44,7 @@ def load_result(folder: Path) -> Result:
             **tables,
             fail_on=summary["fail_on"],
             strict=summary["strict"],
-            required=tuple(summary.get("required", ())),  # older results say neither
+            required=tuple(summary.get("required", ())),  # older results lack this key and the next
             min_judged=summary.get("min_judged"),
             interrupted=summary.get("interrupted", False),
             halted=summary.get("halted"),
@@ -78,7 +79,7 @@ def _summary(folder: Path) -> dict[str, Any]:
 
 def _table(path: Path) -> pa.Table:
     try:
-        with path.open("rb") as file:  # opened by Python, whose files a receipt knows
+        with path.open("rb") as file:  # opened by Python, since receipts record the files that Python opens
             return without_geometry(pq.read_table(file, page_checksum_verification=True))
     except (OSError, pa.ArrowException, UnicodeDecodeError) as error:
         raise UsageError(f"{path}: {_why(error)}: check the drives again") from error

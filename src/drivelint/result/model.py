@@ -1,4 +1,4 @@
-"""Defines the result of a run: its tables, its exit code and the reason for that."""
+"""The result of a run: its tables, its exit code and the reason for the exit code."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ if TYPE_CHECKING:
 
 
 MISFITS: Final = frozenset({"ego_not_a_vehicle", "seldom_on_lane", "often_against_lane", "far_from_centre_line"})
-"""Reasons for which the signal `registration` is missing that mean a map which does not fit."""
+"""Reasons for a missing signal `registration` that mean that the map does not fit."""
 BEYOND_LIMITS: Final = ("rule_timeout", "out_of_memory")
-"""Reason codes of errors that are no fault of a rule's SQL: it took too much time or memory. Another machine may judge by it."""
+"""Reason codes of errors because a rule exceeded its time or memory. The rule's SQL is valid; another machine may run it."""
 
 
 class ExitStatus(NamedTuple):
-    """The exit code and, in one sentence, why."""
+    """The exit code, and its reason in one sentence."""
 
     code: ExitCode
     why: str
@@ -44,16 +44,15 @@ class ExitStatus(NamedTuple):
 class Result:
     """The tables of one run, totally ordered, each with the columns of `schemas/verdict.sql`, `output.sql` or `evidence.sql`.
 
-    `scenes` to `opportunities`: the evidence for drawings and charts, empty where none was gathered; so `pictures`, from cameras.
-    `margins_file`: finished Parquet of every judged step, or None; `write` takes it over.
-    `fail_on`: critical, major, minor or never. `strict`: no verdict may be unknown. `required`: ids of the rules of which none may be.
-    `min_judged`: the least share of rules that must be decided, see `decided_share`; None: any.
-    `interrupted`: the run was, before all drives were judged.
-    `gate`: what findings are known or waived, or None: all gate. `run_options`: what the run was asked to do, if that is known.
-    `folder`: where its files lie or will lie, or None. `notes`: what was said of the logs while they were read and judged.
-    `halted`: where and by what alarm a watch halted the drive; None: none did. `ended_early`: why what was watched broke off; None: it
-    did not.
-    Errors: `DriveLintError` when a table lacks a column or has one too many.
+    `scenes` to `opportunities`: the evidence for drawings and charts, which may be empty. `pictures`: camera pictures, may be empty.
+    `margins_file`: a Parquet file with every judged step, or None; `write` moves it into the result.
+    `fail_on`: critical, major, minor or never. `strict`: no verdict may be unknown. `required`: ids of the rules that may not be unknown.
+    `min_judged`: the least share of rules that must be decided, see `decided_share`; None: no limit.
+    `interrupted`: the run was interrupted before all drives were judged.
+    `gate`: which findings are known, waived or only possible; None: all findings gate. `run_options`: the options of the run, if known.
+    `folder`: the folder of the result's files, or None. `notes`: messages about the logs from reading and judging.
+    `halted`: where and by which alarm `watch` halted the drive, or None. `ended_early`: why a watched recording ended early, or None.
+    Errors: `DriveLintError` if a table has a missing or an additional column.
     """
 
     verdicts: pa.Table
@@ -92,16 +91,16 @@ class Result:
 
     @property
     def lossy(self) -> bool:
-        """Whether parts of a judged log could not be read."""
+        """Whether parts of any judged log could not be read."""
         return bool(pc.any(pc.and_(self.drives["lossy"], pc.equal(self.drives["status"], "judged"))).as_py())
 
 
 def exit_status(result: Result) -> ExitStatus:
-    """Return the exit code of DESIGN.md, by its precedence 130 > 2 > 1 > 4 > 3 > 0, and why.
+    """Return the exit code, by the precedence 130 > 2 > 1 > 4 > 3 > 0, and its reason.
 
-    Only stable rules gate: a draft's failure or unknown is shown, never an exit code. A rule that erred is always 2, and one that went
-    beyond its limits has not judged: 4. What failed does not hide what was not judged or was lost: after mending the one, the user would
-    meet the other in the next run.
+    Only stable rules gate: verdicts of draft rules are shown but do not change the exit code. A rule in error always gives 2. A rule that
+    exceeded its limits gives 4, since it has not judged. For exit code 1, the reason also states the first of these: drives or rules that
+    were not judged, or lossy input. Otherwise the user would see it only in the next run, after correcting the failure.
     """
     status = next(_outcomes(result))
     hidden = next(chain(_not_judged(result), _lossy(result)), None) if status.code is ExitCode.FAILED else None
@@ -109,7 +108,7 @@ def exit_status(result: Result) -> ExitStatus:
 
 
 def _outcomes(result: Result) -> Iterator[ExitStatus]:
-    """Yield the exit codes of the run with their reasons, the weightiest first."""
+    """Yield the exit codes of the run with their reasons, by descending precedence."""
     if result.interrupted:
         yield ExitStatus(ExitCode.INTERRUPTED, partial_sentence(result.drives))
     if (erring := _erring(result, beyond_limits=False)).num_rows:
@@ -130,7 +129,7 @@ def _outcomes(result: Result) -> Iterator[ExitStatus]:
 
 
 def _not_judged(result: Result) -> Iterator[ExitStatus]:
-    """Yield the parts that should have been judged but were not."""
+    """Yield exit code 4 for each kind of part that should have been judged but was not."""
     if lost := int(pc.sum(pc.equal(result.drives["status"], "not_judged")).as_py() or 0):
         yield ExitStatus(
             ExitCode.NOT_JUDGED, f"{lost} of {plural(result.drives.num_rows, 'drive')} could not be judged"
@@ -152,7 +151,7 @@ def _not_judged(result: Result) -> Iterator[ExitStatus]:
 
 
 def _erring(result: Result, *, beyond_limits: bool) -> pa.Table:
-    """Return the verdicts that are errors because a rule took too much time or memory, or the others."""
+    """Return the verdicts in error: with `beyond_limits` those due to too much time or memory, else all other errors."""
     rows = result.verdicts.filter(pc.equal(result.verdicts["verdict"], "error"))
     limited = pc.is_in(rows["reason_code"], value_set=pa.array(BEYOND_LIMITS, pa.string()))
     return rows.filter(limited if beyond_limits else pc.invert(limited))
@@ -167,7 +166,7 @@ def _rules_of(rows: pa.Table) -> str:
 
 
 def _lossy(result: Result) -> Iterator[ExitStatus]:
-    """Yield the losses of the logs that were judged."""
+    """Yield exit code 3 if parts of judged logs were lost."""
     if result.lossy:
         judged = [drive for drive in result.drives.to_pylist() if drive["status"] == "judged"]
         absent = [words for drive in judged for words in ego_absences(drive)]
@@ -177,13 +176,13 @@ def _lossy(result: Result) -> Iterator[ExitStatus]:
 
 
 def partial_sentence(drives: pa.Table) -> str:
-    """Return how much of an interrupted run there is. `drives`: its table `drive`."""
+    """Return how many drives an interrupted run has judged, in words. `drives`: its table `drive`."""
     judged = int(pc.sum(pc.equal(drives["status"], "judged")).as_py() or 0)
     return f"partial: {judged} of {plural(drives.num_rows, 'drive')} judged, interrupted"
 
 
 def gating_findings(result: Result) -> pa.Table:
-    """Return the findings that make exit code 1: of stable rules, severe enough, neither waived nor in the baseline."""
+    """Return the findings that cause exit code 1: of stable rules, severe enough, and gating by `Gate.is_gating`."""
     rows = _severe(result, result.findings)
     if (gate := result.gate) is None:
         return rows
@@ -191,16 +190,16 @@ def gating_findings(result: Result) -> pa.Table:
 
 
 def gating_gone(result: Result) -> list[ComparedFinding]:
-    """Return the baseline's findings that make exit code 4: of stable rules, severe enough, gone and yet not known to be fixed."""
+    """Return the baseline's findings that cause exit code 4: of stable rules, severe enough, absent from the run but not fixed."""
     before = None if result.gate is None else result.gate.baseline
     gone = [] if before is None else before.not_fixed()
     return [entry for entry in gone if entry.stable and entry.severity in _severities(result)]
 
 
 def failures_without_finding(result: Result) -> pa.Table:
-    """Return the failed verdicts for whose drive, ego, rule and profile there is no finding.
+    """Return the failed verdicts without a finding of the same drive, ego, rule and profile.
 
-    Baseline and waivers let findings through, not verdicts: those of stable rules that are severe enough make exit code 1.
+    Baseline and waivers exempt findings, not verdicts: such a verdict causes exit code 1 if its rule is stable and severe enough.
     """
     keys = ["drive_id", "ego_id", "rule_id", "profile"]
     told = {tuple(row.values()) for row in result.findings.select(keys).to_pylist()}
@@ -209,9 +208,9 @@ def failures_without_finding(result: Result) -> pa.Table:
 
 
 def gating_unknowns(result: Result) -> pa.Table:
-    """Return the unknown verdicts that make exit code 4: those of every stable rule (`strict`), or of the required ones.
+    """Return the verdicts that cause exit code 4 as unknown: of every stable rule (with `strict`), or of the required stable rules.
 
-    So do those of rules that were not judged because the log has nothing of a signal.
+    They include verdicts that are not applicable because the log lacks a signal.
     """
     rows = _of_stable_rules(result, result.verdicts)
     rows = rows.filter(
@@ -222,23 +221,26 @@ def gating_unknowns(result: Result) -> pa.Table:
 
 
 def gating_unrecorded(result: Result) -> pa.Table:
-    """Return the verdicts that make exit code 4 as unknown, though they are not applicable: the log has nothing of a signal."""
+    """Return the verdicts of `gating_unknowns` that are not applicable because the log lacks a signal."""
     return unrecorded(gating_unknowns(result))
 
 
 def too_little_decided(result: Result) -> str | None:
-    """Return why this run decided too little to gate, which makes exit code 4: nothing at all, or a smaller share than was asked for."""
+    """Return why this run decided too little (exit code 4): nothing, or a smaller share than `min_judged`; None: it decided enough."""
     if _of_stable_rules(result, result.verdicts).num_rows and (nothing := _nothing_decided(result)):
         return nothing
     share = None if result.min_judged is None else decided_share(result.verdicts)
     if share is None or result.min_judged is None or share >= result.min_judged:
         return None
-    # rounded down: a share below the least one must not read as that
+    # rounded down: a share below the limit must not be shown as equal to the limit
     return f"{int(1000 * share) / 10:g} % of the rules that may apply were decided, fewer than {100 * result.min_judged:g} % (--min-judged)"
 
 
 def decided_share(verdicts: pa.Table) -> float | None:
-    """Return the share of rules that were decided somewhere, of those that may apply, counted for each drive and ego; None: none may."""
+    """Return the share of decided rules among the rules that may apply; None if no rule may apply.
+
+    Each rule is counted per drive and ego. It is decided if any of its verdicts for this drive and ego is pass or fail.
+    """
     kinds = verdicts["verdict"].to_pylist()
     lacking = pc.starts_with(verdicts["reason_code"], UNRECORDED_PREFIX).to_pylist()
     keys = zip(*(verdicts[name].to_pylist() for name in ("drive_id", "ego_id", "rule_id")), strict=True)
@@ -250,13 +252,13 @@ def decided_share(verdicts: pa.Table) -> float | None:
 
 
 def is_undecided(result: Result) -> bool:
-    """Whether a run gates for nothing but that it decided too little."""
+    """Return whether the first reason for exit code 4 is that the run decided too little."""
     first = next(_not_judged(result), None)
     return first is not None and first.why == too_little_decided(result)
 
 
 def _nothing_decided(result: Result) -> str | None:
-    """Return why nothing could be decided, in words; None: something was."""
+    """Return why nothing could be decided, in words; None if something was decided."""
     lacking, n = unrecorded(result.verdicts).num_rows, result.verdicts.num_rows
     if not n or _count(result.verdicts, "unknown") + lacking != n:
         return None
@@ -265,12 +267,12 @@ def _nothing_decided(result: Result) -> str | None:
 
 
 def ego_absences(drive: Row) -> list[str]:
-    """Return for how long each ego of a drive is absent from its log, as far as that is a loss. `drive`: a row of the table `drive`."""
+    """Return how long each ego of a drive is absent from its log, for absences that count as a loss. `drive`: a row of `drive`."""
     return [found["message"].partition(",")[0] for found in drive["quality"] if found["check_id"] == EGO_ABSENT]
 
 
 def off_map_reason(drive: Row) -> str | None:
-    """Return why the map does not fit a drive, by its first ego; None: it fits some ego, it is not known, or there is no map.
+    """Return why the map does not fit a drive, for its first ego; None if the map fits an ego, the fit is unknown, or there is no map.
 
     `drive`: a row of the table `drive`.
     """
@@ -289,7 +291,7 @@ def _of_stable_rules(result: Result, rows: pa.Table) -> pa.Table:
 
 
 def _severe(result: Result, rows: pa.Table) -> pa.Table:
-    """Return the rows of stable rules at or above the severity that makes exit code 1."""
+    """Return the rows of stable rules at or above the severity that causes exit code 1."""
     rows = _of_stable_rules(result, rows)
     return rows.filter(pc.is_in(rows["severity"], value_set=pa.array(_severities(result), pa.string())))
 
@@ -311,7 +313,7 @@ def _stopped(result: Result) -> str:
 
 
 def _let_through(result: Result) -> str:
-    """Return how many severe findings baseline, waivers and confidence let through, in words; '' without any of these."""
+    """Return how many severe findings baseline, waivers and confidence exempt, in words; '' without any of these."""
     if (gate := result.gate) is None:
         return ""
     of_standing = group_rows(_severe(result, result.findings).to_pylist(), lambda row: gate.standing(row["finding_id"]))
@@ -322,7 +324,7 @@ def _let_through(result: Result) -> str:
 
 
 def _gone_sentence(result: Result, unfixed: Sequence[ComparedFinding]) -> str:
-    """Return how many of the baseline's severe findings are gone without being fixed, and why."""
+    """Return in words how many of the baseline's severe findings are absent but not fixed, and why."""
     by_status = {status: [entry for entry in unfixed if entry.standing == status] for status in NOT_FIXED}
     why = [f"{n_findings(mine)} {NOT_FIXED[status]}" for status, mine in by_status.items() if mine]
     n = n_findings(unfixed)
@@ -332,7 +334,7 @@ def _gone_sentence(result: Result, unfixed: Sequence[ComparedFinding]) -> str:
 
 
 def _unknown_sentence(result: Result, unknown: pa.Table) -> str:
-    """Return how many verdicts are unknown that may not be, for which signals; without `strict` of which required rules."""
+    """Return in words how many verdicts are unknown but may not be: per signal with `strict`, else per required rule."""
     if result.strict:
         rows = unknown.select(["rule_id", "reason_code"]).to_pylist()
         of_signal = group_rows(rows, lambda row: signal_name(row["reason_code"]))

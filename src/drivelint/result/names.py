@@ -1,4 +1,4 @@
-"""The names of the files that `check --out` writes. Nothing heavy is imported for them."""
+"""The names of the files that `check --out` writes. The module is quick to import."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ TABLE_OF_FILE: Final = {
 }
 """Stem of the Parquet file -> table of the schema."""
 PICTURES: Final = {"pictures": "picture"}
-"""The same of the file that only a result with pictures from cameras has."""
+"""Stem of the Parquet file that only results with camera pictures have -> table of the schema."""
 REPORT_FILES: Final = {
     "html": "report.html",
     "junit": "junit.xml",
@@ -34,11 +34,11 @@ REPORT_FILES: Final = {
     "xqar": "report.xqar",
     "markdown": "report.md",
 }
-"""Format of a report -> its file."""
+"""Report format -> name of the report file."""
 RESULT_FILES: Final = (
     *(f"{name}.parquet" for name in (*TABLE_OF_FILE, *PICTURES)),
     *REPORT_FILES.values(),
     *(GATE_FILE, RUN_FILE, "margins.parquet", "drivelint.duckdb", MARK, MANIFEST),
     *("annotated/*.mcap", "annotated/viewer-layout.json"),
 )
-"""Globs of the names that the files of a result may have."""
+"""Globs for the names of all files that a result may have."""

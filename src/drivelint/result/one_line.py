@@ -1,4 +1,4 @@
-"""A result for line-based output: no word of a log or of a rule can end a line and imitate a line of drivelint."""
+"""Prepares a result for line-based output: text from a log or rule cannot add a line that looks like drivelint's own."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def on_one_line(result: Result) -> Result:
-    """Return a result in which each text of verdicts, findings, drives and rules is on one line."""
+    """Return the result with every text of verdicts, findings, drives and rules on one line."""
     tables = {name: _texts(getattr(result, name)) for name in ("verdicts", "findings", "rules")}
     return replace(result, drives=_texts(_nested(result.drives)), **tables)
 
@@ -36,7 +36,7 @@ def _nested(drives: pa.Table) -> pa.Table:
 
 
 def flat(value: Any) -> Any:
-    """Return a value with every text in it on one line."""
+    """Return a nested value with every text in it on one line."""
     if isinstance(value, str):
         return one_line(value)
     if isinstance(value, list | tuple):

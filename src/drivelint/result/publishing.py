@@ -1,4 +1,4 @@
-"""Files of a result appear whole or not at all: temporary file in the same folder, fsync, rename."""
+"""Writes files of a result atomically: temporary file in the same folder, fsync, rename."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ if TYPE_CHECKING:
 
 
 class OutputError(DriveLintError):
-    """A result could not be written; nothing half-written is left under its final name."""
+    """A result could not be written; no incomplete file has its final name."""
 
     exit_code = ExitCode.TEMPFAIL
 
 
 def prepare_folder(out: Path) -> None:
-    """Make the folder for results and make sure that files can be written there, before hours of work are done for it.
+    """Create the folder for results and check that files can be written there, before a long run begins.
 
-    Errors: `UsageError` where it is a file, `OutputError`.
+    Errors: `UsageError` if `out` is a file; `OutputError`.
     """
     if out.exists() and not out.is_dir():
         raise UsageError(f"--out {out}: is a file: give a folder for the results")
@@ -38,12 +38,11 @@ def prepare_folder(out: Path) -> None:
 def publish(
     out: Path, contents: dict[str, bytes], finished_files: dict[str, Path | None], mark: str | None = None
 ) -> None:
-    """Write files into the folder `out`, all of them complete on disk before the first gets its name.
+    """Write files into the folder `out`; all files are complete on disk before the first is renamed to its final name.
 
-    `contents`: name -> bytes; `finished_files`: name -> a finished file that is taken over, or None: what an earlier run left under that
-    name goes, because it is not of this run. Names are published in order, those of `finished_files` first. `mark`: the name of the file
-    that shows that the folder is complete: the earlier one goes before anything else changes. Errors: `OutputError` when the folder
-    cannot be written (exit 75).
+    `contents`: name -> bytes; `finished_files`: name -> a finished file to move there, or None to remove an earlier run's file of that
+    name. Files get their names in order, first `finished_files`, then `contents`. `mark`: the name of the file that marks the folder as
+    complete; an earlier mark is removed before any other change. Errors: `OutputError` if the folder cannot be written (exit 75).
     """
     staged: list[tuple[Path, Path]] = []
     try:
@@ -73,9 +72,9 @@ def publish(
 
 
 def _temporary(final: Path) -> tuple[Path, Path]:
-    """Return the name beside a file under which it is written, and its own."""
+    """Return the temporary path in the folder of a file, and the file's final path."""
     final.parent.mkdir(exist_ok=True)
-    # its own name may be as long as names can be
+    # the final name may already have the greatest length, so the temporary name uses a digest
     digest = sha256(final.name.encode("utf-8", "surrogateescape")).hexdigest()
     return final.with_name(f".{digest[:16]}.{os.getpid()}.tmp"), final
 
@@ -87,7 +86,7 @@ def _unwritable(out: Path, error: OSError) -> OutputError:
 
 
 def _sync(path: Path) -> None:
-    """Force a file's content, or a folder's names, to the disk."""
+    """Write a file's content, or a folder's entries, to the disk (fsync)."""
     handle = os.open(path, os.O_RDONLY)
     try:
         os.fsync(handle)

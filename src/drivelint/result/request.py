@@ -1,6 +1,6 @@
 """Reads and writes `run.json`: the options of a check and the paths of its logs and map.
 
-Paths are relative to the result folder: a folder that is moved together with its logs still finds them.
+Paths are relative to the result folder, so they stay valid if the folder is moved together with its logs.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ from drivelint.result.names import RUN_FILE
 
 _PATHS: Final = ("map", "map_dir")
 _JSON_NAMES: Final = {"relative_paths": "named", "manifest_options": "own"}
-"""Field -> its key in the file, where that is another."""
+"""Field -> its key in the file, for fields with another key."""
 
 
 @dataclass(frozen=True)
 class RunRequest(DriveInput):
-    """The options of a check that affect its verdicts, named as in `check`; `traces`: drive_id -> path of its log.
+    """The options of a check that affect its verdicts, named as in `check`. `traces`: drive_id -> path of its log.
 
-    `relative_paths`: drive_id -> that path from the folder in which the check ran, with `/`; a log outside that folder has none.
-    `ego` is what was given: the egos that were judged are those of the verdicts. `manifest_options`: drive_id -> what a manifest said of
-    that log and its map, in place of the options of the run.
+    `relative_paths`: drive_id -> path of its log from the folder in which the check ran, with `/`; logs outside that folder are omitted.
+    `ego`: the option as given; the verdicts name the judged egos. `manifest_options`: drive_id -> the options from a manifest for that
+    log, which replace the options of the run.
     """
 
     traces: dict[str, str] = field(default_factory=dict)
@@ -40,7 +40,7 @@ class RunRequest(DriveInput):
     manifest_options: dict[str, DriveInput] = field(default_factory=dict)
 
     def of_drive(self, drive_id: str) -> RunRequest:
-        """Return the request with the options that hold for a drive."""
+        """Return the request with the options of one drive."""
         mine = self.manifest_options.get(drive_id)
         return (
             self
@@ -52,7 +52,7 @@ class RunRequest(DriveInput):
     def from_options(
         cls, options: DriveInput, traces: dict[str, str], manifest_options: dict[str, DriveInput] | None = None
     ) -> RunRequest:
-        """Return the request with the options of `check`, of which all but the traces are kept unchanged."""
+        """Return the request with the options of `check`, unchanged except for the traces."""
         apart = {"traces", *_JSON_NAMES}
         kept = {each.name: getattr(options, each.name) for each in fields(cls) if each.name not in apart}
         relative_paths = {
@@ -78,15 +78,15 @@ def render(run_options: RunRequest, out: Path) -> bytes:
 
 
 def load(folder: Path) -> RunRequest:
-    """Return the request in a result folder, its paths joined to that folder.
+    """Return the request stored in a result folder, with its paths joined to that folder.
 
-    Errors: `UsageError` where the folder does not say it.
+    Errors: `UsageError` if `run.json` is missing or damaged.
     """
     file = folder / RUN_FILE
     try:
         plain = {"visibility": "none", "ego": None, "robustness": True} | json.loads(
             file.read_text(encoding="utf-8")
-        )  # older results do not say it
+        )  # older results lack these keys
         for each in (plain, *plain.get("own", {}).values()):
             _join_to(folder, each)
         plain["traces"] = {drive: str(folder / path) for drive, path in plain["traces"].items()}
@@ -104,7 +104,7 @@ def load(folder: Path) -> RunRequest:
 def _make_relative(plain: dict[str, Any], out: Path) -> None:
     """Make the paths of the options about a log relative to the result folder."""
     plain |= {key: _relative(plain[key], out) for key in _PATHS if plain[key] is not None}
-    if plain["mapping"] is not None and Path(plain["mapping"]).is_file():  # else the name of a shipped one
+    if plain["mapping"] is not None and Path(plain["mapping"]).is_file():  # else the name of a shipped mapping
         plain["mapping"] = {"file": _relative(plain["mapping"], out)}
 
 
@@ -116,7 +116,7 @@ def _join_to(folder: Path, plain: dict[str, Any]) -> None:
 
 
 def _path_from_workdir(path: str) -> str:
-    """Return a path from the working folder, through links as it was given if it can be; '' for one outside."""
+    """Return a path relative to the working folder, if possible without resolving links; '' for a path outside that folder."""
     here = Path.cwd()
     as_given = PurePath(os.path.abspath(path))  # noqa: PTH100 - resolve() follows links
     for whole in (as_given, Path(path).resolve()):

@@ -1,4 +1,4 @@
-"""The columns of the output tables, which are those of `schemas/`."""
+"""The columns of the output tables, as `schemas/` declares them."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 OUTPUT_VERSION: Final = 1
-"""Version of the output files: raised when a column or a key changes its meaning or goes."""
+"""Version of the output files: raised when a column or a key changes its meaning or is removed."""
 
 
 def conform(rows: pa.Table, table: str) -> pa.Table:
-    """Return `rows` with exactly the columns and types of a schema table, in its order and in one chunk.
+    """Return `rows` with exactly the columns and types of a schema table, in the schema's order and in one chunk.
 
-    Errors: `DriveLintError` naming the columns that are missing or in excess.
+    Errors: `DriveLintError`, which names missing and additional columns.
     """
     schema = arrow_schemas()[table]
     missing = sorted(set(schema.names) - set(rows.column_names))

@@ -1,4 +1,4 @@
-"""Formats numbers, times and findings in the same way for every report."""
+"""Formats numbers, times and findings identically for all reports."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from drivelint.result.certainty import doubt
 
 NO_VALUE: Final = "-"
 LONGEST_LABEL: Final = 12
-"""Characters of an id that a picture has room for."""
+"""Largest number of characters of an id in a picture."""
 
 Row = Mapping[str, Any]
 """One row of an output table: column -> value."""
 
 
 def number(value: float | None, unit: str | None = None) -> str:
-    """Return a measured value with two decimals and its unit, or a dash for none."""
+    """Return a measured value with two decimals (from 1e6 on three digits) and its unit; a dash for None."""
     if value is None:
         return NO_VALUE
     text = f"{value:.2f}" if abs(value) < 1e6 else f"{value:.3g}"
@@ -26,12 +26,12 @@ def number(value: float | None, unit: str | None = None) -> str:
 
 
 def went_wrong(rule: Row) -> str:
-    """Return the title of a breach of a rule. `rule`: its row of the table `rule`."""
+    """Return the title for a breach of a rule. `rule`: a row of the table `rule`."""
     return rule["breach"] or f"Not kept: {rule['title']}"
 
 
 def closing(mps: float) -> str:
-    """Return in words how fast two road users come nearer, or draw apart."""
+    """Return in words how fast two road users approach each other, or move apart if `mps` is negative."""
     apart = mps < 0 and round(mps, 2) != 0
     return f"{'drawing apart' if apart else 'closing'} at {number(abs(mps), 'm/s')}"
 
@@ -52,7 +52,7 @@ def seconds(t_ns: int | None, start_ns: int | None) -> str:
 
 
 def utc(t_ns: int | None) -> str | None:
-    """Return a time since 1970 in UTC as ISO 8601, to the millisecond; None: not known, or of a clock that counts something else."""
+    """Return a time since 1970 in UTC as ISO 8601, to the millisecond; None if unknown or beyond the year 9999 (another clock)."""
     try:
         at = None if t_ns is None else datetime(1970, 1, 1, tzinfo=UTC) + timedelta(microseconds=t_ns // 1000)
     except OverflowError:  # year 10,000 and beyond
@@ -61,34 +61,34 @@ def utc(t_ns: int | None) -> str | None:
 
 
 def utc_at(t_ns: int | None, drive: Row) -> str | None:
-    """Return a time on a log's clock in UTC; None: the log does not say. `drive`: its row."""
+    """Return a time on a log's clock in UTC; None if the log lacks the UTC time. `drive`: the row of its drive."""
     start, since = drive["t_start_ns"], drive["utc_start_ns"]
     return None if None in {t_ns, start, since} else utc(since + t_ns - start)
 
 
 def rule_name(row: Row) -> str:
-    """Return the rule of a verdict or finding, with its profile if there is one."""
+    """Return the id of the rule of a verdict or finding, with the profile, if any."""
     return f"{row['rule_id']}" + ("" if row["profile"] is None else f" [{row['profile']}]")
 
 
 def ego_name(ego_id: str) -> str:
-    """Return an ego's name: "ego 7", or "ego" alone where that is its id."""
+    """Return an ego's name, such as "ego 7"; "ego" alone if its id is "ego"."""
     return ego_id if ego_id == "ego" else f"ego {ego_id}"
 
 
 def brief_id(actor_id: str) -> str:
-    """Return an id as a picture has room for it: data sets give universally unique ones of 36 characters."""
+    """Return an id, shortened for a picture: data sets have UUIDs of 36 characters."""
     return actor_id if len(actor_id) <= LONGEST_LABEL else f"{actor_id[: LONGEST_LABEL - 4]}…"
 
 
 def subject(row: Row) -> str:
-    """Return the ego and, if any, the object of a verdict or finding."""
+    """Return the names of the ego and, if any, the object of a verdict or finding."""
     who = ego_name(row["ego_id"]) if row["ego_id"] else "no ego"
     return f"{who}, object {row['object_id']}" if row["object_id"] is not None else who
 
 
 def comparison(row: Row) -> str:
-    """Return observed against required with the margin, or nothing where the rule measures nothing."""
+    """Return the observed and the required value with the margin; '' for a rule without measured values."""
     if row["observed"] is None and row["required"] is None:
         return ""
     unit = row["unit"]
@@ -97,26 +97,29 @@ def comparison(row: Row) -> str:
 
 
 def tolerance(row: Row, rule: Row) -> float | None:
-    """Return the part of the required value that is the rule's tolerance, in the row's unit; None: nothing, or all of it."""
+    """Return the rule's tolerance within the required value, in the row's unit; None if there is none, or it is the whole value."""
     told = [p for p in rule["params"] if p["name"].startswith("tolerance_") and p["unit"] == row["unit"]]
     given = float(told[0]["value"]) if told else 0.0
     return None if not given or row["required"] is None or math.isclose(row["required"], given) else given
 
 
 def line(row: Row, when: str) -> str:
-    """Return a verdict or finding in one line: `when`, who, the measure (once, if the reason states it too), the reason, the doubts."""
+    """Return a verdict or finding as one line: `when`, ego and object, measured values, reason, and `doubt`.
+
+    The measured values are omitted if the reason contains them.
+    """
     measured = "" if row["reason_measures"] else comparison(row)
     parts = [f"{when}: {subject(row)}", measured, row["reason"], doubt(row)]
     return "; ".join(part for part in parts if part)
 
 
 def with_count(reason: str, n: int) -> str:
-    """Return a reason with how often it was given, if more than once."""
+    """Return a reason with the number of its occurrences, if more than one."""
     return reason if n == 1 else f"{reason} ({n} times)"
 
 
 def finite(value: Any) -> Any:
-    """Return plain data with NaN and infinity as null: neither is JSON."""
+    """Return nested plain data with None in place of NaN and infinity, which JSON cannot express."""
     if isinstance(value, float):
         return value if math.isfinite(value) else None
     if isinstance(value, dict):

@@ -1,6 +1,6 @@
-"""The Jinja templates for text, not HTML: they lie beside the modules that fill them in.
+"""Loads the Jinja templates for plain text, which are beside the modules that use them.
 
-They have the phrases of `drivelint.result.text` as filters.
+Their filters include functions of `drivelint.result.text`.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ if TYPE_CHECKING:
 def text_template(
     module_file: str, name: str, finalize: Callable[[Any], Any] | None = None, **filters: Callable[..., Any]
 ) -> Template:
-    """Return the template `name` beside a module (its `__file__`), with these filters more; nothing that it shows is escaped.
+    """Return the template `name` beside a module, with additional `filters`; values are not escaped.
 
-    `finalize`: what is done to each value that is filled in.
+    `module_file`: the module's `__file__`. `finalize`: a function applied to each value that is filled in.
     """
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined  # most runs fill in no template
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined  # imported here, since most runs use no template
 
     environment = Environment(  # noqa: S701 - no HTML
         loader=FileSystemLoader(Path(module_file).parent),
@@ -39,7 +39,7 @@ def text_template(
 
 
 def cell(value: Any) -> Any:
-    """Return a value for a cell of a table in Markdown, on one line; values that are no text are returned unchanged."""
+    """Return a text on one line, escaped for a cell of a Markdown table; other values are returned unchanged."""
     return value.replace("|", "\\|").replace("\n", " ") if isinstance(value, str) else value
 
 

@@ -1,6 +1,6 @@
-"""The library tables: each `queries/derive/<table>.sql` is one SELECT that fills the table of its name.
+"""The library tables: each file `queries/derive/<table>.sql` is one SELECT that fills the table of that name.
 
-The order follows from which tables each SELECT reads.
+The tables that a SELECT reads determine the order of the derivations.
 """
 
 from __future__ import annotations
@@ -32,33 +32,36 @@ NEEDED_OF_DRIVES: Final = (
     "exposure",
     "recorded",
 )
-"""What the drive table and `inspect` read, without any rule."""
+"""The derived tables that the table `drive` and the command `inspect` read, independently of rules."""
 NEEDED_OF_RULES: Final = (*NEEDED_OF_DRIVES, "pair")
-"""What the evaluation and the evidence of findings read besides, whatever the rules are."""
+"""The derived tables that the evaluation and the evidence of findings always read, for any rules."""
 ALWAYS_NEEDED: Final = (*NEEDED_OF_RULES, "lost_object")
-"""What the evaluation reads of rules that look at others than the ego."""
+"""The derived tables that the evaluation reads for rules about other actors than the ego."""
 
 
 @dataclass(frozen=True)
 class Derivation:
-    """One library table: the SELECT that fills it, the library tables it reads, and the tables without which it is empty."""
+    """One library table. `sql`: the SELECT that fills it. `reads`: the library tables it reads.
+
+    `needs`: tables that must have rows, else the library table is empty.
+    """
 
     table: str
     sql: str
     reads: frozenset[str]
     needs: frozenset[str] = frozenset()
     occasion: str = ""
-    """A query without rows where the table has none: the CTEs that `-- occasion: a, b` behind them names have none. '': none is named."""
+    """A query over the CTEs that a line `-- occasion: a, b` names, or ''. If the query has no rows, the table has none."""
 
     @property
     def of_the_map(self) -> bool:
-        """Whether the table depends on the map only, and is filled once per map."""
+        """Whether the table depends only on the map, and is filled once per map."""
         return lifetimes()[self.table] == "map"
 
 
 @cache
 def derivations() -> dict[str, Derivation]:
-    """Return every derivation, in an order in which each can be run after those before it."""
+    """Return table -> derivation, ordered so that each derivation follows the tables that it reads."""
     if missing := sorted(column_comments("derived").keys() - _files().keys() - _TABLES_FROM_TOML):
         raise DriveLintError(
             f"queries/derive: no query for the library table {missing[0]!r} of schemas/derived.sql: reinstall drivelint"
@@ -73,7 +76,7 @@ def _files() -> dict[str, Path]:
 
 @cache
 def _derivation(table: str) -> Derivation:
-    """Return the derivation of one table. To read the syntax of all takes longer than to judge a short drive."""
+    """Return the derivation of one table. Only this file is parsed: parsing all files takes longer than judging a short drive."""
     file = _files()[table]
     if table not in column_comments():
         raise DriveLintError(f"{file}: no table {table!r} in schemas/")
@@ -87,11 +90,11 @@ _READS: Final = Memo[_Reads]("derivations", _Reads)
 
 
 def _reads(sql: str, where: str) -> _Reads:
-    """Return the tables that a SELECT reads, those that must have rows for it to have any, and `Derivation.occasion`.
+    """Return the tables that a SELECT reads, the tables that must have rows for it to return rows, and `Derivation.occasion`.
 
-    Errors: `DriveLintError` where the CTEs that are its occasion may have no rows and the SELECT still some.
+    Errors: `DriveLintError` if the SELECT may return rows although the CTEs of its occasion have none.
     """
-    from drivelint.sql import syntax  # only where a derivation is new
+    from drivelint.sql import syntax  # imported here, since it is needed only for a derivation that is not cached
 
     tree = syntax.parse_select(sql, where)
     occasion = ""
@@ -105,7 +108,7 @@ def _reads(sql: str, where: str) -> _Reads:
 
 
 def _with_sources(tables: Iterable[str]) -> list[Derivation]:
-    """Return the derivations of those of these tables that are derived, and of all that they read, in order."""
+    """Return the derivations of these tables and of all tables that they read, in order; other tables are skipped."""
     graph: dict[str, list[str]] = {}
     todo = [table for table in tables if table in _files()]
     while todo:
@@ -122,7 +125,7 @@ def derived_tables() -> frozenset[str]:
 
 
 def with_sources(tables: Iterable[str]) -> frozenset[str]:
-    """Return these tables and the library tables from which they are derived."""
+    """Return these tables and all library tables that they read, directly or indirectly."""
     return frozenset[str]().union(*map(_with_its_sources, tables))
 
 
@@ -133,5 +136,5 @@ def _with_its_sources(table: str) -> frozenset[str]:
 
 
 def needed_derivations(tables: Iterable[str], also: Iterable[str] = ALWAYS_NEEDED) -> list[Derivation]:
-    """Return the derivations behind these tables, in order."""
+    """Return the derivations that fill these tables and the tables `also`, with all tables that they read, in order."""
     return _with_sources([*tables, *also])

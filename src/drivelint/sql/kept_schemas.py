@@ -1,4 +1,4 @@
-"""Keeps the Arrow schemas of tables: to make the tables, and to ask for them, takes a quarter of a second."""
+"""Caches the Arrow schemas of tables: creating the tables and reading their schemas takes a quarter of a second."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _SCHEMAS: Final = Memo[dict[str, bytes]]("schemas", dict[str, bytes])
 def kept_schemas(
     create_tables: Callable[[duckdb.DuckDBPyConnection], None], tables: Iterable[str]
 ) -> dict[str, pa.Schema]:
-    """Return table -> Arrow schema, of the tables as they are created, without geometries."""
+    """Return table -> Arrow schema without the geometry column, for tables that `create_tables` creates."""
     import pyarrow as pa
 
     def written_schemas() -> dict[str, bytes]:

@@ -13,7 +13,7 @@ _MACRO: Final = re.compile(r"CREATE OR REPLACE MACRO (\w+)\(([^()]*)\) AS\s+(?!T
 
 
 class Macro(NamedTuple):
-    """A macro of the library: its parameters, and the tree of its value."""
+    """A macro of `queries/macros`: its parameters, and the syntax tree of its value."""
 
     parameters: tuple[str, ...]
     value: dict[str, Any]
@@ -21,7 +21,7 @@ class Macro(NamedTuple):
 
 @cache
 def macro_texts() -> dict[str, tuple[str, str]]:
-    """Return name -> parameters and value, as text, for every macro whose value is an expression."""
+    """Return name -> (parameters, value) as text, for every macro whose value is an expression."""
     statements = (statement.query for statement in syntax.parser().extract_statements(macro_definitions()))
     found = (match for text in statements if (match := _MACRO.search(text)))
     return {match[1].lower(): (match[2].lower(), match[3].strip().rstrip(";")) for match in found}
@@ -29,7 +29,10 @@ def macro_texts() -> dict[str, tuple[str, str]]:
 
 @cache
 def macro(name: str) -> Macro | None:
-    """Return a macro of `macro_texts`; None: it has several signatures. To read the syntax of all takes longer than to check a rule."""
+    """Return a macro of `macro_texts`; None if it has several signatures.
+
+    Macros are parsed one by one: parsing all of them takes longer than checking a rule.
+    """
     parameters, value = macro_texts()[name]
     tree = syntax.syntax_tree(f"SELECT {value}")
     if tree["error"]:

@@ -1,4 +1,4 @@
-"""The statements that stand in files of `queries` and are neither derivations nor parts of rules."""
+"""Reads the SQL statements in files of `queries`, except derivations and rules."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ _FRAGMENT: Final = re.compile(r"\{(\w+)\}")
 
 
 def statement(name: str, **fragments: str) -> str:
-    """Return the text of `queries/<name>.sql` with each `{fragment}` in it replaced; in SQL, no word stands in braces alone.
+    """Return the text of `queries/<name>.sql` with each `{fragment}` replaced; SQL itself never has a single word in braces.
 
-    Errors: `KeyError` for a fragment of the file that is not given.
+    Errors: `KeyError` if a fragment of the file is not given.
     """
     part, _, file = name.rpartition("/")
     return _FRAGMENT.sub(lambda found: fragments[found[1]], texts(part)[file])

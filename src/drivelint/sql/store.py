@@ -1,4 +1,4 @@
-"""The DuckDB database: opened offline with its spatial extension, its tables made from schemas/*.sql."""
+"""The DuckDB database: opened offline with its spatial extension, with tables created from `schemas/*.sql`."""
 
 from __future__ import annotations
 
@@ -26,39 +26,39 @@ if TYPE_CHECKING:
 _TABLE = re.compile(r"^CREATE TABLE (\w+) \(\n(.*?)^\);", re.DOTALL | re.MULTILINE)
 _LIFETIME = re.compile(r"^-- lifetime: (\w+)\nCREATE TABLE (\w+) \(", re.MULTILINE)
 LIFETIMES: Final = ("map", "drive", "part", "run")
-"""How long the rows of a table stay: `map`, until a batch needs other maps; `drive`, while their batch is judged; `part`, while the
-egos of their part of a drive are judged; `run`, to the end."""
+"""How long the rows of a table stay. `map`: until a batch needs other maps. `drive`: while the batch is judged. `part`: while the egos of
+one part of a drive are judged. `run`: until the end of the run."""
 ACTOR_ID_COLUMNS = frozenset({"ego_id", "object_id", "actor_id"})
-"""Columns that hold the id of an actor."""
+"""Columns with the id of an actor."""
 _AS_TOLD = frozenset({"margin"})
-"""Tables whose ids a rule gave: it may speak of an actor that no log has."""
+"""Tables with ids from a rule's SQL: the rule may return an actor id that no log contains."""
 _CODES = r"SELECT regexp_extract(type_name, '^actor_ids_(\d+)$', 1) FROM duckdb_types() WHERE regexp_matches(type_name, '^actor_ids_\d+$')"
 _COLUMN = re.compile(r"^    (\w+) (.*?),?\s*-- (.+)$", re.MULTILINE)
 _QUANTITIES = re.compile(r"\{([a-z, ]+)\}$")
-"""Ends the comment of a column that is made of these quantities of the ego or of another actor."""
+"""Matches the end of a column's comment: the quantities, of the ego or another actor, from which the column is computed."""
 
 
 def quoted(text: object) -> str:
-    """Return a text as a literal of SQL."""
+    """Return a text as an SQL string literal."""
     return "'" + str(text).replace("'", "''") + "'"
 
 
 def connect(
     path: Path | None = None, *, threads: int | None = None, memory_limit: str | None = None, spill: Path | None = None
 ) -> duckdb.DuckDBPyConnection:
-    """Open a database with spatial loaded from its wheel (no network) and every table of `schemas/` and macro created.
+    """Open a database with the spatial extension from its wheel (no network), all tables of `schemas/` and all macros.
 
-    Beyond `memory_limit` (80 % of the machine's by default) tables go to the folder `spill`; without one, DuckDB would put
-    them where the user happens to be. Only a database that is kept in a file has the columns' comments: they take longer
-    than the tables, and in memory they are never read. Errors: `DriveLintError` when the pinned extension cannot be loaded.
+    Beyond `memory_limit` (default: 80 % of the machine's memory) tables spill to the folder `spill`; without `spill`, DuckDB would use
+    the working folder. Column comments are created only in a database file: this takes longer than creating the tables, and in memory
+    nothing reads them. Errors: `DriveLintError` if the pinned extension cannot be loaded.
     """
     con = open_as_is(path)
     con.execute("SET allow_community_extensions=false")
-    con.execute("SET GLOBAL python_enable_replacements=false")  # for its cursors too
+    con.execute("SET GLOBAL python_enable_replacements=false")  # GLOBAL: also for cursors of the connection
     progress_bar.turn_off(con)
     con.execute("SET preserve_insertion_order=false")
     if path is None:
-        # there is nothing to write down, but a checkpoint packs the tables anew: a tenth of the time to derive them
+        # a database in memory needs no checkpoint; one would repack the tables, a tenth of the time for deriving them
         con.execute("SET GLOBAL checkpoint_threshold='1TB'")
     if threads:
         con.execute(f"SET threads={int(threads)}")
@@ -74,7 +74,7 @@ def connect(
 
 @contextmanager
 def _made_at_once(con: duckdb.DuckDBPyConnection) -> Iterator[None]:
-    """Make tables and macros in one transaction, unoptimised, on one core: to open a database takes a third less time."""
+    """Run statements in one transaction, without optimiser, on one core: opening a database then takes a third less time."""
     with one_thread(con):
         con.execute("PRAGMA disable_optimizer; BEGIN")
         yield
@@ -83,7 +83,7 @@ def _made_at_once(con: duckdb.DuckDBPyConnection) -> Iterator[None]:
 
 @contextmanager
 def telling_short_memory() -> Iterator[None]:
-    """Raise `duckdb.OutOfMemoryException` where memory runs out at a commit, too: DuckDB calls that a `TransactionException`."""
+    """Raise `duckdb.OutOfMemoryException` also if memory runs out at a commit, for which DuckDB raises `TransactionException`."""
     try:
         yield
     except duckdb.TransactionException as error:
@@ -96,8 +96,8 @@ def telling_short_memory() -> Iterator[None]:
 def workspace(memory: int | None, *, threads: int | None = None) -> Iterator[duckdb.DuckDBPyConnection]:
     """Open a database in memory that spills to a temporary folder beyond `memory` bytes; the folder is removed afterwards.
 
-    None: beyond 80 % of the machine's. `threads`: cores that a statement may take, None: all.
-    Errors: as those of `connect`; `MemoryShortError` for what does not even fit so.
+    `memory`: None means 80 % of the machine's memory. `threads`: cores that a statement may use; None: all.
+    Errors: those of `connect`; `MemoryShortError` if memory runs out although the database spills.
     """
     limit = None if memory is None else f"{memory}B"
     with temporary_folder() as spill, connect(threads=threads, memory_limit=limit, spill=spill) as con:
@@ -107,22 +107,22 @@ def workspace(memory: int | None, *, threads: int | None = None) -> Iterator[duc
         except duckdb.OutOfMemoryException as error:
             raise MemoryShortError("the database") from error
         finally:
-            con.interrupt()  # after Ctrl-C the database's own threads go on, and closing it would wait for them
+            con.interrupt()  # after Ctrl-C the database's threads continue, and closing the database would wait for them
 
 
 def spill_folder(con: duckdb.DuckDBPyConnection) -> str:
-    """Return the folder to which a database spills; empty: to none."""
+    """Return the folder to which a database spills; '' if it does not spill."""
     (folder,) = con.execute("SELECT current_setting('temp_directory')").fetchall()[0]
     return str(folder or "")
 
 
 _cursors: dict[int, set[duckdb.DuckDBPyConnection]] = {}
-"""Id of a connection -> those of its cursors that are open: interrupting the one does not interrupt the others."""
+"""Id of a connection -> its open cursors: interrupting a connection does not interrupt its cursors."""
 
 
 @contextmanager
 def cursor(con: duckdb.DuckDBPyConnection) -> Iterator[duckdb.DuckDBPyConnection]:
-    """Open a second connection to the database of `con`, which `interrupt` can interrupt."""
+    """Open a second connection to the database of `con`, which `interrupt` interrupts together with `con`."""
     with con.cursor() as other:
         mine = _cursors.setdefault(id(con), set())
         mine.add(other)
@@ -133,7 +133,7 @@ def cursor(con: duckdb.DuckDBPyConnection) -> Iterator[duckdb.DuckDBPyConnection
 
 
 def interrupt(con: duckdb.DuckDBPyConnection) -> None:
-    """End the statements that run on a connection and on its cursors; called from another thread."""
+    """Stop the statements that run on a connection and on its cursors; called from another thread."""
     for each in (con, *_cursors.get(id(con), ())):
         each.interrupt()
 
@@ -141,9 +141,9 @@ def interrupt(con: duckdb.DuckDBPyConnection) -> None:
 def lock(con: duckdb.DuckDBPyConnection) -> None:
     """Forbid a database to open files, use the network or change settings, before rules run in it.
 
-    What is attached stays so, Arrow tables can still be registered and spilling goes on. `memory_limit` and `threads` alone can be
-    set: a batch that is out of memory is tried again with more, and few rows are best done by one thread. One that is locked already
-    stays as it is.
+    Attached databases stay attached, Arrow tables can still be registered, and spilling still works. Only `memory_limit` and `threads`
+    can be set: a batch that runs out of memory is repeated with more memory, and one thread is best for few rows. A database that is
+    already locked is not changed.
     """
     if con.execute("SELECT current_setting('lock_configuration')").fetchall()[0][0]:
         return
@@ -160,7 +160,7 @@ def lock(con: duckdb.DuckDBPyConnection) -> None:
 
 @contextmanager
 def one_thread(con: duckdb.DuckDBPyConnection) -> Iterator[None]:
-    """Let a database use one thread only: of statements on few rows, others take a quarter more time and finish no sooner."""
+    """Limit a database to one thread: for few rows, several threads use a quarter more processor time and finish no sooner."""
     (before,) = con.execute("SELECT current_setting('threads')").fetchall()[0]
     con.execute("SET threads=1")
     try:
@@ -170,7 +170,7 @@ def one_thread(con: duckdb.DuckDBPyConnection) -> Iterator[None]:
 
 
 def lift_memory_limit(con: duckdb.DuckDBPyConnection) -> str:
-    """Let a database take as much memory as DuckDB would by default, 80 % of the machine's; return how much that is."""
+    """Set a database's memory limit to DuckDB's default, 80 % of the machine's memory, and return the limit."""
     con.execute("RESET memory_limit")
     # RESET changes only the value of the setting; SET also informs the buffer manager
     (most,) = con.execute("SELECT current_setting('memory_limit')").fetchall()[0]
@@ -181,11 +181,11 @@ def lift_memory_limit(con: duckdb.DuckDBPyConnection) -> str:
 def release_memory(con: duckdb.DuckDBPyConnection) -> None:
     """Return unused memory to the system. Afterwards the memory limit is 1 byte: the caller must set it again.
 
-    DuckDB keeps a record of every block that it has freed, 200 bytes each and scattered, until it has to evict blocks. A limit that
-    it cannot keep makes it evict all it can: for a few milliseconds, with tables of some megabytes written to the spill folder.
-    The C library keeps the pages of what was freed, until it is requested to return them.
+    Until DuckDB has to evict blocks, it keeps a scattered record of 200 bytes for every freed block. A limit that is too small makes it
+    evict all blocks that it can. This takes a few milliseconds, and writes some megabytes of tables to the spill folder. The C library
+    keeps freed pages until it is requested to return them.
     """
-    # an IOException: the disk is full, and the blocks stay
+    # IOException: the disk is full, so the blocks stay in memory
     with suppress(duckdb.OutOfMemoryException, duckdb.IOException):
         con.execute("SET memory_limit='1B'")
     try:
@@ -195,10 +195,10 @@ def release_memory(con: duckdb.DuckDBPyConnection) -> None:
 
 
 def open_as_is(path: Path | None = None, *, read_only: bool = False) -> duckdb.DuckDBPyConnection:
-    """Open a database without creating tables (None: an empty one in memory), with spatial loaded from its wheel.
+    """Open a database without creating tables, with the spatial extension from its wheel. `path` None: an empty database in memory.
 
-    Whether the extension is signed is not asked: that is a hash over its 80 MB each time, and the file was installed together with duckdb
-    itself, which is not verified either. Any other must be signed from then on. Errors: `DriveLintError` when the pinned extension cannot
+    The signature of the extension is not verified: that would hash its 80 MB each time, and the file was installed together with duckdb,
+    which is not verified either. Afterwards, any other extension must be signed. Errors: `DriveLintError` if the pinned extension cannot
     be loaded.
     """
     con = duckdb.connect(
@@ -229,7 +229,7 @@ def _load_spatial(con: duckdb.DuckDBPyConnection) -> None:
 
 @cache
 def column_comments(file: str = "*") -> dict[str, dict[str, str]]:
-    """Return table -> column -> comment for every table of `schemas/<file>.sql` (`*`: of all of them), in file order."""
+    """Return table -> column -> comment for every table of `schemas/<file>.sql` (`*`: of all files), in file order."""
     return {
         table: {column: words.readable_comment(_QUANTITIES.sub("", comment).rstrip()) for column, _, comment in columns}
         for table, columns in _columns(file).items()
@@ -238,13 +238,13 @@ def column_comments(file: str = "*") -> dict[str, dict[str, str]]:
 
 @cache
 def _columns(file: str = "*") -> dict[str, list[tuple[str, str, str]]]:
-    """Return table -> its columns: name, type, and the comment as it is written, with the mark of a vocabulary."""
+    """Return table -> its columns as (name, type, comment); the raw comment includes the mark of a vocabulary, see `words`."""
     return {name: _COLUMN.findall(body) for name, body in _TABLE.findall(_declarations(file))}
 
 
 @cache
 def word_columns() -> dict[str, dict[str, words.WordColumn]]:
-    """Return table -> column -> the words that it may hold, for the columns that hold words of a vocabulary."""
+    """Return table -> column -> its vocabulary, for the columns with words of a vocabulary."""
     return {
         table: {column: said for column, kind, comment in columns if (said := words.word_column(kind, comment))}
         for table, columns in _columns().items()
@@ -253,7 +253,7 @@ def word_columns() -> dict[str, dict[str, words.WordColumn]]:
 
 @cache
 def column_quantities() -> dict[str, dict[str, frozenset[str]]]:
-    """Return table -> column -> the quantities of actors that it is made of, for the columns whose comment ends in a list of them."""
+    """Return table -> column -> the quantities of actors from which it is computed, if its comment ends in a list of quantities."""
     return {
         table: {
             name: frozenset(made_of[1].split(", "))
@@ -266,9 +266,9 @@ def column_quantities() -> dict[str, dict[str, frozenset[str]]]:
 
 @cache
 def arrow_schemas() -> dict[str, pa.Schema]:
-    """Return table -> Arrow schema for every table of `schemas/`, as DuckDB hands its rows over.
+    """Return table -> Arrow schema for every table of `schemas/`, as DuckDB exports its rows.
 
-    Geometries are left out: the database makes them of the other columns.
+    Geometries are omitted: the database makes them from the other columns.
     """
     return kept_schemas(create_tables, column_comments())
 
@@ -276,9 +276,9 @@ def arrow_schemas() -> dict[str, pa.Schema]:
 def owned_table(
     name: str, owner: str, content: Sequence[Mapping[str, Any]] | Mapping[str, Any], reader: str
 ) -> pa.Table:
-    """Return a table of `schemas/` from rows, or from columns, that lack its first column: whose drive or map it is.
+    """Return a table of `schemas/` from rows or columns, with `owner` (the id of the drive or map) as its first column.
 
-    Errors: `KeyError` for any other column that is missing; `InternalError`, which names the `reader`, for a word of no vocabulary.
+    Errors: `KeyError` for a missing column; `InternalError`, which names the `reader`, for a word outside its column's vocabulary.
     """
     import pyarrow as pa
 
@@ -298,7 +298,7 @@ def _declarations(file: str = "*") -> str:
 
 @cache
 def lifetimes() -> dict[str, str]:
-    """Return table -> its lifetime, as the line above it in `schemas/` says. Errors: `DriveLintError` for a table without one."""
+    """Return table -> its lifetime, from the line above it in `schemas/`. Errors: `DriveLintError` for a table without a lifetime."""
     found = {table: lifetime for lifetime, table in _LIFETIME.findall(_declarations())}
     for table in column_comments():
         if found.get(table) not in LIFETIMES:
@@ -309,7 +309,7 @@ def lifetimes() -> dict[str, str]:
 
 
 def tables_of_lifetime(*kinds: str) -> list[str]:
-    """Return the tables of these lifetimes, in the order of the files."""
+    """Return the tables with these lifetimes, in the order of the files."""
     return [table for table in column_comments() if lifetimes()[table] in kinds]
 
 
@@ -318,13 +318,13 @@ def recreate_with_enums(
 ) -> None:
     """Recreate tables empty, with the ids of drives and actors as ENUM columns.
 
-    Nearly every join is on them, and numbers are a fifth cheaper to derive with. They are numbered in the order of the text: both
-    sort alike. `drives`, `actors`: every id that will come up.
+    Nearly every join is on these ids; with numbers, derivations take a fifth less time. The values of the ENUM are sorted, so ENUM and
+    text have the same order. `drives`, `actors`: all ids that the tables will contain.
     """
     old = _codes(con)
     for kind, ids in (("drive", drives), ("actor", actors)):
         names = sorted(set(ids))
-        can_be_enum = names and not any("\0" in name for name in names)  # with a NUL, they are no SQL
+        can_be_enum = names and not any("\0" in name for name in names)  # SQL text cannot contain NUL
         made = f"ENUM ({', '.join(map(quoted, names))})" if can_be_enum else "VARCHAR"
         con.execute(f"CREATE TYPE {kind}_ids_{max(old, default=0) + 1} AS {made}")
     recreate_empty(con, tables)
@@ -333,9 +333,9 @@ def recreate_with_enums(
 
 
 def recreate_empty(con: duckdb.DuckDBPyConnection, tables: Iterable[str]) -> None:
-    """Recreate tables empty, with the id types that `recreate_with_enums` set last; column comments are lost.
+    """Recreate tables empty, with the id types that `recreate_with_enums` created last; column comments are lost.
 
-    What is only deleted takes its room until a database is written down, which one in memory never is.
+    Deleted rows use memory until a checkpoint, and a database in memory has no checkpoints.
     """
     types = {}
     if codes := _codes(con):
@@ -343,7 +343,7 @@ def recreate_empty(con: duckdb.DuckDBPyConnection, tables: Iterable[str]) -> Non
     bodies, made = dict(_TABLE.findall(_declarations())), list[str]()
     for table in tables:
         body = bodies[table]
-        as_text = table in _AS_TOLD or lifetimes()[table] == "run"  # which has the ids of more than one batch
+        as_text = table in _AS_TOLD or lifetimes()[table] == "run"  # such a table has the ids of several batches
         for column in types.keys() & column_comments()[table].keys() if not as_text else ():
             body = re.sub(rf"^    {column} VARCHAR", f"    {column} {types[column]}", body, flags=re.MULTILINE)
         made.append(f"CREATE OR REPLACE TABLE {table} (\n{body})")
@@ -355,39 +355,39 @@ def _codes(con: duckdb.DuckDBPyConnection) -> list[int]:
 
 
 def macro_definitions() -> str:
-    """Return the text of `queries/macros`."""
+    """Return the text of all macros in `queries/macros`."""
     return "\n".join(texts("macros").values())
 
 
 def create_macros(con: duckdb.DuckDBPyConnection) -> None:
-    """Create every macro of `queries/macros`, which derivations, rules and the reasons of verdicts call."""
+    """Create every macro of `queries/macros`; derivations, rules and reasons of verdicts call them."""
     con.execute(macro_definitions())
 
 
 def create_tables(con: duckdb.DuckDBPyConnection, *, comments: bool = False) -> None:
-    """Create every table of `schemas/*.sql`, its columns' comments kept in the database if asked."""
+    """Create every table of `schemas/*.sql`, with `comments` including the comments of its columns."""
     con.execute(_declarations())
     for table, columns in column_comments().items() if comments else ():
         con.execute(";".join(f"COMMENT ON COLUMN {table}.{c} IS {quoted(text)}" for c, text in columns.items()))
 
 
 def empty_tables(con: duckdb.DuckDBPyConnection) -> set[str]:
-    """Return the tables without rows. A table whose rows were deleted may be missing: then more is run than needed."""
+    """Return the tables without rows. A table whose rows were deleted may be missing; callers then only run unneeded statements."""
     sql = "SELECT table_name FROM duckdb_tables() WHERE database_name = current_database() AND estimated_size = 0"
     return {table for (table,) in con.execute(sql).fetchall()}
 
 
 def insert(con: duckdb.DuckDBPyConnection, table: str, rows: pa.Table) -> None:
-    """Append an Arrow table by column name; a column that the table does not have is refused."""
+    """Append an Arrow table by column name. Errors: `duckdb.Error` for a column that the table lacks."""
     if not rows.num_rows and set(rows.column_names) <= column_comments().get(table, {}).keys():
-        return  # most of a trace's and a map's tables are empty: two milliseconds each
+        return  # most tables of a trace or map are empty, and each INSERT takes two milliseconds
     with registered(con, {"_incoming": rows}):
         con.execute(f"INSERT INTO {table} BY NAME SELECT * FROM _incoming")
 
 
 @contextmanager
 def registered(con: duckdb.DuckDBPyConnection, tables: Mapping[str, pa.Table]) -> Iterator[None]:
-    """Let statements of this connection read Arrow tables under these names, for so long."""
+    """Register Arrow tables under these names for statements of this connection, until the context ends."""
     for name, rows in tables.items():
         con.register(name, rows)
     try:

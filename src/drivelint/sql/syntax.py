@@ -1,4 +1,4 @@
-"""Reads from a SELECT's syntax tree which tables it reads, and which must have rows for it to have any."""
+"""Finds, from the syntax tree of a SELECT, which tables it reads, and which tables must have rows for it to return rows."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _MACRO: Final = re.compile(r"^CREATE OR REPLACE MACRO (\w+)\(", re.MULTILINE)
 _PARAMETER: Final = re.compile(rb"\$(\w+)")
 _NO_ROWS: Final = "ctes without rows"
 _INNER: Final = (dict, list)
-"""The types of a tree's inner nodes. Nine tenths of a tree are single values, which `walk` leaves out."""
+"""The types of a tree's inner nodes. Nine tenths of a tree are single values, which `walk` skips."""
 
 
 @cache
@@ -38,7 +38,7 @@ def parser() -> duckdb.DuckDBPyConnection:
 def with_values(sql: str, literals: Mapping[str, str]) -> str:
     """Return SQL with literals in place of its parameters.
 
-    What only looks like a parameter stays, in a comment or a text: a value there could end the comment, and be run itself.
+    A name such as `$x` within a comment or a string is not replaced: a value there could end the comment, and be executed.
     """
     content, parts, done = sql.encode(), [], 0
     for at, kind in duckdb.tokenize(sql):
@@ -50,10 +50,10 @@ def with_values(sql: str, literals: Mapping[str, str]) -> str:
 
 
 def syntax_tree(sql: str) -> Node:
-    """Return DuckDB's tree of a SELECT: `error`, and `error_message` or `statements`."""
+    """Return DuckDB's syntax tree of a SELECT, with the keys `error`, and `error_message` or `statements`."""
     try:
         tree: Node = msgspec.json.decode(parser().execute("SELECT json_serialize_sql(?)", [sql]).fetchall()[0][0])
-    except msgspec.DecodeError:  # DuckDB writes infinity, which JSON has not
+    except msgspec.DecodeError:  # DuckDB writes infinity, which is not valid JSON
         return {"error": True, "error_message": "a number in it is beyond all numbers, such as 1e999"}
     return tree
 
@@ -68,30 +68,30 @@ def parse_select(sql: str, where: str) -> Node:
 
 
 def tables_read(tree: Node) -> Names:
-    """Return the tables that a SELECT reads; the name of a CTE in scope is not a table."""
+    """Return the tables that a SELECT reads, without the names of CTEs in scope."""
     sources = ((node, ctes) for node, ctes in walk(tree) if node.get("type") == "BASE_TABLE")
     return frozenset(_folded(node["table_name"]) for node, ctes in sources if not _is_cte(node, ctes))
 
 
 def tables_needing_rows(tree: Node) -> Names:
-    """Return tables that must have rows for the SELECT to have any; a table left out only costs time."""
+    """Return tables that must have rows for the SELECT to return rows. The answer may be incomplete, which only costs time."""
     return _query(tree, {}, beside=False)
 
 
 def has_no_rows_without(tree: Node, ctes: Names) -> bool:
-    """Whether a SELECT has no rows if these CTEs have none; false if that is not known, or a name means several."""
+    """Return whether a SELECT has no rows if these CTEs have none; false if that is unknown, or several CTEs have one name."""
     n_named = Counter(_folded(entry["key"]) for node, _ in walk(tree) for entry in _ctes(node))
     if any(n_named[name] != 1 for name in ctes):
         return False
     tree = deepcopy(tree)
     for node, in_sight in walk(tree):
         if node.get("type") == "BASE_TABLE" and _folded(node["table_name"]) in ctes and _is_cte(node, in_sight):
-            node["table_name"] = _NO_ROWS  # one table in place of them all
+            node["table_name"] = _NO_ROWS  # one table name replaces all of these CTEs
     return _NO_ROWS in _query(tree, {}, beside=False)
 
 
 def walk(root: Any) -> Iterator[tuple[Node, Names]]:
-    """Yield every node of a tree with the names of the CTEs in sight of it, without recursion: an expression may be deep."""
+    """Yield every node of a tree with the names of the CTEs in its scope; without recursion, since expressions may be deep."""
     todo: list[tuple[Any, Names]] = [(root, _NO_NAMES)]
     while todo:
         part, ctes = todo.pop()
@@ -99,7 +99,7 @@ def walk(root: Any) -> Iterator[tuple[Node, Names]]:
             todo += [(item, ctes) for item in reversed(part) if isinstance(item, _INNER)]
         else:
             yield part, ctes
-            # a CTE sees those before it; only its own SELECT, and what is inside, sees it
+            # a CTE can read earlier CTEs; only the SELECT that defines the CTE, and its inner parts, can read it
             for entry in _ctes(part):
                 todo.append((entry["value"], ctes))
                 ctes |= {_folded(entry["key"])}
@@ -109,7 +109,10 @@ def walk(root: Any) -> Iterator[tuple[Node, Names]]:
 
 
 def _query(node: Node, ctes: Mapping[str, Names], *, beside: bool) -> Names:
-    """`ctes`: what each CTE in sight needs; `beside`: it stands right of a join, and may speak of columns on the left."""
+    """Return the tables that must have rows for a query to return rows.
+
+    `ctes`: CTE in scope -> the tables that it needs. `beside`: the query is right of a join, so it may use columns of the left side.
+    """
     own = dict(ctes)
     for entry in _ctes(node):
         own[_folded(entry["key"])] = _query(entry["value"]["query"]["node"], own, beside=beside)
@@ -139,12 +142,12 @@ def _source(node: Node, ctes: Mapping[str, Names], *, beside: bool) -> Names:
 
 
 def _has_a_row_of_none(node: Node, *, beside: bool) -> bool:
-    """Whether a SELECT may have a row although its source has none: it takes all rows together."""
+    """Return whether a SELECT may have a row although its source has none, because it aggregates all rows."""
     if node["group_sets"]:
         return not all(node["group_sets"])
     items = node["select_list"]
     if node["aggregate_handling"] == "FORCE_AGGREGATES":
-        # GROUP BY ALL: a group for each value of a column, if it is one of the source, and no other item's new name
+        # GROUP BY ALL makes groups if an item is a column of the source, and not an alias of another item
         named = {_folded(item["alias"]) for item in items}
         columns = (_folded(item["column_names"][-1]) for item in items if item["class"] == "COLUMN_REF")
         return beside or named.issuperset(columns)
@@ -157,17 +160,17 @@ def _has_a_row_of_none(node: Node, *, beside: bool) -> bool:
 
 
 def branches(node: Node) -> list[Node]:
-    """Return the queries of a UNION, or of another set operation."""
+    """Return the queries that a UNION or another set operation combines."""
     return [node["left"], node["right"]] if "left" in node else list(node["children"])
 
 
 def column_name(item: Node) -> str:
-    """Return the name of a column of a SELECT, in lower case; '' where it has none."""
+    """Return the name of a column of a SELECT, in lower case; '' for a column without a name."""
     return _folded(item.get("alias") or (item["column_names"][-1] if item["class"] == "COLUMN_REF" else ""))
 
 
 def offset_of(part: Any) -> int | None:
-    """Return the byte of the SQL where a node stands, else the first one inside it; None: the tree does not say."""
+    """Return a node's byte offset in the SQL, or that of its first inner node with an offset; None without any offset."""
     todo = [part]
     while todo:
         node = todo.pop(0)
@@ -191,16 +194,19 @@ def _ctes(node: Node) -> list[Node]:
 
 
 def _folded(name: str) -> str:
-    """Return a name as DuckDB compares it."""
+    """Return a name in lower case, since DuckDB ignores case."""
     return name.lower()
 
 
 @cache
 def _aggregates() -> Names:
-    """Return DuckDB's aggregates and the macros, its own and ours, that call one; those of spatial all end in `_agg`."""
+    """Return DuckDB's aggregates, and the macros of DuckDB and drivelint that call an aggregate.
+
+    The aggregates of the spatial extension, whose names all end in `_agg`, are not included.
+    """
     rows = parser().execute("SELECT function_name, function_type, macro_definition FROM duckdb_functions()").fetchall()
     found = {name for name, kind, _ in rows if kind == "aggregate"}
-    # reading the text of our macros takes a tenth of the time that creating them in a database takes
+    # drivelint's macros are read as text, in a tenth of the time of creating them in a database
     own = [statement.query for statement in parser().extract_statements(macro_definitions())]
     texts = [(match[1], text) for text in own if (match := _MACRO.search(text))]
     texts += [(name, text) for name, kind, text in rows if kind == "macro" and text]

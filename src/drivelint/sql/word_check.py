@@ -1,8 +1,8 @@
 """Finds words in SQL that a column can never have: `is_class(actor_class, 'cyclist')` is never true, and the rule never applies.
 
-DuckDB does not: even a column of an ENUM may be compared with a text that is none of its words. So the syntax tree is walked, and the
-possible words of each expression are computed: by the tables' columns, through CTEs, joins, functions and macros. What cannot be worked
-out may be anything.
+DuckDB does not report them: even an ENUM column may be compared with any text. This module walks the syntax tree and computes the possible
+words of each expression, from the tables' columns through CTEs, joins, functions and macros. An expression that it cannot compute may have
+any value.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ _LAMBDAS: Final = frozenset({"list_filter", "list_transform", "list_apply"})
 
 
 class CheckedQuery(NamedTuple):
-    """A query's columns, the wrong words in it, and the values that each parameter is compared with."""
+    """A query's columns, its wrong words, and for each parameter the values to which the query compares it."""
 
     relation: Relation
     wrong: Sequence[WrongWord]
@@ -50,14 +50,17 @@ class CheckedQuery(NamedTuple):
 
 
 def check(tree: Node, tables: Mapping[str, Relation] | None = None) -> CheckedQuery:
-    """Check the tree of a SELECT. `tables`: those it reads beside the tables of `schemas/`, such as a rule's reference points."""
+    """Check the tree of a SELECT. `tables`: additional tables outside `schemas/`, such as a rule's reference points."""
     walker = _Walker({**_tables(), **(tables or {})})
     relation = walker.query(tree, {}, None)
     return CheckedQuery(relation, walker.wrong, walker.parameters)
 
 
 def wrong_in_columns(table: str, relation: Relation) -> list[WrongWord]:
-    """Return the literals that a query puts into columns of this table, of which they are no words. UNIONs go by place, so does this."""
+    """Return the literals that a query puts into a column of this table although they are not words of the column's vocabulary.
+
+    The columns of a UNION, matched by position, have the names in its first query.
+    """
     known = store.word_columns()[table]
     found = []
     for name, kind in relation.columns:
@@ -72,7 +75,7 @@ def wrong_in_columns(table: str, relation: Relation) -> list[WrongWord]:
 
 
 def check_macro(name: str) -> list[WrongWord]:
-    """Return the wrong words in a macro: its parameters are taken for the columns of their names."""
+    """Return the wrong words in a macro; a parameter may have the values of the columns with its name."""
     walker = _Walker(_tables())
     walker.macro(name, None)
     return walker.wrong
@@ -91,7 +94,7 @@ def _tables() -> dict[str, Relation]:
 
 @cache
 def _columns_of_words() -> dict[str, Type]:
-    """Return column -> what it may be, for the columns that are the same in every table that has them."""
+    """Return column -> its possible values, for columns with the same values in every table that has them."""
     found: dict[str, list[Type]] = {}
     for columns in store.word_columns().values():
         for name, column in columns.items():
@@ -100,20 +103,20 @@ def _columns_of_words() -> dict[str, Type]:
 
 
 class _Walker:
-    """Walks trees: each method returns the possible values of its node, and collects the wrong words in it."""
+    """Walks trees: each method returns the possible values of a node, and collects the node's wrong words."""
 
     def __init__(self, tables: Mapping[str, Relation]) -> None:
         self._tables = tables
         self._depth = 0
-        """The number of macros around the node that is walked."""
+        """The number of macro calls around the current node."""
         self._call: int | None = None
-        """Where the call of the outermost of them stands."""
+        """The byte offset of the outermost of these macro calls."""
         self._wrong: dict[tuple[str, int | None], WrongWord] = {}
         self.parameters: dict[str, list[Words]] = {}
 
     @property
     def wrong(self) -> list[WrongWord]:
-        """The wrong words, each once."""
+        """The wrong words, without duplicates."""
         return list(self._wrong.values())
 
     # ---- queries
@@ -135,7 +138,7 @@ class _Walker:
         return UNKNOWN
 
     def _recursive(self, node: Node, ctes: Mapping[str, Relation], outer: Scope | None) -> Relation:
-        """Return the columns of a recursive CTE; what is wrong shows when all that it yields is known."""
+        """Return the columns of a recursive CTE. Wrong words are collected only after its possible values no longer change."""
         name = node["cte_name"].lower()
         relation = self.query(node["left"], ctes, outer)
         for _ in range(4):
@@ -172,7 +175,7 @@ class _Walker:
         return Relation(columns, complete)
 
     def _columns_of_star(self, item: Node, scope: Scope) -> Relation:
-        """Return the columns that a star stands for."""
+        """Return the columns that a `*` selects."""
         if item.get("columns") or item.get("expr"):
             return UNKNOWN
         wanted = item.get("relation_name", "").lower()
@@ -241,7 +244,7 @@ class _Walker:
         return None
 
     def _visit(self, part: Any, scope: Scope) -> None:
-        """Look at all expressions in part of a tree."""
+        """Check all expressions in a part of a tree."""
         if isinstance(part, dict) and "class" in part:
             self.of(part, scope)
         elif isinstance(part, dict | list):
@@ -319,7 +322,7 @@ class _Walker:
         return value_of(name, kinds)
 
     def _items(self, name: str, node: Node, scope: Scope) -> Type:
-        """Return the possible values of a function with a lambda on a list."""
+        """Return the possible values of a list function with a lambda, such as `list_filter`."""
         items, function = self.of(node["children"][0], scope), node["children"][1]
         left = function["lhs"]
         names = [column["column_names"][0].lower() for column in left.get("children") or [left]]
@@ -328,7 +331,7 @@ class _Walker:
         return items if name == "list_filter" else ListOf(value)
 
     def macro(self, name: str, kinds: Sequence[Type] | None, call: Node | None = None) -> Type:
-        """Return what a macro may be, called with arguments that may be `kinds`; None: with any."""
+        """Return the possible values of a macro call. `kinds`: possible values of the arguments; None: any values."""
         called = macro(name)
         if called is None or (kinds is not None and len(kinds) != len(called.parameters)):
             return None
@@ -348,7 +351,7 @@ class _Walker:
         first = relation.columns[0][1] if relation.columns else None
         if node["subquery_type"] == "ANY":
             kind = self.of(node["child"], scope)
-            if node["comparison_type"] in _COMPARISONS:  # the literals of a list, as ANY has them, are written here
+            if node["comparison_type"] in _COMPARISONS:  # the literals in the list of ANY are written at this place
                 self._compare(
                     kind, replace(first, direct=not first.vocabularies) if isinstance(first, Words) else first
                 )
@@ -368,7 +371,7 @@ class _Walker:
 
 @cache
 def _of_macro(name: str) -> Type:
-    """Return the possible values of a macro, whatever its arguments are."""
+    """Return the possible values of a macro for any arguments."""
     return _Walker(_tables()).macro(name, None)
 
 
@@ -377,5 +380,5 @@ def _is_recursive(unnest: Node) -> bool:
 
 
 def _last(name: Any) -> str:
-    """Return the name of a column that a star leaves out, in lower case."""
+    """Return the name of a column that a `*` excludes, in lower case."""
     return str(name if isinstance(name, str) else name["column"]).lower()

@@ -1,4 +1,4 @@
-"""The words that functions of DuckDB return and compare."""
+"""The possible words that functions of DuckDB return, and the values that they compare."""
 
 from __future__ import annotations
 
@@ -59,12 +59,15 @@ _VALUES: Final[Mapping[str, Callable[[Kinds], Type]]] = {
 
 
 def value_of(function: str, kinds: Kinds) -> Type:
-    """Return the possible values of a function that is called with these; None: not known."""
+    """Return the possible values of a function for arguments with the possible values `kinds`; None: unknown."""
     return _VALUES[function](kinds) if function in _VALUES and kinds else None
 
 
 def compared(function: str, kinds: Kinds) -> tuple[Type, Type] | None:
-    """Return the two that a function compares: an item of a list with a value or with another's items; None: it compares none."""
+    """Return the two values that a function compares; None if it compares none.
+
+    List functions compare an item of the list with a value, or with an item of a second list.
+    """
     if len(kinds) != 2:
         return None
     first, second = kinds

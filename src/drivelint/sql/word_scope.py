@@ -1,4 +1,4 @@
-"""The meaning of the names in a SELECT, as far as words go: columns of its sources, its aliases, and outer queries."""
+"""Resolves names in a SELECT to their possible words: columns of its sources, its aliases, and outer queries."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Relation(NamedTuple):
-    """The columns of a table or query in order, names in lower case; `complete`: it has no others."""
+    """The columns of a table or query in order, with names in lower case. `complete`: it has no other columns."""
 
     columns: Sequence[tuple[str, Type]]
     complete: bool = True
@@ -22,23 +22,23 @@ UNKNOWN = Relation([], complete=False)
 
 
 class Source:
-    """A relation in a FROM, the name that it goes by, and those of its columns that a star leaves out."""
+    """A relation in a FROM, its name or alias, and its `hidden` columns, which a `*` omits."""
 
     def __init__(self, name: str, relation: Relation, hidden: frozenset[str] = frozenset()) -> None:
         self.name, self.relation, self.hidden = name, relation, hidden
 
     @cached_property
     def kinds(self) -> dict[str, Type]:
-        """What each column may be; of two of one name the first."""
+        """Column -> its possible values; if two columns have the same name, the first one counts."""
         return dict(reversed(self.relation.columns))
 
     def hiding(self, names: frozenset[str]) -> Source:
-        """Return the same, with more columns that a star leaves out."""
+        """Return the source with more hidden columns."""
         return Source(self.name, self.relation, self.hidden | names)
 
 
 class Scope:
-    """What names stand for: `bound` parameters of a macro or lambda, sources of a FROM, aliases of a SELECT, and the scope around it."""
+    """The names in scope: `bound` parameters of a macro or lambda, sources of a FROM, aliases of a SELECT, and the outer scope."""
 
     def __init__(
         self,
@@ -51,7 +51,7 @@ class Scope:
         self.aliases: dict[str, Type] = {}
 
     def lookup(self, names: Sequence[str]) -> Type:
-        """Return what a column may be, by its names in lower case: [source], column, [fields]."""
+        """Return the possible values of a column. `names`: its parts in lower case: [source], column, [fields]."""
         first, *rest = names
         if first in self.bound:
             return field_of(self.bound[first], rest)
@@ -69,14 +69,14 @@ class Scope:
 
 
 def renamed(relation: Relation, names: Sequence[str]) -> Relation:
-    """Return a relation whose first columns have other names."""
+    """Return the relation with its first columns renamed to `names`."""
     columns = list(relation.columns)
     columns[: len(names)] = [(name.lower(), kind) for name, (_, kind) in zip(names, columns, strict=False)]
     return Relation(columns, relation.complete)
 
 
 def united(left: Relation, right: Relation, *, by_name: bool) -> Relation:
-    """Return the columns of a UNION."""
+    """Return the columns of a UNION of two relations."""
     complete = left.complete and right.complete
     if by_name:
         first, second = dict(left.columns), dict(right.columns)

@@ -1,6 +1,6 @@
-"""What an expression of SQL may be, as far as words go: a word of a vocabulary, a literal, a list or STRUCT of such, a parameter.
+"""Types for the possible words of an SQL expression: a word of a vocabulary, a literal, a list or STRUCT of these, or a parameter.
 
-None is an expression of which nothing is known: a number, or a text that the log gave.
+None means that nothing is known about the expression, such as a number or a text from the log.
 """
 
 from __future__ import annotations
@@ -18,11 +18,14 @@ if TYPE_CHECKING:
     from drivelint.sql.words import WordColumn
 
 _MOST_PRODUCTS = 200
-"""More texts than this are not put together from parts."""
+"""`concatenation` gives up beyond this number of texts."""
 
 
 class Literal(NamedTuple):
-    """Where a literal stands: the byte of the SQL (of the call, where a macro has it; None: not said), and whether a macro has it."""
+    """The position of a literal: its byte offset in the SQL (None: unknown), and whether it is within a macro.
+
+    For a literal within a macro, the offset is that of the call.
+    """
 
     offset: int | None
     in_macro: bool = False
@@ -30,9 +33,9 @@ class Literal(NamedTuple):
 
 @dataclass(frozen=True)
 class Words:
-    """A text: a word of any of these vocabularies, or one of these literals; without either it is NULL.
+    """A text: a word of any of these vocabularies, or one of these literals; NULL if both are empty.
 
-    `direct`: nothing but literals, written at this place.
+    `direct`: the expression itself consists of literals only.
     """
 
     vocabularies: frozenset[Vocabulary] = frozenset()
@@ -40,38 +43,38 @@ class Words:
     direct: bool = False
 
     def may_be(self, word: str) -> bool:
-        """Whether it may be this word."""
+        """Return whether the text may be this word."""
         return word in self.literals or any(word in known for known in self.vocabularies)
 
     @property
     def is_null(self) -> bool:
-        """Whether it is nothing but NULL."""
+        """Whether the text is always NULL."""
         return not self.vocabularies and not self.literals
 
     @property
     def possible_words(self) -> tuple[str, ...]:
-        """All words that it may be."""
+        """All words that the text may be."""
         ordered = sorted(self.vocabularies)
         return tuple(dict.fromkeys([*(word for known in ordered for word in known.words), *self.literals]))
 
 
 @dataclass(frozen=True)
 class ListOf:
-    """A list."""
+    """A list with items of this type."""
 
     item: Type
 
 
 @dataclass(frozen=True)
 class StructOf:
-    """A STRUCT."""
+    """A STRUCT with fields of these types."""
 
     fields: Mapping[str, Type]
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """A parameter `$name`."""
+    """A parameter `$name` in the SQL."""
 
     name: str
 
@@ -81,7 +84,10 @@ NULL = Words(direct=True)
 
 
 class WrongWord(NamedTuple):
-    """A literal that what it is compared with can never be; `offset`: the byte of the SQL where it stands, None: not said."""
+    """A literal that is compared with an expression that can never have this value.
+
+    `offset`: its byte offset in the SQL; None: unknown. `against`: the possible values of the expression.
+    """
 
     word: str
     offset: int | None
@@ -89,26 +95,26 @@ class WrongWord(NamedTuple):
 
     @property
     def message(self) -> str:
-        """What is wrong, with the nearest good word."""
+        """The error message, with the nearest valid word."""
         names = " or ".join(known.name.replace("_", " ") for known in sorted(self.against.vocabularies))
         what = f"is no {names}" if names else "is never what it is compared with"
         return f"{self.word!r} {what}; {nearest(self.word.strip('%'), self.against.possible_words)}"
 
 
 def of_column(column: WordColumn) -> Type:
-    """Return the possible values of a column of a table."""
+    """Return the possible values of a table's column."""
     item: Type = Words(frozenset({column.vocabulary}))
     item = StructOf({column.field: item}) if column.field else item
     return ListOf(item) if column.is_list else item
 
 
 def indirect(kind: Type) -> Type:
-    """Return the same as it is read elsewhere: by the name of a column, or as the result of a macro."""
+    """Return the type without `direct`: for a value that is read by a column's name, or returned by a macro."""
     return replace(kind, direct=False) if isinstance(kind, Words) else kind
 
 
 def union(kinds: Iterable[Type]) -> Type:
-    """Return the possible values of an expression that is any of these; NULL adds nothing."""
+    """Return the union of possible values; NULL adds nothing."""
     parts = [kind for kind in kinds if not (isinstance(kind, Words) and kind.is_null)]
     if len(parts) < 2:
         return parts[0] if parts else NULL
@@ -128,7 +134,7 @@ def union(kinds: Iterable[Type]) -> Type:
 
 
 def concatenation(parts: Iterable[Type]) -> Type:
-    """Return the texts that are put together from these, where there are few."""
+    """Return all concatenations of the possible values of `parts`; None if unknown or too many."""
     texts: list[list[tuple[str, Literal]]] = []
     for part in parts:
         if not isinstance(part, Words) or not all(known.is_listed for known in part.vocabularies):
@@ -141,7 +147,7 @@ def concatenation(parts: Iterable[Type]) -> Type:
 
 
 def field_of(kind: Type, names: Iterable[str]) -> Type:
-    """Return the field of a STRUCT, or of one in it."""
+    """Return the type of a field of a STRUCT. `names`: the field, then fields within it."""
     for name in names:
         kind = kind.fields.get(name) if isinstance(kind, StructOf) else None
     return kind
@@ -153,15 +159,15 @@ def item_of(kind: Type) -> Type:
 
 
 def member_of(kind: Type, key: Type) -> Type:
-    """Return the possible values under a key in brackets: an item of a list, or a field of a STRUCT."""
+    """Return the possible values of `kind[key]`: an item of a list, or a field of a STRUCT."""
     return field_of(kind, map(str.lower, key.literals)) if isinstance(key, Words) else item_of(kind)
 
 
 def wrong_words(left: Type, right: Type) -> Iterator[WrongWord]:
     """Yield the literals on one side of a comparison that the other side can never be.
 
-    Of a macro's own literals only those are wrong that are in no vocabulary: what else it is called with may be narrower. Of literals that
-    come from elsewhere, as from a CASE in a CTE, none is wrong as long as one is good: the others may stand for "none of these".
+    A literal within a macro may only contradict a vocabulary, not other literals: the arguments of one call may have fewer values than
+    the macro supports. Indirect literals, as from a CASE in a CTE, are wrong only if all of them are: some may mean "none of these".
     """
     for literals, other in ((left, right), (right, left)):
         if not (isinstance(literals, Words) and isinstance(other, Words)) or literals.vocabularies:
@@ -189,11 +195,11 @@ _TESTS: Final[Mapping[str, Callable[[str, str], bool]]] = {
     **dict.fromkeys(("ends_with", "suffix"), str.endswith),
     "contains": str.__contains__,
 }
-"""Function -> whether it holds of a word and a pattern."""
+"""Function of DuckDB -> its test of a word with a pattern."""
 
 
 def wrong_patterns(function: str, text: Type, pattern: Type) -> Iterator[WrongWord]:
-    """Yield the pattern of a LIKE, or of a function such as starts_with, that no word fits which the text may be."""
+    """Yield the patterns of a LIKE, or of a function such as starts_with, that match no possible word of the text."""
     if function not in _TESTS or not (isinstance(text, Words) and isinstance(pattern, Words) and pattern.direct):
         return
     if text.direct or text.is_null or not all(known.is_listed for known in text.vocabularies):

@@ -1,7 +1,7 @@
-"""The vocabularies of `schemas/words.toml`: which words the columns of the tables may hold, and the refusal of any other.
+"""The vocabularies of `schemas/words.toml`: the words that columns of the tables may contain. Other words are refused.
 
-A column's comment in `schemas/*.sql` names its vocabulary in brackets, with further words: `[control + none]`; for a field of a STRUCT
-`[fit: light_fit]`.
+A column's comment in `schemas/*.sql` names its vocabulary in brackets, with additional words: `[control + none]`. The mark for a field of
+a STRUCT is `[fit: light_fit]`.
 """
 
 from __future__ import annotations
@@ -22,23 +22,23 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 MARK: Final = re.compile(r"\[(?:(\w+): )?(\w+)((?: \+ \w+)*)\] ?")
-"""The mark at the head of a column's comment: the field of a STRUCT, the vocabulary, and the words besides."""
+"""The mark at the start of a column's comment: the field of a STRUCT, the vocabulary, and additional words."""
 _MOST_LISTED: Final = 14
-"""A comment lists the words of a vocabulary of at most this many; of a longer one it gives the name."""
+"""A readable comment lists at most this many words of a vocabulary; it only names a longer vocabulary."""
 _NEAR: Final = 0.55
-"""How alike a word that is proposed must be: `cyclist` and `bicycle` are 0.57."""
+"""Least similarity of a word that is suggested (`difflib`): `cyclist` and `bicycle` have 0.57."""
 _MISSPELLED: Final = 0.85
-"""So alike to a word of an open vocabulary is none of its own, but that word misspelled."""
+"""From this similarity on, a word is taken for a misspelled word of an open vocabulary, not for a new word."""
 
 
 Quantity = Literal["existence", "identity", "position", "heading", "velocity", "size", "class"]
-"""The quantities of an actor that may be doubted."""
+"""The quantities of an actor that may be uncertain."""
 
 
 class Vocabulary(NamedTuple):
-    """A vocabulary: its name, its words in order, a regular expression of what else is a word ('': nothing), and what they mean.
+    """A vocabulary: its name, its words in order, a regular expression for further words ('': none), and their meaning.
 
-    `open`: any other word is one, too, if it is not nearly one of these.
+    `open`: any other word is valid, too, except a misspelled word of the vocabulary.
     """
 
     name: str
@@ -48,29 +48,32 @@ class Vocabulary(NamedTuple):
     open: bool = False
 
     def __contains__(self, word: object) -> bool:
-        """Whether it has this word."""
+        """Return whether the word is valid."""
         if word in self.words or (self.pattern and re.fullmatch(self.pattern, str(word))):
             return True
         return self.open and not get_close_matches(str(word), self.words, n=1, cutoff=_MISSPELLED)
 
     @property
     def is_listed(self) -> bool:
-        """Whether its words are all that there are."""
+        """Whether `words` has all valid words."""
         return not self.pattern and not self.open
 
     def spelled(self, word: str) -> str | None:
-        """Return a word as it is spelled here, whatever its case; None: it has none such."""
+        """Return a word as the vocabulary spells it, ignoring case; None if the vocabulary lacks it."""
         if word in self.words:
             return word
         return next((known for known in self.words if known.casefold() == word.casefold()), None)
 
     def problem(self, word: str) -> str | None:
-        """Return the problem of a word, with the nearest good one; None: there is none."""
+        """Return an error message for an invalid word, with the nearest valid word; None for a valid word."""
         return None if word in self else f"{word!r} is no {self.name.replace('_', ' ')}; {nearest(word, self.words)}"
 
 
 class WordColumn(NamedTuple):
-    """A column of words or of lists of words, or the `field` of the STRUCTs in it ('': the column itself)."""
+    """A column with words of a vocabulary. `field`: the field of its STRUCTs with the words, '' for the column itself.
+
+    `is_list`: it has lists of words or STRUCTs.
+    """
 
     vocabulary: Vocabulary
     field: str = ""
@@ -90,12 +93,15 @@ def vocabularies() -> dict[str, Vocabulary]:
 
 
 def words(name: str) -> tuple[str, ...]:
-    """Return the words of a vocabulary. Errors: `KeyError` for a name that is none."""
+    """Return the words of a vocabulary. Errors: `KeyError` for a name without a vocabulary."""
     return vocabularies()[name].words
 
 
 def word_column(kind: str, comment: str) -> WordColumn | None:
-    """Return the vocabulary in a column's comment; None: a column of this type has no words. Errors: `DriveLintError`."""
+    """Return the vocabulary that a column's comment names; None if it names none. `kind`: the column's SQL type.
+
+    Errors: `DriveLintError` for an unknown vocabulary.
+    """
     mark = MARK.match(comment)
     if mark is None:
         return None
@@ -108,7 +114,7 @@ def word_column(kind: str, comment: str) -> WordColumn | None:
 
 
 def readable_comment(comment: str) -> str:
-    """Return a column's comment with the words of its vocabulary in place of the mark."""
+    """Return a column's comment with the vocabulary's words in place of the mark."""
     column = word_column("", comment)
     if column is None:
         return comment
@@ -121,9 +127,10 @@ def readable_comment(comment: str) -> str:
 
 
 def refuse_wrong_words(table: pa.Table, columns: dict[str, WordColumn], where: str) -> None:
-    """Refuse a table that a reader made, if it holds a word that is not in its vocabulary. NULL is no word; an open one has any.
+    """Raise `InternalError` if a table of a reader contains a word outside its column's vocabulary.
 
-    Errors: `InternalError` that begins with `where`, and names the column, the word and the nearest good one.
+    NULL and words of open vocabularies are valid. The message begins with `where`, and names the column, the word and the nearest valid
+    word.
     """
     for name, column in columns.items():
         if column.vocabulary.open or column.field or name not in table.column_names:
