@@ -24,6 +24,8 @@ RESULT_LOGS: Final = (
     "annotated/*.mcap",
 )  # fmt: skip
 """Globs of the files of `check --out` that have a log's suffix. They apply even if the list is missing, as in a copy of some files."""
+AUDIT_LOGS: Final = ("rules.parquet", "batches/*/*.parquet", "tables/*/*.parquet")
+"""Globs of the files of `audit --out` that have a log's suffix. They apply even if the audit has not ended, and so has no list."""
 
 
 class OwnFiles:
@@ -50,7 +52,9 @@ class OwnFiles:
     def _of(self, folder: Path) -> tuple[frozenset[str], tuple[str, ...]]:
         """Return the names of the files that drivelint wrote into a folder, and globs for further files."""
         if folder not in self._written:
-            self._written[folder] = frozenset(written_files(folder)), RESULT_LOGS if _is_result(folder) else ()
+            names = frozenset(written_files(folder))
+            globs = RESULT_LOGS if _is_result(folder) else AUDIT_LOGS if _is_audit(folder) and not names else ()
+            self._written[folder] = names, globs
         return self._written[folder]
 
 
@@ -68,3 +72,7 @@ def _matches(name: str, glob: str) -> bool:
 
 def _is_result(folder: Path) -> bool:
     return (folder / "summary.json").is_file() and (folder / "verdicts.parquet").is_file()
+
+
+def _is_audit(folder: Path) -> bool:
+    return (folder / "audit.json").is_file() and (folder / "rules.parquet").is_file()

@@ -91,6 +91,18 @@ def test_what_the_list_of_an_audit_names_is_not_searched(tmp_path: Path) -> None
     assert names(expand_traces([str(tmp_path / "fleet" / "tables")])) == ["1f.parquet", "log.parquet"]
 
 
+def test_the_tables_of_an_audit_that_has_not_ended_are_no_logs(tmp_path: Path) -> None:
+    """It has no list yet. After its end only what the list names is left out."""
+    fleet = tmp_path / "fleet"
+    tables = ("rules.parquet", "batches/verdicts/1f.parquet", "tables/receipts/00000000.parquet")
+    for name in (*tables, "audit.json", "log.parquet", "tables/deeper/in/log.parquet"):
+        (fleet / name).parent.mkdir(parents=True, exist_ok=True)
+        (fleet / name).write_text("x")
+    assert names(expand_traces([str(tmp_path)])) == ["log.parquet", "log.parquet"]
+    (fleet / "files.json").write_bytes(manifest({"tables/receipts/00000000.parquet"}))
+    assert names(expand_traces([str(tmp_path)])) == ["1f.parquet", "log.parquet", "log.parquet", "rules.parquet"]
+
+
 @pytest.mark.parametrize("content", ["", "[]", "{}", '{"written_by_drivelint": 3}'])
 def test_a_damaged_list_names_nothing(tmp_path: Path, content: str) -> None:
     (tmp_path / "files.json").write_text(content)
