@@ -100,7 +100,7 @@ def test_the_tables_of_an_audit_that_has_not_ended_are_no_logs(tmp_path: Path) -
         (fleet / name).write_text("x")
     assert names(expand_traces([str(tmp_path)])) == ["log.parquet", "log.parquet"]
     (fleet / "files.json").write_bytes(manifest({"tables/receipts/00000000.parquet"}))
-    assert names(expand_traces([str(tmp_path)])) == ["1f.parquet", "log.parquet", "log.parquet", "rules.parquet"]
+    assert names(expand_traces([str(tmp_path)])) == ["1f.parquet", "log.parquet", "rules.parquet", "log.parquet"]
 
 
 @pytest.mark.parametrize("content", ["", "[]", "{}", '{"written_by_drivelint": 3}'])
