@@ -10,7 +10,9 @@ import pyarrow as pa
 import pytest
 
 import drivelint
+from drivelint.cli.receipts import Outputs
 from drivelint.pictures.d123_log import camera_names
+from drivelint.receipts.recorder import recording
 from drivelint.result.load import load_result
 from tests.formats.d123.files import Box, Ego, Frame, arrow, turn, write_log
 from tests.pictures.camera_bag import bars, jpeg, number_in
@@ -92,6 +94,19 @@ def test_frames_that_are_paths_are_said_to_be_missing(tmp_path: Path) -> None:
     assert not result.pictures.num_rows
     (note,) = (note for note in result.notes if FRONT in note)
     assert "convert it with the frames as JPEG" in note
+
+
+def test_a_changed_camera_file_is_a_changed_input(tmp_path: Path) -> None:
+    """A receipt of the run names the files that Python opened."""
+    log = drive(tmp_path / "log", 0, "test-set")
+    taken = FIRST_US + EVERY_US * np.arange(N_FRAMES)
+    camera(log, FRONT, taken, pa.array([jpeg(bars(n)) for n in range(N_FRAMES)], pa.binary()))
+    out = tmp_path / "out"
+    with recording(Outputs(out), [log]) as recorder:
+        judged(log, out)
+    inputs = recorder.inputs()
+    assert inputs is not None, recorder.trouble
+    assert str(log / f"{FRONT}.arrow") in inputs.states
 
 
 @pytest.mark.parametrize("content", [b"", b"ARROW1", b"no arrow file at all"])

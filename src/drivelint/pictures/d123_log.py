@@ -5,6 +5,7 @@ py123d 0.7.0 keeps frames as JPEG or PNG in the file, as numbers of frames of a 
 
 from __future__ import annotations
 
+import mmap
 from typing import TYPE_CHECKING, Final, NamedTuple, Self
 
 import numpy as np
@@ -92,14 +93,16 @@ class D123Log:
                 return number, file
         try:
             self._files.append(_open_camera(self._folder, name))
-        except (pa.ArrowException, KeyError, OSError) as error:
+        except (pa.ArrowException, KeyError, OSError, ValueError) as error:  # ValueError: an empty file cannot be mapped
             raise FrameError(f"a file that cannot be read ({error})") from error
         return len(self._files) - 1, self._files[-1]
 
 
 def _open_camera(folder: Path, name: str) -> _CameraFile:
     """Open a camera's file and read the times of its frames, without the frames."""
-    source = pa.memory_map(str(path_of(folder, name)))
+    # opened by Python, so that a receipt of the run knows the file
+    with path_of(folder, name).open("rb") as file:
+        source = pa.BufferReader(pa.py_buffer(mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)))
     column = pa.ipc.open_file(source).schema.get_field_index(f"{name}.timestamp_us")
     if column < 0:
         raise KeyError(f"no column {name}.timestamp_us")
