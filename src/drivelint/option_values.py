@@ -153,7 +153,9 @@ def parse_pack_date(day: str | None) -> str | None:
     try:
         return None if epoch is None else datetime.fromtimestamp(int(epoch), UTC).date().isoformat()
     except (ValueError, OverflowError, OSError) as error:
-        raise UsageError(f"SOURCE_DATE_EPOCH={epoch}: no day: write it in seconds since 1970") from error
+        raise UsageError(
+            f"SOURCE_DATE_EPOCH={epoch} is not a valid time: give the seconds since 1970-01-01 as a whole number"
+        ) from error
 
 
 def parse_day(option: str, day: str) -> str:
@@ -161,4 +163,4 @@ def parse_day(option: str, day: str) -> str:
     try:
         return datetime.strptime(day, "%Y-%m-%d").replace(tzinfo=UTC).date().isoformat()
     except ValueError as error:
-        raise UsageError(f"{option} {day}: no day: write it as 2026-11-26") from error
+        raise UsageError(f"{option} {day} is not a valid date: write it as 2026-11-26") from error

@@ -56,15 +56,15 @@ class WorkerLostError(DriveLintError):
 class _Part(NamedTuple):
     """The logs that one process judges. `n_logs`: the number of logs of the whole run.
 
-    `is_output`: needed to record the inputs; None: they are not recorded. `deaf_excesses`: task -> rule -> exceeded limit, for rules that
-    could not be interrupted in an earlier process.
+    `is_output`: needed to record the inputs; None: they are not recorded. `limits_of_deaf_rules`: task -> rule -> exceeded limit, for
+    rules that could not be interrupted in an earlier process.
     """
 
     settings: CheckOptions
     paths: Sequence[Path]
     n_logs: int
     is_output: IsOutput | None
-    deaf_excesses: dict[str, dict[str, Excess]]
+    limits_of_deaf_rules: dict[str, dict[str, Excess]]
 
 
 class _Ended(NamedTuple):
@@ -259,12 +259,12 @@ class _Worker:
         )
         self._listener.progress.advance(-self._n_done)
         self._n_done = 0
-        task, deaf_excesses = endless_rule.task, self._part.deaf_excesses
-        deaf_excesses = {
-            **deaf_excesses,
-            task: {**deaf_excesses.get(task, {}), endless_rule.rule_id: endless_rule.excess},
+        task, limits_of_deaf_rules = endless_rule.task, self._part.limits_of_deaf_rules
+        limits_of_deaf_rules = {
+            **limits_of_deaf_rules,
+            task: {**limits_of_deaf_rules.get(task, {}), endless_rule.rule_id: endless_rule.excess},
         }
-        self._part = self._part._replace(deaf_excesses=deaf_excesses)
+        self._part = self._part._replace(limits_of_deaf_rules=limits_of_deaf_rules)
         self.start()
 
     def stop(self) -> None:
@@ -323,13 +323,13 @@ class _SentNotes(LogNotes):
 class _DeafInWorker:
     """The `DeafRules` of a worker: reports a rule that cannot be interrupted to the parent, and ends the worker."""
 
-    def __init__(self, deaf_excesses: Mapping[str, Mapping[str, Excess]], teller: _Teller) -> None:
-        self._deaf_excesses = deaf_excesses
+    def __init__(self, limits_of_deaf_rules: Mapping[str, Mapping[str, Excess]], teller: _Teller) -> None:
+        self._limits_of_deaf_rules = limits_of_deaf_rules
         self._teller = teller
 
-    def excesses(self, task: str) -> Mapping[str, Excess]:
+    def exceeded_limits(self, task: str) -> Mapping[str, Excess]:
         """See `DeafRules`."""
-        return self._deaf_excesses.get(task, {})
+        return self._limits_of_deaf_rules.get(task, {})
 
     def restart_without(self, task: str, rule_id: str, excess: Excess) -> NoReturn:
         """See `DeafRules`."""
@@ -353,7 +353,7 @@ def _work(part: _Part, pipe: Connection, parent: int) -> None:
 
 
 def _judge_part(part: _Part, teller: _Teller, interruption: Interruption) -> _Ended:
-    notes, deaf = _SentNotes(teller, part.n_logs), _DeafInWorker(part.deaf_excesses, teller)
+    notes, deaf = _SentNotes(teller, part.n_logs), _DeafInWorker(part.limits_of_deaf_rules, teller)
     with nullcontext() if part.is_output is None else recorder.recording(part.is_output, []) as recording:
         judged_by = run.RunRules.of(part.settings)
         judged = run.judge_logs(
@@ -366,7 +366,7 @@ def _judge_part(part: _Part, teller: _Teller, interruption: Interruption) -> _En
             interruption=interruption,
             deaf_rules=deaf,
         )
-    return _Ended(judged, None if recording is None or part.deaf_excesses else recording.inputs())
+    return _Ended(judged, None if recording is None or part.limits_of_deaf_rules else recording.inputs())
 
 
 def _listen(pipe: Connection, interruption: Interruption) -> None:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Final
 from drivelint.audit import delta, listing, parts, sealed
 from drivelint.audit.claims import LEASE_S, Claims
 from drivelint.audit.compact import compact, create_views, database, drop
-from drivelint.audit.driver import TASK_DRIVES, WINDOW, Driver, task_size, tasks
+from drivelint.audit.driver import SUBMITTED_TASKS_PER_WORKER, TASK_DRIVES, Driver, task_size, tasks
 from drivelint.audit.executors.choice import open_executor
 from drivelint.audit.executors.local import begin_worker, deaf_to_ctrl_c
 from drivelint.audit.identity import rule_table, run_id, versions
@@ -100,7 +100,7 @@ def audit(request: AuditRequest, progress: Progress, executor: Executor | None =
         if not alone:
             raise UsageError("--delta needs packed tables: when all parts have ended, run drivelint merge --delta")
         delta.ready(request.delta, request.out, id_)
-    was_whole = _begin(request, results, id_)
+    was_whole = _create_or_check_settings(request, results, id_)
     if not alone and (request.retry_errors or request.prune):
         raise UsageError("--retry-errors and --prune remove results: use them without --shard and --claim")
     part = parts.name_of(request.shard, claim=request.claim)
@@ -194,7 +194,7 @@ def _judge(
     )
     try:
         with claims.alive() if claims else nullcontext():
-            ahead = WINDOW * workers.capacity * 16 if claims is None else TASK_DRIVES
+            ahead = SUBMITTED_TASKS_PER_WORKER * workers.capacity * 16 if claims is None else TASK_DRIVES
             (n_left,) = con.execute("SELECT count(*) FROM _listed").fetchall()[0]
             most = task_size(n_left, workers.capacity)
             driver = Driver(workers, results, tell, busy, claims.mark_done if claims else lambda _drives: None)
@@ -313,10 +313,10 @@ def _absent(con: duckdb.DuckDBPyConnection, results: ResultStore, request: Audit
     return len(absent)
 
 
-def _begin(request: AuditRequest, results: ResultStore, id_: str) -> bool:
-    """Write the settings that determine the results, or check that the existing audit has the same settings.
+def _create_or_check_settings(request: AuditRequest, results: ResultStore, id_: str) -> bool:
+    """Write `audit.json` with the settings that determine the results; if it exists, check that its settings are the same.
 
-    Return whether the existing audit had ended and its files are unchanged since then. Errors: `UsageError` if the existing audit used
+    Return whether an audit exists that has ended and whose files are unchanged since then. Errors: `UsageError` if the existing audit used
     other rules, parameters or versions, or if its files were changed after it ended.
     """
     told = {"run_id": id_, "versions": versions(), "settings": _plain(request.settings)}

@@ -144,8 +144,11 @@ class AuditDifference:
         """Return the number of new findings of stable rules at or above a severity."""
         return _at_or_above(self.gating, fail_on)
 
-    def n_gone(self, fail_on: str) -> int:
-        """Return the number of the base's findings of stable rules, at or above a severity, that are gone but not fixed."""
+    def n_gone_unfixed(self, fail_on: str) -> int:
+        """Return the number of findings of the base audit that are missing in the new audit without being fixed.
+
+        Only findings of stable rules at or above a severity count.
+        """
         return _at_or_above(self.gone_by_severity, fail_on)
 
     def risen(self, fail_on: str) -> list[tuple[RateChange, RateTest]]:

@@ -54,7 +54,7 @@ def exit_code(difference: AuditDifference, fail_on: str | None) -> ExitCode:
         return ExitCode.OK if difference.has_rates and not _warnings(difference) else ExitCode.NOT_JUDGED
     if difference.n_failing(fail_on):
         return ExitCode.FAILED
-    return ExitCode.NOT_JUDGED if difference.n_gone(fail_on) or _warnings(difference) else ExitCode.OK
+    return ExitCode.NOT_JUDGED if difference.n_gone_unfixed(fail_on) or _warnings(difference) else ExitCode.OK
 
 
 def _own_severity(difference: AuditDifference) -> str:
@@ -78,7 +78,7 @@ def _code_and_reason(difference: AuditDifference, fail_on: str | None) -> str:
         return f"exit {int(exit_code(difference, None))}: {_rates_sentence(difference)}; --fail-on SEVERITY gates on all of the newer audit"
     if exit_code(difference, fail_on) == ExitCode.NOT_JUDGED and _warnings(difference):
         return f"exit 4: no new finding at or above severity {fail_on} so far, but {_warnings(difference)[0]}"
-    n = difference.n_gone(fail_on)
+    n = difference.n_gone_unfixed(fail_on)
     return exit_sentence(
         difference.n_failing(fail_on), fail_on, f"{plural(n, 'earlier finding')} gone but not fixed" if n else ""
     )

@@ -16,13 +16,13 @@ _FIRST: Final = ("broken", "reasons")
 """Parts that get free space first, in this order."""
 _MAY_GO: Final = frozenset({"kept", "excused"})
 """Parts that may be left out completely, because the party's first line contains their number."""
-_WASTE: Final = {"broken": 30}
+_EMPTY_LINE_END_CHARACTERS: Final = {"broken": 30}
 """The empty characters at the end of a text's last line, in parts in which each text begins a new line."""
 _ALL_ROOM: Final = 3300
 """The characters that all parts of both parties may take together; a part may use the space that others leave."""
 _SECOND_ROOM: Final = 110
 """The characters that fit into the space of one row of the table of seconds."""
-_JOIN: Final = 2
+_SEPARATOR_CHARACTERS: Final = 2
 """The number of characters between two texts."""
 SHARED_HEAD: Final = 100
 """The characters of the heading of the reasons that both parties share, with the empty end of the line before."""
@@ -50,12 +50,12 @@ class Reason(NamedTuple):
     titles: tuple[str, ...]
 
     @property
-    def full(self) -> str:
+    def full_text(self) -> str:
         """The reason, after the titles of its rules."""
         return f"{', '.join(self.titles)}: {self.why}"
 
     @property
-    def short(self) -> str:
+    def short_text(self) -> str:
         """The reason with the number of its rules."""
         return f"{self.why} ({plural(len(self.titles), 'rule')})"
 
@@ -135,7 +135,7 @@ def fit(parties: Sequence[dict[str, Any]], seconds_left: int, used_characters: i
     for (told, name, _), room in zip(parts, rooms, strict=True):
         fitting = _fitting_reasons if name == "reasons" else _fitting
         told[name] = fitting(told[name], name, room + max(spare, 0))
-        spare -= max(_length(told[name].texts, name) + _TITLES_NOTE_CHARACTERS * told[name].is_short - room, 0)
+        spare -= max(_n_characters(told[name].texts, name) + _TITLES_NOTE_CHARACTERS * told[name].is_short - room, 0)
 
 
 def _shrunk(parts: Sequence[_Part], by: int) -> list[_Part]:
@@ -161,19 +161,22 @@ def first_fitting(texts: Sequence[str], room: int) -> Fitting:
 
 
 def _shortest(reasons: Sequence[Reason]) -> list[str]:
-    return [min(reason.short, reason.full, key=len) for reason in reasons]
+    return [min(reason.short_text, reason.full_text, key=len) for reason in reasons]
 
 
 def _least(texts: Sequence[Any], part: str) -> int:
     """Return the characters that all texts of a part take, in their shortest forms."""
     if part != "reasons":
-        return _length(texts, part)
-    return min(_length([each.full for each in texts], part), _length(_shortest(texts), part) + _TITLES_NOTE_CHARACTERS)
+        return _n_characters(texts, part)
+    return min(
+        _n_characters([each.full_text for each in texts], part),
+        _n_characters(_shortest(texts), part) + _TITLES_NOTE_CHARACTERS,
+    )
 
 
-def _length(texts: Sequence[str], part: str) -> int:
-    """Return the characters that texts of a part take."""
-    return sum(len(text) + _WASTE.get(part, _JOIN) for text in texts)
+def _n_characters(texts: Sequence[str], part: str) -> int:
+    """Return the number of characters of texts of a part, with the space between them."""
+    return sum(len(text) + _EMPTY_LINE_END_CHARACTERS.get(part, _SEPARATOR_CHARACTERS) for text in texts)
 
 
 def _fitting(texts: Sequence[str], part: str, room: int) -> Fitting:
@@ -182,7 +185,7 @@ def _fitting(texts: Sequence[str], part: str, room: int) -> Fitting:
     if part in _MAY_GO and texts and room < len(texts[0]) // 2:
         return Fitting([], len(texts))
     for text in texts[1:]:
-        if _length([*shown, text], part) > room:
+        if _n_characters([*shown, text], part) > room:
             break
         shown.append(text)
     return Fitting(shown, len(texts) - len(shown))
@@ -190,13 +193,13 @@ def _fitting(texts: Sequence[str], part: str, room: int) -> Fitting:
 
 def _fitting_reasons(reasons: Sequence[Reason], part: str, room: int) -> Fitting:
     """Return the reasons that fit. Until all fit, the longest lists of titles are replaced by numbers, then reasons are left out."""
-    shown, shortest = [reason.full for reason in reasons], _shortest(reasons)
-    if _length(shown, part) <= room:
+    shown, shortest = [reason.full_text for reason in reasons], _shortest(reasons)
+    if _n_characters(shown, part) <= room:
         return Fitting(shown, 0)
     for i in sorted(range(len(shown)), key=lambda i: (len(shortest[i]) - len(shown[i]), i)):
         shown[i] = shortest[i]
-        if _length(shown, part) + _TITLES_NOTE_CHARACTERS <= room:
+        if _n_characters(shown, part) + _TITLES_NOTE_CHARACTERS <= room:
             break
     fitting = _fitting(shown, part, room - _TITLES_NOTE_CHARACTERS)
-    full = {reason.full for reason in reasons}
+    full = {reason.full_text for reason in reasons}
     return fitting._replace(is_short=any(text not in full for text in fitting.texts))

@@ -93,7 +93,7 @@ def _received(agent: socket.socket, n: int) -> bytes:
     while len(content) < n:
         part = agent.recv(n - len(content))
         if not part:
-            raise OSError("it ended in the middle of an answer")
+            raise OSError("the agent closed the connection within an answer")
         content += part
     return content
 

@@ -102,9 +102,10 @@ class Question:
         return self.n_copies > 0 and self.is_settled and self.n_stays >= LEAST_SHARE * self.n_copies
 
     def take(self, numbers: Sequence[int], margins: Mapping[int, float | None], passes: Collection[int] = ()) -> None:
-        """Add the result of the copies `numbers` of a window; the first number is the copy without errors.
+        """Add the results of a window of the drive that was judged in several copies.
 
-        `margins`: the copies that keep the finding, with their margins. `passes`: copies in which the worst step passes.
+        `numbers`: the numbers of the copies; the first is 0, the copy without measuring errors. `margins`: number -> margin, for copies
+        that keep the finding. `passes`: numbers of the copies in which the worst step passes.
         """
         if numbers[1] != self.n_copies + 1 or self.is_settled:
             return  # the window of the copies before these failed, or the question is settled

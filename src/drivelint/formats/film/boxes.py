@@ -53,8 +53,8 @@ def read(path: Path, film: VideoMapping) -> Sightings:
     boxes: list[tuple[Times, list[str], Floats]] = []
     for file in bag.mcap_files(path):
         container = Container(file)
-        for _, packets in message_batches(container, _kind):
-            table = cdr.Decoder(file, container.schemas[packets[0].channel.schema_id], _TREE).table(packets)
+        for _, log_messages in message_batches(container, _kind):
+            table = cdr.Decoder(file, container.schemas[log_messages[0].channel.schema_id], _TREE).table(log_messages)
             t_ns, _ = stamps(table, "header.stamp")
             items = table.children["detections"]
             ids = items.columns.get("id", items.columns.get("tracking_id"))

@@ -15,7 +15,7 @@ from drivelint.watch.source import Frame, WrittenWindows
 from drivelint.watch.sources.growing_file import GrowingFile
 from drivelint.watch.sources.mcap_memory import Memory, is_watched, memory_for
 from drivelint.watch.sources.mcap_scene import SceneMemory
-from drivelint.watch.sources.mcap_stream import DamagedChunk, McapStream, Message, Numbered
+from drivelint.watch.sources.mcap_stream import DamagedChunk, McapStream, Message, NumberedMessage
 from drivelint.watch.sources.osi_static import StaticContent
 
 if TYPE_CHECKING:
@@ -46,10 +46,10 @@ class McapFile(WrittenWindows):
         self._ended = False
         self._count = 0
         self._last_ns = 0
-        self._pending: deque[Numbered] = deque()  # messages after the start of the last window
+        self._pending: deque[NumberedMessage] = deque()  # messages after the start of the last window
         self._pending_bytes = 0
         self._memories: dict[int, Memory] = {}
-        self._first: dict[int, Numbered] = {}  # OSI channel -> its first message
+        self._first: dict[int, NumberedMessage] = {}  # OSI channel -> its first message
         self._static: dict[int, StaticContent] = {}
 
     def read(self, timeout_s: float) -> Sequence[Frame] | None:
@@ -81,7 +81,7 @@ class McapFile(WrittenWindows):
                 continue
             if each.log_ns <= LATEST_NS:  # a later time is malformed
                 self._last_ns = each.log_ns
-            numbered = Numbered(self._count, each)
+            numbered = NumberedMessage(self._count, each)
             self._count += 1
             if schema in OSI_SCHEMAS:
                 self._first.setdefault(each.channel, numbered)
@@ -133,7 +133,7 @@ class McapFile(WrittenWindows):
         channel = numbered.message.channel
         if channel not in self._memories:
             self._memories[channel] = memory_for(self._stream.channels[channel], self._schema(channel))
-        self._memories[channel].take(numbered)
+        self._memories[channel].add(numbered)
 
     def _with_static(self, number: int, message: Message) -> Message:
         """Return a window's first message of an OSI channel, with the static content of the file's first message."""

@@ -16,7 +16,7 @@ from drivelint.formats.protobuf.scan import fields, signed
 from drivelint.formats.protobuf.wire import nested
 
 if TYPE_CHECKING:
-    from drivelint.watch.sources.mcap_stream import Numbered
+    from drivelint.watch.sources.mcap_stream import NumberedMessage
 
 GONE_KEPT_NS: Final = 120_000_000_000
 """How long an ended entity is kept: if an entity with its id returns, the old place shows whether it has moved."""
@@ -31,14 +31,14 @@ _NS: Final = 1_000_000_000
 class _Entity(NamedTuple):
     """An update of an entity: `content` as in its message, its time, and when it expires (None: never)."""
 
-    source: Numbered
+    source: NumberedMessage
     content: Any
     t_ns: int
     expires_ns: int | None
 
 
 class _Deletion(NamedTuple):
-    source: Numbered
+    source: NumberedMessage
     content: Any
 
 
@@ -57,7 +57,7 @@ class SceneMemory:
         self._doubtful: deque[_Deletion] = deque(maxlen=MOST_DOUBTFUL)
         self._latest_ns = 0
 
-    def take(self, numbered: Numbered) -> None:
+    def add(self, numbered: NumberedMessage) -> None:
         """Add the next message."""
         try:
             entities, deletions = self._codec.parts(numbered.message.content)
@@ -89,7 +89,7 @@ class SceneMemory:
             elif not track.is_gone and (not self._doubtful or self._doubtful[-1] is not deletion):
                 self._doubtful.append(deletion)
 
-    def current_messages(self) -> list[Numbered]:
+    def current_messages(self) -> list[NumberedMessage]:
         """Return messages with the updates of existing entities, each at the log time of its original message."""
         for track in self._tracks.values():
             expires = track.updates[-1].expires_ns
@@ -98,7 +98,7 @@ class SceneMemory:
         for name in [n for n, track in self._tracks.items() if track.is_gone and track.updates[-1].t_ns < forgotten]:
             del self._tracks[name]
         updates = [update for track in self._tracks.values() if not track.is_gone for update in track.updates]
-        by_source: dict[int, tuple[Numbered, list[Any], list[Any]]] = {}
+        by_source: dict[int, tuple[NumberedMessage, list[Any], list[Any]]] = {}
         for update in updates:
             by_source.setdefault(update.source.number, (update.source, [], []))[1].append(update.content)
         for deletion in self._doubtful:

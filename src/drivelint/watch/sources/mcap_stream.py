@@ -50,7 +50,7 @@ class Message(NamedTuple):
         return self._replace(record=head + self.record[RECORD.size : RECORD.size + MESSAGE.size] + content)
 
 
-class Numbered(NamedTuple):
+class NumberedMessage(NamedTuple):
     """A message and its number among all watched messages of the file."""
 
     number: int
