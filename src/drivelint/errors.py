@@ -20,7 +20,7 @@ class ExitCode(IntEnum):
     INTERRUPTED = 130
 
 
-LEAST_BYTES: Final = 2_000_000_000
+LEAST_ADDRESS_SPACE_BYTES: Final = 2_000_000_000
 """The least address space (`ulimit -v`). With less, libraries end the process at import, with their own messages and exit codes."""
 _LIMITED: Final = "the limit of memory (ulimit -v) is too low: raise it, and run the same command again"
 LONGEST_LINE: Final = 2000

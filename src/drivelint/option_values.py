@@ -27,7 +27,7 @@ def parse_today(text: str | None) -> date:
 
 def parse_memory(text: str | None) -> int | None:
     """Read the database's memory limit in bytes, None for `none`; without a text, the default. Errors: `UsageError`."""
-    from drivelint.engine.memory import DEFAULT_MEMORY, LEAST_MEMORY
+    from drivelint.engine.memory import DEFAULT_MEMORY, LEAST_MEMORY_BYTES
 
     if text is None:
         return DEFAULT_MEMORY
@@ -38,8 +38,8 @@ def parse_memory(text: str | None) -> int | None:
         raise UsageError(f"--memory {text!r}: write a size such as 512MB or 1.5GB, or none")
     number, prefix, binary = said.groups()
     size = int(float(number) * (1024 if binary else 1000) ** ("KMGT".index(prefix.upper()) + 1))
-    if size < LEAST_MEMORY:
-        raise UsageError(f"--memory {text}: the least is {LEAST_MEMORY // 10**6}MB")
+    if size < LEAST_MEMORY_BYTES:
+        raise UsageError(f"--memory {text}: the least is {LEAST_MEMORY_BYTES // 10**6}MB")
     return size
 
 

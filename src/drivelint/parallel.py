@@ -23,7 +23,7 @@ from drivelint import run, temporary
 from drivelint.audit.executors.local import begin_worker, cores, deaf_to_ctrl_c
 from drivelint.engine.default_rules import with_chosen_rules
 from drivelint.engine.interruption import Interruption
-from drivelint.engine.memory import LEAST_MEMORY
+from drivelint.engine.memory import LEAST_MEMORY_BYTES
 from drivelint.errors import DriveLintError, ExitCode, InternalError
 from drivelint.formats.files import file_states
 from drivelint.phrases import plural
@@ -120,7 +120,7 @@ def _judged_by_workers(
     interruption: Interruption,
 ) -> list[JudgedLogs]:
     """Judge each part in a process of its own."""
-    memory = None if settings.memory is None else max(LEAST_MEMORY, settings.memory // len(parts))
+    memory = None if settings.memory is None else max(LEAST_MEMORY_BYTES, settings.memory // len(parts))
     own = replace(settings, memory=memory, threads=max(1, cores() // len(parts)))
     recording = recorder.active()
     is_output = None if recording is None else recording.is_output

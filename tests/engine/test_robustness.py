@@ -10,7 +10,7 @@ import duckdb
 import pytest
 
 from drivelint import catalogue, demo, run
-from drivelint.engine.robustness.question import LEAST_SHARE, N_COPIES, SMALL_MARGIN, Question, by_weight
+from drivelint.engine.robustness.question import LEAST_KEEPING_SHARE, N_COPIES, SMALL_MARGIN, Question, by_weight
 from drivelint.explain import ExplainRequest, MeasurementErrors, explain
 from drivelint.report.outputs import write
 from drivelint.report.progress import Silent
@@ -138,17 +138,17 @@ def test_few_copies_come_first_and_more_where_one_of_them_loses_the_finding() ->
     for margin, n in ((-5.0, fewest), (None, few)):
         asked = question(margin)
         assert asked.numbers == range(1, n + 1)
-        asked.take((0, *asked.numbers), dict.fromkeys(range(n + 1), margin))
+        asked.add_copies((0, *asked.numbers), dict.fromkeys(range(n + 1), margin))
         assert asked.is_settled
         assert (asked.n_stays, asked.n_copies) == (n, n)
     asked = question(-5.0)
     # far from 0 in all copies but one, where it does not apply
-    asked.take((0, *asked.numbers), dict.fromkeys(range(fewest), -5.0))
+    asked.add_copies((0, *asked.numbers), dict.fromkeys(range(fewest), -5.0))
     assert not asked.is_settled
     assert asked.numbers == range(fewest + 1, few + 1)
-    asked.take((0, *asked.numbers), dict.fromkeys((0, *asked.numbers), -5.0))
+    asked.add_copies((0, *asked.numbers), dict.fromkeys((0, *asked.numbers), -5.0))
     assert asked.numbers == range(few + 1, most + 1)
-    asked.take((0, *asked.numbers), {0: -5.0})
+    asked.add_copies((0, *asked.numbers), {0: -5.0})
     assert asked.is_settled
     assert (asked.n_stays, asked.n_copies) == (few - 1, most)
 
@@ -156,7 +156,7 @@ def test_few_copies_come_first_and_more_where_one_of_them_loses_the_finding() ->
 @pytest.mark.parametrize(("spread", "suffice"), [(0.5, True), (2.0, False)])
 def test_the_first_copies_suffice_where_their_margins_are_far_from_the_threshold(spread: float, suffice: bool) -> None:
     asked = question(-5.0)
-    asked.take(
+    asked.add_copies(
         (0, *asked.numbers), {n: -5.0 + (spread if n % 2 else -spread) * (n > 0) for n in range(N_COPIES[0] + 1)}
     )
     assert asked.is_settled is suffice
@@ -166,7 +166,7 @@ def test_the_first_copies_suffice_where_their_margins_are_far_from_the_threshold
 def test_copies_that_show_that_it_is_only_possible_suffice(lost: int, suffice: bool) -> None:
     """Of 100 copies, 95 must keep a finding that is sure."""
     asked = question(-2.0)
-    asked.take((0, *asked.numbers), dict.fromkeys(range(len(asked.numbers) + 1 - lost), -2.0))
+    asked.add_copies((0, *asked.numbers), dict.fromkeys(range(len(asked.numbers) + 1 - lost), -2.0))
     assert asked.is_settled is suffice
     assert not asked.is_sure
 
@@ -176,7 +176,7 @@ def test_a_share_of_ones_own_is_that_of_all_copies() -> None:
     most = N_COPIES[-1]
     asked = question(-2.0)
     asked.ends_early = False
-    asked.take((0, *asked.numbers), dict.fromkeys(range(len(asked.numbers) - 9), -2.0))
+    asked.add_copies((0, *asked.numbers), dict.fromkeys(range(len(asked.numbers) - 9), -2.0))
     assert not asked.is_settled
     assert asked.numbers.stop == most + 1
 
@@ -196,10 +196,10 @@ def test_of_one_rule_the_gravest_finding_is_judged_and_those_near_the_threshold(
 def test_a_window_that_does_not_give_the_finding_is_not_believed() -> None:
     few, most = N_COPIES[1:]
     asked = question(-5.0)
-    asked.take((0, *range(1, few + 1)), dict.fromkeys(range(few), -5.0))
-    asked.take((0, *range(few + 1, most + 1)), dict.fromkeys((0, *range(few + 1, most + 1)), -4.0))
+    asked.add_copies((0, *range(1, few + 1)), dict.fromkeys(range(few), -5.0))
+    asked.add_copies((0, *range(few + 1, most + 1)), dict.fromkeys((0, *range(few + 1, most + 1)), -4.0))
     assert (asked.size, asked.n_copies, asked.n_stays) == (1, 0, 0)
-    asked.take((0, *range(few + 1, most + 1)), dict.fromkeys((0, *range(few + 1, most + 1)), -5.0))
+    asked.add_copies((0, *range(few + 1, most + 1)), dict.fromkeys((0, *range(few + 1, most + 1)), -5.0))
     assert asked.n_copies == 0  # the copies before these are still to be judged
 
 
@@ -214,10 +214,10 @@ def test_a_copy_that_does_not_tell_in_a_part_of_a_stretch_is_judged_in_the_whole
     few, most = N_COPIES[1:]
     kept = dict.fromkeys(range(few), -2.0)  # all but the last
     asked = long_question()
-    asked.take((0, *asked.numbers), kept)
+    asked.add_copies((0, *asked.numbers), kept)
     assert (asked.size, asked.n_copies) == (1, 0)
     assert asked.numbers == range(1, few + 1)
-    asked.take((0, *asked.numbers), dict.fromkeys(range(few + 1), -2.0))
+    asked.add_copies((0, *asked.numbers), dict.fromkeys(range(few + 1), -2.0))
     assert asked.numbers == range(few + 1, most + 1)  # some copies lost it before
     passed = long_question()
     passed.take((0, *range(1, few + 1)), kept, {few})
@@ -228,10 +228,10 @@ def test_a_copy_that_does_not_tell_in_a_part_of_a_stretch_is_judged_in_the_whole
 
 
 def test_a_finding_that_is_only_possible_anyway_needs_no_wider_window() -> None:
-    assert LEAST_SHARE == certainties.LEAST_SHARE
+    assert LEAST_KEEPING_SHARE == certainties.LEAST_KEEPING_SHARE
     few, _ = N_COPIES[1:]
     asked = long_question()
-    asked.take((0, *asked.numbers), dict.fromkeys(range(few - 6), -2.0), set(range(few - 6, few)))
+    asked.add_copies((0, *asked.numbers), dict.fromkeys(range(few - 6), -2.0), set(range(few - 6, few)))
     assert (asked.size, asked.n_copies, asked.n_stays) == (0, few, few - 7)
 
 
@@ -240,8 +240,8 @@ def test_copies_judged_at_once_give_what_they_give_one_after_the_other() -> None
     asked = question(-2.0)
     asked.is_hasty = True
     assert asked.numbers == range(1, most + 1)
-    asked.take((0, *range(1, few + 1)), dict.fromkeys(range(few + 1), -2.0))
-    asked.take((0, *range(few + 1, most + 1)), {0: -2.0})
+    asked.add_copies((0, *range(1, few + 1)), dict.fromkeys(range(few + 1), -2.0))
+    asked.add_copies((0, *range(few + 1, most + 1)), {0: -2.0})
     assert (asked.n_copies, asked.n_stays) == (few, few)
 
 

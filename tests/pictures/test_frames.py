@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from mcap.records import Channel, Schema
 
 from drivelint.pictures.frames import EncodedImage, FrameError, RawImage, VideoFrame, ahead_first, is_camera, read_frame
-from drivelint.pictures.images import MOST_BYTES, small_jpeg
+from drivelint.pictures.images import MOST_PICTURE_BYTES, small_jpeg
 from drivelint.pictures.video import is_key_frame
 from tests.formats.ros2 import ros_log as ros
 from tests.pictures.camera_bag import bars, jpeg, number_in
@@ -162,7 +162,7 @@ def test_a_picture_is_small_whatever_it_shows() -> None:
     noise = np.random.default_rng(0).integers(0, 256, (1080, 1920, 3), np.uint8)
     shown = small_jpeg(EncodedImage(jpeg(noise)))
     assert (shown.width_px, shown.height_px) == (480, 270)  # a quarter
-    assert len(shown.data) <= MOST_BYTES
+    assert len(shown.data) <= MOST_PICTURE_BYTES
 
 
 def test_what_shows_no_picture_is_no_camera() -> None:

@@ -18,7 +18,7 @@ from drivelint.audit.unpacked import views_of_all
 from drivelint.errors import UsageError
 from drivelint.fleet.distinct_logs import COUNTED_PREFIX, create_counted_views
 from drivelint.phrases import inert, inert_json
-from drivelint.result.certainty import LEAST_SHARE
+from drivelint.result.certainty import LEAST_KEEPING_SHARE
 from drivelint.result.folder import changed_files
 from drivelint.sql.statements import statement
 from drivelint.sql.store import quoted
@@ -74,7 +74,7 @@ def _open(con: duckdb.DuckDBPyConnection, dest: str, home: Path, warn: Callable[
         if warning := views_of_all(con, results, home).warning:
             warn(f"{dest}: {warning}")
         create_counted_views(con)
-        event = statement("fleet/event", of=COUNTED_PREFIX, least_share=str(LEAST_SHARE))
+        event = statement("fleet/event", of=COUNTED_PREFIX, least_share=str(LEAST_KEEPING_SHARE))
         con.execute(f"CREATE TEMP VIEW {COUNTED_PREFIX}events AS {event}")
     else:
         files = [Path(name).name for name in results.names("") if "/" not in name and name.endswith(".parquet")]

@@ -28,7 +28,7 @@ from drivelint.audit.summary import AuditSummary, summed, summed_receipts
 from drivelint.audit.unpacked import SUMMARY_FILE
 from drivelint.drive.trace import DriveInput
 from drivelint.engine.default_rules import chosen_selectors
-from drivelint.engine.memory import DEFAULT_MEMORY, LEAST_MEMORY
+from drivelint.engine.memory import DEFAULT_MEMORY, LEAST_MEMORY_BYTES
 from drivelint.errors import UsageError
 from drivelint.phrases import plural
 from drivelint.result.files import parquet_bytes
@@ -216,7 +216,7 @@ def _settings_of_workers(request: AuditRequest) -> JudgeSettings:
     if request.worker_memory is None:
         return request.settings
     memory = DEFAULT_MEMORY if request.settings.memory is None else request.settings.memory
-    left = max(LEAST_MEMORY, request.worker_memory - WORKER_BYTES)
+    left = max(LEAST_MEMORY_BYTES, request.worker_memory - WORKER_BYTES)
     return replace(request.settings, memory=min(memory, left))
 
 

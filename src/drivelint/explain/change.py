@@ -22,10 +22,12 @@ SEARCH_FACTORS: Final = (0.02, 0.1, 0.25, 0.5, 1.0, 3.0, 10.0)
 """The distances of the tried values in each direction, as multiples of the present value (of 1 if it is 0)."""
 _NEAR_FACTORS: Final = 3
 """The number of distances that are judged first, because most changes of a verdict occur there."""
-_HALVINGS: Final = 8
-_MOST_HALVINGS: Final = 12
-_EXACT: Final = 0.005
-"""The interval in which the verdict changes is halved to this share of the value; a value is rounded by at most this share."""
+_LEAST_HALVINGS_OF_INTERVAL: Final = 8
+_MOST_HALVINGS_OF_INTERVAL: Final = 12
+_LARGEST_ERROR_SHARE: Final = 0.005
+"""After the least number of halvings, the interval in which the verdict changes is halved until it is at most this share of the value.
+
+A value is rounded by at most this share."""
 _PROFILE: Final = {
     "pull_out_angle_rad": ("rad", "angle at which this profile pulls out"),
     "cut_in_angle_rad": ("rad", "angle at which this profile cuts in"),
@@ -168,8 +170,8 @@ def _edge(
     """Return the nearest value on one side that changes the verdict, the new verdict, and whether values further away give it too."""
     near, far = (values[at - 1] if at else number.now), values[at]
     becomes = verdicts[far]
-    for n in range(0, _MOST_HALVINGS, number.halvings):
-        if n >= _HALVINGS and abs(far - near) <= _EXACT * abs(far):
+    for n in range(0, _MOST_HALVINGS_OF_INTERVAL, number.halvings):
+        if n >= _LEAST_HALVINGS_OF_INTERVAL and abs(far - near) <= _LARGEST_ERROR_SHARE * abs(far):
             break
         halved = yield list(_middles(near, far, number.halvings))
         for _ in range(number.halvings):
@@ -207,6 +209,6 @@ def _short_values(number: _VariedNumber, far: float) -> list[float]:
     for digits in range(1, 7):
         unit = 10.0 ** (size - digits + 1)
         value = float(f"{away(far / unit) * unit:.{digits}g}")
-        if abs(value - far) <= max(min(0.05 * abs(far - number.now), _EXACT * abs(far)), 1e-9):
+        if abs(value - far) <= max(min(0.05 * abs(far - number.now), _LARGEST_ERROR_SHARE * abs(far)), 1e-9):
             found.append(value)
     return found

@@ -26,7 +26,8 @@ if TYPE_CHECKING:
 
 AUDIT_DIFF_SCHEMA: Final = 1
 """Version of the JSON format: raised when a key is removed or changes its meaning."""
-_MOST_RISEN: Final = 3
+_MOST_RISEN_RATES: Final = 3
+"""A sentence lists at most this many rates that have risen."""
 JSON_ENTRIES: Final = 1_000
 """Largest number of findings per standing in the JSON."""
 
@@ -89,9 +90,9 @@ def _rates_sentence(difference: AuditDifference) -> str:
     least = _own_severity(difference)
     if risen := difference.risen(least):
         rates_text = ", ".join(
-            f"{rate_name(change)} per {test.per} {times(test)}" for change, test in risen[:_MOST_RISEN]
+            f"{rate_name(change)} per {test.per} {times(test)}" for change, test in risen[:_MOST_RISEN_RATES]
         )
-        more = f" and {len(risen) - _MOST_RISEN} more" if len(risen) > _MOST_RISEN else ""
+        more = f" and {len(risen) - _MOST_RISEN_RATES} more" if len(risen) > _MOST_RISEN_RATES else ""
         return f"rates at or above severity {least} are higher than chance explains: {rates_text}{more}"
     if warnings := _warnings(difference):
         return f"no rate at or above severity {least} is higher than chance explains so far, but {warnings[0]}"
@@ -109,8 +110,8 @@ def since(difference: AuditDifference) -> str:
     ]
     if not rate_texts:
         return "no drive is in both, and no rate differs by more than chance explains"
-    more = f" and {len(rate_texts) - _MOST_RISEN} more" if len(rate_texts) > _MOST_RISEN else ""
-    return f"no drive is in both; rates that differ by more than chance explains: {', '.join(rate_texts[:_MOST_RISEN])}{more}"
+    more = f" and {len(rate_texts) - _MOST_RISEN_RATES} more" if len(rate_texts) > _MOST_RISEN_RATES else ""
+    return f"no drive is in both; rates that differ by more than chance explains: {', '.join(rate_texts[:_MOST_RISEN_RATES])}{more}"
 
 
 def rate_line(of: tuple[RateChange, RateTest]) -> str:

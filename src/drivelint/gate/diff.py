@@ -28,7 +28,7 @@ MARGIN_TOLERANCE: Final = 0.01
 INTERVAL_TOLERANCE_S: Final = 0.1
 """A failing stretch counts as changed if its start or end moved by more than this, in seconds."""
 
-LEAST_SHARE: Final = 0.9
+LEAST_DURATION_SHARE: Final = 0.9
 """A drive may have been cut off if it lasts less than this fraction of its duration in the base result."""
 
 _WEIGHT = ("error", "fail", "unknown", "pass")
@@ -75,7 +75,7 @@ def compare(base: Result, new: Result, base_name: str = "base", name: str = "new
 
 def _is_much_shorter(now: Row, was: Row) -> bool:
     lasts, lasted = now["duration_s"], was["duration_s"]
-    return lasts is not None and lasted is not None and bool(lasts < LEAST_SHARE * lasted)
+    return lasts is not None and lasted is not None and bool(lasts < LEAST_DURATION_SHARE * lasted)
 
 
 def _drive(

@@ -38,7 +38,7 @@ from drivelint.incident.words import amount, closing, contact, how_sure, measure
 from drivelint.report.html.pictures import pictures_by_moment
 from drivelint.report.html.plan_view import actor_shapes, plan_view
 from drivelint.report.html.road import Road
-from drivelint.result.certainty import LEAST_SHARE, POSSIBLE, SURE, certainty
+from drivelint.result.certainty import LEAST_KEEPING_SHARE, POSSIBLE, SURE, certainty
 from drivelint.result.text import seconds, utc_at
 
 if TYPE_CHECKING:
@@ -134,7 +134,7 @@ def content(case: Case) -> dict[str, Any]:
         },
         "recording": _recording(finding),
         "errors": MeasurementErrors().words,
-        "least_share": f"{LEAST_SHARE:.0%}",
+        "least_share": f"{LEAST_KEEPING_SHARE:.0%}",
         "sure": _surest(case),
         "rests": _rests_on(case, motion),
         "records": held_elements(case.drive.trace.tables, finding.drive, row["ego_id"]),

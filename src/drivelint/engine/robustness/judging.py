@@ -163,7 +163,7 @@ class Robustness:
         for window, outcomes in zip(chunk, found, strict=True):
             for question in window.questions:
                 outcome = outcomes.get(id(question), Outcome())
-                question.take(window.numbers, outcome.margins, outcome.passes)
+                question.add_copies(window.numbers, outcome.margins, outcome.passes)
 
     def _stays(self, chunk: Sequence[Window]) -> list[dict[int, Outcome]]:
         """Judge the copies of the windows, and return for each window: id of the question -> outcome."""

@@ -23,7 +23,7 @@ keep it with a probability of 3.4 %, and at least 95 of 100 with 2.4 %; if it is
 `copies`: a block has errors from the smallest to the largest."""
 FAR_SPREADS: Final = 5.0
 """20 copies suffice if all keep the finding, and the mean of their margins is at least this many standard deviations from 0."""
-LEAST_SHARE: Final = 0.95
+LEAST_KEEPING_SHARE: Final = 0.95
 """A finding is only possible if less than this share of its copies keep it (see `result.certainty`)."""
 SMALL_MARGIN: Final = {"m": 0.3, "s": 0.1}
 """Unit -> margin up to which a finding is near the threshold: errors of a decimetre may remove it, so all copies are judged."""
@@ -82,7 +82,9 @@ class Question:
     def is_settled(self) -> bool:
         """Whether enough copies were judged."""
         few, more, most = N_COPIES
-        if self.n_copies >= most or (self.ends_early and self.n_copies - self.n_stays > (1.0 - LEAST_SHARE) * most):
+        if self.n_copies >= most or (
+            self.ends_early and self.n_copies - self.n_stays > (1.0 - LEAST_KEEPING_SHARE) * most
+        ):
             return True
         if self.n_stays < self.n_copies or self.is_near or self.is_doubtful:
             return False
@@ -99,9 +101,11 @@ class Question:
     @property
     def is_sure(self) -> bool:
         """Whether the copies show that the finding is certain, not only possible."""
-        return self.n_copies > 0 and self.is_settled and self.n_stays >= LEAST_SHARE * self.n_copies
+        return self.n_copies > 0 and self.is_settled and self.n_stays >= LEAST_KEEPING_SHARE * self.n_copies
 
-    def take(self, numbers: Sequence[int], margins: Mapping[int, float | None], passes: Collection[int] = ()) -> None:
+    def add_copies(
+        self, numbers: Sequence[int], margins: Mapping[int, float | None], passes: Collection[int] = ()
+    ) -> None:
         """Add the results of a window of the drive that was judged in several copies.
 
         `numbers`: the numbers of the copies; the first is 0, the copy without measuring errors. `margins`: number -> margin, for copies
@@ -131,7 +135,7 @@ class Question:
     def _is_decided(self, numbers: Sequence[int], conclusive_copies: Collection[int], n_stays: int) -> bool:
         """Return whether undecided copies may count as lost: there are none, or the finding is only possible even if they keep it."""
         may_stay = self.n_stays + n_stays + len(set(numbers) - set(conclusive_copies)) + N_COPIES[-1] - numbers[-1]
-        return set(conclusive_copies) >= set(numbers) or may_stay < LEAST_SHARE * N_COPIES[-1]
+        return set(conclusive_copies) >= set(numbers) or may_stay < LEAST_KEEPING_SHARE * N_COPIES[-1]
 
     def restart(self, size: int) -> None:
         """Discard the results, and continue with this size of window; with the size `SIZES`, the finding gets no count."""

@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 LIBRARY: Final = "drivelint watch"
 MOST_PENDING_BYTES: Final = 512 << 20
 """The most bytes of pending messages, those later than the start of the last window. No window is as large."""
-MOST_AT_ONCE: Final = 32 << 20
-"""About how many bytes of messages one `read` returns at most, if the file is long when the watch begins."""
+MOST_BYTES_PER_READ: Final = 32 << 20
+"""One `read` returns about this many bytes of messages at most, if the file is long when the watch begins."""
 
 
 class McapFile(WrittenWindows):
@@ -57,7 +57,7 @@ class McapFile(WrittenWindows):
         until = time.monotonic() + timeout_s
         found: list[Frame] = []
         size = 0
-        while not self._ended and size < MOST_AT_ONCE:
+        while not self._ended and size < MOST_BYTES_PER_READ:
             data = self._file.read(0.0 if found else max(until - time.monotonic(), 0.0))
             if data:
                 frames = self._frames(self._stream.take(data))

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 GONE_KEPT_NS: Final = 120_000_000_000
 """How long an ended entity is kept: if an entity with its id returns, the old place shows whether it has moved."""
-MOST_DOUBTFUL: Final = 1000
-"""How many deletions are kept that have no effect by the entities' own times: a reader that uses log times may apply them."""
+MOST_INEFFECTIVE_DELETIONS: Final = 1000
+"""The largest number of kept deletions that have no effect by the entities' own times. A reader that uses log times may apply them."""
 _DELETIONS, _ENTITIES = 1, 2
 _TIMESTAMP, _ID, _LIFETIME = 1, 3, 4
 _DELETE_ALL: Final = 1
@@ -54,7 +54,7 @@ class SceneMemory:
     def __init__(self, encoding: str) -> None:
         self._codec: _Protobuf | _Json = _Json() if encoding == "json" else _Protobuf()
         self._tracks: dict[Any, _Track] = defaultdict(_Track)
-        self._doubtful: deque[_Deletion] = deque(maxlen=MOST_DOUBTFUL)
+        self._ineffective_deletions: deque[_Deletion] = deque(maxlen=MOST_INEFFECTIVE_DELETIONS)
         self._latest_ns = 0
 
     def add(self, numbered: NumberedMessage) -> None:
@@ -86,8 +86,10 @@ class SceneMemory:
         for track in tracks:
             if not track.is_gone and track.updates[-1].t_ns < t_ns:
                 track.is_gone = True
-            elif not track.is_gone and (not self._doubtful or self._doubtful[-1] is not deletion):
-                self._doubtful.append(deletion)
+            elif not track.is_gone and (
+                not self._ineffective_deletions or self._ineffective_deletions[-1] is not deletion
+            ):
+                self._ineffective_deletions.append(deletion)
 
     def current_messages(self) -> list[NumberedMessage]:
         """Return messages with the updates of existing entities, each at the log time of its original message."""
@@ -101,7 +103,7 @@ class SceneMemory:
         by_source: dict[int, tuple[NumberedMessage, list[Any], list[Any]]] = {}
         for update in updates:
             by_source.setdefault(update.source.number, (update.source, [], []))[1].append(update.content)
-        for deletion in self._doubtful:
+        for deletion in self._ineffective_deletions:
             by_source.setdefault(deletion.source.number, (deletion.source, [], []))[2].append(deletion.content)
         return [
             source._replace(message=source.message.with_content(self._codec.encode(entities, deletions)))
