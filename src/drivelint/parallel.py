@@ -320,7 +320,7 @@ class _SentNotes(LogNotes):
         self._teller.send(_ProgressCall("add", (note,)))
 
 
-class _DeafInWorker:
+class _DeafRulesOfWorker:
     """The `DeafRules` of a worker: reports a rule that cannot be interrupted to the parent, and ends the worker."""
 
     def __init__(self, limits_of_deaf_rules: Mapping[str, Mapping[str, Excess]], teller: _Teller) -> None:
@@ -353,7 +353,7 @@ def _work(part: _Part, pipe: Connection, parent: int) -> None:
 
 
 def _judge_part(part: _Part, teller: _Teller, interruption: Interruption) -> _Ended:
-    notes, deaf = _SentNotes(teller, part.n_logs), _DeafInWorker(part.limits_of_deaf_rules, teller)
+    notes, deaf = _SentNotes(teller, part.n_logs), _DeafRulesOfWorker(part.limits_of_deaf_rules, teller)
     with nullcontext() if part.is_output is None else recorder.recording(part.is_output, []) as recording:
         judged_by = run.RunRules.of(part.settings)
         judged = run.judge_logs(

@@ -59,7 +59,7 @@ def ask(dest: str, query: str, format_: str, warn: Callable[[str], None] = lambd
 
 
 def _inert_cell(cell: re.Match[str]) -> str:
-    """Return a CSV cell that a spreadsheet does not run and a terminal does not interpret; a number stays a number."""
+    """Return a CSV cell without control characters that a spreadsheet does not run as a formula. Numbers do not change."""
     quote, text = cell[1] or "", inert(cell[2] if cell[1] else cell[0])
     is_formula = text.startswith(_FORMULA) and not _NUMBER.fullmatch(text)
     return f"{quote}{chr(39) * is_formula}{text}{quote}"

@@ -157,7 +157,7 @@ class AuditDifference:
         return [
             (change, test)
             for change, test in self.tested
-            if test.is_called and (test.ratio or 0.0) > 1 and self.gating_rules.get(change.rule_id) in severe
+            if test.is_significant and (test.ratio or 0.0) > 1 and self.gating_rules.get(change.rule_id) in severe
         ]
 
     @property
@@ -168,7 +168,7 @@ class AuditDifference:
     @property
     def significant_changes(self) -> list[RateChange]:
         """The changes of rates that are statistically significant."""
-        return [each for each in self.rates if each.is_called]
+        return [each for each in self.rates if each.is_significant]
 
     @property
     def tested(self) -> list[tuple[RateChange, RateTest]]:
@@ -179,7 +179,7 @@ class AuditDifference:
     @property
     def shown_tests(self) -> list[tuple[RateChange, RateTest]]:
         """The tests that report a difference; if these are fewer than `NEAREST`, also the next ones by p-value."""
-        return self.tested[: max(NEAREST, sum(test.is_called for _, test in self.tested))]
+        return self.tested[: max(NEAREST, sum(test.is_significant for _, test in self.tested))]
 
 
 def _at_or_above(counts: dict[str, int], least: str) -> int:

@@ -106,7 +106,7 @@ def since(difference: AuditDifference) -> str:
     if not difference.is_disjoint:
         return difference.headline
     rate_texts = [
-        f"{rate_name(change)} per {test.per} {times(test)}" for change, test in difference.tested if test.is_called
+        f"{rate_name(change)} per {test.per} {times(test)}" for change, test in difference.tested if test.is_significant
     ]
     if not rate_texts:
         return "no drive is in both, and no rate differs by more than chance explains"
@@ -212,4 +212,4 @@ def _rate_change(change: RateChange) -> dict[str, Any]:
             "occasions_failed": rate.occasions_failed,
         }
     values = ("p_value", "corrected", "occasion_p_value", "occasion_corrected")
-    return {**content, **{name: getattr(change, name) for name in values}, "called": change.is_called}
+    return {**content, **{name: getattr(change, name) for name in values}, "called": change.is_significant}

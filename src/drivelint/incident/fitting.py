@@ -73,29 +73,29 @@ def is_crowded(page: dict[str, Any]) -> bool:
     sure, rests, drive = page["sure"], page["rests"], page["drive"]
     facts = [
         8
-        + _lines(
+        + _n_lines(
             f"{drive['map_name']} {page['road_id']} {page['place'].lanelet_id} {page['coordinates']} {page['hand']}",
             _FACT,
         ),
-        10 + _lines(rests, _FACT) + _lines(sure["by"], _FACT),
+        10 + _n_lines(rests, _FACT) + _n_lines(sure["by"], _FACT),
     ]
     parties = page["parties"]
-    rows = [[_lines(f"{p['kind']}, {p['size']} ({p['size_source']})", _CELL) for p in parties]]
-    rows += [[_lines(p[name], _CELL) for p in parties] for name in _CELLS]
-    rows += [[sum(_lines(each, _CELL) for each in p["slowed"]) or 1 for p in parties]]
+    rows = [[_n_lines(f"{p['kind']}, {p['size']} ({p['size_source']})", _CELL) for p in parties]]
+    rows += [[_n_lines(p[name], _CELL) for p in parties] for name in _CELLS]
+    rows += [[sum(_n_lines(each, _CELL) for each in p["slowed"]) or 1 for p in parties]]
     against = [page["against"] or "", page["least"] or "", *(f"contact also {each}" for each in page["contacts"].texts)]
     across = [page["story"], page["what"]]
-    lines = max(facts) + sum(max(row) for row in rows) + _lines(" ".join(against), 2 * _CELL)
-    lines += _lines(", ".join(page["drawn"]), _WIDE)
-    return lines * _LINE_PX + sum(_lines(each, _WIDE) for each in across) * _TEXT_PX > _FIRST_PX
+    lines = max(facts) + sum(max(row) for row in rows) + _n_lines(" ".join(against), 2 * _CELL)
+    lines += _n_lines(", ".join(page["drawn"]), _WIDE)
+    return lines * _LINE_PX + sum(_n_lines(each, _WIDE) for each in across) * _TEXT_PX > _FIRST_PX
 
 
 def check_room(texts: Sequence[str]) -> int:
     """Return the characters that the columns of page 2 lose because the lines with hashes (`texts`) wrap."""
-    return _CHECK_LINE * sum(_lines(text, _CHECK) - 1 for text in texts)
+    return _CHECK_LINE * sum(_n_lines(text, _CHECK) - 1 for text in texts)
 
 
-def _lines(text: str, width: int) -> int:
+def _n_lines(text: str, width: int) -> int:
     return len(wrap(text, width))
 
 

@@ -18,9 +18,11 @@ if TYPE_CHECKING:
     from drivelint.engine.robustness.window import Extent
 
 N_COPIES: Final = (20, 32, 100)
-"""The numbers of copies that may suffice. 32 suffice if all keep the finding. If the true share of copies that keep it is 90 %, all of 32
-keep it with a probability of 3.4 %, and at least 95 of 100 with 2.4 %; if it is 93 %, with 10 % and 25 %. 20 is the block size of
-`copies`: a block has errors from the smallest to the largest."""
+"""The numbers of judged copies after which a question may be settled.
+
+32 suffice if all keep the finding. If the true share of copies that keep it is 90 %, all of 32 keep it with a probability of 3.4 %, and at
+least 95 of 100 with 2.4 %; if it is 93 %, with 10 % and 25 %. 20 is the block size of `copies`: a block has errors from the smallest to
+the largest."""
 FAR_SPREADS: Final = 5.0
 """20 copies suffice if all keep the finding, and the mean of their margins is at least this many standard deviations from 0."""
 LEAST_KEEPING_SHARE: Final = 0.95

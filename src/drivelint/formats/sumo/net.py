@@ -43,7 +43,8 @@ if TYPE_CHECKING:
 
 
 DEFAULT_LANE_WIDTH_M: Final = 3.2  # SUMO's default, for a lane without a width
-_LONGEST_MITRE: Final = 3.0
+_LARGEST_MITRE_FACTOR: Final = 3.0
+"""At a sharp bend, the corner of a lane's bound is at most this multiple of its distance from the centre line away."""
 _ADDED_POINT_M: Final = 0.5
 """The distance of an added point from the end of a line inside a junction."""
 _LEAST_COS: Final = 0.85
@@ -215,7 +216,7 @@ def _beside(line: Floats, off: float) -> Floats:
     before, after = np.vstack([normal[:1], normal]), np.vstack([normal, normal[-1:]])
     between = before + after
     # mitre: at a corner the point keeps the distance from both segments
-    size = np.maximum((between * before).sum(1), 2 / _LONGEST_MITRE**2)
+    size = np.maximum((between * before).sum(1), 2 / _LARGEST_MITRE_FACTOR**2)
     found: Floats = line + off * between / size[:, None]
     return found
 
