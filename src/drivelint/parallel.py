@@ -20,7 +20,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint import run, temporary
-from drivelint.audit.executors.local import begin_worker, cores, deaf_to_ctrl_c
+from drivelint.audit.executors.local import cores, deaf_to_ctrl_c, prepare_worker_process
 from drivelint.engine.default_rules import with_chosen_rules
 from drivelint.engine.interruption import Interruption
 from drivelint.engine.memory import LEAST_MEMORY_BYTES
@@ -340,7 +340,7 @@ class _DeafRulesOfWorker:
 
 def _work(part: _Part, pipe: Connection, parent: int) -> None:
     """Judge a part in this process, and send the outcome to the parent."""
-    begin_worker(parent)
+    prepare_worker_process(parent)
     signal.signal(signal.SIGTERM, signal.SIG_IGN)  # the listener ends this process when its parent has ended
     interruption, teller = Interruption(), _Teller(pipe)
     Thread(target=_listen, args=(pipe, interruption), daemon=True, name="listener").start()

@@ -10,7 +10,13 @@ import duckdb
 import pytest
 
 from drivelint import catalogue, demo, run
-from drivelint.engine.robustness.question import LEAST_KEEPING_SHARE, N_COPIES, SMALL_MARGIN, Question, by_weight
+from drivelint.engine.robustness.question import (
+    LEAST_KEEPING_SHARE,
+    N_COPIES,
+    SMALL_MARGIN,
+    Question,
+    grouped_by_weight,
+)
 from drivelint.explain import ExplainRequest, MeasurementErrors, explain
 from drivelint.report.outputs import write
 from drivelint.report.progress import Silent
@@ -188,7 +194,7 @@ def test_of_one_rule_the_gravest_finding_is_judged_and_those_near_the_threshold(
         each.finding.update(of_one)
     other = question(-0.5)
     other.finding.update(of_one | {"ego_id": "1"})
-    gravest, near, others = by_weight([*asked, other])
+    gravest, near, others = grouped_by_weight([*asked, other])
     assert ([q.finding["margin"] for q in gravest], [q.finding["margin"] for q in near]) == ([-4.0, -0.5], [-0.2])
     assert sorted(q.finding["margin"] or 0.0 for q in others) == [-2.0, -1.0, 0.0]
 

@@ -18,7 +18,7 @@ from drivelint.audit.claims import LEASE_S, Claims
 from drivelint.audit.compact import compact, create_views, database, drop
 from drivelint.audit.driver import SUBMITTED_TASKS_PER_WORKER, TASK_DRIVES, Driver, task_size, tasks
 from drivelint.audit.executors.choice import open_executor
-from drivelint.audit.executors.local import begin_worker, deaf_to_ctrl_c
+from drivelint.audit.executors.local import deaf_to_ctrl_c, prepare_worker_process
 from drivelint.audit.identity import rule_table, run_id, versions
 from drivelint.audit.lock import locked
 from drivelint.audit.model import JudgeSettings
@@ -225,7 +225,7 @@ def _compact_apart(out: str) -> None:
     context = multiprocessing.get_context("spawn")  # a fork would copy threads that hold locks
     with (
         suppress(BrokenProcessPool),  # if the process is killed, the next compaction packs its results
-        ProcessPoolExecutor(1, context, initializer=begin_worker, initargs=(os.getpid(),)) as apart,
+        ProcessPoolExecutor(1, context, initializer=prepare_worker_process, initargs=(os.getpid(),)) as apart,
     ):
         with deaf_to_ctrl_c():
             packing = apart.submit(_compact_there, out)

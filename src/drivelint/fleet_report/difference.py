@@ -151,7 +151,7 @@ class AuditDifference:
         """
         return _at_or_above(self.gone_by_severity, fail_on)
 
-    def risen(self, fail_on: str) -> list[tuple[RateChange, RateTest]]:
+    def risen_rates(self, fail_on: str) -> list[tuple[RateChange, RateTest]]:
         """Return the tests that report a higher rate of a stable rule at or above a severity."""
         severe = () if fail_on == "never" else SEVERITIES[: SEVERITIES.index(fail_on) + 1]
         return [

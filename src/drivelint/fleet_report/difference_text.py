@@ -50,7 +50,7 @@ def exit_code(difference: AuditDifference, fail_on: str | None) -> ExitCode:
     `fail_on` None: the two audits have no common drive. Then significantly higher rates gate instead of findings.
     """
     if fail_on is None:
-        if difference.risen(_own_severity(difference)):
+        if difference.risen_rates(_own_severity(difference)):
             return ExitCode.FAILED
         return ExitCode.OK if difference.has_rates and not _warnings(difference) else ExitCode.NOT_JUDGED
     if difference.n_failing(fail_on):
@@ -88,7 +88,7 @@ def _code_and_reason(difference: AuditDifference, fail_on: str | None) -> str:
 def _rates_sentence(difference: AuditDifference) -> str:
     """Return a phrase about the comparison of rates of two audits without a common drive."""
     least = _own_severity(difference)
-    if risen := difference.risen(least):
+    if risen := difference.risen_rates(least):
         rates_text = ", ".join(
             f"{rate_name(change)} per {test.per} {times(test)}" for change, test in risen[:_MOST_RISEN_RATES]
         )

@@ -10,7 +10,7 @@ from drivelint.phrases import plural
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-_ROOM: Final = {"broken": 1500, "kept": 300, "excused": 80, "reasons": 350}
+_RESERVED_CHARACTERS: Final = {"broken": 1500, "kept": 300, "excused": 80, "reasons": 350}
 """The characters reserved for each part; if texts are left out, their number is printed."""
 _FIRST: Final = ("broken", "reasons")
 """Parts that get free space first, in this order."""
@@ -18,9 +18,9 @@ _MAY_GO: Final = frozenset({"kept", "excused"})
 """Parts that may be left out completely, because the party's first line contains their number."""
 _EMPTY_LINE_END_CHARACTERS: Final = {"broken": 30}
 """The empty characters at the end of a text's last line, in parts in which each text begins a new line."""
-_ALL_ROOM: Final = 3300
+_CHARACTERS_OF_ALL_PARTS: Final = 3300
 """The characters that all parts of both parties may take together; a part may use the space that others leave."""
-_SECOND_ROOM: Final = 110
+_CHARACTERS_PER_SECOND_ROW: Final = 110
 """The characters that fit into the space of one row of the table of seconds."""
 _SEPARATOR_CHARACTERS: Final = 2
 """The number of characters between two texts."""
@@ -118,11 +118,16 @@ def fit(parties: Sequence[dict[str, Any]], seconds_left: int, used_characters: i
     """
     parts = [
         (told, name, min(_least(told[name], name), room))
-        for name, room in _ROOM.items()
+        for name, room in _RESERVED_CHARACTERS.items()
         for told in parties
         if name in told
     ]
-    spare = _ALL_ROOM + _SECOND_ROOM * seconds_left - used_characters - sum(room for *_, room in parts)
+    spare = (
+        _CHARACTERS_OF_ALL_PARTS
+        + _CHARACTERS_PER_SECOND_ROW * seconds_left
+        - used_characters
+        - sum(room for *_, room in parts)
+    )
     if spare < 0:
         parts = _shrunk(parts, -spare)
     rooms = [room for *_, room in parts]

@@ -9,7 +9,7 @@ import duckdb
 import pyarrow.parquet as pq
 
 from drivelint.pack import finding_sql
-from drivelint.pack.finding_sql import COMPARED
+from drivelint.pack.finding_sql import COMPARED_COLUMNS
 from drivelint.sql import store
 
 if TYPE_CHECKING:
@@ -106,7 +106,11 @@ def _first(choices: Sequence[pa.Table], gives: Callable[[pa.Table], bool]) -> pa
 
 
 def _is_same(rows: list[dict[str, Any]], finding: Row) -> bool:
-    return len(rows) == 1 and rows[0]["holds"] is False and all(rows[0][name] == finding[name] for name in COMPARED)
+    return (
+        len(rows) == 1
+        and rows[0]["holds"] is False
+        and all(rows[0][name] == finding[name] for name in COMPARED_COLUMNS)
+    )
 
 
 def _choices(con: duckdb.DuckDBPyConnection, finding: Row, rows: pa.Table) -> list[pa.Table]:

@@ -86,7 +86,7 @@ def same_bodies(states: States, actors: Actors, egos: Collection[str]) -> list[Q
     """
     rows, begun, pairs = np.zeros(len(states), np.bool_), np.zeros(len(states), np.bool_), []
     half = _half_sizes(states, actors)
-    for a, b in _begin_upon(states, actors):
+    for a, b in _pairs_starting_together(states, actors):
         track_a, track_b = (slice(*np.searchsorted(states.actor, [i, i + 1]).tolist()) for i in (a, b))
         rows_a, rows_b = _common(states, track_a, track_b)
         first, second = _boxes(states, half, rows_a), _boxes(states, half, rows_b)
@@ -171,7 +171,7 @@ def held_tracks(states: States, actors: Actors) -> list[QualityFinding]:
     return states.findings(rows, "held_track", "warning", text, quantity="existence")
 
 
-def _begin_upon(states: States, actors: Actors) -> Iterator[tuple[int, int]]:
+def _pairs_starting_together(states: States, actors: Actors) -> Iterator[tuple[int, int]]:
     """Yield pairs of tracks of which one starts inside the box of the other, or close before or behind it.
 
     In the second case, only tracks with at least `COUPLED_LEAST` samples are used, which excludes many short tracks of a crowd.

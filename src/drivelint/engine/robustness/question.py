@@ -157,8 +157,9 @@ def breach(question: Question) -> tuple[str, ...]:
     return tuple(question.finding[key] for key in ("drive_id", "ego_id", "rule_id"))
 
 
-def by_weight(questions: Sequence[Question]) -> tuple[list[Question], list[Question], list[Question]]:
-    """Return three lists: the worst finding (by margin) of each drive, ego and rule; others near the threshold; the remaining ones."""
+def grouped_by_weight(questions: Sequence[Question]) -> tuple[list[Question], list[Question], list[Question]]:
+    """Return the questions in three lists: the worst finding (by margin) of each drive, ego and rule; others near the threshold; all
+    remaining ones."""
     gravest: dict[tuple[str, ...], Question] = {}
     for question in sorted(questions, key=lambda q: np.nan_to_num(q.finding["margin"] or np.nan, nan=np.inf)):
         gravest.setdefault(breach(question), question)

@@ -81,12 +81,12 @@ def _doubt(content: mmap.mmap, at: int) -> str | None:
             f" and the file ends {short} bytes before that" if short > 0 else ", which is too many"
         )
     end = start + length
-    if _begins(content, at) or end == len(content) or _begins(content, end):
+    if _is_message_start(content, at) or end == len(content) or _is_message_start(content, end):
         return None
     return f"no message begins at byte {at}, nor at byte {end} behind the {length} bytes that it should have"
 
 
-def _begins(content: mmap.mmap, at: int) -> bool:
+def _is_message_start(content: mmap.mmap, at: int) -> bool:
     return is_osi_trace(content[at : at + LENGTH + 1], len(content) - at)
 
 
