@@ -275,7 +275,7 @@ class _Worker:
         self._process.join()
 
 
-class _Teller(Progress):
+class _ProgressSender(Progress):
     """Sends progress messages from a worker to the parent. `advance` counts only in the stage `run.CHECKING`."""
 
     def __init__(self, pipe: Connection) -> None:
@@ -310,22 +310,22 @@ class _Teller(Progress):
 class _SentNotes(LogNotes):
     """Sends notes on logs to the parent, which shows each text once for all workers."""
 
-    def __init__(self, teller: _Teller, n_logs: int) -> None:
+    def __init__(self, sender: _ProgressSender, n_logs: int) -> None:
         super().__init__(Progress(), n_logs)
-        self._teller = teller
+        self._sender = sender
 
     def add(self, note: LogNote) -> None:
         """See `LogNotes`."""
         self.notes.append(note)
-        self._teller.send(_ProgressCall("add", (note,)))
+        self._sender.send(_ProgressCall("add", (note,)))
 
 
 class _DeafRulesOfWorker:
     """The `DeafRules` of a worker: reports a rule that cannot be interrupted to the parent, and ends the worker."""
 
-    def __init__(self, limits_of_deaf_rules: Mapping[str, Mapping[str, Excess]], teller: _Teller) -> None:
+    def __init__(self, limits_of_deaf_rules: Mapping[str, Mapping[str, Excess]], sender: _ProgressSender) -> None:
         self._limits_of_deaf_rules = limits_of_deaf_rules
-        self._teller = teller
+        self._sender = sender
 
     def exceeded_limits(self, task: str) -> Mapping[str, Excess]:
         """See `DeafRules`."""
@@ -334,7 +334,7 @@ class _DeafRulesOfWorker:
     def restart_without(self, task: str, rule_id: str, excess: Excess) -> NoReturn:
         """See `DeafRules`."""
         temporary.remove_all()
-        self._teller.send(_DeafRule(task, rule_id, excess))
+        self._sender.send(_DeafRule(task, rule_id, excess))
         os._exit(0)
 
 
@@ -342,18 +342,18 @@ def _work(part: _Part, pipe: Connection, parent: int) -> None:
     """Judge a part in this process, and send the outcome to the parent."""
     prepare_worker_process(parent)
     signal.signal(signal.SIGTERM, signal.SIG_IGN)  # the listener ends this process when its parent has ended
-    interruption, teller = Interruption(), _Teller(pipe)
+    interruption, sender = Interruption(), _ProgressSender(pipe)
     Thread(target=_listen, args=(pipe, interruption), daemon=True, name="listener").start()
     try:
-        teller.send(_judge_part(part, teller, interruption))
+        sender.send(_judge_part(part, sender, interruption))
     except DriveLintError as error:
-        teller.send(error)
+        sender.send(error)
     except Exception as error:  # noqa: BLE001 - every error ends the run
-        teller.send(InternalError(f"internal error in a worker: {type(error).__name__}: {error}: please report it"))
+        sender.send(InternalError(f"internal error in a worker: {type(error).__name__}: {error}: please report it"))
 
 
-def _judge_part(part: _Part, teller: _Teller, interruption: Interruption) -> _Ended:
-    notes, deaf = _SentNotes(teller, part.n_logs), _DeafRulesOfWorker(part.limits_of_deaf_rules, teller)
+def _judge_part(part: _Part, sender: _ProgressSender, interruption: Interruption) -> _Ended:
+    notes, deaf = _SentNotes(sender, part.n_logs), _DeafRulesOfWorker(part.limits_of_deaf_rules, sender)
     with nullcontext() if part.is_output is None else recorder.recording(part.is_output, []) as recording:
         judged_by = run.RunRules.of(part.settings)
         judged = run.judge_logs(
@@ -361,7 +361,7 @@ def _judge_part(part: _Part, teller: _Teller, interruption: Interruption) -> _En
             judged_by,
             part.paths,
             refused_logs=[],
-            progress=teller,
+            progress=sender,
             notes=notes,
             interruption=interruption,
             deaf_rules=deaf,

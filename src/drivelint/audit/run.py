@@ -103,7 +103,7 @@ def audit(request: AuditRequest, progress: Progress, executor: Executor | None =
     was_whole = _create_or_check_settings(request, results, id_)
     if not alone and (request.retry_errors or request.prune):
         raise UsageError("--retry-errors and --prune remove results: use them without --shard and --claim")
-    part = parts.name_of(request.shard, claim=request.claim)
+    part = parts.part_name(request.shard, claim=request.claim)
     with locked(results, shared=not alone):
         parts.begin(results, part)
         audit_summary = _audited(request, results, progress, id_=id_, executor=executor, was_whole=was_whole)
@@ -131,7 +131,7 @@ def _audited(
     with database() as con, TemporaryDirectory(prefix="drivelint-audit-") as home:
         progress.stage("listing", None)
         n_drives = listing.fill(con, request.sources, _drive_input(request), id_, request.shard)
-        parts.ask(results, parts.name_of(request.shard, claim=request.claim), n_drives)
+        parts.ask(results, parts.part_name(request.shard, claim=request.claim), n_drives)
         create_views(con, results, Path(home))
         if alone and (n_stale := _drop_stale(con, results, retry=request.retry_errors)):
             create_views(con, results, Path(home))

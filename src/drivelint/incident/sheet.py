@@ -57,7 +57,7 @@ _CLIP: Final = re.compile(r"^(.+)-clip-[0-9a-f]{8}$")
 _CLIP_NOTE: Final = "; numbers that depend on what is before or after it may differ from the log's"
 _SPACES: Final = "danger_space"
 _LONGEST: Final = 330
-_INPUT_NOTE_CHARACTERS: Final = 370
+_NOTE_CHARACTERS: Final = 370
 """The number of characters that warnings about the log, or the source of a clip, may have in the columns of page 2."""
 _WARNING_CHARACTERS: Final = 300
 _LABEL_SHARE: Final = 0.1
@@ -250,9 +250,8 @@ def _warnings(case: Case) -> list[str]:
 def _told_warnings(case: Case) -> Fitting:
     """Return the first warnings about the log and the number of further warnings; a long warning is cut and refers to the full text."""
     rest = " ... (in full in report.html)"
-    return first_fitting(
-        [shorten(told, _WARNING_CHARACTERS, placeholder=rest) for told in _warnings(case)], _WARNING_CHARACTERS
-    )
+    shortened = [shorten(told, _WARNING_CHARACTERS, placeholder=rest) for told in _warnings(case)]
+    return first_fitting(shortened, _WARNING_CHARACTERS)
 
 
 def _cut_from(case: Case) -> list[str]:
@@ -301,11 +300,7 @@ def _conduct(case: Case, span: tuple[int, int], seconds_left: int, used_characte
     beside = sum(len(line) for told in found for line in told.get("beside", ()))
     of_both |= {"in_report": any(told["in_report"] for told in found), "id": found[-1]["id"]}
     lines = used_characters + beside + SHARED_HEAD * bool(of_both["reasons"])
-    fit(
-        [*found, of_both],
-        seconds_left,
-        lines + _INPUT_NOTE_CHARACTERS * (bool(_warnings(case)) + bool(_cut_from(case))),
-    )
+    fit([*found, of_both], seconds_left, lines + _NOTE_CHARACTERS * (bool(_warnings(case)) + bool(_cut_from(case))))
     return {"conduct": found, "of_both": of_both}
 
 

@@ -114,7 +114,7 @@ def _place_of_sql(finding: dict[str, Any], *, by_drive: bool) -> str | None:
 
 
 def _misplaced(run: dict[str, Any], evidence: dict[str, Any]) -> list[str]:
-    """Return the inputs of the check for which `evidence.json` lacks a path in the pack, or has an unexpected one."""
+    """Return the names of the inputs of the check whose path in the pack is missing or unexpected in `evidence.json`."""
     wrong = [] if isinstance(run["mapping"], dict) == (evidence["mapping"] is not None) else ["mapping"]
     if len(run["rules_dirs"]) != len(evidence["rules_dirs"]):
         wrong.append("rules_dirs")

@@ -266,7 +266,7 @@ class _Machine:
         target: Any = self.stack[-1]
         if type(target) is Points:  # a pickle writes a long list in several parts
             rows = target.as_list()
-            self.memo[target.first - 1] = self.stack[-1] = target = rows
+            self.memo[target.first_memo_number - 1] = self.stack[-1] = target = rows
         if type(target) is not list:
             raise TypeError("values for something that is not a list")
         target.extend(values)

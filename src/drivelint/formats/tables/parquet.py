@@ -85,9 +85,7 @@ def _refuse_second_file(path: Path, file: BufferedReader) -> None:
         while at >= 0:
             end = at + len(_MAGIC)
             if _is_whole(data[:end]):
-                raise TraceError(
-                    f"{path}: a second Parquet file begins at byte {end}: split the two, and use each as a file of its own"
-                )
+                raise TraceError(f"{path}: a second Parquet file begins at byte {end}: split the file there into two")
             at = data.find(_MAGIC * 2, at + 1)
 
 
