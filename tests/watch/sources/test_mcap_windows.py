@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from drivelint.watch.source import Frame
-    from drivelint.watch.sources.mcap_stream import Message, Numbered
+    from drivelint.watch.sources.mcap_stream import Message, NumberedMessage
 
 EDGE_NS = 60_000_000
 """A little more than a step of the small logs."""
@@ -179,7 +179,7 @@ def test_autoware(tmp_path: Path) -> None:
 
 
 def messages(frames: list[Frame]) -> list[Message]:
-    return [cast("Numbered", frame.data).message for frame in frames]
+    return [cast("NumberedMessage", frame.data).message for frame in frames]
 
 
 def test_log_times_and_bytes_are_those_of_the_recording(tmp_path: Path) -> None:

@@ -74,7 +74,7 @@ def _kind(channel: Channel, schema: Schema) -> str | None:
 def _sightings(
     path: Path, film: VideoMapping, focal_px: float, t_ns: Times, boxes: list[tuple[Times, list[str], Floats]]
 ) -> Sightings:
-    """Return the distance of each actor per frame of a film, from the widths of its boxes. If it has several in a frame, the nearest counts."""
+    """Return the distance of each actor per frame of a film, from the widths of its boxes: the smallest of several in a frame."""
     start = int(t_ns.min())
     numbers = _frames(t_ns, start, film)
     whole = np.arange(0, int(numbers.max()) + 1)
