@@ -85,7 +85,7 @@ def _of_evidence(folder: Path, result: Result, evidence: dict[str, Any]) -> list
     keys = differing(evidence, due, result.findings.select(SAID_OF_FINDINGS).to_pylist(), result.rules.to_pylist())
     keys += sorted(evidence.keys() - due.keys() - set(_NOT_FACTS))
     keys += _misplaced(json.loads((folder / RESULT / "run.json").read_text("utf-8")), evidence)
-    keys += sheets.misnamed(folder, evidence, result.findings["finding_id"].to_pylist())
+    keys += sheets.invalid_sheets(folder, evidence, result.findings["finding_id"].to_pylist())
     wrong = [Problem("evidence.json does not match the result", key) for key in keys]
     said, counted = summary_of(folder), json.loads(summary.render(result))
     keys = sorted(key for key in counted.keys() | said.keys() if key != "tool" and said.get(key) != counted.get(key))

@@ -83,7 +83,7 @@ class DrivingSideStatements:
         return cls(said, roads, _winner(travel))
 
     def two_way_direction(self) -> Direction:
-        """Return the direction on two-way roads, where the side that is driven on fixes the lanes' direction."""
+        """Return the direction of the lanes on two-way roads, where it follows from the driving side."""
         return self._direction("rht", self.statements[0] if self.statements else None)
 
     def final_direction(self, side_by_lanes: str | None, quality: MapQuality) -> Direction:

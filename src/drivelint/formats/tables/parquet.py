@@ -85,7 +85,7 @@ def _refuse_second_file(path: Path, file: BufferedReader) -> None:
         while at >= 0:
             end = at + len(_MAGIC)
             if _is_whole(data[:end]):
-                raise TraceError(f"{path}: a second Parquet file begins at byte {end}: split the file there into two")
+                raise TraceError(f"{path}: a second Parquet file begins at byte {end}: give each by itself")
             at = data.find(_MAGIC * 2, at + 1)
 
 
