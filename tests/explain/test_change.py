@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from drivelint.explain.change import _VariedNumber, _search
+from drivelint.explain.change import _search, _VariedNumber
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
