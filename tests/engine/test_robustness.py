@@ -226,10 +226,10 @@ def test_a_copy_that_does_not_tell_in_a_part_of_a_stretch_is_judged_in_the_whole
     asked.add_copies((0, *asked.numbers), dict.fromkeys(range(few + 1), -2.0))
     assert asked.numbers == range(few + 1, most + 1)  # some copies lost it before
     passed = long_question()
-    passed.take((0, *range(1, few + 1)), kept, {few})
+    passed.add_copies((0, *range(1, few + 1)), kept, {few})
     assert (passed.size, passed.n_copies, passed.n_stays) == (0, few, few - 1)
     short = question(-2.0)
-    short.take((0, *short.numbers), kept)
+    short.add_copies((0, *short.numbers), kept)
     assert (short.size, short.n_copies, short.n_stays) == (0, few, few - 1)
 
 
@@ -254,10 +254,10 @@ def test_copies_judged_at_once_give_what_they_give_one_after_the_other() -> None
 def test_all_copies_of_a_small_margin_count_and_all_parts_of_a_large_window() -> None:
     few, most = N_COPIES[1:]
     small = question(-SMALL_MARGIN["m"])
-    small.take((0, *range(1, few + 1)), dict.fromkeys(range(few + 1), small.finding["margin"]))
+    small.add_copies((0, *range(1, few + 1)), dict.fromkeys(range(few + 1), small.finding["margin"]))
     assert not small.is_settled
     kept = dict.fromkeys((0, *range(few + 2, most + 1)), small.finding["margin"])  # all but one
-    small.take((0, *range(few + 1, most + 1)), kept)
+    small.add_copies((0, *range(few + 1, most + 1)), kept)
     assert (small.n_copies, small.n_stays) == (most, most - 1)
     large = question(None)
     for numbers in (range(1, 21), range(21, few + 1)):
