@@ -261,7 +261,7 @@ def test_all_copies_of_a_small_margin_count_and_all_parts_of_a_large_window() ->
     assert (small.n_copies, small.n_stays) == (most, most - 1)
     large = question(None)
     for numbers in (range(1, 21), range(21, few + 1)):
-        large.take((0, *numbers), dict.fromkeys((0, *numbers)))
+        large.add_copies((0, *numbers), dict.fromkeys((0, *numbers)))
     assert (large.n_copies, large.n_stays) == (few, few)
 
 
