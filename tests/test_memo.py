@@ -91,7 +91,7 @@ def test_a_folder_that_cannot_be_written(home: Path) -> None:
 
 
 def test_no_more_facts_than_are_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(memo, "MOST_FACTS", 2)
+    monkeypatch.setattr(memo, "MOST_FACTS_IN_FILE", 2)
     old = Memo[int]("numbers", int)
     for name in "ab":
         old.put(name, 0)

@@ -15,7 +15,7 @@ import pytest
 from drivelint import option_values
 from drivelint.engine import batch, margins, set_aside
 from drivelint.engine.derive import derive as derived
-from drivelint.engine.memory import DEFAULT_MEMORY, LEAST_MEMORY, Memory
+from drivelint.engine.memory import DEFAULT_MEMORY, LEAST_MEMORY_BYTES, Memory
 from drivelint.errors import UsageError
 from drivelint.evaluate import evaluate as evaluated
 from drivelint.evaluate.evaluation import Evaluation
@@ -98,7 +98,9 @@ def test_any_limit_gives_the_same_files(crowd: tuple[Path, Path], tmp_path: Path
     asked: dict[str, Any] = {"rules": ("ukhc",), "margins": True}
     usual = files(crowded(crowd, out=tmp_path / "a", memory=None, **asked))
     assert not halved
-    for no, limit in enumerate((LEAST_MEMORY, 150_000_000, LEAST_MEMORY, DEFAULT_MEMORY, LEAST_MEMORY)):
+    for no, limit in enumerate(
+        (LEAST_MEMORY_BYTES, 150_000_000, LEAST_MEMORY_BYTES, DEFAULT_MEMORY, LEAST_MEMORY_BYTES)
+    ):
         same(files(crowded(crowd, out=tmp_path / f"b{no}", memory=limit, **asked)), usual)
     assert halved, "the least memory does not do for as many at once as are tried first"
 
@@ -295,7 +297,7 @@ def test_tables_that_are_set_aside_on_disk_give_the_same_files(
         Path(path).touch()
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(set_aside, "LEAST_BYTES", -1)
+    monkeypatch.setattr(set_aside, "LEAST_SPILLED_TABLE_BYTES", -1)
     monkeypatch.setattr(batch, "LARGE_STATES", 0)
     monkeypatch.setattr(pa, "memory_map", noted)
     if full:
@@ -325,7 +327,7 @@ def test_memory_that_is_given_back_changes_no_table_and_no_limit(*, lifted: bool
 def test_the_database_spills_into_a_folder_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """DuckDB's own choice is a folder where the user is."""
     monkeypatch.chdir(tmp_path)
-    with store.workspace(LEAST_MEMORY) as con:
+    with store.workspace(LEAST_MEMORY_BYTES) as con:
         store.lock(con)
         ((spill,),) = con.execute("SELECT current_setting('temp_directory')").fetchall()
         con.execute("CREATE TABLE large AS SELECT i, hash(i) AS h FROM range(10_000_000) r(i)")

@@ -180,7 +180,7 @@ def _road(request: ConvertRequest, trace: Trace) -> tuple[MapSource | None, Trac
         if own is None:
             return None, trace, list(library.doubts(trace, None).values())
         return _own_road(request, trace, MapSource(MAP_FILE, own))
-    if request.to == "mcap" and (why := _unfit_for_mcap(road)):
+    if request.to == "mcap" and (why := _why_unfit_for_mcap(road)):
         raise UsageError(why)
     # a wrong map is refused now, not when the converted log is checked
     return road, library.find(trace)[1], []
@@ -198,12 +198,12 @@ def _own_road(request: ConvertRequest, trace: Trace, road: MapSource) -> tuple[M
         library.doubts(trace, environment)
     except MapError as error:
         notes.append(f"the log's own map cannot be used: {error}")
-    if request.to == "mcap" and (why := _unfit_for_mcap(road)):
+    if request.to == "mcap" and (why := _why_unfit_for_mcap(road)):
         return None, trace, [*notes, f"the log's own map is left out: {why}"]
     return road, trace, notes
 
 
-def _unfit_for_mcap(road: MapSource) -> str | None:
+def _why_unfit_for_mcap(road: MapSource) -> str | None:
     """Return why a map cannot be stored in MCAP; None if it can."""
     if (root_element_name(road.content) or "").lower() != "opendrive":
         return "only an OpenDRIVE map can go along in MCAP (OSI has no message for another): use --to parquet"

@@ -20,7 +20,7 @@ class ExitCode(IntEnum):
     INTERRUPTED = 130
 
 
-LEAST_BYTES: Final = 2_000_000_000
+LEAST_ADDRESS_SPACE_BYTES: Final = 2_000_000_000
 """The least address space (`ulimit -v`). With less, libraries end the process at import, with their own messages and exit codes."""
 _LIMITED: Final = "the limit of memory (ulimit -v) is too low: raise it, and run the same command again"
 LONGEST_LINE: Final = 2000
@@ -35,7 +35,7 @@ class DriveLintError(Exception):
 
     def __reduce__(self) -> tuple[object, ...]:
         """Return how pickle restores the error in another process: with its finished message, without `__init__`."""
-        return _made_again, (type(self), self.args)
+        return _error_from_pickle, (type(self), self.args)
 
     def __str__(self) -> str:
         """Return the message; the middle of a very long message is left out."""
@@ -57,7 +57,8 @@ class DriveLintError(Exception):
         return self.exit_code == ExitCode.TEMPFAIL
 
 
-def _made_again(kind: type[DriveLintError], args: tuple[object, ...]) -> DriveLintError:
+def _error_from_pickle(kind: type[DriveLintError], args: tuple[object, ...]) -> DriveLintError:
+    """Return an error of this class without calling its `__init__`, which may need other arguments."""
     error = kind.__new__(kind)
     error.args = args
     return error

@@ -27,10 +27,10 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 SQL_CODE: Final = ("*.py", "sql/*.py", "catalogue/*", "drive/conditions.*", "drive/declared_events.*", "reasons/*")
 """The files of the package that read SQL and rules."""
-MOST_FACTS: Final = 4096
-"""If there are more facts, only those that this process has used are stored."""
-MOST_VERSIONS: Final = 5
-"""How many files of other versions are kept, since several environments may use the cache in turn."""
+MOST_FACTS_IN_FILE: Final = 4096
+"""The largest number of facts in a file. If there are more, only the facts that this process has used are written."""
+MOST_FILES_OF_OTHER_VERSIONS: Final = 5
+"""The number of files of other drivelint versions that are kept, since several environments may use the cache in turn."""
 
 
 @cache
@@ -92,7 +92,7 @@ class Memo(Generic[T]):
         if file is None or not facts or not self._has_new:
             return
         self._has_new = False
-        if len(facts) > MOST_FACTS:
+        if len(facts) > MOST_FACTS_IN_FILE:
             facts = {key: fact for key, fact in facts.items() if key in self._used}
         with suppress(OSError):
             file.parent.mkdir(parents=True, exist_ok=True)
@@ -100,7 +100,7 @@ class Memo(Generic[T]):
                 part.write(msgspec.msgpack.encode(facts, enc_hook=str))
             Path(part.name).replace(file)
             files = sorted(file.parent.glob(f"{self._name}-*.msgpack"), key=lambda each: each.stat().st_mtime_ns)
-            for old in files[: -1 - MOST_VERSIONS]:
+            for old in files[: -1 - MOST_FILES_OF_OTHER_VERSIONS]:
                 old.unlink()
 
     @property

@@ -27,7 +27,7 @@ def parse_today(text: str | None) -> date:
 
 def parse_memory(text: str | None) -> int | None:
     """Read the database's memory limit in bytes, None for `none`; without a text, the default. Errors: `UsageError`."""
-    from drivelint.engine.memory import DEFAULT_MEMORY, LEAST_MEMORY
+    from drivelint.engine.memory import DEFAULT_MEMORY, LEAST_MEMORY_BYTES
 
     if text is None:
         return DEFAULT_MEMORY
@@ -38,8 +38,8 @@ def parse_memory(text: str | None) -> int | None:
         raise UsageError(f"--memory {text!r}: write a size such as 512MB or 1.5GB, or none")
     number, prefix, binary = said.groups()
     size = int(float(number) * (1024 if binary else 1000) ** ("KMGT".index(prefix.upper()) + 1))
-    if size < LEAST_MEMORY:
-        raise UsageError(f"--memory {text}: the least is {LEAST_MEMORY // 10**6}MB")
+    if size < LEAST_MEMORY_BYTES:
+        raise UsageError(f"--memory {text}: the least is {LEAST_MEMORY_BYTES // 10**6}MB")
     return size
 
 
@@ -153,7 +153,9 @@ def parse_pack_date(day: str | None) -> str | None:
     try:
         return None if epoch is None else datetime.fromtimestamp(int(epoch), UTC).date().isoformat()
     except (ValueError, OverflowError, OSError) as error:
-        raise UsageError(f"SOURCE_DATE_EPOCH={epoch}: no day: write it in seconds since 1970") from error
+        raise UsageError(
+            f"SOURCE_DATE_EPOCH={epoch} is not a valid time: give the seconds since 1970-01-01 as a whole number"
+        ) from error
 
 
 def parse_day(option: str, day: str) -> str:
@@ -161,4 +163,4 @@ def parse_day(option: str, day: str) -> str:
     try:
         return datetime.strptime(day, "%Y-%m-%d").replace(tzinfo=UTC).date().isoformat()
     except ValueError as error:
-        raise UsageError(f"{option} {day}: no day: write it as 2026-11-26") from error
+        raise UsageError(f"{option} {day} is not a valid date: write it as 2026-11-26") from error

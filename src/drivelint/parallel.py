@@ -20,10 +20,10 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint import run, temporary
-from drivelint.audit.executors.local import begin_worker, cores, deaf_to_ctrl_c
+from drivelint.audit.executors.local import cores, deaf_to_ctrl_c, prepare_worker_process
 from drivelint.engine.default_rules import with_chosen_rules
 from drivelint.engine.interruption import Interruption
-from drivelint.engine.memory import LEAST_MEMORY
+from drivelint.engine.memory import LEAST_MEMORY_BYTES
 from drivelint.errors import DriveLintError, ExitCode, InternalError
 from drivelint.formats.files import file_states
 from drivelint.phrases import plural
@@ -56,15 +56,15 @@ class WorkerLostError(DriveLintError):
 class _Part(NamedTuple):
     """The logs that one process judges. `n_logs`: the number of logs of the whole run.
 
-    `is_output`: needed to record the inputs; None: they are not recorded. `deaf_excesses`: task -> rule -> exceeded limit, for rules that
-    could not be interrupted in an earlier process.
+    `is_output`: needed to record the inputs; None: they are not recorded. `limits_of_deaf_rules`: task -> rule -> exceeded limit, for
+    rules that could not be interrupted in an earlier process.
     """
 
     settings: CheckOptions
     paths: Sequence[Path]
     n_logs: int
     is_output: IsOutput | None
-    deaf_excesses: dict[str, dict[str, Excess]]
+    limits_of_deaf_rules: dict[str, dict[str, Excess]]
 
 
 class _Ended(NamedTuple):
@@ -120,7 +120,7 @@ def _judged_by_workers(
     interruption: Interruption,
 ) -> list[JudgedLogs]:
     """Judge each part in a process of its own."""
-    memory = None if settings.memory is None else max(LEAST_MEMORY, settings.memory // len(parts))
+    memory = None if settings.memory is None else max(LEAST_MEMORY_BYTES, settings.memory // len(parts))
     own = replace(settings, memory=memory, threads=max(1, cores() // len(parts)))
     recording = recorder.active()
     is_output = None if recording is None else recording.is_output
@@ -259,12 +259,12 @@ class _Worker:
         )
         self._listener.progress.advance(-self._n_done)
         self._n_done = 0
-        task, deaf_excesses = endless_rule.task, self._part.deaf_excesses
-        deaf_excesses = {
-            **deaf_excesses,
-            task: {**deaf_excesses.get(task, {}), endless_rule.rule_id: endless_rule.excess},
+        task, limits_of_deaf_rules = endless_rule.task, self._part.limits_of_deaf_rules
+        limits_of_deaf_rules = {
+            **limits_of_deaf_rules,
+            task: {**limits_of_deaf_rules.get(task, {}), endless_rule.rule_id: endless_rule.excess},
         }
-        self._part = self._part._replace(deaf_excesses=deaf_excesses)
+        self._part = self._part._replace(limits_of_deaf_rules=limits_of_deaf_rules)
         self.start()
 
     def stop(self) -> None:
@@ -275,7 +275,7 @@ class _Worker:
         self._process.join()
 
 
-class _Teller(Progress):
+class _ProgressSender(Progress):
     """Sends progress messages from a worker to the parent. `advance` counts only in the stage `run.CHECKING`."""
 
     def __init__(self, pipe: Connection) -> None:
@@ -310,50 +310,50 @@ class _Teller(Progress):
 class _SentNotes(LogNotes):
     """Sends notes on logs to the parent, which shows each text once for all workers."""
 
-    def __init__(self, teller: _Teller, n_logs: int) -> None:
+    def __init__(self, sender: _ProgressSender, n_logs: int) -> None:
         super().__init__(Progress(), n_logs)
-        self._teller = teller
+        self._sender = sender
 
     def add(self, note: LogNote) -> None:
         """See `LogNotes`."""
         self.notes.append(note)
-        self._teller.send(_ProgressCall("add", (note,)))
+        self._sender.send(_ProgressCall("add", (note,)))
 
 
-class _DeafInWorker:
+class _DeafRulesOfWorker:
     """The `DeafRules` of a worker: reports a rule that cannot be interrupted to the parent, and ends the worker."""
 
-    def __init__(self, deaf_excesses: Mapping[str, Mapping[str, Excess]], teller: _Teller) -> None:
-        self._deaf_excesses = deaf_excesses
-        self._teller = teller
+    def __init__(self, limits_of_deaf_rules: Mapping[str, Mapping[str, Excess]], sender: _ProgressSender) -> None:
+        self._limits_of_deaf_rules = limits_of_deaf_rules
+        self._sender = sender
 
-    def excesses(self, task: str) -> Mapping[str, Excess]:
+    def exceeded_limits(self, task: str) -> Mapping[str, Excess]:
         """See `DeafRules`."""
-        return self._deaf_excesses.get(task, {})
+        return self._limits_of_deaf_rules.get(task, {})
 
     def restart_without(self, task: str, rule_id: str, excess: Excess) -> NoReturn:
         """See `DeafRules`."""
         temporary.remove_all()
-        self._teller.send(_DeafRule(task, rule_id, excess))
+        self._sender.send(_DeafRule(task, rule_id, excess))
         os._exit(0)
 
 
 def _work(part: _Part, pipe: Connection, parent: int) -> None:
     """Judge a part in this process, and send the outcome to the parent."""
-    begin_worker(parent)
+    prepare_worker_process(parent)
     signal.signal(signal.SIGTERM, signal.SIG_IGN)  # the listener ends this process when its parent has ended
-    interruption, teller = Interruption(), _Teller(pipe)
+    interruption, sender = Interruption(), _ProgressSender(pipe)
     Thread(target=_listen, args=(pipe, interruption), daemon=True, name="listener").start()
     try:
-        teller.send(_judge_part(part, teller, interruption))
+        sender.send(_judge_part(part, sender, interruption))
     except DriveLintError as error:
-        teller.send(error)
+        sender.send(error)
     except Exception as error:  # noqa: BLE001 - every error ends the run
-        teller.send(InternalError(f"internal error in a worker: {type(error).__name__}: {error}: please report it"))
+        sender.send(InternalError(f"internal error in a worker: {type(error).__name__}: {error}: please report it"))
 
 
-def _judge_part(part: _Part, teller: _Teller, interruption: Interruption) -> _Ended:
-    notes, deaf = _SentNotes(teller, part.n_logs), _DeafInWorker(part.deaf_excesses, teller)
+def _judge_part(part: _Part, sender: _ProgressSender, interruption: Interruption) -> _Ended:
+    notes, deaf = _SentNotes(sender, part.n_logs), _DeafRulesOfWorker(part.limits_of_deaf_rules, sender)
     with nullcontext() if part.is_output is None else recorder.recording(part.is_output, []) as recording:
         judged_by = run.RunRules.of(part.settings)
         judged = run.judge_logs(
@@ -361,12 +361,12 @@ def _judge_part(part: _Part, teller: _Teller, interruption: Interruption) -> _En
             judged_by,
             part.paths,
             refused_logs=[],
-            progress=teller,
+            progress=sender,
             notes=notes,
             interruption=interruption,
             deaf_rules=deaf,
         )
-    return _Ended(judged, None if recording is None or part.deaf_excesses else recording.inputs())
+    return _Ended(judged, None if recording is None or part.limits_of_deaf_rules else recording.inputs())
 
 
 def _listen(pipe: Connection, interruption: Interruption) -> None:

@@ -181,7 +181,7 @@ def test_where_nothing_was_judged_there_is_nothing_to_look_at() -> None:
 
 @pytest.mark.slow
 def test_the_summary_counts_what_it_does_not_show(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(summary, "MOST_RULES", 0)
+    monkeypatch.setattr(summary, "MOST_LISTED_RULES", 0)
     few = fleet.write(tmp_path / "fleet", 12)
     counted = judged(few, tmp_path / "out")
     assert (counted.broken, counted.n_broken, counted.n_unknown_for) == ([], 1, len(counted.unknown_for))

@@ -10,7 +10,13 @@ import duckdb
 import pytest
 
 from drivelint import catalogue, demo, run
-from drivelint.engine.robustness.question import LEAST_SHARE, N_COPIES, SMALL_MARGIN, Question, by_weight
+from drivelint.engine.robustness.question import (
+    LEAST_KEEPING_SHARE,
+    N_COPIES,
+    SMALL_MARGIN,
+    Question,
+    grouped_by_weight,
+)
 from drivelint.explain import ExplainRequest, MeasurementErrors, explain
 from drivelint.report.outputs import write
 from drivelint.report.progress import Silent
@@ -138,17 +144,17 @@ def test_few_copies_come_first_and_more_where_one_of_them_loses_the_finding() ->
     for margin, n in ((-5.0, fewest), (None, few)):
         asked = question(margin)
         assert asked.numbers == range(1, n + 1)
-        asked.take((0, *asked.numbers), dict.fromkeys(range(n + 1), margin))
+        asked.add_copies((0, *asked.numbers), dict.fromkeys(range(n + 1), margin))
         assert asked.is_settled
         assert (asked.n_stays, asked.n_copies) == (n, n)
     asked = question(-5.0)
     # far from 0 in all copies but one, where it does not apply
-    asked.take((0, *asked.numbers), dict.fromkeys(range(fewest), -5.0))
+    asked.add_copies((0, *asked.numbers), dict.fromkeys(range(fewest), -5.0))
     assert not asked.is_settled
     assert asked.numbers == range(fewest + 1, few + 1)
-    asked.take((0, *asked.numbers), dict.fromkeys((0, *asked.numbers), -5.0))
+    asked.add_copies((0, *asked.numbers), dict.fromkeys((0, *asked.numbers), -5.0))
     assert asked.numbers == range(few + 1, most + 1)
-    asked.take((0, *asked.numbers), {0: -5.0})
+    asked.add_copies((0, *asked.numbers), {0: -5.0})
     assert asked.is_settled
     assert (asked.n_stays, asked.n_copies) == (few - 1, most)
 
@@ -156,7 +162,7 @@ def test_few_copies_come_first_and_more_where_one_of_them_loses_the_finding() ->
 @pytest.mark.parametrize(("spread", "suffice"), [(0.5, True), (2.0, False)])
 def test_the_first_copies_suffice_where_their_margins_are_far_from_the_threshold(spread: float, suffice: bool) -> None:
     asked = question(-5.0)
-    asked.take(
+    asked.add_copies(
         (0, *asked.numbers), {n: -5.0 + (spread if n % 2 else -spread) * (n > 0) for n in range(N_COPIES[0] + 1)}
     )
     assert asked.is_settled is suffice
@@ -166,7 +172,7 @@ def test_the_first_copies_suffice_where_their_margins_are_far_from_the_threshold
 def test_copies_that_show_that_it_is_only_possible_suffice(lost: int, suffice: bool) -> None:
     """Of 100 copies, 95 must keep a finding that is sure."""
     asked = question(-2.0)
-    asked.take((0, *asked.numbers), dict.fromkeys(range(len(asked.numbers) + 1 - lost), -2.0))
+    asked.add_copies((0, *asked.numbers), dict.fromkeys(range(len(asked.numbers) + 1 - lost), -2.0))
     assert asked.is_settled is suffice
     assert not asked.is_sure
 
@@ -176,7 +182,7 @@ def test_a_share_of_ones_own_is_that_of_all_copies() -> None:
     most = N_COPIES[-1]
     asked = question(-2.0)
     asked.ends_early = False
-    asked.take((0, *asked.numbers), dict.fromkeys(range(len(asked.numbers) - 9), -2.0))
+    asked.add_copies((0, *asked.numbers), dict.fromkeys(range(len(asked.numbers) - 9), -2.0))
     assert not asked.is_settled
     assert asked.numbers.stop == most + 1
 
@@ -188,7 +194,7 @@ def test_of_one_rule_the_gravest_finding_is_judged_and_those_near_the_threshold(
         each.finding.update(of_one)
     other = question(-0.5)
     other.finding.update(of_one | {"ego_id": "1"})
-    gravest, near, others = by_weight([*asked, other])
+    gravest, near, others = grouped_by_weight([*asked, other])
     assert ([q.finding["margin"] for q in gravest], [q.finding["margin"] for q in near]) == ([-4.0, -0.5], [-0.2])
     assert sorted(q.finding["margin"] or 0.0 for q in others) == [-2.0, -1.0, 0.0]
 
@@ -196,10 +202,10 @@ def test_of_one_rule_the_gravest_finding_is_judged_and_those_near_the_threshold(
 def test_a_window_that_does_not_give_the_finding_is_not_believed() -> None:
     few, most = N_COPIES[1:]
     asked = question(-5.0)
-    asked.take((0, *range(1, few + 1)), dict.fromkeys(range(few), -5.0))
-    asked.take((0, *range(few + 1, most + 1)), dict.fromkeys((0, *range(few + 1, most + 1)), -4.0))
+    asked.add_copies((0, *range(1, few + 1)), dict.fromkeys(range(few), -5.0))
+    asked.add_copies((0, *range(few + 1, most + 1)), dict.fromkeys((0, *range(few + 1, most + 1)), -4.0))
     assert (asked.size, asked.n_copies, asked.n_stays) == (1, 0, 0)
-    asked.take((0, *range(few + 1, most + 1)), dict.fromkeys((0, *range(few + 1, most + 1)), -5.0))
+    asked.add_copies((0, *range(few + 1, most + 1)), dict.fromkeys((0, *range(few + 1, most + 1)), -5.0))
     assert asked.n_copies == 0  # the copies before these are still to be judged
 
 
@@ -214,24 +220,24 @@ def test_a_copy_that_does_not_tell_in_a_part_of_a_stretch_is_judged_in_the_whole
     few, most = N_COPIES[1:]
     kept = dict.fromkeys(range(few), -2.0)  # all but the last
     asked = long_question()
-    asked.take((0, *asked.numbers), kept)
+    asked.add_copies((0, *asked.numbers), kept)
     assert (asked.size, asked.n_copies) == (1, 0)
     assert asked.numbers == range(1, few + 1)
-    asked.take((0, *asked.numbers), dict.fromkeys(range(few + 1), -2.0))
+    asked.add_copies((0, *asked.numbers), dict.fromkeys(range(few + 1), -2.0))
     assert asked.numbers == range(few + 1, most + 1)  # some copies lost it before
     passed = long_question()
-    passed.take((0, *range(1, few + 1)), kept, {few})
+    passed.add_copies((0, *range(1, few + 1)), kept, {few})
     assert (passed.size, passed.n_copies, passed.n_stays) == (0, few, few - 1)
     short = question(-2.0)
-    short.take((0, *short.numbers), kept)
+    short.add_copies((0, *short.numbers), kept)
     assert (short.size, short.n_copies, short.n_stays) == (0, few, few - 1)
 
 
 def test_a_finding_that_is_only_possible_anyway_needs_no_wider_window() -> None:
-    assert LEAST_SHARE == certainties.LEAST_SHARE
+    assert LEAST_KEEPING_SHARE == certainties.LEAST_KEEPING_SHARE
     few, _ = N_COPIES[1:]
     asked = long_question()
-    asked.take((0, *asked.numbers), dict.fromkeys(range(few - 6), -2.0), set(range(few - 6, few)))
+    asked.add_copies((0, *asked.numbers), dict.fromkeys(range(few - 6), -2.0), set(range(few - 6, few)))
     assert (asked.size, asked.n_copies, asked.n_stays) == (0, few, few - 7)
 
 
@@ -240,22 +246,22 @@ def test_copies_judged_at_once_give_what_they_give_one_after_the_other() -> None
     asked = question(-2.0)
     asked.is_hasty = True
     assert asked.numbers == range(1, most + 1)
-    asked.take((0, *range(1, few + 1)), dict.fromkeys(range(few + 1), -2.0))
-    asked.take((0, *range(few + 1, most + 1)), {0: -2.0})
+    asked.add_copies((0, *range(1, few + 1)), dict.fromkeys(range(few + 1), -2.0))
+    asked.add_copies((0, *range(few + 1, most + 1)), {0: -2.0})
     assert (asked.n_copies, asked.n_stays) == (few, few)
 
 
 def test_all_copies_of_a_small_margin_count_and_all_parts_of_a_large_window() -> None:
     few, most = N_COPIES[1:]
     small = question(-SMALL_MARGIN["m"])
-    small.take((0, *range(1, few + 1)), dict.fromkeys(range(few + 1), small.finding["margin"]))
+    small.add_copies((0, *range(1, few + 1)), dict.fromkeys(range(few + 1), small.finding["margin"]))
     assert not small.is_settled
     kept = dict.fromkeys((0, *range(few + 2, most + 1)), small.finding["margin"])  # all but one
-    small.take((0, *range(few + 1, most + 1)), kept)
+    small.add_copies((0, *range(few + 1, most + 1)), kept)
     assert (small.n_copies, small.n_stays) == (most, most - 1)
     large = question(None)
     for numbers in (range(1, 21), range(21, few + 1)):
-        large.take((0, *numbers), dict.fromkeys((0, *numbers)))
+        large.add_copies((0, *numbers), dict.fromkeys((0, *numbers)))
     assert (large.n_copies, large.n_stays) == (few, few)
 
 

@@ -151,7 +151,7 @@ def test_a_rule_that_takes_much_more_after_its_interrupt_is_not_waited_for(
 
     class Deaf:
         @staticmethod
-        def excesses(_task: str) -> dict[str, limits.Excess]:
+        def exceeded_limits(_task: str) -> dict[str, limits.Excess]:
             return {}
 
         @staticmethod
@@ -225,7 +225,7 @@ def told(how):
     os._exit(0)
 
 class Deaf:
-    excesses = staticmethod(lambda task: {})
+    exceeded_limits = staticmethod(lambda task: {})
     restart_without = staticmethod(lambda task, rule, excess: told("deaf " + excess))
 
 rule = limits.RuleLimits.hold

@@ -344,7 +344,7 @@ def changes(seeded: duckdb.DuckDBPyConnection) -> list[list[RateChange]]:
 def test_a_difference_of_nothing_is_called_in_at_most_5_percent_of_fleets(changes: list[list[RateChange]]) -> None:
     assert len(changes) == FLEETS
     assert {len(fleet) for fleet in changes} == {RULES}
-    assert np.mean([any(each.is_called for each in fleet) for fleet in changes]) <= 0.05
+    assert np.mean([any(each.is_significant for each in fleet) for fleet in changes]) <= 0.05
     uncorrected = np.mean([any((each.p_value or 1) <= 0.05 for each in fleet) for fleet in changes])
     assert uncorrected > 0.1, "without the correction it would be: the test can fail"
 
@@ -375,9 +375,11 @@ def test_a_true_difference_is_called_and_shared_logs_are_left_out(seeded: duckdb
     cursor.execute(
         "CREATE OR REPLACE VIEW worse_findings AS FROM other_findings UNION ALL FROM other_findings WHERE rule_id = 'r3'"
     )
-    called = {each.rule_id for each in compare_rates(cursor, base="", new="worse_") if each.is_called}
+    called = {each.rule_id for each in compare_rates(cursor, base="", new="worse_") if each.is_significant}
     assert called == {"r3"}
-    assert not [each for each in compare_rates(cursor, base="other_", new="worse_") if each.is_called], "the same logs"
+    assert not [each for each in compare_rates(cursor, base="other_", new="worse_") if each.is_significant], (
+        "the same logs"
+    )
 
 
 @pytest.mark.parametrize("changed", ["ab", "a", ""])

@@ -160,7 +160,7 @@ def test_the_nearest_candidates_are_shown_where_nothing_is_called() -> None:
         fleet(con, "", "r1")
         fleet(con, "base_", "r1")
         same = rate_changes(rates(con), rates(con, of="base_"))
-    assert not any(each.is_called for each in same)
+    assert not any(each.is_significant for each in same)
     assert [(each.rule_id, len(each.tests)) for each in same] == [
         ("follow", 0), ("overtake", 2), ("silent", 0), ("still", 0)
     ]  # fmt: skip

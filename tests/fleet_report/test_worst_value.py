@@ -58,7 +58,7 @@ def test_the_worst_site_is_named_with_rates_and_intervals_of_all_sites() -> None
 def test_a_difference_that_chance_explains_is_no_headline() -> None:
     page = told(("a", 3, {"site": "hull"}), ("b", 1, {"site": "york"}))
     assert page.content.worst_value is not None
-    assert not page.content.worst_value.is_called
+    assert not page.content.worst_value.is_significant
     assert not page.html.xpath("//p[contains(@class, 'worst-value')]")
 
 

@@ -34,15 +34,15 @@ def growing(*_: Any) -> None:
 def test_reading_that_takes_too_much_is_a_sentence(
     read: Callable[..., None], why: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(limits, "LEAST_S", 0.2 if read is for_ever else 60.0)
-    monkeypatch.setattr(limits, "LEAST_BYTES", 64 << 20 if read is growing else 2 << 30)
+    monkeypatch.setattr(limits, "BASE_CPU_S", 0.2 if read is for_ever else 60.0)
+    monkeypatch.setattr(limits, "BASE_MEMORY_BYTES", 64 << 20 if read is growing else 2 << 30)
     with pytest.raises(TraceError, match=f"^log: reading it took more than {why}, too much for a file of 5 bytes"):
         limits.bounded(read, "log", 5, TraceError)
 
 
 def test_an_interrupt_meets_nobody_else(monkeypatch: pytest.MonkeyPatch) -> None:
     """Neither another thread, nor what follows, whenever it comes."""
-    monkeypatch.setattr(limits, "LEAST_S", -1.0)
+    monkeypatch.setattr(limits, "BASE_CPU_S", -1.0)
     monkeypatch.setattr(limits, "_LOOK_S", 0.0001)
     ends = set()
     for _ in range(300):
@@ -56,7 +56,7 @@ def test_an_interrupt_meets_nobody_else(monkeypatch: pytest.MonkeyPatch) -> None
 
 def test_readers_of_logs_and_maps_are_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Also where they take every `Exception` for a damaged file."""
-    monkeypatch.setattr(limits, "LEAST_S", 0.1)
+    monkeypatch.setattr(limits, "BASE_CPU_S", 0.1)
     table = tmp_path / "cars.csv"
     table.write_text("\n".join(cars(3)), encoding="utf-8")
     monkeypatch.setattr("drivelint.drive.finish.finish_trace", for_ever)

@@ -157,7 +157,7 @@ def test_what_is_no_signature_of_the_key_is_not_used(tmp_path: Path, monkeypatch
     wrong = message(14, message(0, b"ssh-ed25519", key.sign(b"something else"))[5:])
     cut, huge = message(14, b"\0\0\0\x0bssh"), struct.pack(">I", 1 << 30)
     for no, (answer, words) in enumerate([
-        (wrong, "not an Ed25519 signature"), (cut, "not an Ed25519 signature"), (huge, "does not answer"), (b"\0\0", "in the middle")
+        (wrong, "not an Ed25519 signature"), (cut, "not an Ed25519 signature"), (huge, "does not answer"), (b"\0\0", "before the end")
     ]):  # fmt: skip
         path = os.path.join(tmp_path, str(no))  # noqa: PTH118 - a socket's address is text
         thread = answering(path, holds, answer)

@@ -68,4 +68,4 @@ def test_an_older_pack_is_told_by_its_date(dated: tuple[Path, ...], packed: Pack
         code, said = verified(pack, *key, "--not-before", "2026-11-26")
         assert (code, said.startswith("older pack: ")) == (1, True)
     found = CliRunner().invoke(app, ["verify", str(newer), "--not-before", "yesterday"])
-    assert str(found.exception) == "--not-before yesterday: no day: write it as 2026-11-26"
+    assert str(found.exception) == "--not-before yesterday is not a valid date: write it as 2026-11-26"

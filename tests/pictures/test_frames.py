@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 from mcap.records import Channel, Schema
 
 from drivelint.pictures.frames import EncodedImage, FrameError, RawImage, VideoFrame, ahead_first, is_camera, read_frame
-from drivelint.pictures.images import MOST_BYTES, small_jpeg
-from drivelint.pictures.video import is_entry
+from drivelint.pictures.images import MOST_PICTURE_BYTES, small_jpeg
+from drivelint.pictures.video import is_key_frame
 from tests.formats.ros2 import ros_log as ros
 from tests.pictures.camera_bag import bars, jpeg, number_in
 
@@ -162,7 +162,7 @@ def test_a_picture_is_small_whatever_it_shows() -> None:
     noise = np.random.default_rng(0).integers(0, 256, (1080, 1920, 3), np.uint8)
     shown = small_jpeg(EncodedImage(jpeg(noise)))
     assert (shown.width_px, shown.height_px) == (480, 270)  # a quarter
-    assert len(shown.data) <= MOST_BYTES
+    assert len(shown.data) <= MOST_PICTURE_BYTES
 
 
 def test_what_shows_no_picture_is_no_camera() -> None:
@@ -175,7 +175,7 @@ def test_what_shows_no_picture_is_no_camera() -> None:
 
 
 def test_frames_of_a_video_that_need_no_other() -> None:
-    assert is_entry(VideoFrame("h264", b"\0\0\0\1\x67abc\0\0\0\1\x65abc"))
-    assert not is_entry(VideoFrame("h264", b"\0\0\0\1\x41abc"))
-    assert is_entry(VideoFrame("h265", b"\0\0\0\1\x40\1a\0\0\1\x26\1abc"))
-    assert not is_entry(VideoFrame("h265", b"\0\0\0\1\x02\1abc"))
+    assert is_key_frame(VideoFrame("h264", b"\0\0\0\1\x67abc\0\0\0\1\x65abc"))
+    assert not is_key_frame(VideoFrame("h264", b"\0\0\0\1\x41abc"))
+    assert is_key_frame(VideoFrame("h265", b"\0\0\0\1\x40\1a\0\0\1\x26\1abc"))
+    assert not is_key_frame(VideoFrame("h265", b"\0\0\0\1\x02\1abc"))

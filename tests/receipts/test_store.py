@@ -71,7 +71,7 @@ def test_a_damaged_receipt_is_none(home: Path, tmp_path: Path) -> None:
 def test_the_receipts_that_were_not_used_for_longest_go(
     home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(store, "MOST_RECEIPTS", 3)
+    monkeypatch.setattr(store, "MOST_KEPT_RECEIPTS", 3)
     for n, key in enumerate("abc"):
         kept(tmp_path / "out", key)
         os.utime(home / key, (n, n))
@@ -81,12 +81,12 @@ def test_the_receipts_that_were_not_used_for_longest_go(
 
 
 def test_receipts_take_no_more_bytes_than_they_may(home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(store, "MOST_BYTES", 5000)
+    monkeypatch.setattr(store, "MOST_BYTES_OF_ALL_RECEIPTS", 5000)
     for n, key in enumerate("abc"):
         kept(tmp_path / "out", key, bytes(1000))
         os.utime(home / key, (n, n))
     assert {path.name for path in home.iterdir()} == {"b", "c"}
-    monkeypatch.setattr(store, "MOST_BYTES_OF_ONE", 1999)
+    monkeypatch.setattr(store, "MOST_BYTES_OF_ONE_RECEIPT", 1999)
     kept(tmp_path / "out", "e", bytes(1000))
     assert not is_there("e")
 

@@ -17,7 +17,7 @@ from drivelint import catalogue
 from drivelint.engine.interruption import Interruption
 from drivelint.sql import store
 from drivelint.watch.alarms import AlarmLog
-from drivelint.watch.contact import JOLT, OVERLAP, ContactLook
+from drivelint.watch.contact import JOLT_RULE, OVERLAP_RULE, ContactLook
 from drivelint.watch.judge import JudgedWindow, WindowJudge
 from drivelint.watch.options import WatchOptions
 from drivelint.watch.run import Watch
@@ -98,7 +98,9 @@ STRUCK = standing("car", WAY, T, 110.0, WAY.own)
 
 def jolts(look: ContactLook, log: Trace) -> list[tuple[float, float]]:
     return [
-        (row["t_start_ns"] / S, round(row["observed"], 6)) for row in look.look(log, None) if row["rule_id"] == JOLT
+        (row["t_start_ns"] / S, round(row["observed"], 6))
+        for row in look.look(log, None)
+        if row["rule_id"] == JOLT_RULE
     ]
 
 
@@ -118,7 +120,7 @@ def test_a_jolt_is_told_where_the_boxes_are_near(
 ) -> None:
     log = trace(ends_at(gap_m, loss_mps=loss_mps), STRUCK)
     assert jolts(look, log) == expected
-    with WindowJudge(WatchOptions(source="", rules=(JOLT,))) as judge:
+    with WindowJudge(WatchOptions(source="", rules=(JOLT_RULE,))) as judge:
         (window,) = judge.judge([log])
     assert isinstance(window, JudgedWindow)
     same = [(row["t_start_ns"] / S, round(row["observed"], 6)) for row in window.findings.to_pylist()]
@@ -156,9 +158,9 @@ def test_an_actor_that_was_always_near_may_be_towed(look: ContactLook) -> None:
 
 def test_only_rules_that_are_asked_for_are_told(con: duckdb.DuckDBPyConnection) -> None:
     log = trace(ends_at(-0.2), STRUCK)
-    assert {row["rule_id"] for row in ContactLook(con, KNOWN).look(log, None)} == {OVERLAP, JOLT}
-    assert {row["rule_id"] for row in ContactLook(con, KNOWN, (JOLT,)).look(log, None)} == {JOLT}
-    assert ContactLook(con, KNOWN, (JOLT,), {JOLT: {"tyre_mps2": 101.0}}).look(log, None) == []
+    assert {row["rule_id"] for row in ContactLook(con, KNOWN).look(log, None)} == {OVERLAP_RULE, JOLT_RULE}
+    assert {row["rule_id"] for row in ContactLook(con, KNOWN, (JOLT_RULE,)).look(log, None)} == {JOLT_RULE}
+    assert ContactLook(con, KNOWN, (JOLT_RULE,), {JOLT_RULE: {"tyre_mps2": 101.0}}).look(log, None) == []
 
 
 def test_steps_that_were_looked_at_are_not_told_again(look: ContactLook) -> None:
@@ -213,7 +215,7 @@ def window(t_end_s: float, findings: list[dict[str, Any]]) -> JudgedWindow:
 
 def test_only_a_window_with_the_step_withdraws_an_early_alarm(look: ContactLook) -> None:
     rows = look.look(trace(ego(), standing("car", WAY, T, 110.0, WAY.own)), None)
-    log = AlarmLog({OVERLAP: 2 * S}, ())
+    log = AlarmLog({OVERLAP_RULE: 2 * S}, ())
     (alarm,) = log.look(rows, 10 * S)
     assert (alarm.is_early, alarm.row["t_start_ns"], alarm.t_end_ns) == (
         True,
@@ -223,7 +225,7 @@ def test_only_a_window_with_the_step_withdraws_an_early_alarm(look: ContactLook)
     assert log.look(rows, 10 * S) == []
     before = log.take(window(rows[0]["t_start_ns"] / S - 0.1, []), None, None)
     assert (before.new, before.withdrawn) == ([], [])
-    seen = log.take(window(10.0, [{"rule_id": OVERLAP, **rows[0]}]), None, None)
+    seen = log.take(window(10.0, [{"rule_id": OVERLAP_RULE, **rows[0]}]), None, None)
     assert (seen.new, seen.withdrawn, len(log.alarms)) == ([], [], 1)
     assert log.take(window(10.1, []), None, None).withdrawn == [alarm]
 
@@ -232,7 +234,10 @@ def test_only_a_window_with_the_step_withdraws_an_early_alarm(look: ContactLook)
 def test_a_contact_is_said_before_its_window_is_judged() -> None:
     """A log of 11.6 s, judged every 9 s and at its end: the contact at 9.7 s is in the second window."""
     asked = WatchOptions(
-        source=str(SCENES / "collision-25mph.mcap"), map=SCENES / "overtake-road.xodr", rules=(OVERLAP,), every_s=9.0
+        source=str(SCENES / "collision-25mph.mcap"),
+        map=SCENES / "overtake-road.xodr",
+        rules=(OVERLAP_RULE,),
+        every_s=9.0,
     )
     said: list[dict[str, Any]] = []
     source = Replay(Path(asked.source), asked.ingest_options(), speed=0, every_ns=9 * S)
@@ -264,7 +269,7 @@ class Going(Replay):
 @pytest.mark.slow
 def test_the_latency_of_an_alarm_counts_what_came_while_its_window_was_judged(monkeypatch: pytest.MonkeyPatch) -> None:
     asked = WatchOptions(
-        source=str(SCENES / "collision-25mph.mcap"), map=SCENES / "overtake-road.xodr", rules=(OVERLAP,)
+        source=str(SCENES / "collision-25mph.mcap"), map=SCENES / "overtake-road.xodr", rules=(OVERLAP_RULE,)
     )
     source = Going(Path(asked.source), asked.ingest_options())
     plain = WindowJudge.judge

@@ -99,7 +99,7 @@ def test_a_command_runs_at_most_once_a_second(tmp_path: Path) -> None:
 def test_alarms_that_a_command_did_not_get_are_counted_when_it_starts_again_and_at_the_end() -> None:
     (trigger,) = triggers.parse([f"{RULE}={PYTHON} -c pass"], KNOWN, KNOWN)
     told = [trigger.pull([{"rule_id": RULE}] * 2) for _ in range(3)]
-    trigger._last_s -= triggers.LEAST_S
+    trigger._last_s -= triggers.LEAST_PAUSE_S
     told += [trigger.pull([{"rule_id": RULE}]), trigger.left_out()]
     assert told == [None, None, None, f"--on: {PYTHON} was not started for 4 alarms: {LIMITS}", None]
     trigger.pull([{"rule_id": RULE}])

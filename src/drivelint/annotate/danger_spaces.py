@@ -33,7 +33,8 @@ MAX_STEPS: Final = 5_000
 _SAMPLES: Final = 24
 _UP_M: Final = 0.1  # above the lanes
 _ABOVE_M: Final = 1.5
-_LEAST_M: Final = 0.1
+_LEAST_LENGTH_M: Final = 0.1
+"""Shorter spaces are not drawn."""
 
 
 def messages(spaces: pa.Table, chains: pa.Table, tracks: Tracks, clock: LogClock) -> list[Message]:
@@ -81,7 +82,7 @@ def _strip(line: Floats, start: float, end: float, d: float, half: float) -> tup
     if not line.shape[1]:
         return None
     start, end = max(start, line[0, 0]), min(end, line[0, -1])
-    if end - start < _LEAST_M:
+    if end - start < _LEAST_LENGTH_M:
         return None
     s = np.linspace(start, end, _SAMPLES)
     x, y, z, tx, ty = (np.interp(s, line[0], column) for column in line[1:])

@@ -42,7 +42,7 @@ def location_messages(tracks: Tracks, geo: GeoFrame, clock: LogClock, frame: str
     A map's projection has no heights above the ellipsoid: the altitude stays 0, and the type of the covariance 0, unknown.
     """
     rows = _thinned(tracks, tracks.egos[0]) if tracks.egos else np.zeros(0, np.intp)
-    degrees = geo.degrees(_places(tracks, rows))
+    degrees = geo.degrees(_xy_at(tracks, rows))
     known = np.isfinite(degrees).all(axis=1)
     times = clock.log_time(tracks.t_ns[rows])
     return [
@@ -93,7 +93,7 @@ def _ways(tracks: Tracks) -> Iterator[tuple[str, str, Floats]]:
         gap = max(MAX_GAP_PERIODS * float(np.median(steps)), 2 * STEP_NS) if len(steps) else 0.0
         for piece in np.split(rows, np.flatnonzero(np.diff(tracks.t_ns[rows]) > gap) + 1):
             if len(piece) > 1:
-                yield "way", name, _places(tracks, piece)
+                yield "way", name, _xy_at(tracks, piece)
 
 
 def _thinned(tracks: Tracks, name: str) -> NDArray[np.intp]:
@@ -105,7 +105,7 @@ def _thinned(tracks: Tracks, name: str) -> NDArray[np.intp]:
     return rows[first]
 
 
-def _places(tracks: Tracks, rows: NDArray[np.intp]) -> Floats:
+def _xy_at(tracks: Tracks, rows: NDArray[np.intp]) -> Floats:
     return np.stack([tracks.x[rows], tracks.y[rows]], axis=1)
 
 

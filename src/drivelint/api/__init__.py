@@ -102,10 +102,10 @@ def check(
     with the reasons.
     """
     with errors_name_keywords():
-        paths, folder = options.texts(traces), options.path(out)
+        paths, folder = options.texts_of(traces), options.path(out)
         if not paths:
             raise UsageError("no traces: name files, globs or folders")
-        chosen = options.texts(rules)
+        chosen = options.texts_of(rules)
         if rules is not None and not chosen:
             raise UsageError("rules names none: leave it out for the rules that are checked by default")
         if keep_db and folder is None:
@@ -136,13 +136,13 @@ def check(
                 env=env,
             ),
             rules=chosen,
-            ignore=options.texts(ignore),
-            profiles=options.texts(profile),
+            ignore=options.texts_of(ignore),
+            profiles=options.texts_of(profile),
             params=options.assignments(param),
-            rules_dirs=tuple(Path(each) for each in options.texts(rules_dir)),
+            rules_dirs=tuple(Path(each) for each in options.texts_of(rules_dir)),
             fail_on=options.one_of("fail_on", fail_on, options.FailOn),
             strict=strict,
-            require=options.texts(require),
+            require=options.texts_of(require),
             min_judged=None if min_judged is None else float(min_judged),
             margins=margins,
             keep_db=keep_db,

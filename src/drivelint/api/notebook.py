@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
 
 MOST_FINDINGS: Final = 10
-MOST_REFUSED: Final = 10
+MOST_UNJUDGED_DRIVES: Final = 10
 
 
 def one_line(result: Result) -> str:
@@ -67,7 +67,7 @@ def summary_html(result: Result) -> str:
         exit_code=int(end.code),
         why=in_keywords(end.why),
         inputs=_inputs(result),
-        refused=[drive for drive in result.drives.to_pylist() if drive["status"] != "judged"][:MOST_REFUSED],
+        refused=[drive for drive in result.drives.to_pylist() if drive["status"] != "judged"][:MOST_UNJUDGED_DRIVES],
         verdicts={word.replace("_", " "): n for word, n in counts.total(result.verdicts).items() if n},
         rows=rows,
         has_certainty=any(row["certainty"] for row in rows),

@@ -26,7 +26,7 @@ _WORDS = {True: "yes", False: "no"}
 _Word = TypeVar("_Word", bound=str)
 
 
-def texts(value: Paths | None) -> tuple[str, ...]:
+def texts_of(value: Paths | None) -> tuple[str, ...]:
     """Return one or several texts or paths as a tuple of texts."""
     if value is None:
         return ()
@@ -46,7 +46,7 @@ def assignments(value: Assignments) -> tuple[str, ...]:
     """Return `KEY=VALUE` for each entry of a dictionary; texts are returned unchanged."""
     if isinstance(value, Mapping):
         return tuple(f"{key}={_WORDS[v] if isinstance(v, bool) else v}" for key, v in value.items())
-    return texts(value)
+    return texts_of(value)
 
 
 def one_of(name: str, value: _Word, kind: Any) -> _Word:

@@ -75,12 +75,12 @@ def timeline(result: Result, name: str) -> Timeline:
     finding = named_finding(result, name)
     row, start_ns = finding.row, finding.start_ns
     at = {"drive_id": row["drive_id"], "ego_id": row["ego_id"], "t_ns": row["t_worst_ns"]}
-    scene = next(iter(_rows(result.scenes, at)), None)
-    courses = _rows(result.courses, {"finding_id": row["finding_id"]})
+    scene = next(iter(_matching_rows(result.scenes, at)), None)
+    courses = _matching_rows(result.courses, {"finding_id": row["finding_id"]})
     course = next((each for each in courses if finding_key(each) == finding_key(row)), None)
     values: dict[int, dict[str, float | None]] = {}
     if scene is not None:
-        _add_ways(values, scene, row["object_id"])
+        _add_motion(values, scene, row["object_id"])
     if course is not None:
         for t_ns, *told in zip(*(course[key] for key in ("t_ns", "observed", "required", "margin")), strict=True):
             values.setdefault(t_ns, {}).update(zip(("observed", "required", "margin"), told, strict=True))
@@ -96,14 +96,15 @@ def timeline(result: Result, name: str) -> Timeline:
     return Timeline(table, drawn, f"{row['rule_id']} in {row['drive_id']}")
 
 
-def _rows(table: pa.Table, of: Mapping[str, object]) -> list[Row]:
-    for column, value in of.items():
+def _matching_rows(table: pa.Table, values_by_column: Mapping[str, object]) -> list[Row]:
+    """Return the rows that have these values."""
+    for column, value in values_by_column.items():
         table = table.filter(pc.equal(table[column], value))
     found: list[Row] = table.to_pylist()
     return found
 
 
-def _add_ways(values: dict[int, dict[str, float | None]], scene: Row, object_id: str | None) -> None:
+def _add_motion(values: dict[int, dict[str, float | None]], scene: Row, object_id: str | None) -> None:
     """Add the speeds and accelerations of ego and object, and the gap between them, to `values`."""
     ego = scene["actors"][0]
     met = next((each for each in scene["actors"][1:] if each["actor_id"] == object_id), None)

@@ -18,7 +18,7 @@ from drivelint.audit.unpacked import views_of_all
 from drivelint.errors import UsageError
 from drivelint.fleet.distinct_logs import COUNTED_PREFIX, create_counted_views
 from drivelint.phrases import inert, inert_json
-from drivelint.result.certainty import LEAST_SHARE
+from drivelint.result.certainty import LEAST_KEEPING_SHARE
 from drivelint.result.folder import changed_files
 from drivelint.sql.statements import statement
 from drivelint.sql.store import quoted
@@ -59,7 +59,7 @@ def ask(dest: str, query: str, format_: str, warn: Callable[[str], None] = lambd
 
 
 def _inert_cell(cell: re.Match[str]) -> str:
-    """Return a CSV cell that a spreadsheet does not run and a terminal does not interpret; a number stays a number."""
+    """Return a CSV cell without control characters that a spreadsheet does not run as a formula. Numbers do not change."""
     quote, text = cell[1] or "", inert(cell[2] if cell[1] else cell[0])
     is_formula = text.startswith(_FORMULA) and not _NUMBER.fullmatch(text)
     return f"{quote}{chr(39) * is_formula}{text}{quote}"
@@ -74,7 +74,7 @@ def _open(con: duckdb.DuckDBPyConnection, dest: str, home: Path, warn: Callable[
         if warning := views_of_all(con, results, home).warning:
             warn(f"{dest}: {warning}")
         create_counted_views(con)
-        event = statement("fleet/event", of=COUNTED_PREFIX, least_share=str(LEAST_SHARE))
+        event = statement("fleet/event", of=COUNTED_PREFIX, least_share=str(LEAST_KEEPING_SHARE))
         con.execute(f"CREATE TEMP VIEW {COUNTED_PREFIX}events AS {event}")
     else:
         files = [Path(name).name for name in results.names("") if "/" not in name and name.endswith(".parquet")]

@@ -100,7 +100,7 @@ class Bucket:
         """See `ResultStore.read`."""
         with self._output_errors(name):
             try:
-                return _whole(lambda: bytes(obstore.get(self._client, self._path(name)).bytes()))
+                return _with_repeats(lambda: bytes(obstore.get(self._client, self._path(name)).bytes()))
             except FileNotFoundError:
                 return None
 
@@ -174,7 +174,7 @@ def download(bucket_object: Object, folder: Path) -> Path:
                 file.write(part)
 
     try:
-        _whole(write)
+        _with_repeats(write)
     except FileNotFoundError:
         raise TraceError(f"{bucket_object.url}: no such object: check the URL") from None
     except exceptions.PreconditionError:
@@ -203,7 +203,7 @@ def _listed(client: Any, prefix: str) -> Iterator[Any]:
                 raise
 
 
-def _whole(job: Callable[[], T]) -> T:
+def _with_repeats(job: Callable[[], T]) -> T:
     """Run a job that reads an object, and repeat it if the answer was cut off: the client does not repeat such requests itself."""
     for _ in range(_ATTEMPTS - 1):
         try:

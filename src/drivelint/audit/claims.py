@@ -87,7 +87,7 @@ class Claims:
         time.sleep(self._lease_s / 6)
 
     def mark_done(self, drives: Iterable[AuditDrive]) -> None:
-        """Record that drives have their results."""
+        """Record that the results of these drives are written."""
         for drive in drives:
             self._results.write(_name(drive), b'{"owner": ""}\n')
 

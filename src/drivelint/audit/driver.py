@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from drivelint.audit.model import JudgeSettings
     from drivelint.audit.store import ResultStore
 
-WINDOW: Final = 4
-"""Number of tasks per worker that are submitted at a time: enough to keep the worker busy, few enough to fit into memory."""
+SUBMITTED_TASKS_PER_WORKER: Final = 4
+"""Number of tasks per worker that are submitted and not finished: enough to keep it busy, few enough to fit into memory."""
 TASK_BYTES: Final = 8_000_000
 TASK_DRIVES: Final = 64
 """A task ends when its logs have `TASK_BYTES` or it has `TASK_DRIVES` drives, so short drives are judged together."""
@@ -37,7 +37,7 @@ MOST_ATTEMPTS: Final = 3
 
 def task_size(n_drives: int, capacity: int) -> int:
     """Return the largest number of drives that a task may have."""
-    return max(LEAST_TASK_DRIVES, min(TASK_DRIVES, n_drives // (WINDOW * capacity)))
+    return max(LEAST_TASK_DRIVES, min(TASK_DRIVES, n_drives // (SUBMITTED_TASKS_PER_WORKER * capacity)))
 
 
 def tasks(
@@ -92,7 +92,7 @@ class Driver:
         again: deque[Task] = deque()
         n_running = 0
         while True:
-            while n_running < WINDOW * self.executor.capacity:
+            while n_running < SUBMITTED_TASKS_PER_WORKER * self.executor.capacity:
                 task = again.popleft() if again else next(waiting, None)
                 if task is None:
                     break

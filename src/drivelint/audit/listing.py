@@ -38,7 +38,7 @@ def fill(
         if shard and int(digest(drive.log)[:8], 16) % shard[1] != shard[0] - 1:
             continue
         options_id = hashes.of(drive.options)
-        size, stamp = (drive.size, drive.stamp) if drive.stamp else _stamp(drive.log)
+        size, stamp = (drive.size, drive.stamp) if drive.stamp else _size_and_stamp(drive.log)
         found = drive.with_ids(size, stamp, run_id, options_id)
         some.append(
             {
@@ -80,7 +80,7 @@ def todo(con: duckdb.DuckDBPyConnection) -> Iterator[AuditDrive]:
             yield AuditDrive(row["log"], options, tags, row["size"], row["stamp"], row["source_id"], row["options_id"])
 
 
-def _stamp(log: str) -> tuple[int, str]:
+def _size_and_stamp(log: str) -> tuple[int, str]:
     """Return a log's size in bytes, and the time of its last change or its ETag; (0, "") if the log cannot be read."""
     if is_url(log):
         found = look(log)

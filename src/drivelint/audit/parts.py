@@ -12,7 +12,7 @@ ALL, CLAIM = "all", "claim"
 """The part names of an audit of all drives, and of audits that share their drives by claims. A shard has a name such as `2-of-3`."""
 
 
-def name_of(shard: tuple[int, int] | None, *, claim: bool) -> str:
+def part_name(shard: tuple[int, int] | None, *, claim: bool) -> str:
     """Return the name of an audit's part: a shard, a share by claims, or all drives."""
     if shard is not None:
         return f"{shard[0]}-of-{shard[1]}"

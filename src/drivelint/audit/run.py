@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING, Any, Final
 from drivelint.audit import delta, listing, parts, sealed
 from drivelint.audit.claims import LEASE_S, Claims
 from drivelint.audit.compact import compact, create_views, database, drop
-from drivelint.audit.driver import TASK_DRIVES, WINDOW, Driver, task_size, tasks
+from drivelint.audit.driver import SUBMITTED_TASKS_PER_WORKER, TASK_DRIVES, Driver, task_size, tasks
 from drivelint.audit.executors.choice import open_executor
-from drivelint.audit.executors.local import begin_worker, deaf_to_ctrl_c
+from drivelint.audit.executors.local import deaf_to_ctrl_c, prepare_worker_process
 from drivelint.audit.identity import rule_table, run_id, versions
 from drivelint.audit.lock import locked
 from drivelint.audit.model import JudgeSettings
@@ -28,7 +28,7 @@ from drivelint.audit.summary import AuditSummary, summed, summed_receipts
 from drivelint.audit.unpacked import SUMMARY_FILE
 from drivelint.drive.trace import DriveInput
 from drivelint.engine.default_rules import chosen_selectors
-from drivelint.engine.memory import DEFAULT_MEMORY, LEAST_MEMORY
+from drivelint.engine.memory import DEFAULT_MEMORY, LEAST_MEMORY_BYTES
 from drivelint.errors import UsageError
 from drivelint.phrases import plural
 from drivelint.result.files import parquet_bytes
@@ -100,10 +100,10 @@ def audit(request: AuditRequest, progress: Progress, executor: Executor | None =
         if not alone:
             raise UsageError("--delta needs packed tables: when all parts have ended, run drivelint merge --delta")
         delta.ready(request.delta, request.out, id_)
-    was_whole = _begin(request, results, id_)
+    was_whole = _create_or_check_settings(request, results, id_)
     if not alone and (request.retry_errors or request.prune):
         raise UsageError("--retry-errors and --prune remove results: use them without --shard and --claim")
-    part = parts.name_of(request.shard, claim=request.claim)
+    part = parts.part_name(request.shard, claim=request.claim)
     with locked(results, shared=not alone):
         parts.begin(results, part)
         audit_summary = _audited(request, results, progress, id_=id_, executor=executor, was_whole=was_whole)
@@ -131,7 +131,7 @@ def _audited(
     with database() as con, TemporaryDirectory(prefix="drivelint-audit-") as home:
         progress.stage("listing", None)
         n_drives = listing.fill(con, request.sources, _drive_input(request), id_, request.shard)
-        parts.ask(results, parts.name_of(request.shard, claim=request.claim), n_drives)
+        parts.ask(results, parts.part_name(request.shard, claim=request.claim), n_drives)
         create_views(con, results, Path(home))
         if alone and (n_stale := _drop_stale(con, results, retry=request.retry_errors)):
             create_views(con, results, Path(home))
@@ -194,7 +194,7 @@ def _judge(
     )
     try:
         with claims.alive() if claims else nullcontext():
-            ahead = WINDOW * workers.capacity * 16 if claims is None else TASK_DRIVES
+            ahead = SUBMITTED_TASKS_PER_WORKER * workers.capacity * 16 if claims is None else TASK_DRIVES
             (n_left,) = con.execute("SELECT count(*) FROM _listed").fetchall()[0]
             most = task_size(n_left, workers.capacity)
             driver = Driver(workers, results, tell, busy, claims.mark_done if claims else lambda _drives: None)
@@ -216,7 +216,7 @@ def _settings_of_workers(request: AuditRequest) -> JudgeSettings:
     if request.worker_memory is None:
         return request.settings
     memory = DEFAULT_MEMORY if request.settings.memory is None else request.settings.memory
-    left = max(LEAST_MEMORY, request.worker_memory - WORKER_BYTES)
+    left = max(LEAST_MEMORY_BYTES, request.worker_memory - WORKER_BYTES)
     return replace(request.settings, memory=min(memory, left))
 
 
@@ -225,7 +225,7 @@ def _compact_apart(out: str) -> None:
     context = multiprocessing.get_context("spawn")  # a fork would copy threads that hold locks
     with (
         suppress(BrokenProcessPool),  # if the process is killed, the next compaction packs its results
-        ProcessPoolExecutor(1, context, initializer=begin_worker, initargs=(os.getpid(),)) as apart,
+        ProcessPoolExecutor(1, context, initializer=prepare_worker_process, initargs=(os.getpid(),)) as apart,
     ):
         with deaf_to_ctrl_c():
             packing = apart.submit(_compact_there, out)
@@ -313,10 +313,10 @@ def _absent(con: duckdb.DuckDBPyConnection, results: ResultStore, request: Audit
     return len(absent)
 
 
-def _begin(request: AuditRequest, results: ResultStore, id_: str) -> bool:
-    """Write the settings that determine the results, or check that the existing audit has the same settings.
+def _create_or_check_settings(request: AuditRequest, results: ResultStore, id_: str) -> bool:
+    """Write `audit.json` with the settings that determine the results; if it exists, check that its settings are the same.
 
-    Return whether the existing audit had ended and its files are unchanged since then. Errors: `UsageError` if the existing audit used
+    Return whether an audit exists that has ended and whose files are unchanged since then. Errors: `UsageError` if the existing audit used
     other rules, parameters or versions, or if its files were changed after it ended.
     """
     told = {"run_id": id_, "versions": versions(), "settings": _plain(request.settings)}

@@ -34,7 +34,7 @@ options."""
 _SIDES: Final = ("auto", "lht", "rht")
 _TABLE_NEVER_HAS: Final = frozenset({"map", "environment", "handedness", "mapping"})
 """Columns that a manifest may have, but no table of states."""
-_LEAST_NUMBERS: Final = 3
+_LEAST_NUMBER_COLUMNS: Final = 3
 """A row of a table of states has at least this many numbers: a time and two coordinates."""
 _LINES: Final = 100
 _ALIKE: Final = 0.8
@@ -177,11 +177,11 @@ def _may_have_states(path: Path) -> bool:
     if path.suffix.lower() == ".parquet":
         types = [field.type for field in pq.read_schema(path)]
         numbers = sum(pa.types.is_primitive(each) and not pa.types.is_boolean(each) for each in types)
-        return numbers >= _LEAST_NUMBERS or any(map(pa.types.is_nested, types))
+        return numbers >= _LEAST_NUMBER_COLUMNS or any(map(pa.types.is_nested, types))
     with path.open(encoding="utf-8-sig", errors="replace") as file:
         some = [re.split(r"[,;\t]", line) for line in islice(file, 1, _LINES)]
     rows = [row for row in some if any(cell.strip() for cell in row)]
-    return not rows or any(sum(map(_is_number, row)) >= _LEAST_NUMBERS for row in rows)
+    return not rows or any(sum(map(_is_number, row)) >= _LEAST_NUMBER_COLUMNS for row in rows)
 
 
 def _is_number(cell: str) -> bool:

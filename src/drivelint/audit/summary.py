@@ -13,7 +13,7 @@ from drivelint.errors import ExitCode
 from drivelint.fleet.distinct_logs import COUNTED_PREFIX, create_counted_views
 from drivelint.phrases import listed, plural
 from drivelint.reasons.signals import UNRECORDED_PREFIX
-from drivelint.result.certainty import LEAST_SHARE
+from drivelint.result.certainty import LEAST_KEEPING_SHARE
 from drivelint.result.counts import SEVERITIES
 from drivelint.sql.statements import statement
 
@@ -23,10 +23,10 @@ if TYPE_CHECKING:
     from drivelint.audit.model import Receipt
 
 
-MOST_RULES: Final = 5
-MOST_REASONS: Final = 3
-MOST_COPIES: Final = 3
-MOST_LOGS: Final = 3
+MOST_LISTED_RULES: Final = 5
+MOST_LISTED_REASONS: Final = 3
+MOST_LISTED_COPIES: Final = 3
+MOST_LISTED_LOGS: Final = 3
 _NAMES_IN_FILE: Final = {"n_judged": "judged", "n_refused": "refused"}
 """Fields that have another name in `summary.json`."""
 _UNDECIDED: Final = "nothing failed, because nothing could be decided"
@@ -192,13 +192,13 @@ def logs_that_are(con: duckdb.DuckDBPyConnection, flag: str) -> LogList:
     if flag not in con.table("receipts").columns:
         return LogList(0, [])
     rows = con.execute(statement("audit/logs_that_are", what=flag)).fetchall()
-    return LogList(len(rows), [log for (log,) in rows[:MOST_LOGS]])
+    return LogList(len(rows), [log for (log,) in rows[:MOST_LISTED_LOGS]])
 
 
 def summed(con: duckdb.DuckDBPyConnection, n_reused: int) -> AuditSummary:
     """Return the summary of all drives with receipts. `n_reused`: drives that had a result before this run."""
     create_counted_views(con)
-    event = statement("fleet/event", of=COUNTED_PREFIX, least_share=str(LEAST_SHARE))
+    event = statement("fleet/event", of=COUNTED_PREFIX, least_share=str(LEAST_KEEPING_SHARE))
     broken, contacts, unknown_for, not_judged = (
         con.execute(statement(f"audit/{name}", event=event)).to_arrow_table()
         for name in ("broken", "contacts", "unknown", "not_judged")
@@ -220,13 +220,13 @@ def summed(con: duckdb.DuckDBPyConnection, n_reused: int) -> AuditSummary:
         findings={
             each["severity"]: each["n_findings_sum"] for each in sorted(findings, key=lambda each: each["severity"])
         },
-        broken=broken.slice(0, MOST_RULES).to_pylist(),
-        unknown_for=unknown_for.slice(0, MOST_REASONS).to_pylist(),
-        not_judged=not_judged.slice(0, MOST_REASONS).to_pylist(),
+        broken=broken.slice(0, MOST_LISTED_RULES).to_pylist(),
+        unknown_for=unknown_for.slice(0, MOST_LISTED_REASONS).to_pylist(),
+        not_judged=not_judged.slice(0, MOST_LISTED_REASONS).to_pylist(),
         undecided=_UNDECIDED if is_undecided else None,
         n_broken=broken.num_rows,
         n_unknown_for=unknown_for.num_rows,
         lossy_logs=logs_that_are(con, "lossy").logs,
         off_map_logs=logs_that_are(con, "off_map").logs,
-        copied=con.execute(statement("audit/copied"), {"most": MOST_COPIES}).to_arrow_table().to_pylist(),
+        copied=con.execute(statement("audit/copied"), {"most": MOST_LISTED_COPIES}).to_arrow_table().to_pylist(),
     )

@@ -287,9 +287,10 @@ def merged_cases_difference(
 def run_merged_cases(
     rule: Rule, cases: Sequence[Case], keys: Mapping[str, str] = merged_cases.MERGE_KEYS
 ) -> tuple[str, set[str]]:
-    """Judge all cases together; return the first problem ('' for none), and all reason codes.
+    """Judge all cases of a rule in one database; return the first problem ('' for none), and all reason codes.
 
-    `keys`: the columns that distinguish the merged cases, used one after the other. Errors: `RuleError`.
+    `keys`: key column, such as `drive_id` -> what a case is in the merged database, in words. For each column, the cases are merged and
+    judged once, and this column distinguishes them. Errors: `RuleError`.
     """
     everybody = numbered_cases(rule, cases)
     codes: set[str] = set()

@@ -103,7 +103,7 @@ def required_rules(
 def _matching(rules: Mapping[str, Rule], selector: str) -> list[Rule]:
     """Return the rules that match every comma-separated part of the selector."""
     parts = [part.strip() for part in selector.split(",")]
-    found = [{rule.id for rule in _being(rules, part)} for part in parts]
+    found = [{rule.id for rule in _matching_part(rules, part)} for part in parts]
     both = set.intersection(*found)
     if not both and len(parts) > 1:
         raise UsageError(
@@ -112,7 +112,8 @@ def _matching(rules: Mapping[str, Rule], selector: str) -> list[Rule]:
     return [rules[rule_id] for rule_id in sorted(both)]
 
 
-def _being(rules: Mapping[str, Rule], part: str) -> list[Rule]:
+def _matching_part(rules: Mapping[str, Rule], part: str) -> list[Rule]:
+    """Return the rules that match one part of a selector. Errors: `UsageError` if no rule, pack or glob matches."""
     if part in rules:
         return [rules[part]]
     method, colon, word = part.partition(":")

@@ -23,7 +23,14 @@ from drivelint.cli.console import print_rich, run_interruptible
 from drivelint.cli.grouped_help import GroupedCommand
 from drivelint.cli.options import Texts, argument, option
 from drivelint.cli.setting_options import known_settings, path_settings
-from drivelint.errors import LEAST_BYTES, DriveLintError, ExitCode, UsageError, least_limit_bytes, of_the_machine
+from drivelint.errors import (
+    LEAST_ADDRESS_SPACE_BYTES,
+    DriveLintError,
+    ExitCode,
+    UsageError,
+    least_limit_bytes,
+    of_the_machine,
+)
 from drivelint.phrases import inert, inert_json, inert_line
 from drivelint.settings import find_settings, read_settings
 from drivelint.without_pandas import leave_out_pandas
@@ -184,7 +191,7 @@ def main() -> NoReturn:
     from typer.exceptions import TyperException
 
     streams.prepare()
-    if (limit := least_limit_bytes()) is not None and limit < LEAST_BYTES:
+    if (limit := least_limit_bytes()) is not None and limit < LEAST_ADDRESS_SPACE_BYTES:
         _fail(f"a limit of {limit / 1e6:.0f} MB of memory (ulimit -v) is too low: raise it", ExitCode.TEMPFAIL)
     leave_out_pandas()
     ending_signals.install()

@@ -103,9 +103,9 @@ def what_if(
     Exit codes: 0 the answer is complete; 4 some or all verdicts need a new audit; 2 usage error.
     """
     from drivelint.fleet_report.audit_views import destination
-    from drivelint.fleet_report.what_if import ask_what_if, to_json, to_text
+    from drivelint.fleet_report.what_if import to_json, to_text, what_if_in_audit
 
-    asked = run_interruptible(lambda: ask_what_if(destination(dest), setting, by))
+    asked = run_interruptible(lambda: what_if_in_audit(destination(dest), setting, by))
     typer.echo(inert_json(to_json(asked)) if format_ == "json" else inert(to_text(asked)))
     raise typer.Exit(int(asked.exit_code))
 

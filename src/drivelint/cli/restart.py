@@ -44,7 +44,7 @@ class Restart:
         """Return a `Restart` on POSIX; None on Windows, where `exec` starts a second process instead of replacing this one."""
         return cls(progress, work) if os.name == "posix" else None
 
-    def excesses(self, task: str) -> dict[str, Excess]:
+    def exceeded_limits(self, task: str) -> dict[str, Excess]:
         """Return rule id -> exceeded limit, for the rules of a task that an earlier process could not interrupt."""
         return self._known.get(task, {})
 
@@ -54,7 +54,7 @@ class Restart:
         temporary.remove_all()
         if self._work is not None:
             shutil.rmtree(self._work, ignore_errors=True)
-        known = {**self._known, task: {**self.excesses(task), rule_id: excess}}
+        known = {**self._known, task: {**self.exceeded_limits(task), rule_id: excess}}
         self._progress.leave()
         sys.stderr.flush()
         os.execve(  # noqa: S606 - the same command

@@ -29,7 +29,7 @@ DIRECTION_LEAST_MPS: Final = 2.0
 LEAST_MOVING_SAMPLES: Final = 5
 ALONG_RAD: Final = np.deg2rad(30.0)
 """A box moves along its heading if, in most of its moving samples, the angle between the two is smaller than this."""
-LEAST_M: Final = {
+LEAST_SIZES_M: Final = {
     "car": (1.5, 0.8),
     "van": (2.0, 1.0),
     "truck": (2.5, 1.2),
@@ -40,7 +40,7 @@ LEAST_M: Final = {
 }
 """Class -> the least length and width (m) of such a vehicle: those of the smallest models, minus a detector's error of decimetres. There
 is no upper limit per class: a lorry that is recorded as a car has the right size."""
-MOST_M: Final = (60.0, 8.0)
+MOST_SIZES_M: Final = (60.0, 8.0)
 """Length and width (m) that no road user exceeds."""
 LARGEST_SIZE_SPREAD_M = 0.05
 """If the sizes of a track differ by more than this, they are estimates, and a finding reports it."""
@@ -147,10 +147,10 @@ def _moving_along(states: States) -> list[str]:
 
 def _implausible(states: States, actors: Actors) -> list[QualityFinding]:
     bad = np.zeros(len(actors.ids), np.bool_)
-    least = np.array([LEAST_M.get(kind or "", (0.0, 0.0)) for kind in actors.classes])
-    known = np.array([kind in LEAST_M for kind in actors.classes], np.bool_)
+    least = np.array([LEAST_SIZES_M.get(kind or "", (0.0, 0.0)) for kind in actors.classes])
+    known = np.array([kind in LEAST_SIZES_M for kind in actors.classes], np.bool_)
     for axis, name in enumerate(("length_m", "width_m")):
-        bad |= known & ((actors.sizes[name] < least[:, axis]) | (actors.sizes[name] > MOST_M[axis]))
+        bad |= known & ((actors.sizes[name] < least[:, axis]) | (actors.sizes[name] > MOST_SIZES_M[axis]))
     ids = _names(actors, bad)
     if not ids:
         return []

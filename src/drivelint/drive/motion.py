@@ -28,7 +28,7 @@ BIAS_LEAST_M = 50.0
 BIAS_LEAST_MPS = 2.0
 """Over 50 m, the ratio of velocities to the motion of the positions is known to about 1 %. Up to 5 % is accepted, as speedometers, and
 velocities of an axle in a bend, are that inexact."""
-LEAST_MISMATCHES = 20
+LEAST_MISMATCHING_WINDOWS = 20
 """At least this many one-second windows must mismatch; single steps are too noisy to compare."""
 
 
@@ -134,7 +134,7 @@ def _astray(states: States, step: Steps, most_replaced_share: float) -> Mask:
     # constant positions do not show how an actor moves: `contradiction` treats them
     bad = moving & (moved > MISMATCH_MPS * span) & (off > MISMATCH_MPS * span + MISMATCH_SHARE * fastest)
     seconds, astray = (np.bincount(states.actor[:-k][rows], minlength=len(states.ids)) for rows in (moving, bad))
-    wrong = (astray >= LEAST_MISMATCHES) & (2 * astray > seconds)
+    wrong = (astray >= LEAST_MISMATCHING_WINDOWS) & (2 * astray > seconds)
     return wrong & bool(seconds[wrong].sum() <= most_replaced_share * seconds.sum())
 
 

@@ -32,8 +32,10 @@ COMMON_LEAST: Final = 4
 ALIKE_SHARE: Final = 0.8
 COMMON_CHANGE: Final = 0.12
 COMMON_SPREAD: Final = 0.08
-"""At a common jolt, take each actor's speed relative to its speed `AROUND_NS` before and after. The median is off 1 by more than
-`COMMON_CHANGE`, and at least `ALIKE_SHARE` of the actors are within `COMMON_SPREAD` of the median."""
+"""The limits of a common jolt. For each actor, the ratio of its speed to its speed `AROUND_NS` before and after is computed.
+
+At a common jolt, the median of these ratios differs from 1 by more than `COMMON_CHANGE`, and at least `ALIKE_SHARE` of the actors have a
+ratio within `COMMON_SPREAD` of the median."""
 AROUND_NS: Final = 300_000_000
 COMMON_NS: Final = 500_000_000
 """Values derived from velocities, such as accelerations and jerks, are also wrong within this time before and after a common jolt."""

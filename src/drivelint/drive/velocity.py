@@ -24,7 +24,9 @@ if TYPE_CHECKING:
 LARGEST_ERROR_MPS: Final = 0.25
 """A velocity component is known if three standard errors are at most this: half of the speed that counts as standing (`standing_mps`)."""
 HALF_WIDTHS_S: Final = (0.25, 0.5, 1.0)
-"""Half widths of the filter, tried after central differences. At a jerk of 10 m/s3 they are up to 0.06, 0.25 and 1 m/s off."""
+"""Half widths of the filter in seconds, tried in this order if central differences are too noisy.
+
+At a jerk of 10 m/s3, the derived velocities are wrong by up to 0.06, 0.25 and 1 m/s."""
 LONGEST_PERIOD_NS: Final = 210_000_000
 """With longer sampling periods, motion cannot be separated from noise: central differences are used, as for exact positions."""
 MOVED_M: Final = 1.0

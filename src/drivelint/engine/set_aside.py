@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from drivelint.drive.trace import Trace
 
-LEAST_BYTES = 200_000_000
+LEAST_SPILLED_TABLE_BYTES = 200_000_000
 """Smaller tables stay in memory."""
 
 
@@ -24,7 +24,7 @@ def set_aside(con: duckdb.DuckDBPyConnection, trace: Trace) -> None:
     If there is no such folder, or no space in it, the tables stay in memory.
     """
     folder = spill_folder(con)
-    large = [name for name, rows in trace.tables.items() if rows.nbytes > LEAST_BYTES]
+    large = [name for name, rows in trace.tables.items() if rows.nbytes > LEAST_SPILLED_TABLE_BYTES]
     for name in large if folder else ():
         path = Path(folder) / f"{name}.arrow"
         try:

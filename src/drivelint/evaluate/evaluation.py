@@ -126,13 +126,13 @@ class Evaluation:
 
     def _work(self, todo: deque[Binding]) -> None:
         """Judge by the rules of the queue until it is empty, and make outcomes of their steps."""
-        self._take(todo)
+        self._evaluate_all(todo)
         while self._pending:
             try:
                 with store.telling_short_memory():
                     self.conclude()
             except duckdb.Error:
-                self._take(deque(self._apart(self._pending)))
+                self._evaluate_all(deque(self._apart(self._pending)))
 
     def _apart(self, bindings: Sequence[Binding]) -> list[Binding]:
         """Delete the results of these rules, and return the rules to judge them separately, so that only the faulty one fails."""
@@ -144,7 +144,8 @@ class Evaluation:
         self._forget_pending()
         return again
 
-    def _take(self, todo: deque[Binding]) -> None:
+    def _evaluate_all(self, todo: deque[Binding]) -> None:
+        """Evaluate the bindings, taken from the front of `todo`, which two threads may share, until it is empty."""
         while True:
             try:
                 binding = todo.popleft()

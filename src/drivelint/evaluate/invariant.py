@@ -51,7 +51,7 @@ def first_pass_measure_series_sql(rule: Rule) -> str:
     )
 
 
-def _grid(rule: Rule, partial: bool, unsettled: bool, check_engagement: bool) -> str:
+def _grid_sql(rule: Rule, partial: bool, unsettled: bool, check_engagement: bool) -> str:
     """Return CTEs of which the last is `_step_to_judge`; `unsettled`: only the groups that the first pass did not settle."""
     keep = ""
     if unsettled:
@@ -60,14 +60,14 @@ def _grid(rule: Rule, partial: bool, unsettled: bool, check_engagement: bool) ->
         keep += " AND a.object_id = _u.object_id" if rule.per_object else ""
     return statement(
         "judging/grid",
-        base=_base(rule),
+        base=_base_sql(rule),
         todo=subject_join(partial, "a"),
         unsettled=keep,
         **applicability.fragments(rule, "a", "a.t_ns", check_engagement),
     )
 
 
-def _base(rule: Rule) -> str:
+def _base_sql(rule: Rule) -> str:
     if "applies" not in rule.sections:
         return statement("judging/grid_by_default", grid="_pair_grid" if rule.per_object else "_step_grid")
     own = rule.columns["applies"]
@@ -87,7 +87,7 @@ def _base(rule: Rule) -> str:
 
 def steps_to_judge_sql(rule: Rule, partial: bool, check_engagement: bool) -> str:
     """Return the SQL for `_asked`: the steps to judge of a rule without a first pass."""
-    return statement("judging/asked", grid=_grid(rule, partial, False, check_engagement))
+    return statement("judging/asked", grid=_grid_sql(rule, partial, False, check_engagement))
 
 
 def judged_steps_sql(rule: Rule, partial: bool, check_engagement: bool, steps: Steps) -> str:
@@ -104,7 +104,7 @@ def judged_steps_sql(rule: Rule, partial: bool, check_engagement: bool, steps: S
         kept = statement("judging/aged", steps_with_episode=numbered)
     grid = "_step_to_judge AS (SELECT * FROM _asked)"
     if steps != "asked":
-        grid = _grid(rule, partial, steps == "unsettled", check_engagement)
+        grid = _grid_sql(rule, partial, steps == "unsettled", check_engagement)
     return rule_statement("judged_of_grid", rule, grid=grid, same_key=same_key, kept=kept)
 
 

@@ -27,9 +27,9 @@ MOST_EXCESSES: Final = 3
 """A rule that exceeded its limits this many times does not run again; else it would run for each drive of a failed batch."""
 _LOOK_S: Final = 0.1
 _MEMORY_GRACE_S: Final = 0.5
-"""CPU seconds within which a rule must react to an interrupt because of its memory, unless `_MOST_EXCESS` is reached before."""
-_MOST_EXCESS: Final = 1.25
-"""If a rule has used this many times its memory limit, it gets no more time to react to the interrupt."""
+"""CPU seconds within which a rule must react to an interrupt because of its memory, unless `_MOST_MEMORY_SHARE` is reached before."""
+_MOST_MEMORY_SHARE: Final = 1.25
+"""If a rule has used this multiple of its memory limit, it gets no more time to react to the interrupt."""
 
 Excess = Literal["rule_timeout", "out_of_memory"]
 """The limit that a rule exceeded, as the reason code of its verdicts."""
@@ -48,8 +48,8 @@ class RunningRule:
 class DeafRules(Protocol):
     """The interface to handle deaf rules: rules that do not react to an interrupt. `task`: whether drives or copies are judged."""
 
-    def excesses(self, task: str) -> Mapping[str, Excess]:
-        """Return the ids of the deaf rules, which must not run, and the limit that each exceeded."""
+    def exceeded_limits(self, task: str) -> Mapping[str, Excess]:
+        """Return rule id -> exceeded limit, for the deaf rules of a task. They must not run."""
         ...
 
     def restart_without(self, task: str, rule_id: str, excess: Excess) -> NoReturn:
@@ -93,7 +93,7 @@ class RuleLimits:
 
     def forget(self) -> None:
         """Allow every rule to run again, except the deaf ones."""
-        self._lost = {} if self._deaf is None else dict(self._deaf.excesses(self._task))
+        self._lost = {} if self._deaf is None else dict(self._deaf.exceeded_limits(self._task))
         self._excesses.clear()
 
     @contextmanager
@@ -133,7 +133,7 @@ class RuleLimits:
                 memory = self.memory() if alone else None
                 if memory is None:
                     before = resident
-                most = None if memory is None else before + int(_MOST_EXCESS * memory)
+                most = None if memory is None else before + int(_MOST_MEMORY_SHARE * memory)
                 if memory is not None and resident - before > memory:
                     excess, patience = "out_of_memory", now + min(_MEMORY_GRACE_S, seconds)
                 elif now >= seconds:

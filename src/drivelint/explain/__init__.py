@@ -115,7 +115,7 @@ def explain(request: ExplainRequest) -> Explanation:
         drive=about,
         verdict={**row, "judged_anew": now},
         other_verdicts=target.other_verdicts,
-        asks=_asks(rule, row, about["t_start_ns"] or 0),
+        asks=_advice(rule, row, about["t_start_ns"] or 0),
         decides_ns=decides,
         parts=parts,
         sql=evidence.sql_with_values(rule, case.params),
@@ -168,8 +168,8 @@ def _case(run_options: RunRequest, target: Target, rules: pa.Table, memory: int 
     )
 
 
-def _asks(rule: Rule, row: Mapping[str, Any], start_ns: int) -> str | None:
-    """Return in words what the user can record or provide, given the reason of a verdict; None for nothing."""
+def _advice(rule: Rule, row: Mapping[str, Any], start_ns: int) -> str | None:
+    """Return in words what the user can record or provide to decide an unknown verdict; None: nothing helps."""
     if row["cause_code"] is not None:
         return reason_text.advice_sentence(
             row["cause_code"], json.loads(row["cause_args"] or "{}"), start_ns, rule.reasons

@@ -22,10 +22,12 @@ SEARCH_FACTORS: Final = (0.02, 0.1, 0.25, 0.5, 1.0, 3.0, 10.0)
 """The distances of the tried values in each direction, as multiples of the present value (of 1 if it is 0)."""
 _NEAR_FACTORS: Final = 3
 """The number of distances that are judged first, because most changes of a verdict occur there."""
-_HALVINGS: Final = 8
-_MOST_HALVINGS: Final = 12
-_EXACT: Final = 0.005
-"""The interval in which the verdict changes is halved to this share of the value; a value is rounded by at most this share."""
+_LEAST_HALVINGS_OF_INTERVAL: Final = 8
+_MOST_HALVINGS_OF_INTERVAL: Final = 12
+_LARGEST_ERROR_SHARE: Final = 0.005
+"""After the least number of halvings, the interval in which the verdict changes is halved until it is at most this share of the value.
+
+A value is rounded by at most this share."""
 _PROFILE: Final = {
     "pull_out_angle_rad": ("rad", "angle at which this profile pulls out"),
     "cut_in_angle_rad": ("rad", "angle at which this profile cuts in"),
@@ -34,7 +36,7 @@ _PROFILE: Final = {
 }
 
 
-class _Number(NamedTuple):
+class _VariedNumber(NamedTuple):
     """A number that is varied. `column`: a profile's column, None for a parameter; `halvings`: number per evaluation."""
 
     name: str
@@ -67,15 +69,15 @@ def verdict_changes(context: VerdictContext, sandbox: Sandbox, verdict: str) -> 
     )
 
 
-def _parameters(context: VerdictContext) -> Iterator[_Number]:
+def _parameters(context: VerdictContext) -> Iterator[_VariedNumber]:
     for name, param in context.rule.params.items():
         now = context.params[name]
         if not isinstance(now, bool) and isinstance(now, int | float):
             # one more value costs half as much as starting and ending an evaluation
-            yield _Number(name, param.why, param.unit, float(now), math.inf, None, halvings=2)
+            yield _VariedNumber(name, param.why, param.unit, float(now), math.inf, None, halvings=2)
 
 
-def _profile_numbers(context: VerdictContext, sandbox: Sandbox) -> Iterator[_Number]:
+def _profile_numbers(context: VerdictContext, sandbox: Sandbox) -> Iterator[_VariedNumber]:
     profile = context.target.verdict_row["profile"]
     if not context.rule.per_profile or profile is None:
         return
@@ -85,18 +87,18 @@ def _profile_numbers(context: VerdictContext, sandbox: Sandbox) -> Iterator[_Num
             if now is not None:  # NULL: the profile `observed`
                 maximum = math.pi / 2 if unit == "rad" else math.inf
                 # one more value is one more row, which costs almost nothing
-                yield _Number(f"{profile}.{column}", what, unit, float(now), maximum, column, halvings=4)
+                yield _VariedNumber(f"{profile}.{column}", what, unit, float(now), maximum, column, halvings=4)
 
 
 def _with_parameters(
-    context: VerdictContext, sandbox: Sandbox, tried_values: Sequence[tuple[_Number, float]]
+    context: VerdictContext, sandbox: Sandbox, tried_values: Sequence[tuple[_VariedNumber, float]]
 ) -> list[str]:
     judged = sandbox.judge_each([{**context.params, number.name: value} for number, value in tried_values])
     return ["error" if each is None else context.verdicts_on(each, [sandbox.drive_id])[0] for each in judged]
 
 
 def _with_profiles(
-    context: VerdictContext, sandbox: Sandbox, tried_values: Sequence[tuple[_Number, float]]
+    context: VerdictContext, sandbox: Sandbox, tried_values: Sequence[tuple[_VariedNumber, float]]
 ) -> list[str]:
     columns_and_values = [(number.column, value) for number, value in tried_values if number.column is not None]
     judged = sandbox.judge_profiles(context.params, context.target.verdict_row["profile"], columns_and_values)
@@ -104,13 +106,15 @@ def _with_profiles(
 
 
 def _search(
-    numbers: Sequence[_Number], verdict: str, judge: Callable[[Sequence[tuple[_Number, float]]], list[str]]
+    numbers: Sequence[_VariedNumber], verdict: str, judge: Callable[[Sequence[tuple[_VariedNumber, float]]], list[str]]
 ) -> list[Change]:
     """Return the nearest change of each number. `judge` returns the verdict for each number and value."""
     changes: list[Change] = []
-    running: list[tuple[_Number, Search, dict[float, str] | None]] = [(n, _nearest(n, verdict), None) for n in numbers]
+    running: list[tuple[_VariedNumber, Search, dict[float, str] | None]] = [
+        (n, _nearest(n, verdict), None) for n in numbers
+    ]
     while running:
-        requests: list[tuple[_Number, Search, Sequence[float]]] = []
+        requests: list[tuple[_VariedNumber, Search, Sequence[float]]] = []
         for number, search, told in running:
             try:
                 requests.append((number, search, next(search) if told is None else search.send(told)))
@@ -122,7 +126,7 @@ def _search(
     return changes
 
 
-def _nearest(number: _Number, verdict: str) -> Search:
+def _nearest(number: _VariedNumber, verdict: str) -> Search:
     """Try values further away on both sides until the verdict changes on one side, then halve the last interval there."""
     scale = abs(number.now) or 1.0
     least = 0.0 if number.now >= 0 else -math.inf  # keep a number that is not negative at 0 or more
@@ -149,7 +153,7 @@ def _nearest(number: _Number, verdict: str) -> Search:
     return none
 
 
-def _values(number: _Number, scale: float, least: float) -> list[float]:
+def _values(number: _VariedNumber, scale: float, least: float) -> list[float]:
     """Return the values to try on one side, the nearest first."""
     reached = dict.fromkeys(min(number.maximum, max(least, number.now + scale * factor)) for factor in SEARCH_FACTORS)
     return [value for value in reached if value != number.now]
@@ -161,13 +165,13 @@ def _same(becomes: str, verdict: str) -> bool:
 
 
 def _edge(
-    number: _Number, values: list[float], at: int, verdict: str, verdicts: dict[float, str]
+    number: _VariedNumber, values: list[float], at: int, verdict: str, verdicts: dict[float, str]
 ) -> Generator[Sequence[float], dict[float, str], tuple[float, str, bool]]:
     """Return the nearest value on one side that changes the verdict, the new verdict, and whether values further away give it too."""
     near, far = (values[at - 1] if at else number.now), values[at]
     becomes = verdicts[far]
-    for n in range(0, _MOST_HALVINGS, number.halvings):
-        if n >= _HALVINGS and abs(far - near) <= _EXACT * abs(far):
+    for n in range(0, _MOST_HALVINGS_OF_INTERVAL, number.halvings):
+        if n >= _LEAST_HALVINGS_OF_INTERVAL and abs(far - near) <= _LARGEST_ERROR_SHARE * abs(far):
             break
         halved = yield list(_middles(near, far, number.halvings))
         for _ in range(number.halvings):
@@ -197,7 +201,7 @@ def _middles(near: float, far: float, halvings: int) -> Iterator[float]:
         yield from _middles(middle, far, halvings - 1)
 
 
-def _short_values(number: _Number, far: float) -> list[float]:
+def _short_values(number: _VariedNumber, far: float) -> list[float]:
     """Return numbers with few digits at or just beyond `far`, the shortest first."""
     away = math.ceil if far > number.now else math.floor
     size = math.floor(math.log10(max(abs(far), 1e-12)))
@@ -205,6 +209,6 @@ def _short_values(number: _Number, far: float) -> list[float]:
     for digits in range(1, 7):
         unit = 10.0 ** (size - digits + 1)
         value = float(f"{away(far / unit) * unit:.{digits}g}")
-        if abs(value - far) <= max(min(0.05 * abs(far - number.now), _EXACT * abs(far)), 1e-9):
+        if abs(value - far) <= max(min(0.05 * abs(far - number.now), _LARGEST_ERROR_SHARE * abs(far)), 1e-9):
             found.append(value)
     return found

@@ -101,7 +101,7 @@ class Sandbox:
         """
         valid = [no for no, params in enumerate(settings) if self._is_valid(params)]
         found: dict[str, Judgement] = {}
-        for some in _cut(valid, self._at_once):
+        for some in _batches(valid, self._at_once):
             found |= self._run({f"{self._rule.id}~{no}": settings[no] for no in some})
         return [found.get(f"{self._rule.id}~{no}") for no in range(len(settings))]
 
@@ -121,7 +121,7 @@ class Sandbox:
         """Judge by the rule with a changed profile for each (column, value): the profile with that value in that column."""
         return [
             judged
-            for some in _cut(columns_and_values, self._at_once)
+            for some in _batches(columns_and_values, self._at_once)
             for judged in self._judged_profiles(params, profile, some)
         ]
 
@@ -175,6 +175,6 @@ class Sandbox:
         return [dict(row) for row in self.con.execute(sql, values).to_arrow_table().to_pylist()]
 
 
-def _cut(items: Sequence[_T], size: int) -> Iterator[Sequence[_T]]:
+def _batches(items: Sequence[_T], size: int) -> Iterator[Sequence[_T]]:
     for start in range(0, len(items), size):
         yield items[start : start + size]

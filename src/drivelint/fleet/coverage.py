@@ -88,12 +88,17 @@ def coverage(con: duckdb.DuckDBPyConnection, *, of: str = "") -> Coverage:
     parts = {"subject": subject(of)}
     parts["profiled"] = statement("fleet/profiled", of=of)
     rules = con.execute(statement("fleet/rule_coverage", of=of, **parts)).fetchall()
-    situations = [each for name, values in SITUATIONS.items() for each in _situation(con, of, name, values)]
+    situations = [each for name, values in SITUATIONS.items() for each in _situation_coverage(con, of, name, values)]
     return Coverage(tuple(RuleCoverage(*row) for row in rules), tuple(situations), CANNOT_TELL)
 
 
-def _situation(con: duckdb.DuckDBPyConnection, of: str, name: str, values: tuple[str, ...]) -> list[SituationCoverage]:
-    """Return one row per value of a situation, in the order of `values`; the row of drives whose value is not known is last."""
+def _situation_coverage(
+    con: duckdb.DuckDBPyConnection, of: str, name: str, values: tuple[str, ...]
+) -> list[SituationCoverage]:
+    """Return the coverage of each value of a condition. `name`: the condition, such as `weather`; `values`: its values, in order.
+
+    The last row, without a value, counts the drives in which the condition is not known.
+    """
     rows: list[tuple[Any, ...]] = con.execute(
         statement("fleet/situation", of=of, subject=subject(of, name)), bound_tag(name)
     ).fetchall()

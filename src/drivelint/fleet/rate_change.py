@@ -43,7 +43,7 @@ class RateTest(NamedTuple):
         return inf if base == 0 else new / base
 
     @property
-    def is_called(self) -> bool:
+    def is_significant(self) -> bool:
         """Whether the test reports a difference. The probability of any false report in all tests together is at most 5 %."""
         return self.corrected <= ALLOWED_FALSE_CALLS
 
@@ -68,9 +68,9 @@ class RateChange:
     occasion_corrected: float | None = None
 
     @property
-    def is_called(self) -> bool:
+    def is_significant(self) -> bool:
         """Whether any test reports a difference. The probability of any false report for all rules together is at most 5 %."""
-        return any(each.is_called for each in self.tests)
+        return any(each.is_significant for each in self.tests)
 
     @property
     def tests(self) -> list[RateTest]:

@@ -26,7 +26,7 @@ from drivelint.fleet import intervals
 from drivelint.fleet.distinct_logs import subject
 from drivelint.fleet.situations import SITUATIONS, bound_tag, value_of
 from drivelint.phrases import hint
-from drivelint.result.certainty import LEAST_SHARE
+from drivelint.result.certainty import LEAST_KEEPING_SHARE
 from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
@@ -116,7 +116,7 @@ def rates(
     """
     check_tag(con, by, of)
     left_out = "" if without is None else f"ANTI JOIN {without}drives o ON o.sha256 = d.sha256"
-    fragments = {"of": of, "value": value_of(by), "without": left_out, "least_share": str(LEAST_SHARE)}
+    fragments = {"of": of, "value": value_of(by), "without": left_out, "least_share": str(LEAST_KEEPING_SHARE)}
     parts = {name: statement(f"fleet/{name}", **fragments) for name in ("profiled", "event")}
     parts["subject"] = subject(of, by, left_out)
     rows = con.execute(statement("fleet/rates", **fragments, **parts), bound_tag(by))

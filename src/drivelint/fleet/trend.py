@@ -42,7 +42,7 @@ class Trend:
         return sum(rate.findings for rate in self.rates if rate is not None)
 
     @property
-    def is_called(self) -> bool:
+    def is_significant(self) -> bool:
         """Whether the rate rises or falls, if at most 5 % of such lists may contain a false call."""
         return self.corrected is not None and self.corrected <= ALLOWED_FALSE_CALLS
 

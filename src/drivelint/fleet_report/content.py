@@ -20,7 +20,7 @@ from drivelint.fleet_report.places import FindingMap, finding_map
 from drivelint.fleet_report.rows import gravest_first, options_column, ranked, rows
 from drivelint.fleet_report.worst_value import WorstValue, worst_value
 from drivelint.phrases import plural
-from drivelint.result.certainty import LEAST_SHARE
+from drivelint.result.certainty import LEAST_KEEPING_SHARE
 from drivelint.result.counts import SEVERITIES
 from drivelint.sql.statements import statement
 
@@ -128,7 +128,7 @@ class FleetContent:
 
 def content(con: duckdb.DuckDBPyConnection, audit: Audit, base: Audit | None, by: Sequence[str]) -> FleetContent:
     """Return the content of the page about an audit from `open_audits`. Errors: `UsageError` for a tag in `by` that no drive has."""
-    share = str(LEAST_SHARE)
+    share = str(LEAST_KEEPING_SHARE)
     create_counted_views(con)
     event = statement("fleet/event", of=COUNTED_PREFIX, least_share=share)
     (totals,) = con.execute(statement("fleet/totals")).to_arrow_table().to_pylist()

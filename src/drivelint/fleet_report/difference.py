@@ -144,17 +144,20 @@ class AuditDifference:
         """Return the number of new findings of stable rules at or above a severity."""
         return _at_or_above(self.gating, fail_on)
 
-    def n_gone(self, fail_on: str) -> int:
-        """Return the number of the base's findings of stable rules, at or above a severity, that are gone but not fixed."""
+    def n_gone_unfixed(self, fail_on: str) -> int:
+        """Return the number of findings of the base audit that are missing in the new audit without being fixed.
+
+        Only findings of stable rules at or above a severity count.
+        """
         return _at_or_above(self.gone_by_severity, fail_on)
 
-    def risen(self, fail_on: str) -> list[tuple[RateChange, RateTest]]:
+    def risen_rates(self, fail_on: str) -> list[tuple[RateChange, RateTest]]:
         """Return the tests that report a higher rate of a stable rule at or above a severity."""
         severe = () if fail_on == "never" else SEVERITIES[: SEVERITIES.index(fail_on) + 1]
         return [
             (change, test)
             for change, test in self.tested
-            if test.is_called and (test.ratio or 0.0) > 1 and self.gating_rules.get(change.rule_id) in severe
+            if test.is_significant and (test.ratio or 0.0) > 1 and self.gating_rules.get(change.rule_id) in severe
         ]
 
     @property
@@ -165,7 +168,7 @@ class AuditDifference:
     @property
     def significant_changes(self) -> list[RateChange]:
         """The changes of rates that are statistically significant."""
-        return [each for each in self.rates if each.is_called]
+        return [each for each in self.rates if each.is_significant]
 
     @property
     def tested(self) -> list[tuple[RateChange, RateTest]]:
@@ -176,7 +179,7 @@ class AuditDifference:
     @property
     def shown_tests(self) -> list[tuple[RateChange, RateTest]]:
         """The tests that report a difference; if these are fewer than `NEAREST`, also the next ones by p-value."""
-        return self.tested[: max(NEAREST, sum(test.is_called for _, test in self.tested))]
+        return self.tested[: max(NEAREST, sum(test.is_significant for _, test in self.tested))]
 
 
 def _at_or_above(counts: dict[str, int], least: str) -> int:

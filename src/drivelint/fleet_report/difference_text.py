@@ -26,7 +26,8 @@ if TYPE_CHECKING:
 
 AUDIT_DIFF_SCHEMA: Final = 1
 """Version of the JSON format: raised when a key is removed or changes its meaning."""
-_MOST_RISEN: Final = 3
+_MOST_RISEN_RATES: Final = 3
+"""A sentence lists at most this many rates that have risen."""
 JSON_ENTRIES: Final = 1_000
 """Largest number of findings per standing in the JSON."""
 
@@ -49,12 +50,12 @@ def exit_code(difference: AuditDifference, fail_on: str | None) -> ExitCode:
     `fail_on` None: the two audits have no common drive. Then significantly higher rates gate instead of findings.
     """
     if fail_on is None:
-        if difference.risen(_own_severity(difference)):
+        if difference.risen_rates(_own_severity(difference)):
             return ExitCode.FAILED
         return ExitCode.OK if difference.has_rates and not _warnings(difference) else ExitCode.NOT_JUDGED
     if difference.n_failing(fail_on):
         return ExitCode.FAILED
-    return ExitCode.NOT_JUDGED if difference.n_gone(fail_on) or _warnings(difference) else ExitCode.OK
+    return ExitCode.NOT_JUDGED if difference.n_gone_unfixed(fail_on) or _warnings(difference) else ExitCode.OK
 
 
 def _own_severity(difference: AuditDifference) -> str:
@@ -78,7 +79,7 @@ def _code_and_reason(difference: AuditDifference, fail_on: str | None) -> str:
         return f"exit {int(exit_code(difference, None))}: {_rates_sentence(difference)}; --fail-on SEVERITY gates on all of the newer audit"
     if exit_code(difference, fail_on) == ExitCode.NOT_JUDGED and _warnings(difference):
         return f"exit 4: no new finding at or above severity {fail_on} so far, but {_warnings(difference)[0]}"
-    n = difference.n_gone(fail_on)
+    n = difference.n_gone_unfixed(fail_on)
     return exit_sentence(
         difference.n_failing(fail_on), fail_on, f"{plural(n, 'earlier finding')} gone but not fixed" if n else ""
     )
@@ -87,11 +88,11 @@ def _code_and_reason(difference: AuditDifference, fail_on: str | None) -> str:
 def _rates_sentence(difference: AuditDifference) -> str:
     """Return a phrase about the comparison of rates of two audits without a common drive."""
     least = _own_severity(difference)
-    if risen := difference.risen(least):
+    if risen := difference.risen_rates(least):
         rates_text = ", ".join(
-            f"{rate_name(change)} per {test.per} {times(test)}" for change, test in risen[:_MOST_RISEN]
+            f"{rate_name(change)} per {test.per} {times(test)}" for change, test in risen[:_MOST_RISEN_RATES]
         )
-        more = f" and {len(risen) - _MOST_RISEN} more" if len(risen) > _MOST_RISEN else ""
+        more = f" and {len(risen) - _MOST_RISEN_RATES} more" if len(risen) > _MOST_RISEN_RATES else ""
         return f"rates at or above severity {least} are higher than chance explains: {rates_text}{more}"
     if warnings := _warnings(difference):
         return f"no rate at or above severity {least} is higher than chance explains so far, but {warnings[0]}"
@@ -105,12 +106,12 @@ def since(difference: AuditDifference) -> str:
     if not difference.is_disjoint:
         return difference.headline
     rate_texts = [
-        f"{rate_name(change)} per {test.per} {times(test)}" for change, test in difference.tested if test.is_called
+        f"{rate_name(change)} per {test.per} {times(test)}" for change, test in difference.tested if test.is_significant
     ]
     if not rate_texts:
         return "no drive is in both, and no rate differs by more than chance explains"
-    more = f" and {len(rate_texts) - _MOST_RISEN} more" if len(rate_texts) > _MOST_RISEN else ""
-    return f"no drive is in both; rates that differ by more than chance explains: {', '.join(rate_texts[:_MOST_RISEN])}{more}"
+    more = f" and {len(rate_texts) - _MOST_RISEN_RATES} more" if len(rate_texts) > _MOST_RISEN_RATES else ""
+    return f"no drive is in both; rates that differ by more than chance explains: {', '.join(rate_texts[:_MOST_RISEN_RATES])}{more}"
 
 
 def rate_line(of: tuple[RateChange, RateTest]) -> str:
@@ -211,4 +212,4 @@ def _rate_change(change: RateChange) -> dict[str, Any]:
             "occasions_failed": rate.occasions_failed,
         }
     values = ("p_value", "corrected", "occasion_p_value", "occasion_corrected")
-    return {**content, **{name: getattr(change, name) for name in values}, "called": change.is_called}
+    return {**content, **{name: getattr(change, name) for name in values}, "called": change.is_significant}

@@ -114,13 +114,13 @@ def pages(
         "max_notes": MAX_NOTES,
     }
     for first in range(1, n_pages + 1, _AT_A_TIME):
-        for told in _some(con, audit, first, first + _AT_A_TIME - 1):
+        for told in _page_values(con, audit, first, first + _AT_A_TIME - 1):
             key = told["drive"]["key"]
             values = same | told | {"moments": moments.get(key)}
             yield page_name(key), template.render(values).encode("utf-8", "replace")
 
 
-def _some(con: duckdb.DuckDBPyConnection, audit: Audit, first: int, last: int) -> Iterator[Row]:
+def _page_values(con: duckdb.DuckDBPyConnection, audit: Audit, first: int, last: int) -> Iterator[Row]:
     """Yield the values of the template for each drive with a number from `first` to `last`."""
     bound = {"first": first, "last": last}
     facts = rows(con, "page_some", bound, table="page_facts", order="no")

@@ -125,8 +125,8 @@ def _words(fleet: FleetContent) -> dict[str, Any]:
     }
 
 
-def _beside(rate: Rate) -> str:
-    """Return the note beside a rate about findings of egos that were not completely judged."""
+def _note_beside_rate(rate: Rate) -> str:
+    """Return the note beside a rate on findings of egos that were not completely judged; '' if there are none."""
     if not rate.findings_of_unknown:
         return ""
     least = rate.at_least_per_100km
@@ -161,7 +161,7 @@ _FILTERS: Final[dict[str, Any]] = {
     "rate_line": rate_line,
     "since": since,
     "times": times,
-    "beside": _beside,
+    "beside": _note_beside_rate,
     "provide": _provide,
     "mend": _mend,
     "plural": plural,

@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 
 MAX_MARKS: Final = 3_000
 MAX_PLACES: Final = 20
-_WIDTH: Final = 900
-_MOST_HEIGHT: Final = 620
+_WIDTH_PX: Final = 900
+_MOST_HEIGHT_PX: Final = 620
 _CELL_PX: Final = 6
 _M_PER_DEGREE: Final = 111_320.0
 """Metres per degree of latitude, and of longitude at the equator, on a sphere with the earth's mean radius."""
@@ -50,13 +50,13 @@ def finding_map(con: duckdb.DuckDBPyConnection) -> FindingMap | None:
     stretch = math.cos(math.radians((about["south"] + about["north"]) / 2))
     across = max((about["east"] - about["west"]) * stretch, _LEAST_DEGREES)
     down = max(about["north"] - about["south"], _LEAST_DEGREES)
-    px = min((_WIDTH - 2 * _CELL_PX) / across, (_MOST_HEIGHT - 2 * _CELL_PX) / down)  # per degree
+    px = min((_WIDTH_PX - 2 * _CELL_PX) / across, (_MOST_HEIGHT_PX - 2 * _CELL_PX) / down)  # per degree
     cell = _CELL_PX / px
     bound = {"west": about["west"], "north": about["north"], "stretch": stretch, "cell": cell, "most": MAX_MARKS}
     found = con.execute(statement("fleet_report/marks"), bound).to_arrow_table().to_pylist()
     bar_m = round_step(_M_PER_DEGREE * across / 8)
     return FindingMap(
-        width=_WIDTH,
+        width=_WIDTH_PX,
         height=math.ceil(down * px) + 4 * _CELL_PX,
         marks=[_mark(row) for row in found],
         bar_px=num(bar_m / _M_PER_DEGREE * px),

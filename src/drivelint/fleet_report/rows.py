@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from drivelint.fleet.distinct_logs import COUNTED_PREFIX
-from drivelint.result.certainty import LEAST_SHARE
+from drivelint.result.certainty import LEAST_KEEPING_SHARE
 from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
@@ -24,17 +24,17 @@ def rows(con: duckdb.DuckDBPyConnection, name: str, bound: Row | None = None, **
 
 def ranked() -> str:
     """Return the SELECT of the drives with findings, the worst drives first."""
-    return statement("fleet_report/ranked", least_share=str(LEAST_SHARE), event=one_per_event(COUNTED_PREFIX))
+    return statement("fleet_report/ranked", least_share=str(LEAST_KEEPING_SHARE), event=one_per_event(COUNTED_PREFIX))
 
 
 def one_per_event(of: str) -> str:
     """Return the SELECT of one finding per event. `of`: prefix of the table `findings`."""
-    return statement("fleet/event", of=of, least_share=str(LEAST_SHARE))
+    return statement("fleet/event", of=of, least_share=str(LEAST_KEEPING_SHARE))
 
 
 def gravest_first() -> str:
     """Return the ORDER BY expressions that sort the findings `f` of the rules `r` from most to least severe."""
-    return statement("fleet_report/gravest_first", least_share=str(LEAST_SHARE))
+    return statement("fleet_report/gravest_first", least_share=str(LEAST_KEEPING_SHARE))
 
 
 def options_column(con: duckdb.DuckDBPyConnection) -> str:

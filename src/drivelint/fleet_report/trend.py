@@ -61,7 +61,7 @@ class AuditTrend:
     @property
     def called_trends(self) -> list[Trend]:
         """The rules whose rate rises or falls by more than chance explains."""
-        return [each for each in self.trends if each.is_called]
+        return [each for each in self.trends if each.is_significant]
 
     @property
     def headline(self) -> str:
@@ -140,7 +140,7 @@ def trend_text(trend: Trend) -> str:
     """Return the result of the test of a rule: its direction if it is called, p and the corrected p."""
     if trend.p_value is None or trend.corrected is None:
         return "no test"
-    word = direction(trend) if trend.is_called else "no trend"
+    word = direction(trend) if trend.is_significant else "no trend"
     return f"{word}, p {figure(trend.p_value)}, corrected {figure(trend.corrected)}"
 
 
@@ -203,8 +203,8 @@ def to_json(trend: AuditTrend) -> str:
                 "profile": each.profile,
                 "p_value": each.p_value,
                 "corrected": each.corrected,
-                "called": each.is_called,
-                "direction": direction(each) if each.is_called else None,
+                "called": each.is_significant,
+                "direction": direction(each) if each.is_significant else None,
                 "rates": [
                     rate
                     and {

@@ -35,20 +35,20 @@ MAX_FLIPPED: Final = 10_000
 
 
 @dataclass(frozen=True)
-class AskedWhatIf:
-    """The request and its result. `was`: the value in the audit. `by`: the tag by which verdicts are divided.
+class AuditWhatIf:
+    """A request of `what-if` and its result. `setting`: as `RULE.PARAM=VALUE`; `old_value`: the value in the audit; `tag`: None: no tag.
 
-    `by_value`: the verdicts by profile and value of that tag. If a log has several values of the tag, its verdicts count for each value,
-    but only once in `answer`.
+    `flipped`: the changed verdicts. `by_tag_value`: the verdicts by profile and value of the tag. If a log has several values of the tag,
+    its verdicts count for each value, but only once in `answer`.
     """
 
     audit: Audit
     setting: str
-    was: str
-    by: str | None
+    old_value: str
+    tag: str | None
     answer: WhatIf
     flipped: tuple[Flipped, ...] = ()
-    by_value: tuple[Flip, ...] = ()
+    by_tag_value: tuple[Flip, ...] = ()
 
     @property
     def exit_code(self) -> ExitCode:
@@ -57,26 +57,26 @@ class AskedWhatIf:
         return ExitCode.NOT_JUDGED if left else ExitCode.OK
 
 
-def ask_what_if(dest: str, setting: str, by: str | None) -> AskedWhatIf:
-    """Return the effect of `RULE.PARAM=VALUE` on the verdicts of an audit, by the values of a tag.
+def what_if_in_audit(dest: str, setting: str, tag: str | None) -> AuditWhatIf:
+    """Return the effect of `setting` (`RULE.PARAM=VALUE`) on the verdicts of the audit in `dest`, divided by the values of a tag.
 
     Errors: `UsageError` for an audit, rule, parameter, value or tag that does not exist.
     """
     with open_audits(dest) as (con, audit, _):
-        check_tag(con, by, "")
+        check_tag(con, tag, "")
         rules = catalogue.load_rules([Path(each) for each in audit.settings.get("rules_dirs", ())])
         ((rule_id, values),) = catalogue.parse_params(rules.values(), [setting]).items()
         ((param, value),) = values.items()
-        version, was = _used(con, rule_id, param)
+        version, old_value = _version_and_value(con, rule_id, param)
         rule = rules[rule_id]
         if version != rule.version:
             why = "the rule has changed since the audit: its stored verdicts do not apply to the present rule"
-            return AskedWhatIf(audit, setting, was, by, WhatIf(rule_id, param, float(value), why))
-        tagged = _answer(con, rule, param, value, by)
-        if tagged.needs_check:
-            return AskedWhatIf(audit, setting, was, by, tagged)
-        found = tagged if by is None else _answer(con, rule, param, value, None)
-        return AskedWhatIf(audit, setting, was, by, found, flipped(con, MAX_FLIPPED), tagged.verdicts)
+            return AuditWhatIf(audit, setting, old_value, tag, WhatIf(rule_id, param, float(value), why))
+        by_tag = _answer(con, rule, param, value, tag)
+        if by_tag.needs_check:
+            return AuditWhatIf(audit, setting, old_value, tag, by_tag)
+        found = by_tag if tag is None else _answer(con, rule, param, value, None)
+        return AuditWhatIf(audit, setting, old_value, tag, found, flipped(con, MAX_FLIPPED), by_tag.verdicts)
 
 
 def _answer(
@@ -87,7 +87,7 @@ def _answer(
     return what_if(con, rule, param, float(value), by)
 
 
-def _used(con: duckdb.DuckDBPyConnection, rule_id: str, param: str) -> tuple[str, str]:
+def _version_and_value(con: duckdb.DuckDBPyConnection, rule_id: str, param: str) -> tuple[str, str]:
     """Return the version of a rule in the audit, and the value of its parameter there."""
     known = dict(
         con.execute("SELECT rule_id, {'version': rule_version, 'params': params} FROM rules ORDER BY ALL").fetchall()
@@ -98,10 +98,10 @@ def _used(con: duckdb.DuckDBPyConnection, rule_id: str, param: str) -> tuple[str
     return known[rule_id]["version"], values.get(param, "not there")
 
 
-def to_text(analysis: AskedWhatIf) -> str:
+def to_text(analysis: AuditWhatIf) -> str:
     """Return the result as text: the changes of verdicts, by the values of the tag."""
     answer = analysis.answer
-    lines = [f"{analysis.setting} instead of {analysis.was}, by the verdicts that {analysis.audit.dest} stores"]
+    lines = [f"{analysis.setting} instead of {analysis.old_value}, by the verdicts that {analysis.audit.dest} stores"]
     if analysis.audit.warning:
         lines.append(analysis.audit.warning)
     if answer.needs_check:
@@ -125,14 +125,14 @@ def _totals(flips: Iterable[Flip]) -> list[tuple[tuple[str, str | None], int]]:
     return [(key, sum(n for *_, n in group)) for key, group in groupby(pairs, key=lambda pair: pair[:2])]
 
 
-def _table(analysis: AskedWhatIf) -> list[str]:
+def _table(analysis: AuditWhatIf) -> list[str]:
     """Return a line per value of the tag and profile, with the changes of its verdicts."""
     flips_by_group: dict[tuple[str, str], list[Flip]] = {}
     for each in sorted(
-        analysis.by_value,
+        analysis.by_tag_value,
         key=lambda f: (f.tag_value is None, f.tag_value or "", f.profile or "", f.was, f.becomes or ""),
     ):
-        value = "" if analysis.by is None else "(not given)" if each.tag_value is None else each.tag_value
+        value = "" if analysis.tag is None else "(not given)" if each.tag_value is None else each.tag_value
         flips_by_group.setdefault((value, each.profile or ""), []).append(each)
     width = max((len(" ".join(key).strip()) for key in flips_by_group), default=0)
     lines = []
@@ -166,14 +166,14 @@ def _becomes(flip: Flip) -> str:
     return f"stay {flip.was}" if flip.becomes == flip.was else f"{flip.was} -> {flip.becomes}"
 
 
-def _command(analysis: AskedWhatIf) -> str:
+def _command(analysis: AuditWhatIf) -> str:
     return (
         f"for the complete answer: drivelint audit SOURCE --param {analysis.setting} --out OTHER, then "
         f"drivelint diff {analysis.audit.dest} OTHER"
     )
 
 
-def to_json(analysis: AskedWhatIf) -> str:
+def to_json(analysis: AuditWhatIf) -> str:
     """Return the result as JSON."""
     answer = analysis.answer
     content: dict[str, Any] = {
@@ -181,12 +181,12 @@ def to_json(analysis: AskedWhatIf) -> str:
         "rule_id": answer.rule_id,
         "param": answer.param,
         "value": analysis.setting.partition("=")[2],
-        "was": analysis.was,
-        "by": analysis.by,
+        "was": analysis.old_value,
+        "by": analysis.tag,
         "needs_audit": answer.needs_check,
         "not_known": answer.not_known,
         "warning": analysis.audit.warning,
-        "verdicts": [each._asdict() for each in analysis.by_value],
+        "verdicts": [each._asdict() for each in analysis.by_tag_value],
         "flipped": [each._asdict() for each in analysis.flipped],
     }
     return msgspec.json.format(msgspec.json.encode(content), indent=2).decode()

@@ -54,7 +54,7 @@ class WorstValue(NamedTuple):
         return shlex.join(["--by", self.tag])
 
     @property
-    def is_called(self) -> bool:
+    def is_significant(self) -> bool:
         """Whether the difference is significant. The probability of any false report in all comparisons together is at most 5 %."""
         return self.corrected <= ALLOWED_FALSE_CALLS
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from drivelint.drive.trace import Identity
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats.folders import drive_files, drive_folders, is_drive_folder
-from drivelint.formats.search import is_pipe_or_device, tree, why_not_here
+from drivelint.formats.search import folder_tree, is_pipe_or_device, why_not_here
 from drivelint.own_files import OwnFiles
 from drivelint.phrases import escape_invisible
 
@@ -82,7 +82,7 @@ def _inside(path: Path) -> list[Path]:
     """Return the logs of a folder, and the paths in it that may contain logs but cannot be searched. Reading such a path reports why."""
     if not path.is_dir() or why_not_here(path) is not None or is_drive_folder(path):
         return [path]
-    content = tree(path, _SEARCHED_SUFFIXES)
+    content = folder_tree(path, _SEARCHED_SUFFIXES)
     drives = drive_folders([*content.folders, *content.links])
     inside, own = frozenset(drives), OwnFiles(path)
     files = [

@@ -22,19 +22,20 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-LEAST_S: Final = 60.0
-S_PER_BYTE: Final = 20e-6
-"""The limit of processor time is `LEAST_S` plus this per byte of the file: forty times what the slowest readers need for real files."""
-LEAST_BYTES: Final = 2 << 30
-BYTES_PER_BYTE: Final = 64
-"""The limit of memory is `LEAST_BYTES` plus this per byte of the file."""
+BASE_CPU_S: Final = 60.0
+CPU_S_PER_FILE_BYTE: Final = 20e-6
+"""The limit of CPU time in seconds is `BASE_CPU_S` plus this per byte of the file: forty times the need of
+the slowest readers for real files."""
+BASE_MEMORY_BYTES: Final = 2 << 30
+MEMORY_BYTES_PER_FILE_BYTE: Final = 64
+"""The limit of memory in bytes is `BASE_MEMORY_BYTES` plus this per byte of the file."""
 _LOOK_S: Final = 0.1
 _PACKAGE: Final = Path(__file__).parents[1]
 
 
-def most_bytes(n_bytes: int) -> int:
+def memory_limit_bytes(n_bytes: int) -> int:
     """Return the memory in bytes that reading a file of `n_bytes` may take."""
-    return LEAST_BYTES + n_bytes * BYTES_PER_BYTE
+    return BASE_MEMORY_BYTES + n_bytes * MEMORY_BYTES_PER_FILE_BYTE
 
 
 class _BeyondError(BaseException):
@@ -45,7 +46,7 @@ class _Watch:
     """Measures, in a thread of its own, time and memory of the thread that created it, and interrupts that thread at a limit."""
 
     def __init__(self, n_bytes: int) -> None:
-        self.seconds, self.bytes = LEAST_S + n_bytes * S_PER_BYTE, most_bytes(n_bytes)
+        self.seconds, self.bytes = BASE_CPU_S + n_bytes * CPU_S_PER_FILE_BYTE, memory_limit_bytes(n_bytes)
         self.excess = ""
         self._reader = threading.get_ident()
         self._work, self._before = Work(threading.get_native_id()), resident_bytes()

@@ -111,7 +111,7 @@ def load_map(
 
 def _refuse_endless_ground(source: MapSource, tables: MapTables) -> None:
     """Raise `MapError` if the grid squares under the lanes would take more memory in the database than reading the file may take."""
-    squares, most = ground_squares(tables.tables["lane_point"]), limits.most_bytes(len(source.content))
+    squares, most = ground_squares(tables.tables["lane_point"]), limits.memory_limit_bytes(len(source.content))
     if squares * BYTES_PER_SQUARE > most:
         lanes = tables.tables["lanelet"].num_rows
         raise MapError(

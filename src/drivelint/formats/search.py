@@ -26,8 +26,8 @@ class Tree(NamedTuple):
     unreadable: list[Path]
 
 
-def tree(root: Path, suffixes: Collection[str]) -> Tree:
-    """Return the content of a folder. A missing file is listed only if it has a suffix of logs (`suffixes`), or none, like a folder."""
+def folder_tree(root: Path, suffixes: Collection[str]) -> Tree:
+    """Return the files below a folder. A missing file is listed only if its suffix is one of `suffixes`, or empty, as for a folder."""
     content = Tree([], [], [], [])
     waiting = [root]
     inside = root.resolve()

@@ -28,7 +28,7 @@ MARGIN_TOLERANCE: Final = 0.01
 INTERVAL_TOLERANCE_S: Final = 0.1
 """A failing stretch counts as changed if its start or end moved by more than this, in seconds."""
 
-LEAST_SHARE: Final = 0.9
+LEAST_DURATION_SHARE: Final = 0.9
 """A drive may have been cut off if it lasts less than this fraction of its duration in the base result."""
 
 _WEIGHT = ("error", "fail", "unknown", "pass")
@@ -75,7 +75,7 @@ def compare(base: Result, new: Result, base_name: str = "base", name: str = "new
 
 def _is_much_shorter(now: Row, was: Row) -> bool:
     lasts, lasted = now["duration_s"], was["duration_s"]
-    return lasts is not None and lasted is not None and bool(lasts < LEAST_SHARE * lasted)
+    return lasts is not None and lasted is not None and bool(lasts < LEAST_DURATION_SHARE * lasted)
 
 
 def _drive(
@@ -272,9 +272,9 @@ class ResultLookup:
         The verdicts pass and not applicable count only where ego and object are recorded.
         """
         row = at.row
-        if gap := self._not_looked(drive_id, row):
+        if gap := self._why_not_judged(drive_id, row):
             return gap
-        assert drive_id is not None  # noqa: S101 - for the type checker: without a drive, _not_looked has returned a result
+        assert drive_id is not None  # noqa: S101 - for the type checker: without a drive, _why_not_judged has returned a result
         drive = self.drives[drive_id]
         if drive["duration_s"] is not None and at.worst > drive["duration_s"] + match.NEAR_S:
             return LookupResult("none", "the log ends before it")
@@ -322,8 +322,8 @@ class ResultLookup:
         why = f"the rule fails at another time, and {missing} of {verdict['n_expected']} steps were not judged"
         return LookupResult("unknown", why)
 
-    def _not_looked(self, drive_id: str | None, row: Row) -> LookupResult | None:
-        """Return an outcome that says why the rule was not judged in the drive at all; None: it was judged."""
+    def _why_not_judged(self, drive_id: str | None, row: Row) -> LookupResult | None:
+        """Return the reason why the rule was not judged in the drive, as the result of a lookup; None: it was judged."""
         if drive_id is None:
             return LookupResult("none", "the drive was not checked")
         drive, rule = self.drives[drive_id], self.rules.get(row["rule_id"])

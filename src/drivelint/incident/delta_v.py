@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 
 WINDOW_S: Final = 0.3
 """The time after the beginning of an impact in which crash recorders record the greatest change of velocity (49 CFR 563.7)."""
-_LEAST_DEGREES: Final = 5.0
-_LEAST_MPS: Final = 0.5
+_LEAST_TURN_DEGREES: Final = 5.0
+_LEAST_SPEED_MPS: Final = 0.5
 """The direction of a smaller velocity, or of a smaller change of velocity, is not meaningful."""
-_MOST_STEPS: Final = 2.5
+_MOST_STEPS_BETWEEN_SAMPLES: Final = 2.5
 """If samples are farther apart than this many usual steps, there is a gap, as in the rules (`max_gap`)."""
 
 
@@ -43,7 +43,7 @@ def delta_v(motion: Motion, party: int, before: int) -> DeltaV | None:
     window = window if window.size else np.arange(before + 1, min(before + 2, len(t)))
     change = np.hypot(*(v[:, window] - v[:, [before]]))
     steps = np.diff(t[before : before + 1 + window.size])
-    if not window.size or np.isnan(change).any() or (steps > _MOST_STEPS * motion.step_s + 1e-9).any():
+    if not window.size or np.isnan(change).any() or (steps > _MOST_STEPS_BETWEEN_SAMPLES * motion.step_s + 1e-9).any():
         return None
     i = int(change.argmax())
     return DeltaV(float(change[i]), float(t[window[i]]), bool(t[-1] + motion.step_s <= WINDOW_S + 1e-9))
@@ -73,10 +73,10 @@ def _turned(motion: Motion, party: int, before: int, velocity_change: DeltaV) ->
     """
     v = motion.velocity[party][:, [before, int(np.abs(motion.t - velocity_change.at_s).argmin())]]
     first, last = np.hypot(*v).tolist()
-    if velocity_change.mps < _LEAST_MPS or min(first, last) < _LEAST_MPS:
+    if velocity_change.mps < _LEAST_SPEED_MPS or min(first, last) < _LEAST_SPEED_MPS:
         return ""
     angle = math.degrees(math.acos(float(np.clip(v[:, 0] @ v[:, 1] / (first * last), -1.0, 1.0))))
-    if angle < _LEAST_DEGREES:
+    if angle < _LEAST_TURN_DEGREES:
         return ""
     steering = ", which may be steering" if abs(last - first) <= velocity_change.mps / 2 else ""
     return f": {first:.1f} to {last:.1f} m/s, direction changed by {angle:.0f}\u00b0{steering}"

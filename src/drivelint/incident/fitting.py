@@ -10,19 +10,19 @@ from drivelint.phrases import plural
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-_ROOM: Final = {"broken": 1500, "kept": 300, "excused": 80, "reasons": 350}
+_RESERVED_CHARACTERS: Final = {"broken": 1500, "kept": 300, "excused": 80, "reasons": 350}
 """The characters reserved for each part; if texts are left out, their number is printed."""
 _FIRST: Final = ("broken", "reasons")
 """Parts that get free space first, in this order."""
 _MAY_GO: Final = frozenset({"kept", "excused"})
 """Parts that may be left out completely, because the party's first line contains their number."""
-_WASTE: Final = {"broken": 30}
+_EMPTY_LINE_END_CHARACTERS: Final = {"broken": 30}
 """The empty characters at the end of a text's last line, in parts in which each text begins a new line."""
-_ALL_ROOM: Final = 3300
+_CHARACTERS_OF_ALL_PARTS: Final = 3300
 """The characters that all parts of both parties may take together; a part may use the space that others leave."""
-_SECOND_ROOM: Final = 110
+_CHARACTERS_PER_SECOND_ROW: Final = 110
 """The characters that fit into the space of one row of the table of seconds."""
-_JOIN: Final = 2
+_SEPARATOR_CHARACTERS: Final = 2
 """The number of characters between two texts."""
 SHARED_HEAD: Final = 100
 """The characters of the heading of the reasons that both parties share, with the empty end of the line before."""
@@ -50,12 +50,12 @@ class Reason(NamedTuple):
     titles: tuple[str, ...]
 
     @property
-    def full(self) -> str:
+    def full_text(self) -> str:
         """The reason, after the titles of its rules."""
         return f"{', '.join(self.titles)}: {self.why}"
 
     @property
-    def short(self) -> str:
+    def short_text(self) -> str:
         """The reason with the number of its rules."""
         return f"{self.why} ({plural(len(self.titles), 'rule')})"
 
@@ -73,29 +73,29 @@ def is_crowded(page: dict[str, Any]) -> bool:
     sure, rests, drive = page["sure"], page["rests"], page["drive"]
     facts = [
         8
-        + _lines(
+        + _n_lines(
             f"{drive['map_name']} {page['road_id']} {page['place'].lanelet_id} {page['coordinates']} {page['hand']}",
             _FACT,
         ),
-        10 + _lines(rests, _FACT) + _lines(sure["by"], _FACT),
+        10 + _n_lines(rests, _FACT) + _n_lines(sure["by"], _FACT),
     ]
     parties = page["parties"]
-    rows = [[_lines(f"{p['kind']}, {p['size']} ({p['size_source']})", _CELL) for p in parties]]
-    rows += [[_lines(p[name], _CELL) for p in parties] for name in _CELLS]
-    rows += [[sum(_lines(each, _CELL) for each in p["slowed"]) or 1 for p in parties]]
+    rows = [[_n_lines(f"{p['kind']}, {p['size']} ({p['size_source']})", _CELL) for p in parties]]
+    rows += [[_n_lines(p[name], _CELL) for p in parties] for name in _CELLS]
+    rows += [[sum(_n_lines(each, _CELL) for each in p["slowed"]) or 1 for p in parties]]
     against = [page["against"] or "", page["least"] or "", *(f"contact also {each}" for each in page["contacts"].texts)]
     across = [page["story"], page["what"]]
-    lines = max(facts) + sum(max(row) for row in rows) + _lines(" ".join(against), 2 * _CELL)
-    lines += _lines(", ".join(page["drawn"]), _WIDE)
-    return lines * _LINE_PX + sum(_lines(each, _WIDE) for each in across) * _TEXT_PX > _FIRST_PX
+    lines = max(facts) + sum(max(row) for row in rows) + _n_lines(" ".join(against), 2 * _CELL)
+    lines += _n_lines(", ".join(page["drawn"]), _WIDE)
+    return lines * _LINE_PX + sum(_n_lines(each, _WIDE) for each in across) * _TEXT_PX > _FIRST_PX
 
 
 def check_room(texts: Sequence[str]) -> int:
     """Return the characters that the columns of page 2 lose because the lines with hashes (`texts`) wrap."""
-    return _CHECK_LINE * sum(_lines(text, _CHECK) - 1 for text in texts)
+    return _CHECK_LINE * sum(_n_lines(text, _CHECK) - 1 for text in texts)
 
 
-def _lines(text: str, width: int) -> int:
+def _n_lines(text: str, width: int) -> int:
     return len(wrap(text, width))
 
 
@@ -118,11 +118,16 @@ def fit(parties: Sequence[dict[str, Any]], seconds_left: int, used_characters: i
     """
     parts = [
         (told, name, min(_least(told[name], name), room))
-        for name, room in _ROOM.items()
+        for name, room in _RESERVED_CHARACTERS.items()
         for told in parties
         if name in told
     ]
-    spare = _ALL_ROOM + _SECOND_ROOM * seconds_left - used_characters - sum(room for *_, room in parts)
+    spare = (
+        _CHARACTERS_OF_ALL_PARTS
+        + _CHARACTERS_PER_SECOND_ROW * seconds_left
+        - used_characters
+        - sum(room for *_, room in parts)
+    )
     if spare < 0:
         parts = _shrunk(parts, -spare)
     rooms = [room for *_, room in parts]
@@ -135,7 +140,7 @@ def fit(parties: Sequence[dict[str, Any]], seconds_left: int, used_characters: i
     for (told, name, _), room in zip(parts, rooms, strict=True):
         fitting = _fitting_reasons if name == "reasons" else _fitting
         told[name] = fitting(told[name], name, room + max(spare, 0))
-        spare -= max(_length(told[name].texts, name) + _TITLES_NOTE_CHARACTERS * told[name].is_short - room, 0)
+        spare -= max(_n_characters(told[name].texts, name) + _TITLES_NOTE_CHARACTERS * told[name].is_short - room, 0)
 
 
 def _shrunk(parts: Sequence[_Part], by: int) -> list[_Part]:
@@ -161,19 +166,22 @@ def first_fitting(texts: Sequence[str], room: int) -> Fitting:
 
 
 def _shortest(reasons: Sequence[Reason]) -> list[str]:
-    return [min(reason.short, reason.full, key=len) for reason in reasons]
+    return [min(reason.short_text, reason.full_text, key=len) for reason in reasons]
 
 
 def _least(texts: Sequence[Any], part: str) -> int:
     """Return the characters that all texts of a part take, in their shortest forms."""
     if part != "reasons":
-        return _length(texts, part)
-    return min(_length([each.full for each in texts], part), _length(_shortest(texts), part) + _TITLES_NOTE_CHARACTERS)
+        return _n_characters(texts, part)
+    return min(
+        _n_characters([each.full_text for each in texts], part),
+        _n_characters(_shortest(texts), part) + _TITLES_NOTE_CHARACTERS,
+    )
 
 
-def _length(texts: Sequence[str], part: str) -> int:
-    """Return the characters that texts of a part take."""
-    return sum(len(text) + _WASTE.get(part, _JOIN) for text in texts)
+def _n_characters(texts: Sequence[str], part: str) -> int:
+    """Return the number of characters of texts of a part, with the space between them."""
+    return sum(len(text) + _EMPTY_LINE_END_CHARACTERS.get(part, _SEPARATOR_CHARACTERS) for text in texts)
 
 
 def _fitting(texts: Sequence[str], part: str, room: int) -> Fitting:
@@ -182,7 +190,7 @@ def _fitting(texts: Sequence[str], part: str, room: int) -> Fitting:
     if part in _MAY_GO and texts and room < len(texts[0]) // 2:
         return Fitting([], len(texts))
     for text in texts[1:]:
-        if _length([*shown, text], part) > room:
+        if _n_characters([*shown, text], part) > room:
             break
         shown.append(text)
     return Fitting(shown, len(texts) - len(shown))
@@ -190,13 +198,13 @@ def _fitting(texts: Sequence[str], part: str, room: int) -> Fitting:
 
 def _fitting_reasons(reasons: Sequence[Reason], part: str, room: int) -> Fitting:
     """Return the reasons that fit. Until all fit, the longest lists of titles are replaced by numbers, then reasons are left out."""
-    shown, shortest = [reason.full for reason in reasons], _shortest(reasons)
-    if _length(shown, part) <= room:
+    shown, shortest = [reason.full_text for reason in reasons], _shortest(reasons)
+    if _n_characters(shown, part) <= room:
         return Fitting(shown, 0)
     for i in sorted(range(len(shown)), key=lambda i: (len(shortest[i]) - len(shown[i]), i)):
         shown[i] = shortest[i]
-        if _length(shown, part) + _TITLES_NOTE_CHARACTERS <= room:
+        if _n_characters(shown, part) + _TITLES_NOTE_CHARACTERS <= room:
             break
     fitting = _fitting(shown, part, room - _TITLES_NOTE_CHARACTERS)
-    full = {reason.full for reason in reasons}
+    full = {reason.full_text for reason in reasons}
     return fitting._replace(is_short=any(text not in full for text in fitting.texts))

@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     from drivelint.result.text import Row
 
 _STANDING_MPS: Final = 0.5
-_MOST_OTHERS: Final = 3
+_MOST_OTHER_ACTORS: Final = 3
+"""At most this many actors that are not parties are described."""
 _SIDES: Final = {True: "centre in a lane of its direction", False: "centre in the oncoming lane"}
 
 
@@ -164,8 +165,8 @@ def others_drawn(plan: Mapping[str, Any], scene: Row) -> list[str]:
         apart = float(shapely.distance(ego, shapely.polygons(corners(about))))
         kind = (about["actor_class"] or "kind not recorded").replace("_", " ")
         told.append(f"{who}: {kind}, {size} m, {moves}, {apart:.1f} m from A")
-    more = [f"{len(told) - _MOST_OTHERS} more"] if len(told) > _MOST_OTHERS else []
-    return told[:_MOST_OTHERS] + more
+    more = [f"{len(told) - _MOST_OTHER_ACTORS} more"] if len(told) > _MOST_OTHER_ACTORS else []
+    return told[:_MOST_OTHER_ACTORS] + more
 
 
 def against_each_other(relative_mps: float, closing_mps: float | None) -> str:

@@ -38,7 +38,7 @@ from drivelint.incident.words import amount, closing, contact, how_sure, measure
 from drivelint.report.html.pictures import pictures_by_moment
 from drivelint.report.html.plan_view import actor_shapes, plan_view
 from drivelint.report.html.road import Road
-from drivelint.result.certainty import LEAST_SHARE, POSSIBLE, SURE, certainty
+from drivelint.result.certainty import LEAST_KEEPING_SHARE, POSSIBLE, SURE, certainty
 from drivelint.result.text import seconds, utc_at
 
 if TYPE_CHECKING:
@@ -57,9 +57,9 @@ _CLIP: Final = re.compile(r"^(.+)-clip-[0-9a-f]{8}$")
 _CLIP_NOTE: Final = "; numbers that depend on what is before or after it may differ from the log's"
 _SPACES: Final = "danger_space"
 _LONGEST: Final = 330
-_LINE_ROOM: Final = 370
-"""The characters that warnings about the log, or the source of a clip, take in the columns of page 2."""
-_WARNING_ROOM: Final = 300
+_NOTE_CHARACTERS: Final = 370
+"""The number of characters that warnings about the log, or the source of a clip, may have in the columns of page 2."""
+_WARNING_CHARACTERS: Final = 300
 _LABEL_SHARE: Final = 0.1
 """Size of the plan view's labels as a share of its height; at the least height (`sheet.css`) they are 6 pt or more."""
 _RECORDS_ROOM: Final = 1300
@@ -134,7 +134,7 @@ def content(case: Case) -> dict[str, Any]:
         },
         "recording": _recording(finding),
         "errors": MeasurementErrors().words,
-        "least_share": f"{LEAST_SHARE:.0%}",
+        "least_share": f"{LEAST_KEEPING_SHARE:.0%}",
         "sure": _surest(case),
         "rests": _rests_on(case, motion),
         "records": held_elements(case.drive.trace.tables, finding.drive, row["ego_id"]),
@@ -250,7 +250,8 @@ def _warnings(case: Case) -> list[str]:
 def _told_warnings(case: Case) -> Fitting:
     """Return the first warnings about the log and the number of further warnings; a long warning is cut and refers to the full text."""
     rest = " ... (in full in report.html)"
-    return first_fitting([shorten(told, _WARNING_ROOM, placeholder=rest) for told in _warnings(case)], _WARNING_ROOM)
+    shortened = [shorten(told, _WARNING_CHARACTERS, placeholder=rest) for told in _warnings(case)]
+    return first_fitting(shortened, _WARNING_CHARACTERS)
 
 
 def _cut_from(case: Case) -> list[str]:
@@ -299,7 +300,7 @@ def _conduct(case: Case, span: tuple[int, int], seconds_left: int, used_characte
     beside = sum(len(line) for told in found for line in told.get("beside", ()))
     of_both |= {"in_report": any(told["in_report"] for told in found), "id": found[-1]["id"]}
     lines = used_characters + beside + SHARED_HEAD * bool(of_both["reasons"])
-    fit([*found, of_both], seconds_left, lines + _LINE_ROOM * (bool(_warnings(case)) + bool(_cut_from(case))))
+    fit([*found, of_both], seconds_left, lines + _NOTE_CHARACTERS * (bool(_warnings(case)) + bool(_cut_from(case))))
     return {"conduct": found, "of_both": of_both}
 
 

@@ -20,7 +20,8 @@ _TOP, _BOTTOM = 8.0, 97.0
 """Top and bottom of the drawn area in percent of a chart's height; that height depends on the free space on the page."""
 _FROM_S, _TO_S = -15.0, 7.0
 _HOLE_STEPS: Final = 3
-_MOST_REQUIRED: Final = 3
+_MOST_REQUIRED_LINES: Final = 3
+"""A chart of gaps has at most this many lines of required gaps."""
 
 
 class _Line(NamedTuple):
@@ -58,7 +59,7 @@ def strips(
                 title=f"required: {row['title']}",
                 label="as driven" if row["profile"] == "observed" else row["profile"] or "",
             )
-            for row in gaps[:_MOST_REQUIRED]
+            for row in gaps[:_MOST_REQUIRED_LINES]
         ]
         charts.append(_chart("Gap from box to box, m", lines, x, from_zero=True))
     if finding_course is not None:

@@ -73,33 +73,33 @@ def content(path: Path, mapping: str | None, notes: list[str], *, has_reader: bo
         head = file.read(_HEAD_BYTES)
     if head.startswith(MAGIC[:5]):
         return Content(channels=_channels(path), notes=notes)
-    return _of_table(path, head, mapping, notes, has_reader=has_reader)
+    return _table_content(path, head, mapping, notes, has_reader=has_reader)
 
 
-def _of_table(path: Path, head: bytes, mapping: str | None, notes: list[str], *, has_reader: bool) -> Content:
+def _table_content(path: Path, head: bytes, mapping: str | None, notes: list[str], *, has_reader: bool) -> Content:
     if mapping is not None and video_mapping.is_video_mapping(mapping):
         name, film = video_mapping.load(mapping)
-        return Content(sheets=[_filmed(path, film)], mapping=name, notes=notes)
+        return Content(sheets=[_film_sheet(path, film)], mapping=name, notes=notes)
     if mapping is not None:
         name, loaded = mappings.load(mapping)
-        return Content(sheets=[_mapped(path, loaded)], mapping=name, notes=notes)
+        return Content(sheets=[_mapped_sheet(path, loaded)], mapping=name, notes=notes)
     if head.startswith(b"PAR1"):
-        sheet = _plain(path)
+        sheet = _parquet_sheet(path)
         guess = (
             None
             if has_reader
-            else draft_mapping(parquet.schema(path).names, lambda name: _texts(ParquetSheet(path), name))
+            else draft_mapping(parquet.schema(path).names, lambda name: _distinct_texts(ParquetSheet(path), name))
         )
         return Content(sheets=[sheet], notes=notes, draft_mapping=guess)
     if has_reader or b"\0" in head or not head.strip() or head.lstrip()[:1] in {b"<", b"{"}:
         return Content(notes=notes)  # not a table, or a text file with a reader of its own
     table = CsvSheet(path, TextLayout())
-    sheet = Sheet(name=path.name, rows=None, columns=_unread(table.names))
-    draft = draft_mapping(table.names, lambda name: _texts(table, name))
+    sheet = Sheet(name=path.name, rows=None, columns=_unread_columns(table.names))
+    draft = draft_mapping(table.names, lambda name: _distinct_texts(table, name))
     return Content(sheets=[sheet], notes=notes, draft_mapping=draft)
 
 
-def _texts(sheet: CsvSheet | ParquetSheet, column: str) -> list[str]:
+def _distinct_texts(sheet: CsvSheet | ParquetSheet, column: str) -> list[str]:
     """Return the distinct texts of a column; empty if the column cannot be read."""
     try:
         sheet.load([column])
@@ -108,49 +108,49 @@ def _texts(sheet: CsvSheet | ParquetSheet, column: str) -> list[str]:
         return []  # reading the table fails for the same reason, and reports it
 
 
-def _unread(names: Iterable[str]) -> list[Column]:
+def _unread_columns(names: Iterable[str]) -> list[Column]:
     return [Column(name=name, read_as=[]) for name in names]
 
 
-def _plain(path: Path) -> Sheet:
-    return Sheet(name=path.name, rows=parquet.n_rows(path), columns=_unread(parquet.schema(path).names))
+def _parquet_sheet(path: Path) -> Sheet:
+    return Sheet(name=path.name, rows=parquet.n_rows(path), columns=_unread_columns(parquet.schema(path).names))
 
 
 def _table_file(path: Path) -> Sheet | None:
     """Return the columns of a table file in a folder; None for another file."""
     if path.suffix == ".parquet":
-        return _plain(path)
+        return _parquet_sheet(path)
     if path.suffix in {".feather", ".arrow"}:
         names, rows = ipc.columns(path)
-        return Sheet(name=path.name, rows=rows, columns=_unread(names))
+        return Sheet(name=path.name, rows=rows, columns=_unread_columns(names))
     return None
 
 
-def _mapped(path: Path, mapping: Mapping) -> Sheet:
+def _mapped_sheet(path: Path, mapping: Mapping) -> Sheet:
     """Return a table's columns, first the columns that the mapping reads."""
     sheet = open_sheet(path, mapping)
-    columns = _read(mapping)
+    columns = _read_columns(mapping)
     shapes = [re.compile(re.escape(c.name).replace(re.escape(GROUP_PLACEHOLDER), r"\d+")) for c in columns]
     grouped = any(GROUP_PLACEHOLDER in c.name for c in columns)
     unread = [name for name in sheet.names if name and not any(shape.fullmatch(name) for shape in shapes)]
     others = dict.fromkeys(re.sub(r"(?<=#)\d+", GROUP_PLACEHOLDER, name) if grouped else name for name in unread)
-    columns += _unread(others)
+    columns += _unread_columns(others)
     rows = parquet.n_rows(path) if isinstance(sheet, ParquetSheet) else None
     return Sheet(name=path.name, rows=rows, columns=columns)
 
 
-def _filmed(path: Path, film: VideoMapping) -> Sheet:
+def _film_sheet(path: Path, film: VideoMapping) -> Sheet:
     """Return the columns of a table of video detections, first the columns that the mapping reads."""
     names = CsvSheet(path, TextLayout()).names
     read = {film.frames.column: ["time"]} | {
         str(actor.ahead): [f"distance ahead of {actor.id}"] for actor in film.actor
     }
     columns = [Column(name=name, read_as=read_as) for name, read_as in read.items()]
-    columns += _unread(name for name in names if name and name not in read)
+    columns += _unread_columns(name for name in names if name and name not in read)
     return Sheet(name=path.name, rows=None, columns=columns)
 
 
-def _read(mapping: Mapping) -> list[Column]:
+def _read_columns(mapping: Mapping) -> list[Column]:
     found: dict[str, list[str]] = {mapping.time.column: ["time"]}
     units: dict[str, str | None] = {mapping.time.column: mapping.time.unit}
     for name, spec in mappings.fields(mapping).items():
@@ -178,12 +178,14 @@ def _channels(path: Path) -> list[Channel]:
         for file in bag.mcap_files(path):
             container = Container(file, salvage=True)
             try:
-                for packet in container.packets():
-                    count = counts.setdefault(_key(container, packet.channel), _Count(first_ns=packet.log_time_ns))
+                for log_message in container.messages():
+                    count = counts.setdefault(
+                        _key(container, log_message.channel), _Count(first_ns=log_message.log_time_ns)
+                    )
                     count.messages += 1
-                    count.size += len(packet.data)
-                    count.first_ns = min(count.first_ns, packet.log_time_ns)
-                    count.last_ns = max(count.last_ns, packet.log_time_ns)
+                    count.size += len(log_message.data)
+                    count.first_ns = min(count.first_ns, log_message.log_time_ns)
+                    count.last_ns = max(count.last_ns, log_message.log_time_ns)
             finally:
                 # a channel without messages may occur only in the index
                 for part in (container, read_index(file)):

@@ -93,7 +93,7 @@ def _received(agent: socket.socket, n: int) -> bytes:
     while len(content) < n:
         part = agent.recv(n - len(content))
         if not part:
-            raise OSError("it ended in the middle of an answer")
+            raise OSError("it closed the connection before the end of its answer")
         content += part
     return content
 

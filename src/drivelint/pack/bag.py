@@ -22,7 +22,8 @@ _LINE: Final = re.compile(r"([0-9a-f]{64})  ([^\s].*)")
 _BAG_INFO_PATTERN: Final = re.compile(
     r"(?:Bagging-Date: (\d{4}-\d\d-\d\d)\n)?Bag-Software-Agent: drivelint [^\s]+\nPayload-Oxum: (\d+\.\d+)\n"
 )
-_UNFIT: Final = re.compile(r"[\r\n%\\\ud800-\udfff]")
+_REFUSED_CHARACTER: Final = re.compile(r"[\r\n%\\\ud800-\udfff]")
+"""A path with such a character cannot be packed."""
 
 
 class Problem(NamedTuple):
@@ -60,7 +61,7 @@ def _write_manifest(folder: Path, name: str, files: Iterable[Path]) -> None:
     lines = []
     for path in files:
         inner = path.relative_to(folder).as_posix()
-        if _UNFIT.search(inner):
+        if _REFUSED_CHARACTER.search(inner):
             raise UsageError(f"{inner}: sha256sum does not find a file of such a name: rename it")
         lines.append(f"{sha256_of(path)}  {inner}\n")
     (folder / name).write_text("".join(lines), "utf-8", newline="\n")

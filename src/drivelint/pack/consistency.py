@@ -85,7 +85,7 @@ def _of_evidence(folder: Path, result: Result, evidence: dict[str, Any]) -> list
     keys = differing(evidence, due, result.findings.select(SAID_OF_FINDINGS).to_pylist(), result.rules.to_pylist())
     keys += sorted(evidence.keys() - due.keys() - set(_NOT_FACTS))
     keys += _misplaced(json.loads((folder / RESULT / "run.json").read_text("utf-8")), evidence)
-    keys += sheets.misnamed(folder, evidence, result.findings["finding_id"].to_pylist())
+    keys += sheets.invalid_sheets(folder, evidence, result.findings["finding_id"].to_pylist())
     wrong = [Problem("evidence.json does not match the result", key) for key in keys]
     said, counted = summary_of(folder), json.loads(summary.render(result))
     keys = sorted(key for key in counted.keys() | said.keys() if key != "tool" and said.get(key) != counted.get(key))
@@ -114,7 +114,7 @@ def _place_of_sql(finding: dict[str, Any], *, by_drive: bool) -> str | None:
 
 
 def _misplaced(run: dict[str, Any], evidence: dict[str, Any]) -> list[str]:
-    """Return the inputs of the check for which `evidence.json` lacks a path in the pack, or has an unexpected one."""
+    """Return the names of the inputs of the check whose path in the pack is missing or unexpected in `evidence.json`."""
     wrong = [] if isinstance(run["mapping"], dict) == (evidence["mapping"] is not None) else ["mapping"]
     if len(run["rules_dirs"]) != len(evidence["rules_dirs"]):
         wrong.append("rules_dirs")

@@ -35,7 +35,7 @@ OUTPUTS: Final = frozenset(name for name in RESULT_FILES if not ("*" in name or 
 }
 """The files of a result that are copied into a pack. The manifest is left out, because the bag has its own."""
 SAID_OF_FINDINGS: Final = ("finding_id", "rule_id", "drive_id", "observed", "required", "margin", "unit")
-_SAID_OF_DRIVES: Final = ("drive_id", "file_name", "sha256", "format", "map_name", "map_sha256")
+_DRIVE_COLUMNS: Final = ("drive_id", "file_name", "sha256", "format", "map_name", "map_sha256")
 _LIBRARIES: Final = ("duckdb", "duckdb-extension-spatial", "pyarrow", "numpy", "shapely", "polars")
 """Libraries that affect verdicts or the bytes of files."""
 
@@ -51,7 +51,7 @@ def facts(folder: Path, result: Result, check_request: RunRequest) -> dict[str, 
     drives, rules = result.drives.to_pylist(), result.rules.to_pylist()
     return {
         "tool": summary_of(folder)["tool"],
-        "drives": [{key: drive[key] for key in _SAID_OF_DRIVES} for drive in judged_drives(drives)],
+        "drives": [{key: drive[key] for key in _DRIVE_COLUMNS} for drive in judged_drives(drives)],
         "not_judged": [drive["file_name"] for drive in drives if drive["status"] != "judged"],
         "options": _options(check_request, result),
         **facts_of_rules(folder, rules),

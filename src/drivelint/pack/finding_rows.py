@@ -9,7 +9,7 @@ import duckdb
 import pyarrow.parquet as pq
 
 from drivelint.pack import finding_sql
-from drivelint.pack.finding_sql import COMPARED
+from drivelint.pack.finding_sql import COMPARED_COLUMNS
 from drivelint.sql import store
 
 if TYPE_CHECKING:
@@ -57,13 +57,13 @@ def evidence(
         store.lock(con)  # the rule, or the pack that is verified, may be untrusted
         try:
             con.execute(";".join(finding_sql.macros(sql)))
-            enough = _enough(con, sql, finding, tables)
+            least_rows = _fewest_sufficient_rows(con, sql, finding, tables)
         except duckdb.Error as error:
             return f"DuckDB alone cannot run it: {str(error).splitlines()[0]}"
-    if enough is None:
+    if least_rows is None:
         return "the rule's condition alone does not give its numbers: nobody was there, or a step is missing"
-    files = {f"{table}.parquet": _parquet(table, rows) for table, rows in enough.items()}
-    return {SQL_FILE: finding_sql.file_text(rule, finding, sql, enough).encode(), **files}
+    files = {f"{table}.parquet": _parquet(table, rows) for table, rows in least_rows.items()}
+    return {SQL_FILE: finding_sql.file_text(rule, finding, sql, least_rows).encode(), **files}
 
 
 def gives(sql: str, finding: Row, tables: Mapping[str, pa.Table]) -> bool:
@@ -78,25 +78,25 @@ def gives(sql: str, finding: Row, tables: Mapping[str, pa.Table]) -> bool:
             return False
 
 
-def _enough(
+def _fewest_sufficient_rows(
     con: duckdb.DuckDBPyConnection, sql: str, finding: Row, tables: Mapping[str, pa.Table]
 ) -> dict[str, pa.Table] | None:
     """Return the fewest tried rows of each table that give the finding's numbers; None: even all rows give other numbers."""
     choices = {table: _choices(con, finding, rows) for table, rows in tables.items()}
 
-    def enough(rows_by_table: Mapping[str, pa.Table]) -> bool:
+    def are_sufficient(rows_by_table: Mapping[str, pa.Table]) -> bool:
         for table, rows in rows_by_table.items():
             con.register(table, rows)
         return _is_same(con.execute(sql).to_arrow_table().to_pylist(), finding)
 
     least = {table: each[0] for table, each in choices.items()}
-    if enough(least):
+    if are_sufficient(least):
         return least
     chosen = dict(tables)
-    if not enough(chosen):
+    if not are_sufficient(chosen):
         return None
     for table, each in choices.items():
-        chosen[table] = _first(each, lambda rows, table=table: enough({**chosen, table: rows}))  # type: ignore[misc]
+        chosen[table] = _first(each, lambda rows, table=table: are_sufficient({**chosen, table: rows}))  # type: ignore[misc]
     return chosen
 
 
@@ -106,7 +106,11 @@ def _first(choices: Sequence[pa.Table], gives: Callable[[pa.Table], bool]) -> pa
 
 
 def _is_same(rows: list[dict[str, Any]], finding: Row) -> bool:
-    return len(rows) == 1 and rows[0]["holds"] is False and all(rows[0][name] == finding[name] for name in COMPARED)
+    return (
+        len(rows) == 1
+        and rows[0]["holds"] is False
+        and all(rows[0][name] == finding[name] for name in COMPARED_COLUMNS)
+    )
 
 
 def _choices(con: duckdb.DuckDBPyConnection, finding: Row, rows: pa.Table) -> list[pa.Table]:

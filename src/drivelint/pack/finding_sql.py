@@ -25,7 +25,7 @@ _CALL: Final = re.compile(r"\b([a-z_]\w*)\s*\(", re.IGNORECASE)
 _MACRO: Final = re.compile(r"\bCREATE OR REPLACE (?:TEMP )?MACRO (\w+)")
 _COMMENT: Final = re.compile(r"--.*")
 _SPATIAL: Final = re.compile(r"\bST_\w+\s*\(")
-COMPARED: Final = ("observed", "required", "margin")
+COMPARED_COLUMNS: Final = ("observed", "required", "margin")
 """The columns that the SQL of a finding must reproduce."""
 
 
@@ -107,7 +107,7 @@ def file_text(rule: Rule, finding: Row, sql: str, tables: Iterable[str]) -> str:
     """Return the text of `finding.sql`. Run in its folder, it prints the finding's numbers."""
     called = macros(sql)
     spatial = any(_SPATIAL.search(text) for text in (sql, *called))
-    numbers = ", ".join(f"{name} {_sql_literal(finding[name])}" for name in COMPARED)
+    numbers = ", ".join(f"{name} {_sql_literal(finding[name])}" for name in COMPARED_COLUMNS)
     lines = [
         f"-- Finding {finding['finding_id']} of the rule {rule.id}: {inert_line(rule.title)}",
         f"-- {inert_line(rule.clause)}",

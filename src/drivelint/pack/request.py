@@ -34,9 +34,11 @@ class PackRequest:
     findings: int | None = MOST_FINDINGS
 
 
-class Content(NamedTuple):
-    """The two functions that make a pack. `payload` writes the payload and returns the content of `evidence.json`; `statement` returns the
-    statement."""
+class PackFunctions(NamedTuple):
+    """The two functions that make a pack. `payload` writes the payload into a folder and returns the content of `evidence.json`.
+
+    `statement` returns the bytes of the statement.
+    """
 
     payload: Callable[[Path], dict[str, Any]]
     statement: Callable[[Path, dict[str, Any]], bytes]

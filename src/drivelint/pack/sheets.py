@@ -48,13 +48,13 @@ def sheet_files(evidence: Mapping[str, Any]) -> list[str]:
     return list(evidence.get("incidents", ()))
 
 
-def has_printed(evidence: Mapping[str, Any]) -> bool:
-    """Return whether a pack has a PDF, which cannot be written again."""
+def has_pdf(evidence: Mapping[str, Any]) -> bool:
+    """Return whether a pack contains a PDF of an incident sheet, whose bytes cannot be written again."""
     return any(name.endswith(_PDF) for name in sheet_files(evidence))
 
 
-def misnamed(folder: Path, evidence: Mapping[str, Any], finding_ids: Iterable[str]) -> list[str]:
-    """Return the sheets in `evidence.json` that belong to no finding, do not exist, or are a PDF without its page."""
+def invalid_sheets(folder: Path, evidence: Mapping[str, Any], finding_ids: Iterable[str]) -> list[str]:
+    """Return the files of incident sheets in `evidence.json` that belong to no finding, do not exist, or are a PDF without its page."""
     pages = {f"{SHEETS}/{finding_id}{_PAGE}" for finding_id in finding_ids}
     named = sheet_files(evidence)
     due = pages | {name.removesuffix(_PAGE) + _PDF for name in pages & set(named)}

@@ -91,10 +91,10 @@ def key_id(key: Ed25519PublicKey) -> str:
 
 def envelope(payload: bytes, key: SigningKey) -> bytes:
     """Return the DSSE envelope of a signed statement. The bytes are always the same, because Ed25519 is deterministic."""
-    return _rendered(payload, key.sign(_signed_bytes(PAYLOAD_TYPE, payload)), key.public_key())
+    return _envelope_json(payload, key.sign(_signed_bytes(PAYLOAD_TYPE, payload)), key.public_key())
 
 
-def _rendered(payload: bytes, signature: bytes, key: Ed25519PublicKey) -> bytes:
+def _envelope_json(payload: bytes, signature: bytes, key: Ed25519PublicKey) -> bytes:
     content = {
         "payloadType": PAYLOAD_TYPE,
         "payload": base64.b64encode(payload).decode(),
@@ -123,7 +123,7 @@ def is_signed_by(content: bytes, key: Ed25519PublicKey) -> bool:
 def is_as_written(content: bytes, key: Ed25519PublicKey) -> bool:
     """Return whether a signed envelope has exactly the text that `envelope` writes: the signature covers only the payload."""
     _, payload, signatures = _parse_envelope(content)
-    return len(signatures) == 1 and content == _rendered(payload, signatures[0], key)
+    return len(signatures) == 1 and content == _envelope_json(payload, signatures[0], key)
 
 
 def _parse_envelope(content: bytes) -> tuple[str, bytes, list[bytes]]:

@@ -175,7 +175,7 @@ def _notes(evidence: dict[str, Any], result: Result) -> list[str]:
         notes.append(f"rules and profiles in {', '.join(evidence['rules_dirs'])} are not drivelint's: read them")
     if evidence["not_judged"]:
         notes.append(f"not judged when it was checked, nor now: {', '.join(evidence['not_judged'])}")
-    if sheets.has_printed(evidence):
+    if sheets.has_pdf(evidence):
         notes.append("an incident sheet as PDF is as the pack says: the page beside it is what is written again")
     if result.gate is not None:
         notes.append("baseline and waivers are as the pack says: they are not checked again")

@@ -16,7 +16,7 @@ from drivelint.pack import again, audits, bag, contents, sheets, signature, time
 from drivelint.pack.contents import EVIDENCE, RESULT, summary_of
 from drivelint.pack.copying import copy, copy_rules, copy_rules_dirs, write_files
 from drivelint.pack.inputs import located
-from drivelint.pack.request import MOST_FINDINGS, Content
+from drivelint.pack.request import MOST_FINDINGS, PackFunctions
 from drivelint.pack.statement import ENVELOPE, FILE, statement
 from drivelint.report.outputs import REPORT_FORMATS
 from drivelint.result import request as run_request
@@ -106,7 +106,7 @@ def _free(out: Path, *, overwrite: bool) -> None:
         raise UsageError(f"{out}: has a pack: choose another folder, or replace it with drivelint pack --overwrite")
 
 
-def _content(request: PackRequest) -> Content:
+def _content(request: PackRequest) -> PackFunctions:
     """Return the functions that pack the result of a check. The logs are judged again here, before anything is written."""
     result = load_result(request.folder)
     check_request = run_request.load(request.folder)
@@ -119,7 +119,7 @@ def _content(request: PackRequest) -> Content:
     checked_result = _PackSource(
         result, check_request, rules, evidence, sheets.of_result(request.folder, result, check_request)
     )
-    return Content(
+    return PackFunctions(
         lambda work: _payload(work, request, checked_result),
         lambda work, told: statement(work, result, summary_of(work), told),
     )

@@ -225,4 +225,4 @@ def _message_class(name: str, described: bytes) -> Any:
             pool.Add(file)
         return message_factory.GetMessageClass(pool.FindMessageTypeByName(name))
     except Exception as error:
-        raise FrameError(f"the log does not describe {name}") from error
+        raise FrameError(f"the log has no valid schema for the message type {name}") from error

@@ -13,9 +13,9 @@ from drivelint.pictures.frames import EncodedImage, FrameError, RawImage
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-MOST_PX: Final = (640, 480)
+MOST_WIDTH_HEIGHT_PX: Final = (640, 480)
 """The greatest width and height of a picture."""
-MOST_BYTES: Final = 30_000
+MOST_PICTURE_BYTES: Final = 30_000
 """A larger picture is encoded with a lower quality; a noisy picture may still be a little larger then."""
 _QUALITY, _LESS, _LEAST = 70, 35, 10
 _FORMATS: Final = ("JPEG", "PNG", "WEBP")
@@ -50,8 +50,8 @@ def small_jpeg(image: EncodedImage | RawImage | Image.Image) -> Jpeg:
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
         raise FrameError(f"an image that cannot be decoded ({error})") from error
     data = _encoded(small, _QUALITY)
-    if len(data) > MOST_BYTES:
-        data = _encoded(small, _LESS if len(data) < 2 * MOST_BYTES else _LEAST)
+    if len(data) > MOST_PICTURE_BYTES:
+        data = _encoded(small, _LESS if len(data) < 2 * MOST_PICTURE_BYTES else _LEAST)
     return Jpeg(data, *small.size)
 
 
@@ -69,7 +69,7 @@ def _image(image: EncodedImage | RawImage | Image.Image) -> Image.Image:
 
 def _times_too_large(image: Image.Image) -> int:
     """Return the whole number by which the sides of an image are divided."""
-    return max(1, *(-(-side // most) for side, most in zip(image.size, MOST_PX, strict=True)))
+    return max(1, *(-(-side // most) for side, most in zip(image.size, MOST_WIDTH_HEIGHT_PX, strict=True)))
 
 
 def _open_image(image: EncodedImage) -> Image.Image:

@@ -13,10 +13,10 @@ if TYPE_CHECKING:
 
     from drivelint.pictures.frames import MessageSource, Place
 
-_LOOKED_BACK_NS: Final = 10_000_000_000
-"""How far back a key frame, which can be decoded alone, is searched."""
+_KEY_FRAME_SEARCH_NS: Final = 10_000_000_000
+"""A key frame, which can be decoded alone, is searched in this time before the wanted frame."""
 _CODECS: Final = {"h264": "h264", "h265": "hevc", "hevc": "hevc", "vp9": "vp9", "av1": "av1"}
-_ENTRY_UNITS: Final = {"h264": lambda head: head & 0x1F == 5, "hevc": lambda head: 16 <= (head >> 1) & 0x3F <= 23}
+_IS_KEY_FRAME_UNIT: Final = {"h264": lambda head: head & 0x1F == 5, "hevc": lambda head: 16 <= (head >> 1) & 0x3F <= 23}
 """Codec -> whether a unit with this first byte belongs to a key frame."""
 
 
@@ -24,12 +24,12 @@ def video_image(log: MessageSource, topic: str, place: Place) -> Image:
     """Return a frame of a video, decoded from the last key frame up to it. Errors: `FrameError`."""
     av = _pyav()
     waiting: list[VideoFrame] = []
-    for each in reversed(log.places(topic, place.log_ns - _LOOKED_BACK_NS, place.log_ns)):
+    for each in reversed(log.places(topic, place.log_ns - _KEY_FRAME_SEARCH_NS, place.log_ns)):
         image = log.frame(each).image
         if each > place or not isinstance(image, VideoFrame):
             continue
         waiting.append(image)
-        if is_entry(image):
+        if is_key_frame(image):
             break
     codec = _CODECS.get(waiting[0].codec.lower()) if waiting else None
     if codec is None:
@@ -67,13 +67,13 @@ def _pyav() -> Any:
     return av
 
 
-def is_entry(frame: VideoFrame) -> bool:
+def is_key_frame(frame: VideoFrame) -> bool:
     """Return whether a frame is a key frame; False if the units of its codec do not show this."""
     codec = _CODECS.get(frame.codec.lower(), "")
-    if codec not in _ENTRY_UNITS:
+    if codec not in _IS_KEY_FRAME_UNIT:
         return False
     units = frame.data.split(b"\0\0\1")[1:]
-    return any(unit and _ENTRY_UNITS[codec](unit[0]) for unit in units)
+    return any(unit and _IS_KEY_FRAME_UNIT[codec](unit[0]) for unit in units)
 
 
 def _decoded(av: Any, codec: str, data: list[bytes]) -> Image | None:

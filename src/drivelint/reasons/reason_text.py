@@ -84,8 +84,8 @@ def _sentence(
     code: str, arguments: Mapping[str, Any], start_ns: int, rule_texts: Mapping[str, ReasonText] | None
 ) -> str:
     words = text_of(code, rule_texts)
-    text = _filled(words.says, arguments, start_ns, rule_texts)
-    return f"{text}: {_filled(words.advice, arguments, start_ns, rule_texts)}" if words.advice else text
+    text = _sentence_from_template(words.says, arguments, start_ns, rule_texts)
+    return f"{text}: {_sentence_from_template(words.advice, arguments, start_ns, rule_texts)}" if words.advice else text
 
 
 def advice_sentence(
@@ -112,7 +112,7 @@ def text_of(code: str, rule_texts: Mapping[str, ReasonText] | None = None) -> Re
     return (rule_texts or {}).get(code) or shared_texts().get(code) or ReasonText(code.replace("_", " "))
 
 
-def _filled(
+def _sentence_from_template(
     template: str, arguments: Mapping[str, Any], start_ns: int, rule_texts: Mapping[str, ReasonText] | None
 ) -> str:
     argument_words = {name: _argument_words(name, value, start_ns, rule_texts) for name, value in arguments.items()}

@@ -18,7 +18,7 @@ from drivelint.receipts.inputs import Inputs, matches, state
 from drivelint.receipts.program import program_folders
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
     from drivelint.receipts.inputs import IsOutput
 
@@ -122,7 +122,8 @@ _EVENTS: Final = frozenset(
     {"open", "os.scandir", "os.listdir", "glob.glob", "tempfile.mkdtemp", LOOKED_FOR, MACHINE_BOUND}
 )
 _recorders: Final[list[Recorder]] = []
-_has_hook: Final[list[bool]] = []
+_installed_hooks: Final[list[Callable[[str, tuple[Any, ...]], None]]] = []
+"""The audit hook of this process, once it is installed."""
 
 
 @contextmanager
@@ -131,9 +132,9 @@ def recording(is_output: IsOutput, named_paths: Iterable[str | os.PathLike[str]]
     recorder = Recorder(is_output)
     for path in named_paths:
         recorder.look(path)
-    if not _has_hook:
+    if not _installed_hooks:
         sys.addaudithook(_hook)  # a hook cannot be removed
-        _has_hook.append(True)
+        _installed_hooks.append(_hook)
     _recorders.append(recorder)
     try:
         yield recorder

@@ -22,10 +22,10 @@ from drivelint.receipts.inputs import Inputs
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-MOST_RECEIPTS: Final = 100
-MOST_BYTES: Final = 1_000_000_000
+MOST_KEPT_RECEIPTS: Final = 100
+MOST_BYTES_OF_ALL_RECEIPTS: Final = 1_000_000_000
 """Limit of the size of all receipts together in bytes."""
-MOST_BYTES_OF_ONE: Final = 200_000_000
+MOST_BYTES_OF_ONE_RECEIPT: Final = 200_000_000
 """Limit of the output of one run in bytes. A larger run is judged again, because copying its output takes long, too."""
 _FORMAT: Final = "drivelint receipt 1"
 _SEAL_BYTES: Final = 32
@@ -94,7 +94,7 @@ def open_receipt(key: str) -> Iterator[OpenedReceipt | None]:
 def keep(key: str, receipt: Receipt, out: Path | None) -> None:
     """Store a receipt with the files that the run wrote into `out`, unless they are too large or the cache folder is not writable."""
     home = _folder()
-    if home is None or sum(receipt.files.values()) > MOST_BYTES_OF_ONE:
+    if home is None or sum(receipt.files.values()) > MOST_BYTES_OF_ONE_RECEIPT:
         return
     with suppress(OSError):
         home.mkdir(parents=True, exist_ok=True)
@@ -163,5 +163,5 @@ def _remove_oldest(home: Path) -> None:
     size = 0
     for n, (_, path) in enumerate(known, 1):
         size += path.stat().st_size
-        if n > MOST_RECEIPTS or size > MOST_BYTES:
+        if n > MOST_KEPT_RECEIPTS or size > MOST_BYTES_OF_ALL_RECEIPTS:
             path.unlink(missing_ok=True)

@@ -55,9 +55,9 @@ class Part(NamedTuple):
 
 
 class Headline(NamedTuple):
-    """The outcome of a run. `label`: the word; `kind`: fail, near, unknown, not_applicable or pass; `parts`: the sentence.
+    """The outcome of a run, which reports show first. `label`: one word, such as FAIL; `parts`: the parts of the sentence after it.
 
-    The kind `near` means that a gate lets all findings through.
+    `kind` selects the colour: fail, near (a gate lets all findings through), unknown, not_applicable or pass.
     """
 
     label: str

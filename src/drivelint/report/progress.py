@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 
 TELL_EVERY_S: Final = 60.0
 _LOOK_S: Final = 1.0
-_LEAST_SHARE: Final = 0.1
+_LEAST_DONE_SHARE: Final = 0.1
+"""The remaining time is estimated after this share of the work."""
 _AT_ONCE_S: Final = 0.5
 """Units that are reported within this time after the beginning of a stage were done by an earlier run."""
 
@@ -80,7 +81,9 @@ class NotePrinter(Silent):
         new = self._done + self._part - self._had
         todo = self._total - self._had
         # no estimate from the first part of the work, which includes initialisation
-        left_s = (now_s - self._begun_s) / new * (todo - new) if new >= min(1.0, _LEAST_SHARE * todo) and new else None
+        left_s = (
+            (now_s - self._begun_s) / new * (todo - new) if new >= min(1.0, _LEAST_DONE_SHARE * todo) and new else None
+        )
         self.note(
             f"{self._name}: {self._done:,} of {self._total:,}"
             f"{f' ({self._activity})' if self._activity else ''}{'' if left_s is None else f', {_duration(left_s)} left'}"

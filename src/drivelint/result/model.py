@@ -102,24 +102,28 @@ def exit_status(result: Result) -> ExitStatus:
     exceeded its limits gives 4, since it has not judged. For exit code 1, the reason also states the first of these: drives or rules that
     were not judged, or lossy input. Otherwise the user would see it only in the next run, after correcting the failure.
     """
-    status = next(_outcomes(result))
-    hidden = next(chain(_not_judged(result), _lossy(result)), None) if status.code is ExitCode.FAILED else None
+    status = next(_exit_statuses(result))
+    hidden = (
+        next(chain(_not_judged_statuses(result), _lossy_status(result)), None)
+        if status.code is ExitCode.FAILED
+        else None
+    )
     return status if hidden is None else ExitStatus(status.code, f"{status.why}; also {hidden.why}")
 
 
-def _outcomes(result: Result) -> Iterator[ExitStatus]:
+def _exit_statuses(result: Result) -> Iterator[ExitStatus]:
     """Yield the exit codes of the run with their reasons, by descending precedence."""
     if result.interrupted:
         yield ExitStatus(ExitCode.INTERRUPTED, partial_sentence(result.drives))
-    if (erring := _erring(result, beyond_limits=False)).num_rows:
-        yield ExitStatus(ExitCode.USAGE, f"{_in_error(erring)}: could not be run: {_rules_of(erring)}")
+    if (erring := _error_verdicts(result, beyond_limits=False)).num_rows:
+        yield ExitStatus(ExitCode.USAGE, f"{_error_phrase(erring)}: could not be run: {_rules_of(erring)}")
     if result.halted is not None:
         yield ExitStatus(ExitCode.FAILED, result.halted)
     stopped, let_through = _stopped(result), _let_through(result)
     if stopped:
         yield ExitStatus(ExitCode.FAILED, f"{stopped} at or above severity {result.fail_on}{let_through}")
-    yield from _not_judged(result)
-    yield from _lossy(result)
+    yield from _not_judged_statuses(result)
+    yield from _lossy_status(result)
     if result.fail_on == "never":
         yield ExitStatus(ExitCode.OK, "failures do not gate (--fail-on never)")
     if nothing := _nothing_decided(result):
@@ -128,36 +132,36 @@ def _outcomes(result: Result) -> Iterator[ExitStatus]:
     yield ExitStatus(ExitCode.OK, f"nothing {new}failed at or above severity {result.fail_on}{let_through}")
 
 
-def _not_judged(result: Result) -> Iterator[ExitStatus]:
+def _not_judged_statuses(result: Result) -> Iterator[ExitStatus]:
     """Yield exit code 4 for each kind of part that should have been judged but was not."""
     if lost := int(pc.sum(pc.equal(result.drives["status"], "not_judged")).as_py() or 0):
         yield ExitStatus(
             ExitCode.NOT_JUDGED, f"{lost} of {plural(result.drives.num_rows, 'drive')} could not be judged"
         )
-    if (limited := _erring(result, beyond_limits=True)).num_rows:
-        yield ExitStatus(ExitCode.NOT_JUDGED, f"{_in_error(limited)}: exceeded its limits: {_rules_of(limited)}")
+    if (limited := _error_verdicts(result, beyond_limits=True)).num_rows:
+        yield ExitStatus(ExitCode.NOT_JUDGED, f"{_error_phrase(limited)}: exceeded its limits: {_rules_of(limited)}")
     off_map = [reason for drive in result.drives.to_pylist() if (reason := off_map_reason(drive)) is not None]
     if off_map:
         drives = plural(result.drives.num_rows, "drive")
         yield ExitStatus(ExitCode.NOT_JUDGED, f"the map does not fit {len(off_map)} of {drives}: {off_map[0]}")
     if gone := gating_gone(result):
-        yield ExitStatus(ExitCode.NOT_JUDGED, _gone_sentence(result, gone))
+        yield ExitStatus(ExitCode.NOT_JUDGED, _gone_findings_sentence(result, gone))
     if (unknown := gating_unknowns(result)).num_rows:
-        yield ExitStatus(ExitCode.NOT_JUDGED, _unknown_sentence(result, unknown))
+        yield ExitStatus(ExitCode.NOT_JUDGED, _unknown_verdicts_sentence(result, unknown))
     if result.ended_early is not None:
         yield ExitStatus(ExitCode.NOT_JUDGED, result.ended_early)
     if too_little := too_little_decided(result):
         yield ExitStatus(ExitCode.NOT_JUDGED, too_little)
 
 
-def _erring(result: Result, *, beyond_limits: bool) -> pa.Table:
+def _error_verdicts(result: Result, *, beyond_limits: bool) -> pa.Table:
     """Return the verdicts in error: with `beyond_limits` those due to too much time or memory, else all other errors."""
     rows = result.verdicts.filter(pc.equal(result.verdicts["verdict"], "error"))
     limited = pc.is_in(rows["reason_code"], value_set=pa.array(BEYOND_LIMITS, pa.string()))
     return rows.filter(limited if beyond_limits else pc.invert(limited))
 
 
-def _in_error(rows: pa.Table) -> str:
+def _error_phrase(rows: pa.Table) -> str:
     return f"{plural(rows.num_rows, 'verdict')} in error"
 
 
@@ -165,7 +169,7 @@ def _rules_of(rows: pa.Table) -> str:
     return listed(sorted(rows["rule_id"].unique().to_pylist()))
 
 
-def _lossy(result: Result) -> Iterator[ExitStatus]:
+def _lossy_status(result: Result) -> Iterator[ExitStatus]:
     """Yield exit code 3 if parts of judged logs were lost."""
     if result.lossy:
         judged = [drive for drive in result.drives.to_pylist() if drive["status"] == "judged"]
@@ -253,7 +257,7 @@ def decided_share(verdicts: pa.Table) -> float | None:
 
 def is_undecided(result: Result) -> bool:
     """Return whether the first reason for exit code 4 is that the run decided too little."""
-    first = next(_not_judged(result), None)
+    first = next(_not_judged_statuses(result), None)
     return first is not None and first.why == too_little_decided(result)
 
 
@@ -323,7 +327,7 @@ def _let_through(result: Result) -> str:
     return f" (of that severity {', '.join(through)})" if through else ""
 
 
-def _gone_sentence(result: Result, unfixed: Sequence[ComparedFinding]) -> str:
+def _gone_findings_sentence(result: Result, unfixed: Sequence[ComparedFinding]) -> str:
     """Return in words how many of the baseline's severe findings are absent but not fixed, and why."""
     by_status = {status: [entry for entry in unfixed if entry.standing == status] for status in NOT_FIXED}
     why = [f"{n_findings(mine)} {NOT_FIXED[status]}" for status, mine in by_status.items() if mine]
@@ -333,7 +337,7 @@ def _gone_sentence(result: Result, unfixed: Sequence[ComparedFinding]) -> str:
     return f"{subject} {verb} gone but not fixed: {', '.join(why)}"
 
 
-def _unknown_sentence(result: Result, unknown: pa.Table) -> str:
+def _unknown_verdicts_sentence(result: Result, unknown: pa.Table) -> str:
     """Return in words how many verdicts are unknown but may not be: per signal with `strict`, else per required rule."""
     if result.strict:
         rows = unknown.select(["rule_id", "reason_code"]).to_pylist()

@@ -86,7 +86,7 @@ class BoundedLane:
 def build_lanes(lanes: Iterable[BoundedLane], offset: tuple[float, float], quality: MapQuality) -> list[BoundedLane]:
     """Build the lanes and return them sorted by id; a lane that cannot be built is left out and reported in `quality`."""
     built: dict[str, BoundedLane] = {}
-    for lane in sorted(lanes, key=lambda lane: _by_number(lane.lanelet_id)):
+    for lane in sorted(lanes, key=lambda lane: _lane_sort_key(lane.lanelet_id)):
         try:
             lane.line = lane_geometry(lane.left + offset, lane.right + offset)
             lane.z = np.full(len(lane.line.s), np.nan)
@@ -108,7 +108,8 @@ def build_lanes(lanes: Iterable[BoundedLane], offset: tuple[float, float], quali
     return list(built.values())
 
 
-def _by_number(name: str) -> tuple[int, int, str]:
+def _lane_sort_key(name: str) -> tuple[int, int, str]:
+    """Return the sort key of a name: names that are numbers come first, in the order of the numbers."""
     return (0, int(name), name) if name.isdecimal() else (1, 0, name)
 
 

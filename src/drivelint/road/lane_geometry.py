@@ -93,7 +93,7 @@ def lane_geometry(left: Floats, right: Floats) -> LaneGeometry:
     """Return the geometry of a lane with these bounds. Errors: `UnbuildableError` with the problem."""
     check_bounds(left, right)
     left, right = _paired(left, right)
-    for keep_points in (_distinct, _forwards):
+    for keep_points in (_distinct, _mask_without_backward_steps):
         keep = keep_points((left + right) / 2)
         left, right = left[keep], right[keep]
     centre = (left + right) / 2
@@ -128,8 +128,8 @@ def _distinct(centre: Floats) -> Mask:
     return distinct
 
 
-def _forwards(centre: Floats) -> Mask:
-    """Return the mask of points of a centre line (n, 2) that are not part of a short step back."""
+def _mask_without_backward_steps(centre: Floats) -> Mask:
+    """Return the mask of the points of a centre line (n, 2) to keep: all but the points of short steps against its direction."""
     step = np.diff(centre, axis=0)
     short = np.hypot(*step.T) <= _JITTER_M
     back = np.sum(step[:-1] * step[1:], axis=1) < 0.0

@@ -15,7 +15,8 @@ if TYPE_CHECKING:
     from drivelint.arrays import Floats
     from drivelint.road.boundary_lanes import BoundedLane
 
-_LEAST_M2: Final = 1.0
+_LEAST_OVERLAP_M2: Final = 1.0
+"""Lanes with a smaller common area do not overlap."""
 _LEVEL_M: Final = 3.0
 """Lanes with at least this difference in height are above each other and do not cross (as in `driving_side`)."""
 
@@ -43,7 +44,7 @@ def mark_junctions(lanes: Sequence[BoundedLane], *, least_share: float = 0.0, le
         if b.lanelet_id in {a.left_id, a.right_id, *a.successors} or a.lanelet_id in b.successors:
             continue
         common = shapely.intersection(areas[i], areas[j])
-        if common.area <= max(_LEAST_M2, least_share * min(areas[i].area, areas[j].area)):
+        if common.area <= max(_LEAST_OVERLAP_M2, least_share * min(areas[i].area, areas[j].area)):
             continue
         if _apart_m(a, b, common) >= _LEVEL_M or _angle_rad(a, b, common) < least_angle_rad:
             continue

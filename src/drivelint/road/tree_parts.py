@@ -19,7 +19,7 @@ FIRST_PART: Final = 8
 GROWTH: Final = 8
 PAIRS_PER_PART: Final = 1_000_000
 """The aim for the number of pairs in a part; the size of a part follows from the pairs per shape in the part before."""
-MOST_AT_ONE_PLACE: Final = 1000
+MOST_SHAPES_AT_ONE_PLACE: Final = 1000
 """The most shapes found per query shape, as the mean of a part. Real maps have at most 12."""
 
 
@@ -45,7 +45,7 @@ def query_in_parts(
     begin, n = 0, FIRST_PART
     while begin < len(every):
         shape, found = tree.query(every[begin : begin + n], predicate=predicate, distance=distance)
-        if (n_at_one := len(found) // len(every[begin : begin + n])) > MOST_AT_ONE_PLACE:
+        if (n_at_one := len(found) // len(every[begin : begin + n])) > MOST_SHAPES_AT_ONE_PLACE:
             raise CrowdedPlaceError(n_at_one)
         yield shape + begin, found
         begin += n

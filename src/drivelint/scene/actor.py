@@ -140,7 +140,7 @@ class Actor:
         offset: Sequence[Sequence[float]] = _as_knots(self.text.offset)
         for step in self.text.do:
             if step.speed is not None or step.stop is not None:
-                speed = self._with_speed(speed, step)
+                speed = self._speed_knots_with_step(speed, step)
             if step.lane is not None or step.offset is not None:
                 begin, before = self._begin(step, speed), offset[-1][1]
                 target = self._beside(step.lane) if step.lane is not None else float(step.offset or 0.0)
@@ -162,7 +162,8 @@ class Actor:
             raise UsageError(f"actor {self.name}: it never reaches {place:g} m")
         return float(t[int(np.argmax(s >= place))])
 
-    def _with_speed(self, speed: Sequence[Sequence[float]], step: Step) -> Sequence[Sequence[float]]:
+    def _speed_knots_with_step(self, speed: Sequence[Sequence[float]], step: Step) -> Sequence[Sequence[float]]:
+        """Return the speed knots `[t_s, speed_mps]` with the change of speed of a step added."""
         target = step.speed or 0.0
         if step.stop is not None:
             now = speed[-1][1]

@@ -79,7 +79,9 @@ def _in_order(texts: Mapping[str, RoadText]) -> list[str]:
         here: str | None = name
         while here is not None and here not in order:
             if here not in texts:
-                raise UsageError(f"road {chain[-1]}: after {here}: {hint(here, texts)}")
+                raise UsageError(
+                    f"road {chain[-1]}: `after` names the road {here}, which does not exist; {hint(here, texts)}"
+                )
             if here in chain:
                 raise UsageError(f"road {here} comes after itself")
             chain.append(here)

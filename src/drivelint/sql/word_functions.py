@@ -38,9 +38,9 @@ _FIRST: Final = (
         "array_slice",
     ),
 )
-_ITEM: Final = ("unnest", "list_extract", "list_element", "element_at", "list_min", "list_max", "flatten")
-_HAS: Final = frozenset({"contains", "list_contains", "list_has", "list_position", "list_indexof"})
-_HAS_ITEMS: Final = frozenset({"&&", "@>", "list_has_any", "list_has_all", "list_intersect"})
+_ITEM_FUNCTIONS: Final = ("unnest", "list_extract", "list_element", "element_at", "list_min", "list_max", "flatten")
+_MEMBERSHIP_FUNCTIONS: Final = frozenset({"contains", "list_contains", "list_has", "list_position", "list_indexof"})
+_SET_FUNCTIONS: Final = frozenset({"&&", "@>", "list_has_any", "list_has_all", "list_intersect"})
 
 
 def _together(kinds: Kinds) -> Type:
@@ -52,7 +52,7 @@ _VALUES: Final[Mapping[str, Callable[[Kinds], Type]]] = {
     **dict.fromkeys(("lag", "lead"), lambda kinds: union([kinds[0], *kinds[2:3]])),
     **dict.fromkeys(("coalesce", "greatest", "least", "ifnull"), union),
     **dict.fromkeys(("list", "array_agg", "list_value", "array_value"), lambda kinds: ListOf(union(kinds))),
-    **dict.fromkeys(_ITEM, lambda kinds: item_of(kinds[0])),
+    **dict.fromkeys(_ITEM_FUNCTIONS, lambda kinds: item_of(kinds[0])),
     **dict.fromkeys(("||", "concat", "list_concat"), _together),
     **dict.fromkeys(("struct_extract", "array_extract"), lambda kinds: member_of(*kinds)),
 }
@@ -71,8 +71,8 @@ def compared(function: str, kinds: Kinds) -> tuple[Type, Type] | None:
     if len(kinds) != 2:
         return None
     first, second = kinds
-    if function in _HAS:
+    if function in _MEMBERSHIP_FUNCTIONS:
         return item_of(first), second
-    if function in _HAS_ITEMS:
+    if function in _SET_FUNCTIONS:
         return item_of(first), item_of(second)
     return (first, second) if function == "nullif" else None

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from drivelint.sql.words import WordColumn
 
-_MOST_PRODUCTS = 200
+_MOST_CONCATENATIONS = 200
 """`concatenation` gives up beyond this number of texts."""
 
 
@@ -141,7 +141,7 @@ def concatenation(parts: Iterable[Type]) -> Type:
             return None
         texts.append([(word, part.literals.get(word, Literal(None))) for word in part.possible_words])
     combinations = list(product(*texts)) if len(texts) < 4 else []
-    if not 0 < len(combinations) <= _MOST_PRODUCTS:
+    if not 0 < len(combinations) <= _MOST_CONCATENATIONS:
         return None
     return Words(literals={"".join(word for word, _ in each): each[0][1] for each in combinations})
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 MARK: Final = re.compile(r"\[(?:(\w+): )?(\w+)((?: \+ \w+)*)\] ?")
 """The mark at the start of a column's comment: the field of a STRUCT, the vocabulary, and additional words."""
-_MOST_LISTED: Final = 14
+_MOST_LISTED_WORDS: Final = 14
 """A readable comment lists at most this many words of a vocabulary; it only names a longer vocabulary."""
 _NEAR: Final = 0.55
 """Least similarity of a word that is suggested (`difflib`): `cyclist` and `bicycle` have 0.57."""
@@ -119,7 +119,7 @@ def readable_comment(comment: str) -> str:
     if column is None:
         return comment
     known = column.vocabulary.words
-    listed = ", ".join(known) if len(known) <= _MOST_LISTED else f"a word of {column.vocabulary.name}"
+    listed = ", ".join(known) if len(known) <= _MOST_LISTED_WORDS else f"a word of {column.vocabulary.name}"
     if not column.vocabulary.is_listed:
         listed += ", ..."
     rest = MARK.sub("", comment, count=1)

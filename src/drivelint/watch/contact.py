@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import Trace
     from drivelint.result.text import Row
 
-OVERLAP: Final = "ukhc.no-collision"
-JOLT: Final = "ukhc.contact-signature"
-RULES: Final = (OVERLAP, JOLT)
+OVERLAP_RULE: Final = "ukhc.no-collision"
+JOLT_RULE: Final = "ukhc.contact-signature"
+CONTACT_RULES: Final = (OVERLAP_RULE, JOLT_RULE)
 """The rules on contacts, whose alarms can come before a window is judged."""
 LOOK_NS: Final = 1_000_000_000
 """The least length of log that is examined: readers derive values from earlier steps, and boxes must be seen apart before a contact."""
@@ -38,19 +38,19 @@ class ContactLook:
     """Finds contacts in the newest frames of a log. Memory: the actors that are near an ego.
 
     `con`: a database with the macros, used by this thread alone. `rules_by_id`: the catalogue's rules. `rule_ids`: the examined rules, a
-    part of `RULES`. `params`: rule id -> given parameters.
+    part of `CONTACT_RULES`. `params`: rule id -> given parameters.
     """
 
     def __init__(
         self,
         con: duckdb.DuckDBPyConnection,
         rules_by_id: Mapping[str, Rule],
-        rule_ids: tuple[str, ...] = RULES,
+        rule_ids: tuple[str, ...] = CONTACT_RULES,
         params: Mapping[str, Mapping[str, object]] | None = None,
     ) -> None:
         self._con = con
         self._rules = {rule_id: rules_by_id[rule_id] for rule_id in rule_ids}
-        bound = Binding(rules_by_id[JOLT], 0, (params or {}).get(JOLT, {}))
+        bound = Binding(rules_by_id[JOLT_RULE], 0, (params or {}).get(JOLT_RULE, {}))
         self._values = {"near_m": NEAR_M, **bound.values(_JOLT_PARAMS)}
         self._statement = statement("watch/contact")
         self._apart: set[tuple[str, str, str]] = set()
@@ -82,7 +82,7 @@ def _key(pair: Row) -> tuple[str, str, str]:
 
 
 def _finding(rule: Rule, pair: Row, step: Row) -> Row:
-    if rule.id == OVERLAP:
+    if rule.id == OVERLAP_RULE:
         reason = f"contact, {-step['clearance_m']:.2f} m deep"
     else:
         reason = (

@@ -112,7 +112,7 @@ class WindowJudge:
 
     def contact_look(self) -> ContactLook | None:
         """Return an object that finds contacts in frames that are not judged yet; None: no rule on contacts is selected."""
-        asked = tuple(rule_id for rule_id in contact.RULES if rule_id in self.rules)
+        asked = tuple(rule_id for rule_id in contact.CONTACT_RULES if rule_id in self.rules)
         if not asked:
             return None
         # a cursor of its own, which a rule's time limit does not interrupt

@@ -35,7 +35,7 @@ BACKLOG: Final = 1024
 FLUSH_S: Final = 0.5
 CLOSE_S: Final = 0.5
 """At the end, the server waits `FLUSH_S` for the delivery of all messages, and `CLOSE_S` for the closing handshake."""
-MOST_BYTES: Final = 1 << 16
+MOST_RECEIVED_MESSAGE_BYTES: Final = 1 << 16
 """The longest message that is accepted: viewers only send subscriptions, which are shorter."""
 _MESSAGE: Final = struct.Struct("<BIQ")
 _MESSAGE_DATA: Final = 1
@@ -149,7 +149,7 @@ class ViewerServer:
             subprotocols=SUBPROTOCOLS,
             process_request=self._refusal,
             compression=None,
-            max_size=MOST_BYTES,
+            max_size=MOST_RECEIVED_MESSAGE_BYTES,
             close_timeout=CLOSE_S,
             server_header=None,
             logger=_silent(),

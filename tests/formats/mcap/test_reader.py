@@ -21,7 +21,7 @@ from tests.formats.osi import osi_log
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from drivelint.formats.mcap.reader import Packet
+    from drivelint.formats.mcap.reader import LogMessage
 
 N = 12
 
@@ -31,9 +31,9 @@ def whole(tmp_path: Path) -> Path:
     return osi_log.write(tmp_path / "whole.mcap", osi_log.truths(osi_log.drive(N)), chunk_size=600)
 
 
-def messages(path: Path) -> list[Packet]:
+def messages(path: Path) -> list[LogMessage]:
     """Read a file of which nothing may be lost."""
-    return list(Container(path).packets())
+    return list(Container(path).messages())
 
 
 def test_whole_file(whole: Path) -> None:

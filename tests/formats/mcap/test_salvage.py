@@ -277,7 +277,7 @@ def test_log_times_that_go_back_bound_nothing(tmp_path: Path) -> None:
 def test_damage_is_an_error_for_who_does_not_ask_for_salvage(whole: Path) -> None:
     data = whole.read_bytes()
     with pytest.raises(DamageError, match=r"at byte \d+"):
-        list(Container(put(whole, data[: len(data) // 2])).packets())
+        list(Container(put(whole, data[: len(data) // 2])).messages())
 
 
 def test_a_file_of_false_chunk_heads_ends(whole: Path) -> None:

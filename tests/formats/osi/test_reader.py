@@ -398,7 +398,7 @@ def test_nothing_to_read(tmp_path: Path) -> None:
     ("descriptor_set", "message"),
     [
         (b"\xff\xff\xff", "is not a protobuf description"),
-        (b"", "does not describe osi3.GroundTruth"),
+        (b"", "has no definition of the message type osi3.GroundTruth"),
         (
             descriptor_pb2.FileDescriptorSet(
                 file=[

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from mcap.records import Channel, Schema
 
 from drivelint.errors import TraceError
-from drivelint.formats.mcap.reader import Packet
+from drivelint.formats.mcap.reader import LogMessage
 from drivelint.formats.ros2 import cdr
 from drivelint.formats.ros2 import types as ros_types
 from tests.formats.ros2 import ros_log as ros
@@ -23,8 +23,8 @@ CHANNEL = Channel(id=1, topic="/t", message_encoding="cdr", metadata={}, schema_
 PRIMITIVES = ("bool", "uint8", "int8", "uint16", "int16", "uint32", "int32", "uint64", "int64", "float32", "float64")
 
 
-def packets(messages: list[bytes]) -> list[Packet]:
-    return [Packet(CHANNEL, i, data, 1000 + i) for i, data in enumerate(messages)]
+def log_messages(messages: list[bytes]) -> list[LogMessage]:
+    return [LogMessage(CHANNEL, i, data, 1000 + i) for i, data in enumerate(messages)]
 
 
 def decoder(types: dict[str, str], name: str, tree: dict[str, Any]) -> cdr.Decoder:
@@ -115,10 +115,10 @@ def expect(table: cdr.Table, name: str, values: list[dict[str, Any]], types: dic
 def test_any_definition(case: tuple[dict[str, str], list[dict[str, Any]]], order: str) -> None:
     types, values = case
     messages = [ros.encode("p/Top", value, types, order) for value in values]
-    expect(decoder(types, "p/Top", kept(types, "p/Top")).table(packets(messages)), "p/Top", values, types)
+    expect(decoder(types, "p/Top", kept(types, "p/Top")).table(log_messages(messages)), "p/Top", values, types)
     # what is not kept is stepped over to the byte
     only: dict[str, Any] = {"list": {}}
-    assert decoder(types, "p/Top", only).table(packets(messages)).children["list"].n == sum(
+    assert decoder(types, "p/Top", only).table(log_messages(messages)).children["list"].n == sum(
         len(v["list"]) for v in values
     )
 
@@ -148,13 +148,13 @@ WHOLE = ros.encode("derived_object_msgs/ObjectArray", ros.things(1.0, ros.thing(
 
 
 def arrays(messages: list[bytes]) -> cdr.Table:
-    return decoder(ros.BASE, "derived_object_msgs/ObjectArray", TREE).table(packets(messages))
+    return decoder(ros.BASE, "derived_object_msgs/ObjectArray", TREE).table(log_messages(messages))
 
 
 def test_an_empty_message_in_what_is_not_read_is_one_byte() -> None:
     types = {"p/Top": "p/Item[] list\nuint8 after", "p/Item": "p/Empty e\nuint8 a", "p/Empty": ""}
     data = bytes([0, 1, 0, 0, 2, 0, 0, 0, 0, 5, 0, 6, 7])
-    table = decoder(types, "p/Top", {"after": None}).table(packets([data]))
+    table = decoder(types, "p/Top", {"after": None}).table(log_messages([data]))
     assert table.columns["after"].tolist() == [7]
 
 
@@ -162,7 +162,7 @@ def test_an_empty_sequence_pads_nothing() -> None:
     """pybag-sdk 0.13.0 reads what follows one four bytes late (findings/pybag-empty-sequence.sh)."""
     types = {"p/Top": "float64[] gaps\nint32 lane\nint32 vehicles\nfloat64 speed"}
     data = bytes([0, 1, 0, 0]) + struct.pack("<Iii4xd", 0, 2, 7, 20.0)
-    table = decoder(types, "p/Top", kept(types, "p/Top")).table(packets([data]))
+    table = decoder(types, "p/Top", kept(types, "p/Top")).table(log_messages([data]))
     assert [table.columns[name].tolist() for name in ("lane", "vehicles", "speed")] == [[2], [7], [20.0]]
 
 
@@ -200,7 +200,7 @@ def test_a_changed_byte_is_read_or_named(place: int, value: int) -> None:
     ("text", "message"),
     [
         ("uint8", "a line that is not understood: 'uint8'"),
-        ("other/Thing x", "uses other/Thing, which it does not describe"),
+        ("other/Thing x", "uses the type other/Thing, but has no definition of it"),
         (f"Inner a\n{'=' * 80}\nMSG: p/Inner\nTop b", r"contains itself \(p/Top\)"),
         (f"uint8 a\n{'=' * 80}\nINNER\nuint8 b", "a line that is not understood: 'INNER'"),
     ],

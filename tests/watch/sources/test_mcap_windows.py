@@ -10,7 +10,7 @@ import pytest
 from mcap.writer import CompressionType, Writer
 
 from drivelint.watch.sources.mcap_file import McapFile
-from drivelint.watch.sources.mcap_memory import MOST_FIRST
+from drivelint.watch.sources.mcap_memory import MOST_FIRST_MESSAGES
 from tests.formats.foxglove import foxglove_log as scenes
 from tests.formats.logs import at, read
 from tests.formats.osi import osi_file, osi_log
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from drivelint.watch.source import Frame
-    from drivelint.watch.sources.mcap_stream import Message, Numbered
+    from drivelint.watch.sources.mcap_stream import Message, NumberedMessage
 
 EDGE_NS = 60_000_000
 """A little more than a step of the small logs."""
@@ -151,7 +151,7 @@ def test_a_report_that_was_sent_often_is_carried_in_part(tmp_path: Path) -> None
 
 def test_autoware(tmp_path: Path) -> None:
     """The parameters of the vehicle were sent once, after many others; a light that was seen early is not carried on."""
-    others = [autoware.parameters(T0, f"/node_{k}", rate=10.0 + k)[0] for k in range(MOST_FIRST + 50)]
+    others = [autoware.parameters(T0, f"/node_{k}", rate=10.0 + k)[0] for k in range(MOST_FIRST_MESSAGES + 50)]
     found = [
         *others,
         *autoware.parameters(T0 + 0.01, **autoware.PARAMETERS),
@@ -179,7 +179,7 @@ def test_autoware(tmp_path: Path) -> None:
 
 
 def messages(frames: list[Frame]) -> list[Message]:
-    return [cast("Numbered", frame.data).message for frame in frames]
+    return [cast("NumberedMessage", frame.data).message for frame in frames]
 
 
 def test_log_times_and_bytes_are_those_of_the_recording(tmp_path: Path) -> None:

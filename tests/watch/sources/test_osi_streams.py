@@ -217,7 +217,7 @@ def test_tcp_waits_for_who_is_not_there_yet(tmp_path: Path) -> None:
 def test_a_taken_port(tmp_path: Path) -> None:
     with (
         socket.create_server(("127.0.0.1", 0)) as server,
-        pytest.raises(TraceError, match="nothing can be received there"),
+        pytest.raises(TraceError, match="this address cannot be opened to receive data"),
     ):
         open_source(f"tcp-listen://127.0.0.1:{server.getsockname()[1]}", tmp_path, idle_s=None)
 

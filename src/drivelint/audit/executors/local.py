@@ -169,7 +169,7 @@ class _Worker:
 
 def _serve(pipe: Connection, parent: int) -> None:
     """Run the tasks that arrive through the pipe. This is the main function of a worker process."""
-    begin_worker(parent)
+    prepare_worker_process(parent)
     while True:
         try:
             task: Task = pipe.recv()
@@ -203,7 +203,7 @@ def deaf_to_ctrl_c() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def begin_worker(parent: int) -> None:
+def prepare_worker_process(driver_pid: int) -> None:
     """Prepare a worker process: it ignores Ctrl-C and a closed terminal, which the driver handles, and ends if its driver was killed."""
     leave_out_pandas()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -214,7 +214,7 @@ def begin_worker(parent: int) -> None:
         import ctypes
 
         ctypes.CDLL(None).prctl(1, signal.SIGTERM)  # PR_SET_PDEATHSIG
-        if os.getppid() != parent:
+        if os.getppid() != driver_pid:
             os._exit(1)
     except (ImportError, OSError, AttributeError):  # not Linux
         return

@@ -30,7 +30,7 @@ SAME_MPS: Final = 2.0
 """The median difference of the velocities of two tracks of one body is at most this."""
 COMMON_SHARE: Final = 0.8
 """Two tracks of one body overlap deeply in at least this share of their common samples."""
-LEAST_COMMON: Final = 3
+LEAST_COMMON_SAMPLES: Final = 3
 """Two tracks of one body have at least this many common samples."""
 FARTHEST_REACH_M: Final = 100.0
 """The centres of two overlapping bodies are at most this far apart."""
@@ -86,12 +86,12 @@ def same_bodies(states: States, actors: Actors, egos: Collection[str]) -> list[Q
     """
     rows, begun, pairs = np.zeros(len(states), np.bool_), np.zeros(len(states), np.bool_), []
     half = _half_sizes(states, actors)
-    for a, b in _begin_upon(states, actors):
+    for a, b in _pairs_starting_together(states, actors):
         track_a, track_b = (slice(*np.searchsorted(states.actor, [i, i + 1]).tolist()) for i in (a, b))
         rows_a, rows_b = _common(states, track_a, track_b)
         first, second = _boxes(states, half, rows_a), _boxes(states, half, rows_b)
         deep = _deep(first, second)
-        if len(deep) < LEAST_COMMON or not deep[0] or deep.mean() < COMMON_SHARE:
+        if len(deep) < LEAST_COMMON_SAMPLES or not deep[0] or deep.mean() < COMMON_SHARE:
             if not _coupled(first, second):
                 together = _overlap_at_begin(first, second)
                 begun[rows_a[together]] = begun[rows_b[together]] = True
@@ -171,7 +171,7 @@ def held_tracks(states: States, actors: Actors) -> list[QualityFinding]:
     return states.findings(rows, "held_track", "warning", text, quantity="existence")
 
 
-def _begin_upon(states: States, actors: Actors) -> Iterator[tuple[int, int]]:
+def _pairs_starting_together(states: States, actors: Actors) -> Iterator[tuple[int, int]]:
     """Yield pairs of tracks of which one starts inside the box of the other, or close before or behind it.
 
     In the second case, only tracks with at least `COUPLED_LEAST` samples are used, which excludes many short tracks of a crowd.

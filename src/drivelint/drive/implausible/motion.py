@@ -121,7 +121,7 @@ def _displaced(states: States, step: Steps) -> Mask:
     )
     limit = np.maximum(limit, STEP_SIGMAS * np.sqrt(2.0) * sigma[:-1])
     # only isolated steps count: if the neighbouring steps differ in the same direction, the velocity is wrong
-    alone = size > 2.0 * np.maximum(_shifted(off, size, 1), _shifted(off, size, -1))
+    alone = size > 2.0 * np.maximum(_component_along_error(off, size, 1), _component_along_error(off, size, -1))
     # a real step by an impact also changes the velocity
     hit = np.hypot(*np.diff(states.velocity)) > TYRE_MPS2 * step.dt_s
     at = np.flatnonzero((size > limit) & alone & ~hit)
@@ -133,8 +133,11 @@ def _displaced(states: States, step: Steps) -> Mask:
     return aside
 
 
-def _shifted(off: Floats, size: Floats, by: int) -> Floats:
-    """Return for each step (n - 1) how far the error of its neighbour goes in the same direction, in metres."""
+def _component_along_error(off: Floats, size: Floats, by: int) -> Floats:
+    """Return for each step (n - 1) the component of the error of another step along the step's own error, in metres.
+
+    `off`: the errors (2, n - 1); `size`: their lengths; `by`: 1 for the step before, -1 for the step after.
+    """
     neighbour = np.roll(off, by, axis=1)
     neighbour[:, 0 if by > 0 else -1] = 0.0
     along: Floats = np.sum(neighbour * off, axis=0) / np.where(size > 0.0, size, 1.0)

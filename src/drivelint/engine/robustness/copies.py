@@ -70,8 +70,8 @@ def _draws(drive: Drive, errors: MeasurementErrors, numbers: Sequence[int]) -> F
     """Return the errors of x, y (m) and clock (s) of each state, shape (copies, states, 3)."""
     tables = drive.trace.tables
     actors = pc.unique(tables["actor_state"]["actor_id"])
-    of_actor = np.stack([_standard(numbers, errors.seed, name) for name in actors.to_pylist()], axis=1)
-    of_map = _standard(numbers, errors.seed, None)[:, None, :]
+    of_actor = np.stack([_standard_normal_draws(numbers, errors.seed, name) for name in actors.to_pylist()], axis=1)
+    of_map = _standard_normal_draws(numbers, errors.seed, None)[:, None, :]
     own = np.array([errors.position_m, errors.position_m, errors.time_s])
     common = np.array([errors.map_m, errors.map_m, 0.0])
     actor = pc.index_in(tables["actor_state"]["actor_id"], value_set=actors).to_numpy(zero_copy_only=False)
@@ -79,7 +79,7 @@ def _draws(drive: Drive, errors: MeasurementErrors, numbers: Sequence[int]) -> F
     return found
 
 
-def _standard(numbers: Sequence[int], seed: int, actor: str | None) -> Floats:
+def _standard_normal_draws(numbers: Sequence[int], seed: int, actor: str | None) -> Floats:
     """Return draws (copies, 3) of the standard normal distribution, zeros for copy 0. `actor`: an actor's id; None: the map."""
     from scipy.special import ndtri  # imported here, because loading scipy takes longer than judging a rule
 

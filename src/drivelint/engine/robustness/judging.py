@@ -28,7 +28,7 @@ import pyarrow.compute as pc
 from drivelint.engine.batch import BATCH_STATES, are_large
 from drivelint.engine.derive import derive
 from drivelint.engine.robustness.copies import copies
-from drivelint.engine.robustness.question import N_COPIES, Outcome, Question, breach, by_weight
+from drivelint.engine.robustness.question import N_COPIES, Outcome, Question, breach, grouped_by_weight
 from drivelint.engine.robustness.window import SIZES, Window, cut, windows
 from drivelint.errors import DriveLintError, RuleError
 from drivelint.evaluate import evaluate
@@ -105,7 +105,7 @@ class Robustness:
     def n_asked(self) -> int:
         """Return the number of findings of the waiting drives for which copies are judged first."""
         questions = self._questions(self._waiting)
-        gravest, near, _ = by_weight(questions)
+        gravest, near, _ = grouped_by_weight(questions)
         return len(questions) if self._of_all else len(gravest) + len(near)
 
     def _questions(self, drives: Iterable[str]) -> list[Question]:
@@ -123,7 +123,7 @@ class Robustness:
         self._advance = advance or (lambda _: None)
         questions = self._questions(by_id)
         cut(questions)  # of all findings, so that the windows do not depend on which of them are judged
-        gravest, near, others = by_weight(questions)
+        gravest, near, others = grouped_by_weight(questions)
         most_states = BATCH_STATES
         if are_large(by_id.values()):
             self._memory.release()
@@ -163,7 +163,7 @@ class Robustness:
         for window, outcomes in zip(chunk, found, strict=True):
             for question in window.questions:
                 outcome = outcomes.get(id(question), Outcome())
-                question.take(window.numbers, outcome.margins, outcome.passes)
+                question.add_copies(window.numbers, outcome.margins, outcome.passes)
 
     def _stays(self, chunk: Sequence[Window]) -> list[dict[int, Outcome]]:
         """Judge the copies of the windows, and return for each window: id of the question -> outcome."""

@@ -18,12 +18,14 @@ if TYPE_CHECKING:
     from drivelint.engine.robustness.window import Extent
 
 N_COPIES: Final = (20, 32, 100)
-"""The numbers of copies that may suffice. 32 suffice if all keep the finding. If the true share of copies that keep it is 90 %, all of 32
-keep it with a probability of 3.4 %, and at least 95 of 100 with 2.4 %; if it is 93 %, with 10 % and 25 %. 20 is the block size of
-`copies`: a block has errors from the smallest to the largest."""
+"""The numbers of judged copies after which a question may be settled.
+
+32 suffice if all keep the finding. If the true share of copies that keep it is 90 %, all of 32 keep it with a probability of 3.4 %, and at
+least 95 of 100 with 2.4 %; if it is 93 %, with 10 % and 25 %. 20 is the block size of `copies`: a block has errors from the smallest to
+the largest."""
 FAR_SPREADS: Final = 5.0
 """20 copies suffice if all keep the finding, and the mean of their margins is at least this many standard deviations from 0."""
-LEAST_SHARE: Final = 0.95
+LEAST_KEEPING_SHARE: Final = 0.95
 """A finding is only possible if less than this share of its copies keep it (see `result.certainty`)."""
 SMALL_MARGIN: Final = {"m": 0.3, "s": 0.1}
 """Unit -> margin up to which a finding is near the threshold: errors of a decimetre may remove it, so all copies are judged."""
@@ -82,7 +84,9 @@ class Question:
     def is_settled(self) -> bool:
         """Whether enough copies were judged."""
         few, more, most = N_COPIES
-        if self.n_copies >= most or (self.ends_early and self.n_copies - self.n_stays > (1.0 - LEAST_SHARE) * most):
+        if self.n_copies >= most or (
+            self.ends_early and self.n_copies - self.n_stays > (1.0 - LEAST_KEEPING_SHARE) * most
+        ):
             return True
         if self.n_stays < self.n_copies or self.is_near or self.is_doubtful:
             return False
@@ -99,12 +103,15 @@ class Question:
     @property
     def is_sure(self) -> bool:
         """Whether the copies show that the finding is certain, not only possible."""
-        return self.n_copies > 0 and self.is_settled and self.n_stays >= LEAST_SHARE * self.n_copies
+        return self.n_copies > 0 and self.is_settled and self.n_stays >= LEAST_KEEPING_SHARE * self.n_copies
 
-    def take(self, numbers: Sequence[int], margins: Mapping[int, float | None], passes: Collection[int] = ()) -> None:
-        """Add the result of the copies `numbers` of a window; the first number is the copy without errors.
+    def add_copies(
+        self, numbers: Sequence[int], margins: Mapping[int, float | None], passes: Collection[int] = ()
+    ) -> None:
+        """Add the results of a window of the drive that was judged in several copies.
 
-        `margins`: the copies that keep the finding, with their margins. `passes`: copies in which the worst step passes.
+        `numbers`: the numbers of the copies; the first is 0, the copy without measuring errors. `margins`: number -> margin, for copies
+        that keep the finding. `passes`: numbers of the copies in which the worst step passes.
         """
         if numbers[1] != self.n_copies + 1 or self.is_settled:
             return  # the window of the copies before these failed, or the question is settled
@@ -130,7 +137,7 @@ class Question:
     def _is_decided(self, numbers: Sequence[int], conclusive_copies: Collection[int], n_stays: int) -> bool:
         """Return whether undecided copies may count as lost: there are none, or the finding is only possible even if they keep it."""
         may_stay = self.n_stays + n_stays + len(set(numbers) - set(conclusive_copies)) + N_COPIES[-1] - numbers[-1]
-        return set(conclusive_copies) >= set(numbers) or may_stay < LEAST_SHARE * N_COPIES[-1]
+        return set(conclusive_copies) >= set(numbers) or may_stay < LEAST_KEEPING_SHARE * N_COPIES[-1]
 
     def restart(self, size: int) -> None:
         """Discard the results, and continue with this size of window; with the size `SIZES`, the finding gets no count."""
@@ -150,8 +157,9 @@ def breach(question: Question) -> tuple[str, ...]:
     return tuple(question.finding[key] for key in ("drive_id", "ego_id", "rule_id"))
 
 
-def by_weight(questions: Sequence[Question]) -> tuple[list[Question], list[Question], list[Question]]:
-    """Return three lists: the worst finding (by margin) of each drive, ego and rule; others near the threshold; the remaining ones."""
+def grouped_by_weight(questions: Sequence[Question]) -> tuple[list[Question], list[Question], list[Question]]:
+    """Return the questions in three lists: the worst finding (by margin) of each drive, ego and rule; others near the threshold; all
+    remaining ones."""
     gravest: dict[tuple[str, ...], Question] = {}
     for question in sorted(questions, key=lambda q: np.nan_to_num(q.finding["margin"] or np.nan, nan=np.inf)):
         gravest.setdefault(breach(question), question)

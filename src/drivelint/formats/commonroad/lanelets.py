@@ -71,7 +71,7 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
             quality.add("invalid_lane", "error", name, f"lanelet {name} is left out: {error}")
     signs.report(root.findall("lanelet"), [light.get("id", "") for light in root.findall("trafficLight")])
     _report_words(root, quality)
-    _without_towns(root, built, quality)
+    _remove_contradicted_towns(root, built, quality)
     _junctions(root, built)
     lanes = build_lanes(built, request.offset, quality)
     if not lanes:
@@ -143,7 +143,7 @@ def _marking(bound: etree._Element | None) -> str | None:
     return _MARKINGS.get(said or "")
 
 
-def _without_towns(root: etree._Element, lanes: Sequence[BoundedLane], quality: MapQuality) -> None:
+def _remove_contradicted_towns(root: etree._Element, lanes: Sequence[BoundedLane], quality: MapQuality) -> None:
     """Remove the road type `urban` in a scenario with the tag `highway`: converters write this type for every lanelet."""
     tags = {tag.tag for parent in root.findall("scenarioTags") for tag in parent}
     towns = [lane for lane in lanes if lane.road_type == "town"]

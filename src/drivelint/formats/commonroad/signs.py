@@ -200,7 +200,7 @@ def signal_rows(
 
 
 def _station(lane: BoundedLane, kind: str | None, stands: Floats | None, line_s_m: float | None) -> float:
-    """Return the station on a lanelet at which a sign or light holds: at the stop line, where it stands, or at an end."""
+    """Return the station on a lanelet from which a sign or light applies: the stop line, its own position, or an end of the lanelet."""
     if kind in _AT_THE_END and line_s_m is not None:
         return line_s_m
     if kind == "traffic_light":

@@ -29,8 +29,10 @@ _COLUMNS: Final = {
 }
 SAME_MPS: Final = 1e-6
 """A velocity this near to the mean velocity between the boxes before and after was computed from these boxes, not measured."""
-_LEAST_COMPARED: Final = 20
-_LEAST_SHARE: Final = 0.99
+_LEAST_COMPARED_BOXES: Final = 20
+"""With fewer boxes that have a box one frame before and after, velocities count as measured."""
+_LEAST_SAME_VELOCITY_SHARE: Final = 0.99
+"""If at least this share of the velocities is equal to the mean velocity, all were computed from the boxes."""
 
 
 def read_boxes(folder: Path) -> Modality | None:
@@ -186,7 +188,7 @@ def _way_between_boxes(states: States, frame: Indices, has_velocity: Mask) -> bo
     actor, at = states.actor[order], frame[order]
     in_row = (actor[:-2] == actor[2:]) & (at[2:] - at[1:-1] == 1) & (at[1:-1] - at[:-2] == 1)
     middle = np.flatnonzero(in_row & has_velocity[order[1:-1]]) + 1
-    if len(middle) < _LEAST_COMPARED:
+    if len(middle) < _LEAST_COMPARED_BOXES:
         return False
     before, here, after = order[middle - 1], order[middle], order[middle + 1]
     span_s = (states.t_ns[after] - states.t_ns[before]) * 1e-9
@@ -194,4 +196,7 @@ def _way_between_boxes(states: States, frame: Indices, has_velocity: Mask) -> bo
         way = np.asarray((states.place[:, after] - states.place[:, before]) / span_s, np.float64)
     off = np.hypot(*(way - states.velocity[:, here]))
     moving = np.hypot(*way) > SAME_MPS
-    return bool(moving.any() and (off[moving] <= SAME_MPS * (1.0 + np.hypot(*way[:, moving]))).mean() >= _LEAST_SHARE)
+    return bool(
+        moving.any()
+        and (off[moving] <= SAME_MPS * (1.0 + np.hypot(*way[:, moving]))).mean() >= _LEAST_SAME_VELOCITY_SHARE
+    )

@@ -27,8 +27,10 @@ _COLUMNS: Final = {
 }
 EGO_ID: Final = "ego"
 _TURNS_RAD: Final = 0.02
-_LEAST_COMPARED: Final = 20
-_LEAST_SHARE: Final = 0.99
+_LEAST_COMPARED_POSES: Final = 20
+"""With fewer poses that have a pose before and after, velocities count as measured."""
+_LEAST_SAME_VELOCITY_SHARE: Final = 0.99
+"""If at least this share of the velocities is equal to the mean velocity, all were computed from the poses."""
 _SAME_MPS: Final = 1e-6
 
 
@@ -127,14 +129,16 @@ def _centre_velocity(ego: Modality, imu: Poses, motion: Floats, box: EgoBox) -> 
 def _way_between_poses(ego: Modality, imu: Poses, velocity: Floats, has_velocity: Mask) -> bool:
     """Return whether nearly all velocities are the mean velocity from the pose before to the pose after."""
     t_us = ego.columns["timestamp_us"].to_numpy(zero_copy_only=False)
-    if len(t_us) - 2 < _LEAST_COMPARED:
+    if len(t_us) - 2 < _LEAST_COMPARED_POSES:
         return False
     with np.errstate(divide="ignore", invalid="ignore"):
         way = (imu.place[2:] - imu.place[:-2]) / ((t_us[2:] - t_us[:-2]) * 1e-6)[:, None]
     off = np.linalg.norm(way - velocity[1:-1], axis=1)
     length = np.linalg.norm(way, axis=1)
     moving = has_velocity[1:-1] & (length > _SAME_MPS) & np.isfinite(length)
-    return bool(moving.any() and (off[moving] <= _SAME_MPS * (1.0 + length[moving])).mean() >= _LEAST_SHARE)
+    return bool(
+        moving.any() and (off[moving] <= _SAME_MPS * (1.0 + length[moving])).mean() >= _LEAST_SAME_VELOCITY_SHARE
+    )
 
 
 def _pose(ego: Modality, key: str) -> Floats:

@@ -53,8 +53,8 @@ def read(path: Path, film: VideoMapping) -> Sightings:
     boxes: list[tuple[Times, list[str], Floats]] = []
     for file in bag.mcap_files(path):
         container = Container(file)
-        for _, packets in message_batches(container, _kind):
-            table = cdr.Decoder(file, container.schemas[packets[0].channel.schema_id], _TREE).table(packets)
+        for _, log_messages in message_batches(container, _kind):
+            table = cdr.Decoder(file, container.schemas[log_messages[0].channel.schema_id], _TREE).table(log_messages)
             t_ns, _ = stamps(table, "header.stamp")
             items = table.children["detections"]
             ids = items.columns.get("id", items.columns.get("tracking_id"))
@@ -74,7 +74,7 @@ def _kind(channel: Channel, schema: Schema) -> str | None:
 def _sightings(
     path: Path, film: VideoMapping, focal_px: float, t_ns: Times, boxes: list[tuple[Times, list[str], Floats]]
 ) -> Sightings:
-    """Convert times to frame numbers and widths to distances. Of several boxes of one actor in a frame, the nearest counts."""
+    """Return the distance of each actor per frame of a film, from the widths of its boxes: the smallest of several in a frame."""
     start = int(t_ns.min())
     numbers = _frames(t_ns, start, film)
     whole = np.arange(0, int(numbers.max()) + 1)

@@ -127,7 +127,10 @@ def is_video_mapping(name: str) -> bool:
 
 
 def load(name: str) -> tuple[str, VideoMapping]:
-    """Return a mapping and its name. Errors: `UsageError` naming file and key."""
+    """Return the name of a mapping and the mapping. `name`: the path of a TOML file, or the name of a shipped mapping.
+
+    Errors: `UsageError`, which names the file and the invalid key.
+    """
     path = Path(name) if os.path.isfile(name) else MAPPINGS_FOLDER / f"{name}.toml"  # noqa: PTH113 - as above
     raw = read_toml(path)
     if "extends" in raw:

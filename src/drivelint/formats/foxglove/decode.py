@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from drivelint.arrays import Floats, Mask, Times
     from drivelint.formats.coordinate_frames import Vectors
-    from drivelint.formats.mcap.reader import Packet
+    from drivelint.formats.mcap.reader import LogMessage
     from drivelint.formats.protobuf.descriptors import FieldTree
 
 SCENE: Final = "foxglove.SceneUpdate"
@@ -57,16 +57,16 @@ _WORDS: Final = frozenset({"id", "frame_id", "key", "value", "parent_frame_id", 
 _BLOCK: Final = 1 << 20
 
 
-def decoded_rows(path: Path, schema: Schema, packets: list[Packet]) -> pa.StructArray:
+def decoded_rows(path: Path, schema: Schema, log_messages: list[LogMessage]) -> pa.StructArray:
     """Decode a batch of messages with one schema and encoding to one struct per message.
 
     Errors: `TraceError` with the first message that cannot be decoded, or if the log's schema does not describe the message.
     """
     tree = FIELD_TREES[schema.name]
-    if packets[0].channel.message_encoding == "json":
-        return decoded(path, packets, partial(_json_rows, pa.schema(_json_type(tree))))
+    if log_messages[0].channel.message_encoding == "json":
+        return decoded(path, log_messages, partial(_json_rows, pa.schema(_json_type(tree))))
     types = parse_schema(path, schema.name, schema.data)
-    return decoded(path, packets, message_decoder(path, types, schema.name, tree))
+    return decoded(path, log_messages, message_decoder(path, types, schema.name, tree))
 
 
 def _json_rows(schema: pa.Schema, messages: list[bytes]) -> pa.StructArray:

@@ -81,13 +81,13 @@ def read(path: Path, topic: str | None) -> Recording:
     unread = UnreadTopics()
     for file in bag.mcap_files(path):
         container = Container(file, salvage=True)
-        for name, packets in message_batches(container, partial(_kind, topic, unread)):
-            channel = packets[0].channel
+        for name, log_messages in message_batches(container, partial(_kind, topic, unread)):
+            channel = log_messages[0].channel
             schema = container.schemas[channel.schema_id]
-            decoded, readable = decode_readable(container, packets, partial(decoded_rows, file, schema))
+            decoded, readable = decode_readable(container, log_messages, partial(decoded_rows, file, schema))
             if decoded is None:
                 continue
-            log_ns = np.array([packet.log_time_ns for packet in readable], np.int64)
+            log_ns = np.array([log_message.log_time_ns for log_message in readable], np.int64)
             if name == SCENE:
                 _take(scenes.setdefault(channel.topic, _Scene()), decoded, log_ns)
             elif name == TRANSFORM:

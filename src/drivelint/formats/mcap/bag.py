@@ -151,7 +151,7 @@ def topics(path: Path) -> dict[str, str]:
         part: Summary | Container = read_index(file)
         if not part.channels:
             part = whole = Container(file, salvage=True)
-            for _ in whole.packets():
+            for _ in whole.messages():
                 pass
         for channel in part.channels.values():
             schema = part.schemas.get(channel.schema_id)
@@ -167,6 +167,6 @@ def _indexed(file: Path) -> set[str]:
 def _recorded(file: Path) -> set[str]:
     """Return the names of the schemas in the file's data section. Errors: `TraceError` for a damaged file."""
     container = Container(file, salvage=True)
-    for _ in container.packets():
+    for _ in container.messages():
         pass
     return {schema.name for schema in container.schemas.values()}

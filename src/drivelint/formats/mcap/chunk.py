@@ -11,7 +11,7 @@ from drivelint.errors import TraceError
 MAX_CHUNK_BYTES = 512 * 1024 * 1024
 """A chunk that declares a larger unpacked size is refused before memory is allocated. Recorders write chunks of a few MB."""
 FREE_BYTES = 1 << 30
-MOST_GROWTH = 250
+MOST_UNPACKED_PER_PACKED_BYTE = 250
 """All chunks of a file may unpack to `FREE_BYTES` plus this many times their packed size. Real logs grew at most thirtyfold."""
 FREE_RECORDS = 500_000
 LEAST_RECORD_BYTES = 4
@@ -46,7 +46,7 @@ class Work:
     def unpacked(self, head: ChunkHead, where: str) -> bytes:
         """Return the unpacked records of a chunk. Errors: those of `chunk_records`; `TraceError` beyond the limit."""
         packed, size = self._packed + len(head.packed), self._unpacked + head.size
-        if head.size <= MAX_CHUNK_BYTES and size > FREE_BYTES + MOST_GROWTH * packed:
+        if head.size <= MAX_CHUNK_BYTES and size > FREE_BYTES + MOST_UNPACKED_PER_PACKED_BYTE * packed:
             raise TraceError(
                 f"{where}: chunks of {packed} bytes that say they unpack to {size}: no recorder writes such a log: record or copy it again"
             )

@@ -10,7 +10,7 @@ from drivelint.formats.mcap.reader import MessageError
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from drivelint.formats.mcap.reader import Container, Packet
+    from drivelint.formats.mcap.reader import Container, LogMessage
 
 T = TypeVar("T")
 
@@ -19,28 +19,28 @@ MOST_MALFORMED_SHARE: Final = 0.1
 
 
 def decode_readable(
-    container: Container, packets: list[Packet], decode: Callable[[list[Packet]], T]
-) -> tuple[T | None, list[Packet]]:
+    container: Container, log_messages: list[LogMessage], decode: Callable[[list[LogMessage]], T]
+) -> tuple[T | None, list[LogMessage]]:
     """Decode a batch, and add its malformed messages to the losses of `container`.
 
     Return the decoded data (None if no message is readable), and the messages that were decoded.
     Errors: the error of the first malformed message, if more than a tenth of the batch is malformed.
     """
 
-    def decode_timed(some: list[Packet]) -> T:
-        if max(packet.log_time_ns for packet in some) > LATEST_NS:
-            late = next(packet for packet in some if packet.log_time_ns > LATEST_NS)
+    def decode_timed(some: list[LogMessage]) -> T:
+        if max(log_message.log_time_ns for log_message in some) > LATEST_NS:
+            late = next(log_message for log_message in some if log_message.log_time_ns > LATEST_NS)
             raise late.error(container.path, "its log time is no time of this or the next century")
         return decode(some)
 
-    decoded, malformed = decode_others(packets, decode_timed)
+    decoded, malformed = decode_others(log_messages, decode_timed)
     for k, why in malformed.items():
-        container.losses.add_message(packets[k].offset, str(why), packets[k].log_time_ns)
-    return decoded, [packet for k, packet in enumerate(packets) if k not in malformed]
+        container.losses.add_message(log_messages[k].offset, str(why), log_messages[k].log_time_ns)
+    return decoded, [log_message for k, log_message in enumerate(log_messages) if k not in malformed]
 
 
 def decode_others(
-    packets: list[Packet], decode: Callable[[list[Packet]], T]
+    log_messages: list[LogMessage], decode: Callable[[list[LogMessage]], T]
 ) -> tuple[T | None, dict[int, MessageError]]:
     """Decode a batch without its malformed messages.
 
@@ -48,24 +48,26 @@ def decode_others(
     Errors: the error of the first malformed message, if more than a tenth of the batch is malformed.
     """
     try:
-        return decode(packets), {}
+        return decode(log_messages), {}
     except MessageError as error:
         first = error
-    malformed = dict(_malformed(packets, decode))
-    if len(malformed) > max(1, MOST_MALFORMED_SHARE * len(packets)):
+    malformed = dict(_malformed(log_messages, decode))
+    if len(malformed) > max(1, MOST_MALFORMED_SHARE * len(log_messages)):
         raise first
-    readable = [packet for k, packet in enumerate(packets) if k not in malformed]
+    readable = [log_message for k, log_message in enumerate(log_messages) if k not in malformed]
     return (decode(readable) if readable else None), malformed
 
 
-def _malformed(packets: list[Packet], decode: Callable[[list[Packet]], object]) -> list[tuple[int, MessageError]]:
+def _malformed(
+    log_messages: list[LogMessage], decode: Callable[[list[LogMessage]], object]
+) -> list[tuple[int, MessageError]]:
     """Return place and error of each message that cannot be decoded, found by bisection."""
     malformed_messages: list[tuple[int, MessageError]] = []
-    waiting = [(0, len(packets))]
-    while waiting and len(malformed_messages) <= max(1, MOST_MALFORMED_SHARE * len(packets)):
+    waiting = [(0, len(log_messages))]
+    while waiting and len(malformed_messages) <= max(1, MOST_MALFORMED_SHARE * len(log_messages)):
         begin, end = waiting.pop()
         try:
-            decode(packets[begin:end])
+            decode(log_messages[begin:end])
         except MessageError as error:
             if end - begin == 1:
                 malformed_messages.append((begin, error))

@@ -110,7 +110,7 @@ class PartCopy:
                 self._add_renumbered((opcode, body) for opcode, _, body in self._original.chunk_records(record))
             else:
                 with self._original.parsing(record):
-                    self._note(record)
+                    self._add_to_index(record)
                 self._keep(record)
         self._end_chunk()
         self._end_loose()
@@ -163,13 +163,13 @@ class PartCopy:
             self._sink.write(self._original.read(start, min(start + _BLOCK, self._to)))
         self._from = self._to
 
-    def _place(self, at: int) -> int:
-        """Return the offset in the copy of a byte of the original that is still to be written."""
+    def _offset_in_copy(self, at: int) -> int:
+        """Return the offset that byte `at` of the original, which is not yet written, will have in the copy."""
         return self._sink.offset + at - self._from
 
-    def _note(self, record: Record) -> None:
+    def _add_to_index(self, record: Record) -> None:
         """Add a chunk, attachment or metadata record, which will be copied, to the index of the copy."""
-        start, length = self._place(record.at), record.end - record.at
+        start, length = self._offset_in_copy(record.at), record.end - record.at
         head = self._original.stream(record, _HEAD_BYTES)
         if record.opcode == Opcode.CHUNK:
             begin, end, size, _crc = head.read8(), head.read8(), head.read8(), head.read4()
@@ -194,7 +194,7 @@ class PartCopy:
             self._skip(record)
             return
         channel, n = self._original.message_index_header(record)
-        self._chunk[1].message_index_offsets[channel] = self._place(record.at)
+        self._chunk[1].message_index_offsets[channel] = self._offset_in_copy(record.at)
         self._chunk[1].message_index_length += record.end - record.at
         self._sink.counts[channel] += n
         self._keep(record)

@@ -59,8 +59,8 @@ class DamageError(TraceError):
 
 
 @dataclass(frozen=True)
-class Packet:
-    """One message. `offset`: the byte at which its record begins in the file, or the chunk that contains it."""
+class LogMessage:
+    """One message of a log. `offset`: the byte of the file at which its record begins, or the chunk that contains its record."""
 
     channel: Channel
     log_time_ns: int
@@ -75,7 +75,7 @@ class Packet:
 
 @dataclass
 class Container:
-    """An MCAP file. All fields are complete after the last message of `packets`.
+    """An MCAP file. All fields are complete after the last message of `messages()`.
 
     `salvage`: read the readable part of a damaged file, and list the lost parts in `losses`; otherwise damage is an error.
     `metadata`: name of a metadata record -> its content; the first record of a name counts. `library`: the software that wrote the file.
@@ -99,7 +99,7 @@ class Container:
     _places: set[int] = field(default_factory=set)
     _work: Work = field(default_factory=Work)
 
-    def packets(self) -> Iterator[Packet]:
+    def messages(self) -> Iterator[LogMessage]:
         """Yield every message in the order of the file.
 
         Errors: `DamageError` with the damage and its byte; with `salvage` only if no message can be read, or the lost
@@ -119,7 +119,7 @@ class Container:
         error.resume = resume
         return error
 
-    def _file(self, view: memoryview) -> Iterator[Packet]:
+    def _file(self, view: memoryview) -> Iterator[LogMessage]:
         if bytes(view[: len(MAGIC)]) != MAGIC:
             raise self._damaged(0, f"not an MCAP file: it begins with {bytes(view[:16])!r}")
         at, footer, index = len(MAGIC), None, None
@@ -194,7 +194,7 @@ class Container:
         if match and match.start() < len(view) - len(MAGIC):
             self._refuse_second_file(view, match.start())
 
-    def _take(self, view: memoryview, opcode: int, at: int, start: int, end: int) -> Iterator[Packet]:
+    def _take(self, view: memoryview, opcode: int, at: int, start: int, end: int) -> Iterator[LogMessage]:
         body = view[start:end]
         if opcode in {Opcode.CHUNK, Opcode.METADATA}:
             self._places.add(at)
@@ -232,7 +232,7 @@ class Container:
         except (struct.error, McapError, ValueError) as error:
             raise self._damaged(at, f"a record that cannot be read ({error})") from error
 
-    def _content(self, opcode: int, body: memoryview, at: int, end: int) -> Iterator[Packet]:
+    def _content(self, opcode: int, body: memoryview, at: int, end: int) -> Iterator[LogMessage]:
         """Store a schema or channel, or yield a message; ignore other records."""
         if opcode == Opcode.MESSAGE:
             if len(body) < _MESSAGE.size:
@@ -243,7 +243,7 @@ class Container:
             self._messages += 1
             self.counts.add(number, log_time)
             self.losses.message(log_time)
-            yield Packet(self.channels[number], log_time, bytes(body[_MESSAGE.size :]), at)
+            yield LogMessage(self.channels[number], log_time, bytes(body[_MESSAGE.size :]), at)
         elif opcode == Opcode.SCHEMA:
             schema = self._parsed(Schema.read, body, at)
             self.schemas[schema.id] = schema
@@ -253,7 +253,7 @@ class Container:
                 raise self._damaged(at, f"channel {channel.topic!r} with a schema that was never declared,", end)
             self.channels[channel.id] = channel
 
-    def _chunk(self, body: memoryview, at: int, end: int) -> Iterator[Packet]:
+    def _chunk(self, body: memoryview, at: int, end: int) -> Iterator[LogMessage]:
         where = f"{self.path}: byte {at}"
         try:
             head = chunk_head(body)
@@ -370,25 +370,25 @@ class Container:
 
 def message_batches(
     container: Container, kind_of: Callable[[Channel, Schema], str | None]
-) -> Iterator[tuple[str, list[Packet]]]:
+) -> Iterator[tuple[str, list[LogMessage]]]:
     """Yield batches of messages, each of one topic and one schema and of about `BATCH_BYTES`, with their kind.
 
     `kind_of`: returns the kind for a channel and its schema; None: the channel is not read.
     """
-    waiting: dict[str, tuple[str, list[Packet]]] = {}
+    waiting: dict[str, tuple[str, list[LogMessage]]] = {}
     sizes: Counter[str] = Counter()
-    for packet in container.packets():
-        topic, schema = packet.channel.topic, container.schemas.get(packet.channel.schema_id)
-        kind = None if schema is None else kind_of(packet.channel, schema)
+    for log_message in container.messages():
+        topic, schema = log_message.channel.topic, container.schemas.get(log_message.channel.schema_id)
+        kind = None if schema is None else kind_of(log_message.channel, schema)
         if kind is None:
-            container.counts.unused.add(packet.channel.id)
+            container.counts.unused.add(log_message.channel.id)
             continue
-        changed = topic in waiting and waiting[topic][1][0].channel.schema_id != packet.channel.schema_id
+        changed = topic in waiting and waiting[topic][1][0].channel.schema_id != log_message.channel.schema_id
         if changed or sizes[topic] >= BATCH_BYTES:
             yield waiting.pop(topic)
             sizes[topic] = 0
-        waiting.setdefault(topic, (kind, []))[1].append(packet)
-        sizes[topic] += len(packet.data)
+        waiting.setdefault(topic, (kind, []))[1].append(log_message)
+        sizes[topic] += len(log_message.data)
     yield from waiting.values()
 
 

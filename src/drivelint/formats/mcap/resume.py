@@ -16,18 +16,19 @@ if TYPE_CHECKING:
 
 MAGIC = b"\x89MCAP0\r\n"
 _RECORD = struct.Struct("<BQ")
-_CANDIDATE: Final = re.compile(rb"[\x02\x05\x06\x0f][\s\S]{5}\x00{3}")
-"""Matches the header of a footer, message, chunk or data end record that is shorter than 1 TiB."""
-_BEHIND_DATA_END: Final = frozenset({
+_RECORD_HEAD_PATTERN: Final = re.compile(rb"[\x02\x05\x06\x0f][\s\S]{5}\x00{3}")
+"""Matches the head of a footer, message, chunk or data end record that is shorter than 1 TiB."""
+_OPCODES_AFTER_DATA_END: Final = frozenset({
     Opcode.SCHEMA, Opcode.CHANNEL, Opcode.STATISTICS, Opcode.CHUNK_INDEX, Opcode.ATTACHMENT_INDEX, Opcode.METADATA_INDEX,
     Opcode.SUMMARY_OFFSET, Opcode.FOOTER,
 })  # fmt: skip
-_CHAIN: Final = 3
-"""This many consecutive messages on known channels are not there by chance."""
-_LEAST_MESSAGE: Final = 22
-_WORK: Final = 4
-"""A search unpacks at most this many times the file's size, so that it also ends for a file full of false chunk headers."""
-_LEAST_WORK: Final = 64 << 20
+_LEAST_CHAIN_MESSAGES: Final = 3
+"""Bytes that look like this many consecutive messages on known channels are certainly messages."""
+_LEAST_MESSAGE_BYTES: Final = 22
+_MOST_UNPACKED_FILE_SIZES: Final = 4
+"""A search unpacks at most this multiple of the file's size, so that it also ends for a file full of false chunk headers."""
+_LEAST_UNPACKING_LIMIT_BYTES: Final = 64 << 20
+"""A search may unpack this many bytes of any file."""
 
 
 def next_record(view: memoryview, at: int, *, channels: Container[int] | None) -> int:
@@ -36,15 +37,15 @@ def next_record(view: memoryview, at: int, *, channels: Container[int] | None) -
     Reading goes on at an intact chunk, a data end record, or the footer; in a file without chunks also at a message.
     `channels`: the known channel ids of a file without chunks; None: the file has chunks, and messages are only inside them.
     """
-    work = max(_WORK * len(view), _LEAST_WORK)
+    bytes_to_unpack = max(_MOST_UNPACKED_FILE_SIZES * len(view), _LEAST_UNPACKING_LIMIT_BYTES)
     place = at
-    while work > 0 and (match := _CANDIDATE.search(view, place)):
+    while bytes_to_unpack > 0 and (match := _RECORD_HEAD_PATTERN.search(view, place)):
         place = match.start()
         opcode, length = _RECORD.unpack_from(view, place)
         start, end = place + _RECORD.size, place + _RECORD.size + length
         if end <= len(view):
             if opcode == Opcode.CHUNK:
-                work -= length + _declared(view[start:end])
+                bytes_to_unpack -= length + _declared_size(view[start:end])
                 found = _is_chunk(view[start:end])
             else:
                 found = _is_end(view, opcode, start, end) or (
@@ -56,7 +57,7 @@ def next_record(view: memoryview, at: int, *, channels: Container[int] | None) -
     return len(view)
 
 
-def _declared(body: memoryview) -> int:
+def _declared_size(body: memoryview) -> int:
     try:
         return chunk_head(body).size
     except ChunkError:
@@ -78,19 +79,19 @@ def _is_end(view: memoryview, opcode: int, start: int, end: int) -> bool:
     if opcode != Opcode.DATA_END or end - start != 4 or end + _RECORD.size > len(view):
         return False
     behind, length = _RECORD.unpack_from(view, end)
-    return behind in _BEHIND_DATA_END and end + _RECORD.size + length <= len(view)
+    return behind in _OPCODES_AFTER_DATA_END and end + _RECORD.size + length <= len(view)
 
 
 def _is_message(view: memoryview, at: int, channels: Container[int]) -> bool:
-    """Return whether `_CHAIN` messages on known channels follow from `at` on, or fewer up to the end of the data."""
-    for _ in range(_CHAIN):
+    """Return whether `_LEAST_CHAIN_MESSAGES` messages on known channels follow from `at` on, or fewer up to the end of the data."""
+    for _ in range(_LEAST_CHAIN_MESSAGES):
         if at + _RECORD.size > len(view):
             return False
         opcode, length = _RECORD.unpack_from(view, at)
         start, end = at + _RECORD.size, at + _RECORD.size + length
         if _is_end(view, opcode, start, end):
             return True
-        if opcode != Opcode.MESSAGE or length < _LEAST_MESSAGE or end > len(view):
+        if opcode != Opcode.MESSAGE or length < _LEAST_MESSAGE_BYTES or end > len(view):
             return False
         (channel,) = struct.unpack_from("<H", view, start)
         if channel not in channels:

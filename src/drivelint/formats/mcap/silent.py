@@ -23,7 +23,7 @@ def silent_topics(files: Iterable[Path], is_wanted: Callable[[str], bool]) -> st
     lossy = False
     for file in files:
         container = Container(file, salvage=True)
-        spoken |= {packet.channel.topic for packet in container.packets()}
+        spoken |= {log_message.channel.topic for log_message in container.messages()}
         lossy |= bool(container.losses)
         for part in (container, read_index(file)):
             schemas = part.schemas

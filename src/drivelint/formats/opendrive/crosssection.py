@@ -51,14 +51,17 @@ class Evaluator:
             at = np.clip(s + _INSIDE_M, self.strip.start_m + _INSIDE_M, self.strip.end_m - _INSIDE_M)
         line = self.road.plan.evaluate(s, at)
         centre = self.road.offset.evaluate(s, at)
-        left, right = self._outward(self.left, 1.0, centre, s, at), self._outward(self.right, -1.0, centre, s, at)
+        left, right = (
+            self._edges_outward(self.left, 1.0, centre, s, at),
+            self._edges_outward(self.right, -1.0, centre, s, at),
+        )
         rows = [*left[::-1], centre, *right]
         t, dt = np.array([row[0] for row in rows]), np.array([row[1] for row in rows])
         if not float(np.abs(t).max(initial=0.0)) < MAX_REACH_M:
             raise MalformedError(f"an edge lies {float(np.abs(t).max()):.3g} m from the reference line")
         return Edges(line, t, dt, line.x - line.sin * t, line.y + line.cos * t)
 
-    def _outward(
+    def _edges_outward(
         self, lanes: list[Lane], side: float, centre: tuple[Floats, Floats], s: Floats, at: Floats
     ) -> list[tuple[Floats, Floats]]:
         edges = []

@@ -83,15 +83,15 @@ class DrivingSideStatements:
         return cls(said, roads, _winner(travel))
 
     def two_way_direction(self) -> Direction:
-        """Return the direction on two-way roads, where the side that is driven on fixes the lanes' direction."""
+        """Return the direction of the lanes on two-way roads, where it follows from the driving side."""
         return self._direction("rht", self.statements[0] if self.statements else None)
 
     def final_direction(self, side_by_lanes: str | None, quality: MapQuality) -> Direction:
         """Return the direction by the most trusted statement, and report the statements that disagree.
 
-        `side_by_lanes`: the side that is driven on according to opposing lanes beside each other, if lanes with negative numbers run along
-        the reference line. lht: each direction is a separate road, and the two lie in the other order than on one road, as in SUMO's
-        left-hand nets. None: no lane has an opposing lane beside it, so the lanes' direction does not show the side.
+        `side_by_lanes`: `rht` or `lht`, the driving side that follows from adjacent lanes with opposite directions; None: there are none.
+        It assumes that lanes with negative numbers run along the reference line. It is `lht` if each direction is a road of its own and
+        the other direction lies on its right, as in SUMO's left-hand nets.
         """
         if len(self.rules) > 1:
             counts = ", ".join(f"{side} {n}" for side, n in sorted(self.rules.items()))

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from drivelint.arrays import Codes, Floats, Indices, Mask
-    from drivelint.formats.mcap.reader import Packet
+    from drivelint.formats.mcap.reader import LogMessage
     from drivelint.formats.protobuf.descriptors import FieldTree
 
 _XY: FieldTree = {"x": None, "y": None}
@@ -119,9 +119,9 @@ class Decoder:
             )
         self._words = EnumCodes(types, GROUND_TRUTH)
 
-    def frames(self, packets: list[Packet]) -> FrameBatch:
+    def frames(self, log_messages: list[LogMessage]) -> FrameBatch:
         """Decode a batch. Errors: `TraceError` with topic and byte of the first message that cannot be decoded."""
-        message = decoded(self._path, packets, self._decode)
+        message = decoded(self._path, log_messages, self._decode)
         truth = struct_field(message, "global_ground_truth") if self._name == SENSOR_VIEW else message
         (t_ns, timed), (outer_ns, outer_timed) = _times(truth), _times(message)
         objects, frame = list_items(truth, "moving_object")
@@ -199,7 +199,7 @@ def read_first_message(data: bytes, name: str) -> FirstMessage:
     for each in _LANES:
         getattr(lanes, each).extend(getattr(truth, each))
     beside.traffic_sign.extend(truth.traffic_sign)
-    beside.traffic_light.extend(osi_heads.bulb_for_map(bulb, lights) for bulb in truth.traffic_light)
+    beside.traffic_light.extend(osi_heads.bulb_without_state(bulb, lights) for bulb in truth.traffic_light)
     beside.road_marking.extend(truth.road_marking)
     # the map format is recognised by its first tag, so lanes must come first
     content = b"".join(part.SerializeToString(deterministic=True) for part in (lanes, beside))

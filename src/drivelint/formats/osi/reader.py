@@ -22,7 +22,7 @@ from drivelint.drive.trace import LEAST_UTC_NS, FrameTimes, QualityFinding, Reco
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.losses import Losses
 from drivelint.formats.mcap.malformed import decode_others, decode_readable
-from drivelint.formats.mcap.reader import Container, Packet, message_batches
+from drivelint.formats.mcap.reader import Container, LogMessage, message_batches
 from drivelint.formats.mcap.silent import silent_topics
 from drivelint.formats.mcap.unread import UnreadTopics
 from drivelint.formats.osi import metadata, trace_file
@@ -67,28 +67,28 @@ def read_mcap(path: Path, topic: str | None) -> Recording:
     events: list[bytes] = []
     lost_findings: list[QualityFinding] = []
     unread = UnreadTopics()
-    for kind, packets in message_batches(container, partial(_kind, truths, topic, unread)):
+    for kind, log_messages in message_batches(container, partial(_kind, truths, topic, unread)):
         if kind in FIELD_TREES:
             _check_topics(container, truths, topic)
-            schema = container.schemas[packets[0].channel.schema_id]
+            schema = container.schemas[log_messages[0].channel.schema_id]
             if not batches:  # only the first message can have lanes
-                head = read_first_message(packets[0].data, kind)
+                head = read_first_message(log_messages[0].data, kind)
             if decoder is None or decoder.schema_id != schema.id:
                 decoder = Decoder(path, schema.id, schema.name, schema.data)
                 decoder.lights = head.lights
-            frames, readable = decode_readable(container, packets, decoder.frames)
+            frames, readable = decode_readable(container, log_messages, decoder.frames)
             if frames is not None:
                 batches.append(frames)
-            log_ns += [packet.log_time_ns for packet in readable]
+            log_ns += [log_message.log_time_ns for log_message in readable]
         elif kind == OPEN_DRIVE:
-            for packet in packets:
-                text = _map_text(container, packet)
+            for log_message in log_messages:
+                text = _map_text(container, log_message)
                 if isinstance(text, bytes):
-                    maps.setdefault(text, packet.channel.topic)
+                    maps.setdefault(text, log_message.channel.topic)
                 else:
                     lost_findings.append(text)
         else:
-            events += [packet.data for packet in packets]
+            events += [log_message.data for log_message in log_messages]
     _check_topics(container, truths, topic)
     unread.refuse(path, FIELD_TREES if topic is None else (), truths)
     _refuse_lost_end_of_converted(container)
@@ -135,18 +135,18 @@ def _kind(truths: list[str], topic: str | None, unread: UnreadTopics, channel: C
     return schema.name
 
 
-def _map_text(container: Container, packet: Packet) -> bytes | QualityFinding:
+def _map_text(container: Container, log_message: LogMessage) -> bytes | QualityFinding:
     """Return the OpenDRIVE map in a message, or the finding that it cannot be used."""
-    types = parse_schema(container.path, OPEN_DRIVE, container.schemas[packet.channel.schema_id].data)
+    types = parse_schema(container.path, OPEN_DRIVE, container.schemas[log_message.channel.schema_id].data)
     decode = message_decoder(container.path, types, OPEN_DRIVE, {"open_drive_xml_content": None})
     try:
-        content = decode([packet.data])
+        content = decode([log_message.data])
     except ValueError as error:
         text, why = None, f"cannot be decoded ({error})"
     else:
         text, why = content.field(0)[0].as_py() if content.type.num_fields else None, "is empty"
     if not text:
-        where = f"topic {packet.channel.topic!r}, byte {packet.offset}"
+        where = f"topic {log_message.channel.topic!r}, byte {log_message.offset}"
         return QualityFinding.unusable_map(f"the log's own map is not used: the one on {where}, {why}")
     return text if isinstance(text, bytes) else str(text).encode()
 
@@ -184,17 +184,17 @@ def read(probe: Probe) -> Recording:
     decoder: Decoder | None = None
     head, losses = FirstMessage(), Losses()
     with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
-        for packets in trace_file.message_batches(channel, content, losses):
+        for log_messages in trace_file.message_batches(channel, content, losses):
             if decoder is None:
-                decoder, name = _decoder(path, packets)
-                head = read_first_message(packets[0].data, name)
+                decoder, name = _decoder(path, log_messages)
+                head = read_first_message(log_messages[0].data, name)
                 decoder.lights = head.lights
-            frames, malformed = decode_others(packets, decoder.frames)
+            frames, malformed = decode_others(log_messages, decoder.frames)
             times = iter(() if frames is None else frames.t_ns.tolist())
-            for k, packet in enumerate(packets):
+            for k, log_message in enumerate(log_messages):
                 if k in malformed:
-                    end = packet.offset + trace_file.LENGTH + len(packet.data)
-                    losses.add(packet.offset, end, "a message that cannot be decoded")
+                    end = log_message.offset + trace_file.LENGTH + len(log_message.data)
+                    losses.add(log_message.offset, end, "a message that cannot be decoded")
                 else:
                     losses.message(next(times))
             if frames is not None:
@@ -212,25 +212,25 @@ def read(probe: Probe) -> Recording:
     return recording
 
 
-def _decoder(path: Path, packets: list[Packet]) -> tuple[Decoder, str]:
+def _decoder(path: Path, log_messages: list[LogMessage]) -> tuple[Decoder, str]:
     """Return the decoder and the name of the message type with which these messages have objects with positions.
 
     Errors: `TraceError` if neither type fits.
     """
-    for some in (packets, packets[:1]):  # a damaged later message is reported when it is decoded
+    for some in (log_messages, log_messages[:1]):  # a damaged later message is reported when it is decoded
         for name in (GROUND_TRUTH, SENSOR_VIEW):
             decoder = Decoder(path, 1, name, descriptor_set("read"))
             if _places_objects(decoder, some):
                 return decoder, name
     raise TraceError(
-        f"{path}: no moving objects in the first {len(packets)} messages, read as {GROUND_TRUTH} or as {SENSOR_VIEW}: "
+        f"{path}: no moving objects in the first {len(log_messages)} messages, read as {GROUND_TRUTH} or as {SENSOR_VIEW}: "
         "only these two kinds of OSI trace can be judged"
     )
 
 
-def _places_objects(decoder: Decoder, packets: list[Packet]) -> bool:
+def _places_objects(decoder: Decoder, log_messages: list[LogMessage]) -> bool:
     try:
-        frames, _ = decode_others(packets, decoder.frames)
+        frames, _ = decode_others(log_messages, decoder.frames)
     except TraceError:
         return False
     return frames is not None and bool(len(frames.ids) and np.isfinite(frames.numbers["x_m"]).any())

@@ -47,8 +47,8 @@ def light_by_bulb(bulbs: Iterable[Any]) -> dict[str, str]:
     return light_ids
 
 
-def bulb_for_map(bulb: Any, names: Mapping[str, str]) -> Any:
-    """Return a copy of a bulb without its state, for a map; a reference to its light is added. `names`: bulb id -> light id."""
+def bulb_without_state(bulb: Any, names: Mapping[str, str]) -> Any:
+    """Return a copy of a bulb without colour and mode, and with a reference to its light. `names`: bulb id -> light id."""
     map_bulb = type(bulb).FromString(bulb.SerializeToString())
     for field in ("color", "mode"):
         map_bulb.classification.ClearField(field)

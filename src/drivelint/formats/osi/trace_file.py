@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from drivelint.formats.mcap.losses import LostBytes
-from drivelint.formats.mcap.reader import BATCH_BYTES, Packet
+from drivelint.formats.mcap.reader import BATCH_BYTES, LogMessage
 
 if TYPE_CHECKING:
     import mmap
@@ -38,17 +38,17 @@ def is_osi_trace(head: bytes, size: int) -> bool:
     return 2 <= length <= min(size - LENGTH, MOST_MESSAGE_BYTES) and len(head) > LENGTH and head[LENGTH] in _FIRST_TAGS
 
 
-def message_batches(channel: Channel, content: mmap.mmap, losses: Losses) -> Iterator[list[Packet]]:
+def message_batches(channel: Channel, content: mmap.mmap, losses: Losses) -> Iterator[list[LogMessage]]:
     """Yield batches of messages of about `BATCH_BYTES` up to the damage; then add the lost bytes after them to `losses`.
 
     After each batch, the caller must add the times of the decoded messages to `losses`.
     """
-    waiting: list[Packet] = []
+    waiting: list[LogMessage] = []
     at = size = 0
     while at < len(content) and (why := _doubt(content, at)) is None:
         start = at + LENGTH
         end = start + int.from_bytes(content[at:start], "little")
-        waiting.append(Packet(channel, 0, content[start:end], at))
+        waiting.append(LogMessage(channel, 0, content[start:end], at))
         size += end - at
         at = end
         if size >= BATCH_BYTES:
@@ -81,12 +81,12 @@ def _doubt(content: mmap.mmap, at: int) -> str | None:
             f" and the file ends {short} bytes before that" if short > 0 else ", which is too many"
         )
     end = start + length
-    if _begins(content, at) or end == len(content) or _begins(content, end):
+    if _is_message_start(content, at) or end == len(content) or _is_message_start(content, end):
         return None
     return f"no message begins at byte {at}, nor at byte {end} behind the {length} bytes that it should have"
 
 
-def _begins(content: mmap.mmap, at: int) -> bool:
+def _is_message_start(content: mmap.mmap, at: int) -> bool:
     return is_osi_trace(content[at : at + LENGTH + 1], len(content) - at)
 
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from google.protobuf.descriptor_pb2 import DescriptorProto, EnumDescriptorProto, FileDescriptorProto
     from numpy.typing import NDArray
 
-    from drivelint.formats.mcap.reader import Packet
+    from drivelint.formats.mcap.reader import LogMessage
 
     Decode = Callable[[list[bytes]], pa.StructArray]
 
@@ -96,7 +96,7 @@ def parse_schema(path: Path, name: str, descriptor_set: bytes) -> Types:
         types.add(scope, file.message_type, file.enum_type)
     if f".{name}" not in types.messages:
         raise TraceError(
-            f"{path}: the schema {name} in the log does not describe {name}: record it with its descriptor set"
+            f"{path}: the schema {name} in the log has no definition of the message type {name}: record the log with its descriptor set"
         )
     return types
 
@@ -158,16 +158,16 @@ def enum_names(types: Types, name: str, *path: str) -> dict[int, str]:
     return {value.number: value.name for value in types.enums[source].value} if source in types.enums else {}
 
 
-def decoded(path: Path, packets: list[Packet], decode: Decode) -> pa.StructArray:
+def decoded(path: Path, log_messages: list[LogMessage], decode: Decode) -> pa.StructArray:
     """Decode a batch. Errors: `TraceError` with topic and byte of the first message that cannot be decoded."""
     try:
-        return decode([packet.data for packet in packets])
+        return decode([log_message.data for log_message in log_messages])
     except ValueError as error:
-        if len(packets) == 1:
-            raise packets[0].error(path, str(error).splitlines()[0]) from error
-        for packet in packets:  # find the message that cannot be decoded
-            decoded(path, [packet], decode)
-        raise TraceError(f"{path}: {len(packets)} messages cannot be decoded together: {error}") from error
+        if len(log_messages) == 1:
+            raise log_messages[0].error(path, str(error).splitlines()[0]) from error
+        for log_message in log_messages:  # find the message that cannot be decoded
+            decoded(path, [log_message], decode)
+        raise TraceError(f"{path}: {len(log_messages)} messages cannot be decoded together: {error}") from error
 
 
 def struct_field(parent: pa.Array, name: str) -> pa.Array:

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from mcap.records import Schema
     from numpy.typing import NDArray
 
-    from drivelint.formats.mcap.reader import Packet
+    from drivelint.formats.mcap.reader import LogMessage
     from drivelint.formats.protobuf.descriptors import FieldTree
     from drivelint.formats.ros2.types import Types
 
@@ -216,38 +216,40 @@ class Decoder:
         self.constants = whole_number_constants(path, schema.name, schema.data)
         self._program = _Compiler(types).program(short_type_name(schema.name), tree)
 
-    def table(self, packets: Sequence[Packet]) -> Table:
+    def table(self, log_messages: Sequence[LogMessage]) -> Table:
         """Decode a batch of messages. Errors: `TraceError` with topic and byte of the first message that does not fit the definition."""
-        return _Batch(self._path, self._name, packets).table(self._program)
+        return _Batch(self._path, self._name, log_messages).table(self._program)
 
 
 class _Batch:
     """Messages in one buffer. Each body begins at a multiple of eight bytes, so that numpy can read every number as aligned."""
 
-    def __init__(self, path: Path, name: str, packets: Sequence[Packet]) -> None:
-        self._path, self._name, self._packets = path, name, packets
-        sizes = np.array([len(packet.data) - HEADER_BYTES for packet in packets], np.int64)
+    def __init__(self, path: Path, name: str, log_messages: Sequence[LogMessage]) -> None:
+        self._path, self._name, self._log_messages = path, name, log_messages
+        sizes = np.array([len(log_message.data) - HEADER_BYTES for log_message in log_messages], np.int64)
         if len(sizes) and sizes.min() < 0:
             raise self._misfit(int(np.argmin(sizes)), "is shorter than its header")
-        heads = [packet.data[:2] for packet in packets]
+        heads = [log_message.data[:2] for log_message in log_messages]
         wrong = {head for head in set(heads) if head != heads[0] or head[0] != 0 or head[1] not in BYTE_ORDERS}
         if wrong:
             odd = next(i for i, head in enumerate(heads) if head in wrong)
-            header = packets[odd].data[:4].hex()
+            header = log_messages[odd].data[:4].hex()
             raise self._misfit(odd, f"is encoded otherwise than plain CDR like the others (header {header})")
         # with four bytes before the first header, every message body begins at a multiple of eight bytes
         padded = -(-(sizes + HEADER_BYTES) // _MAX_ALIGN) * _MAX_ALIGN
         self._start = np.cumsum(padded) - padded + 2 * HEADER_BYTES
         self._end = self._start + sizes
         pads = [_PADS[n] for n in (padded - sizes - HEADER_BYTES).tolist()]
-        pieces = chain.from_iterable((packet.data, pad) for packet, pad in zip(packets, pads, strict=True))
+        pieces = chain.from_iterable(
+            (log_message.data, pad) for log_message, pad in zip(log_messages, pads, strict=True)
+        )
         joined = b"".join([b"\0" * HEADER_BYTES, *pieces, b"\0" * (2 * _MAX_ALIGN - HEADER_BYTES)])
         self._bytes = np.frombuffer(joined, np.uint8)
-        order = BYTE_ORDERS[packets[0].data[1]] if packets else "<"
+        order = BYTE_ORDERS[log_messages[0].data[1]] if log_messages else "<"
         self._views = {code: self._bytes.view(f"{order}{code}") for code in set(NUMPY_CODES.values())}
 
     def table(self, program: list[Any]) -> Table:
-        messages = np.arange(len(self._packets))
+        messages = np.arange(len(self._log_messages))
         cursor, walk = self._run(program, self._start.copy(), messages)
         left = self._end - cursor
         self._check(cursor, self._end, messages)
@@ -347,7 +349,7 @@ class _Batch:
             raise self._misfit(int(message[np.argmax(beyond)]), "ends before its definition does")
 
     def _misfit(self, i: int, problem: str) -> TraceError:
-        return self._packets[i].error(self._path, f"the {self._name} {problem}")
+        return self._log_messages[i].error(self._path, f"the {self._name} {problem}")
 
 
 def _stacked(parts: list[_Walk], offsets: Sequence[int], place: NDArray[np.intp]) -> _Walk:

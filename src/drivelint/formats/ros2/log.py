@@ -58,13 +58,13 @@ class Log:
         for file in files:
             container = Container(file, salvage=True)
             decoders: dict[int, Decoder] = {}
-            for kind, packets in message_batches(container, partial(self._kind, file, decoders)):
-                channel = packets[0].channel
+            for kind, log_messages in message_batches(container, partial(self._kind, file, decoders)):
+                channel = log_messages[0].channel
                 decoder = decoders[channel.schema_id]
-                table, readable = decode_readable(container, packets, decoder.table)
+                table, readable = decode_readable(container, log_messages, decoder.table)
                 if table is None:
                     continue
-                log_ns = np.array([packet.log_time_ns for packet in readable], np.int64)
+                log_ns = np.array([log_message.log_time_ns for log_message in readable], np.int64)
                 read = self.topics.setdefault(kind, {}).setdefault(channel.topic, [])
                 read.append(_part(kind, decoder, table, log_ns))
                 if kind in OBJECT_ROWS or kind == ODOMETRY:

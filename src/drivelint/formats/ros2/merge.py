@@ -1,4 +1,4 @@
-"""Merges the ego's odometry and the ego among the objects of a ROS log into one actor."""
+"""Merges two recordings of the ego in a ROS log, its odometry and its entry in the list of objects, into one actor."""
 
 from __future__ import annotations
 

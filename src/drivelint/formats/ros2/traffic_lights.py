@@ -32,10 +32,11 @@ NUMBERS: Final = {
 }  # fmt: skip
 """The constants of an element. Those in the log's definition take precedence, as older versions have other numbers."""
 _COLOURS: Final = ("RED", "AMBER", "GREEN")
-_FULL, _DARK, _ARROW = 1, 8, 64
+_LIT_RED_BIT, _DARK_RED_BIT, _ARROW_RED_BIT = 1, 8, 64
 """The bits for red: a full lamp is lit, a full lamp is dark, an arrow is lit. The next two bits are those of amber and green."""
-_ALL_COLOURS: Final = 7
-_FLASHING, _DOUBT = 512, 1024
+_COLOUR_MASK: Final = 0b111
+"""The bits for red, amber and green of one kind, after a shift to the lowest bits."""
+_FLASHING_BIT, _DOUBT_BIT = 512, 1024
 _FULL_STATES: Final = {1: "red", 3: "red_amber", 2: "amber", 4: "green"}
 _GROUPS: Final = (("traffic_light_groups", "traffic_light_group_id"), ("signals", "traffic_signal_id"))
 
@@ -75,11 +76,11 @@ def _states(groups: Table, number: Mapping[str, int]) -> Codes:
     bits = np.zeros(elements.n, np.int64)
     for k, name in enumerate(_COLOURS):
         of_color = color == number[name]
-        for which, bit in ((full & lit, _FULL), (full & dark, _DARK), (arrow & lit, _ARROW)):
+        for which, bit in ((full & lit, _LIT_RED_BIT), (full & dark, _DARK_RED_BIT), (arrow & lit, _ARROW_RED_BIT)):
             bits[of_color & which] |= bit << k
-    bits[full & flashing & np.isin(color, [number[name] for name in _COLOURS])] |= _FLASHING
+    bits[full & flashing & np.isin(color, [number[name] for name in _COLOURS])] |= _FLASHING_BIT
     # any other element: another colour, shape or status, an unknown value, or a flashing arrow
-    bits[(bits == 0) & ~(dark & (full | arrow))] = _DOUBT
+    bits[(bits == 0) & ~(dark & (full | arrow))] = _DOUBT_BIT
     of_group = np.zeros(groups.n, np.int64)
     np.bitwise_or.at(of_group, elements.parent, bits)
     return _STATE_OF_BITS[of_group]
@@ -91,20 +92,24 @@ def _state(bits: int) -> int:
     The map does not state to which turns an arrow applies. So the state is unknown if an arrow has another colour than the full lamp:
     red with a green arrow is red for some turns and green for others. It is also unknown if only arrows are lit.
     """
-    full, dark, arrows = bits & _ALL_COLOURS, bits // _DARK & _ALL_COLOURS, bits // _ARROW & _ALL_COLOURS
+    full, dark, arrows = (
+        bits & _COLOUR_MASK,
+        bits // _DARK_RED_BIT & _COLOUR_MASK,
+        bits // _ARROW_RED_BIT & _COLOUR_MASK,
+    )
     word = None
-    if bits & _DOUBT:
+    if bits & _DOUBT_BIT:
         word = None
-    elif bits & _FLASHING:
+    elif bits & _FLASHING_BIT:
         word = "flashing" if not (full or arrows) else None
     elif full:
         word = _FULL_STATES.get(full) if arrows in {0, full} else None
-    elif dark == _ALL_COLOURS and not arrows:  # with fewer dark lamps listed, another may be lit
+    elif dark == _COLOUR_MASK and not arrows:  # with fewer dark lamps listed, another may be lit
         word = "off"
     return -1 if word is None else SIGNAL_STATES.index(word)
 
 
-_STATE_OF_BITS: Final = np.array([_state(bits) for bits in range(2 * _DOUBT)], np.int8)
+_STATE_OF_BITS: Final = np.array([_state(bits) for bits in range(2 * _DOUBT_BIT)], np.int8)
 
 
 def signal_states(

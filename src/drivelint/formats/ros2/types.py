@@ -136,7 +136,7 @@ def _resolved(kind: str, container: str, defined: set[str], wrong: MakeError) ->
     if "/" not in full and full not in _STAMPS:
         full = f"{container.split('/', maxsplit=1)[0]}/{full}"
     if full not in defined and full not in _STAMPS:
-        raise wrong(f"uses {kind}, which it does not describe: record it with its definitions")
+        raise wrong(f"uses the type {kind}, but has no definition of it: record the log with its message definitions")
     return full
 
 

@@ -32,7 +32,7 @@ _WHOLE, _DOUBLE = 2, 3
 """The values of `rcl_interfaces/ParameterType` for integers and doubles."""
 _SAME_M: Final = 0.001
 """Lengths that differ by less are equal: some are recorded in single precision."""
-_MOST_M: Final = 50.0
+_MOST_BOX_M: Final = 50.0
 """A longer or wider box is implausible."""
 
 
@@ -116,7 +116,7 @@ def _box(source: str, lengths: Mapping[str, float]) -> VehicleBox | None:
         return None
     base, front, rear, tread, left, right = (lengths[name] for name in VEHICLE_LENGTHS)
     length, width = front + base + rear, left + tread + right
-    if not (0.0 < length < _MOST_M and 0.0 < width < _MOST_M and min(base, tread) > 0.0):
+    if not (0.0 < length < _MOST_BOX_M and 0.0 < width < _MOST_BOX_M and min(base, tread) > 0.0):
         return None
     height = lengths.get(_HEIGHT, nan)
     height = height if isfinite(height) and height > 0.0 else nan

@@ -34,7 +34,9 @@ _SHAPE_M: Final = 0.02  # the tolerance with which a centre line is simplified
 _INSET_M: Final = 2.0  # an outline's ends may be oblique: at a lane's ends, the width is measured this far inside
 _OUTLINE_M: Final = 10.0  # how far to the side a lane's polygon is looked for
 _REACH_M: Final = 3.75  # a line or edge farther from the centre line bounds another lane
-_LEAST_M: Final = 0.8  # a line to which no lane refers, nearer to the centre line than this, bounds another lane
+_LEAST_BOUND_DISTANCE_M: Final = (
+    0.8  # a line to which no lane refers, nearer to the centre line than this, bounds another lane
+)
 _ASIDE_M: Final = 0.6  # a bound farther away than the other bound by more than this lies beyond another strip
 _LANES_APART_M: Final = (2.2, 6.0)  # least and largest distance between the centre lines of parallel lanes
 _PARALLEL: Final = float(np.cos(np.radians(10.0)))
@@ -197,7 +199,7 @@ def _of_lines(lane: CentreLine, tree: shapely.STRtree) -> None:
     for side in (0, 1):
         rays = _rays(lane, side, _REACH_M, lane.line)
         for i in np.unique(tree.query(rays, predicate="intersects")[1]):
-            _nearer(lane, side, np.ones(len(lane.s), np.bool_), tree.geometries[i], least_m=_LEAST_M)
+            _nearer(lane, side, np.ones(len(lane.s), np.bool_), tree.geometries[i], least_m=_LEAST_BOUND_DISTANCE_M)
 
 
 def _nearer(lane: CentreLine, side: int, at: Mask, line: Any, *, least_m: float) -> None:

@@ -15,13 +15,14 @@ import numpy as np
 if TYPE_CHECKING:
     from drivelint.arrays import Floats, Mask
 
-_LEAST_MPS: Final = 2.0
+_LEAST_SPEED_MPS: Final = 2.0
 """Below this speed, the ego moves by less than 4 cm per message, so that noise of 2 cm hides a lost message."""
 _BESIDE: Final = 4
 """A step is compared with this number of steps on each side."""
 _TOLERANCE: Final = 0.4
 """A step over lost messages is longer by a whole number of messages, give or take this share of a message."""
-_MOST_LOST: Final = 10
+_MOST_LOST_MESSAGES: Final = 10
+"""A step that would span more lost messages is not taken for one."""
 _SHORT_SHARE: Final = 0.8
 """A step that advances by less than this share of the usual step is the seam between the stream and the frames."""
 _LAST_STEPS: Final = 20
@@ -51,10 +52,10 @@ def timed_track(place: Floats, heading: Floats, t_s: Floats, message_s: float) -
     if n < 2 * _BESIDE + 2 or not np.isfinite(way).all() or not (period > 0.0).all():
         return EgoTrack(place, heading, 0, np.nan)
     usual = _usual(way / period)
-    moving = usual > _LEAST_MPS
+    moving = usual > _LEAST_SPEED_MPS
     longer = np.where(moving, way / np.maximum(usual * period, 1e-9) - 1.0, 0.0) * period / message_s
     whole = np.round(longer)
-    n_lost = np.where((whole >= 1) & (whole <= _MOST_LOST) & (np.abs(longer - whole) < _TOLERANCE), whole, 0.0)
+    n_lost = np.where((whole >= 1) & (whole <= _MOST_LOST_MESSAGES) & (np.abs(longer - whole) < _TOLERANCE), whole, 0.0)
     seam = _seam(place, usual * period, moving)
     n_lost[seam - 1 :] = 0.0
     stream = t_s[0] + np.r_[0.0, np.cumsum(period + message_s * n_lost)][:seam]

@@ -19,7 +19,7 @@ _JOINED_M: Final = 0.3  # the largest gap between the end of a lane and the star
 _ONWARDS: Final = float(np.cos(np.radians(45.0)))
 _OUTSIDE_M: Final = 0.4  # how far beyond a bound the lane beside is looked for
 _SHARES: Final = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
-_LEAST_PLACES: Final = 3  # the least number of these places with the same lane beside
+_LEAST_PLACES_BESIDE: Final = 3  # the least number of these places with the same lane beside
 _ALONG: Final = float(np.cos(np.radians(25.0)))
 _LEVEL_M: Final = 3.0
 
@@ -105,7 +105,7 @@ def _beside(
     for i in sorted(votes, key=lambda i: (-len(votes[i]), i)):
         neighbour = lanes[i]
         joined = not {*lane.after}.isdisjoint(neighbour.after) or not {*lane.before}.isdisjoint(neighbour.before)
-        if len(votes[i]) >= _LEAST_PLACES and not joined:
+        if len(votes[i]) >= _LEAST_PLACES_BESIDE and not joined:
             return neighbour.lane_id, sum(votes[i]) < 0
     return None, None
 

@@ -22,47 +22,46 @@ if TYPE_CHECKING:
 class Points:
     """A list of `n` points in the file, of two or three numbers each, which is decoded on access.
 
-    `at`: the byte at which the first point begins; `point`: the layout of a point; `first`: the memo number of the first point.
+    `at`: the byte at which the first point begins. The memo numbers of the points are successive, from `first_memo_number` on.
     """
 
     content: bytes
     at: int
     n: int
-    point: np.dtype[Any]
+    point_layout: np.dtype[Any]
     are_tuples: bool
-    first: int
+    first_memo_number: int
 
     @property
     def array(self) -> Floats:
         """The points (n, k)."""
-        rows = np.frombuffer(self.content, self.point, self.n, self.at)
-        return np.column_stack([rows[name] for name in self.point.names or ()])
+        rows = np.frombuffer(self.content, self.point_layout, self.n, self.at)
+        return np.column_stack([rows[name] for name in self.point_layout.names or ()])
 
     def as_list(self) -> list[Any]:
         """Return the points as lists or tuples, as in the file."""
         return [tuple(row) if self.are_tuples else row for row in self.array.tolist()]
 
-    def row(self, number: int) -> Any:
-        """Return the point with this memo number."""
-        row = np.frombuffer(self.content, self.point, 1, self.at + (number - self.first) * self.point.itemsize)[
-            0
-        ].tolist()
-        return tuple(row) if self.are_tuples else list(row)
+    def point_of_memo_number(self, memo_number: int) -> tuple[float, ...] | list[float]:
+        """Return the point with this memo number, as a tuple or list as in the file."""
+        at = self.at + (memo_number - self.first_memo_number) * self.point_layout.itemsize
+        numbers: tuple[float, ...] = np.frombuffer(self.content, self.point_layout, 1, at)[0].tolist()
+        return numbers if self.are_tuples else list(numbers)
 
 
-def _point(first: int, size: int, k: int) -> np.dtype[Any]:
+def _point_layout(first: int, size: int, k: int) -> np.dtype[Any]:
     """Return the layout of a point of `size` bytes with k numbers; `first`: the offset of the first number in bytes."""
     places = [first + 9 * i for i in range(k)]
     return np.dtype({"names": list("xyz"[:k]), "formats": [">f8"] * k, "offsets": places, "itemsize": size})
 
 
-_LISTS: Final = (
+_POINT_LISTS: Final = (
     # MEMOIZE, MARK, then BINFLOAT thrice, TUPLE3 and MEMOIZE for each point, APPENDS
-    (re.compile(rb"\x94\((?:G.{8}G.{8}G.{8}\x87\x94)+e", re.DOTALL), _point(1, 29, 3), True),
+    (re.compile(rb"\x94\((?:G.{8}G.{8}G.{8}\x87\x94)+e", re.DOTALL), _point_layout(1, 29, 3), True),
     # MEMOIZE, MARK, then EMPTY_LIST, MEMOIZE, MARK, BINFLOAT twice and APPENDS for each point, APPENDS
-    (re.compile(rb"\x94\((?:\]\x94\(G.{8}G.{8}e)+e", re.DOTALL), _point(4, 22, 2), False),
+    (re.compile(rb"\x94\((?:\]\x94\(G.{8}G.{8}e)+e", re.DOTALL), _point_layout(4, 22, 2), False),
 )
-_BEGIN: Final = 2  # bytes of a list before its first point; one byte follows the last point
+_LIST_HEAD_BYTES: Final = 2  # bytes of a list before its first point; one byte follows the last point
 
 
 def points_at(content: bytes, at: int, count: int) -> tuple[Points, int] | None:
@@ -70,32 +69,33 @@ def points_at(content: bytes, at: int, count: int) -> tuple[Points, int] | None:
 
     `count`: the memo number of the list.
     """
-    for pattern, point, are_tuples in _LISTS:
+    for pattern, point, are_tuples in _POINT_LISTS:
         if match := pattern.match(content, at):
-            n = (match.end() - at - _BEGIN - 1) // point.itemsize
-            return Points(content, at + _BEGIN, n, point, are_tuples, count + 1), match.end()
+            n = (match.end() - at - _LIST_HEAD_BYTES - 1) // point.itemsize
+            return Points(content, at + _LIST_HEAD_BYTES, n, point, are_tuples, count + 1), match.end()
     return None
 
 
-_REFERENCE: Final = rb"(?:h.|j.{4})"
-_ARRAY: Final = re.compile(
+_MEMO_GET: Final = rb"(?:h.|j.{4})"  # BINGET or LONG_BINGET: pushes the value with a memo number
+_ARRAY_PATTERN: Final = re.compile(
     # the name numpy.ndarray, BININT1 0, TUPLE1, MEMOIZE, the byte b, TUPLE3, MEMOIZE, REDUCE, MEMOIZE
-    rb"(" + _REFERENCE + rb")K\x00\x85\x94" + _REFERENCE + rb"\x87\x94R\x94"
+    rb"(" + _MEMO_GET + rb")K\x00\x85\x94" + _MEMO_GET + rb"\x87\x94R\x94"
     # MARK, BININT1 1, the shape, a tuple of it, MEMOIZE, the type, NEWTRUE or NEWFALSE, the length of the bytes
-    rb"\(K\x01((?:K.|M.{2}|J.{4}){1,3})[\x85\x86\x87]\x94(" + _REFERENCE + rb")([\x88\x89])(C.|B.{4})",
+    rb"\(K\x01((?:K.|M.{2}|J.{4}){1,3})[\x85\x86\x87]\x94(" + _MEMO_GET + rb")([\x88\x89])(C.|B.{4})",
     re.DOTALL,
 )  # fmt: skip
 _ARRAY_END: Final = b"\x94t\x94b"  # after the bytes: MEMOIZE, TUPLE, MEMOIZE, BUILD
-_ARRAY_NUMBERS: Final = 6
+_ARRAY_MEMO_NUMBERS: Final = 6
 """The number of parts of an array with a memo number. The file refers only to the third, the array, and the fifth, its bytes."""
 
 
 def array_at(content: bytes, at: int, memo: dict[int, Any], count: int) -> tuple[np.ndarray[Any, Any], int, int] | None:
-    """Return the array whose constructor is read up to byte `at`, where the array ends, and the next memo number; None: no array.
+    """Return the array that is stored at byte `at`, the byte after it, and the next free memo number; None: no array is stored there.
 
-    `memo`: memo number -> value; the array and its bytes are added. `count`: the next memo number before the array. Errors: as `array_of`.
+    `at`: the byte after the name of numpy's function that rebuilds an array. `memo`: memo number -> value; the array and its bytes are
+    added. `count`: the next free memo number before the array. Errors: as `array_of`.
     """
-    match = _ARRAY.match(content, at)
+    match = _ARRAY_PATTERN.match(content, at)
     if match is None:
         return None
     _, shape, kind, order, size = match.groups()
@@ -105,12 +105,12 @@ def array_at(content: bytes, at: int, memo: dict[int, Any], count: int) -> tuple
     if content[end : end + len(_ARRAY_END)] != _ARRAY_END or type(number_type) is not NumberType:
         return None
     raw = content[begin:end]
-    array = array_of((1, _integers(shape), number_type, order == b"\x88", raw))
+    array = array_of((1, _integer_arguments(shape), number_type, order == b"\x88", raw))
     memo[count + 2], memo[count + 4] = array, raw
-    return array, end + len(_ARRAY_END), count + _ARRAY_NUMBERS
+    return array, end + len(_ARRAY_END), count + _ARRAY_MEMO_NUMBERS
 
 
-def _integers(code: bytes) -> tuple[int, ...]:
+def _integer_arguments(code: bytes) -> tuple[int, ...]:
     """Return the integers of successive operations BININT1, BININT2 and BININT."""
     found, at = [], 0
     while at < len(code):

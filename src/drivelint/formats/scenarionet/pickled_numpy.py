@@ -77,7 +77,7 @@ class Array:
 
 
 def array_of(state: Any) -> np.ndarray[Any, Any]:
-    """Return the array of a state (version, shape, type, whether in Fortran's order, bytes). Errors: `PickleError`."""
+    """Return an array from its pickled state: (version, shape, type, whether in Fortran's order, bytes). Errors: `PickleError`."""
     _, shape, kind, is_fortran, raw = state
     return _view(raw, kind, shape, "F" if is_fortran else "C")
 

@@ -60,7 +60,7 @@ def _difference(tracks: Tracks, group: Mask) -> str | None:
 
     This shows only where an actor accelerates, brakes or turns, so that the displacements before and after differ.
     """
-    steps = tracks.steps_m[group] / np.diff(tracks.t_s)[:, None]
+    steps = tracks.displacements_m[group] / np.diff(tracks.t_s)[:, None]
     before, after, velocity = steps[:, :-1], steps[:, 1:], tracks.velocity[group][:, 1:-1]
     tells = np.hypot(*np.moveaxis(after - before, 2, 0)) > 2.0 * _DISTINCT_MPS
     if tells.sum() < _LEAST_SAMPLES:
@@ -78,7 +78,7 @@ def drop_false_stops(tracks: Tracks) -> list[QualityFinding]:
     ends = tracks.present.copy()
     ends[:, :-1] &= ~tracks.present[:, 1:]
     speed = np.zeros(ends.shape)
-    speed[:, 1:] = np.nan_to_num(np.hypot(*np.moveaxis(tracks.steps_m, 2, 0)) / np.diff(tracks.t_s))
+    speed[:, 1:] = np.nan_to_num(np.hypot(*np.moveaxis(tracks.displacements_m, 2, 0)) / np.diff(tracks.t_s))
     false = ends & (tracks.velocity == 0.0).all(axis=2) & (speed > _MOVING_MPS)
     if not false.any():
         return []
@@ -93,7 +93,7 @@ def interpolated(tracks: Tracks, dataset: Dataset) -> Mask:
     every = dataset.steps_per_keyframe
     if not every or len(tracks.t_s) < every + 1:
         return np.zeros(len(tracks.ids), np.bool_)
-    off = np.abs(np.diff(tracks.steps_m, axis=1)).max(axis=2)  # (n, T - 2), at the steps 1 ... T - 2
+    off = np.abs(np.diff(tracks.displacements_m, axis=1)).max(axis=2)  # (n, T - 2), at the steps 1 ... T - 2
     between = np.arange(1, len(tracks.t_s) - 1) % every != 0
     even: Mask = ~(np.nan_to_num(off[:, between]) > _EVEN_M).any(axis=1)
     return even
@@ -174,7 +174,7 @@ def turn_boxes(tracks: Tracks, dataset: Dataset) -> list[QualityFinding]:
 
 def _moves_ahead(tracks: Tracks, i: int) -> bool:
     """Return whether an actor moves along its heading, forwards or backwards."""
-    steps = tracks.steps_m[i]
+    steps = tracks.displacements_m[i]
     heading = tracks.heading[i, :-1]
     way = np.hypot(*steps.T)
     along = np.abs(steps[:, 0] * np.cos(heading) + steps[:, 1] * np.sin(heading))

@@ -38,7 +38,7 @@ class Tracks:
     kinds: Codes
 
     @cached_property
-    def steps_m(self) -> Floats:
+    def displacements_m(self) -> Floats:
         """The displacement of each actor (n, T - 1, 2) from step to step, as read; NaN unless it is present at both steps."""
         steps: Floats = np.diff(self.place[..., :2], axis=1)
         return steps

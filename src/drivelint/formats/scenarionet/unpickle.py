@@ -198,10 +198,10 @@ class _Machine:
 
     def _point_of(self, number: int) -> Any:
         """Return the point with this memo number, of a list in `points`."""
-        k = bisect_right(self.points, number, key=lambda each: each.first) - 1
-        if k < 0 or number >= self.points[k].first + self.points[k].n:
+        k = bisect_right(self.points, number, key=lambda each: each.first_memo_number) - 1
+        if k < 0 or number >= self.points[k].first_memo_number + self.points[k].n:
             raise IndexError
-        return self.points[k].row(number)
+        return self.points[k].point_of_memo_number(number)
 
     def mark(self, at: int) -> int:
         self.marks.append(len(self.stack))
@@ -212,10 +212,10 @@ class _Machine:
         return at
 
     def pop_mark(self, at: int) -> int:
-        self._since_mark()
+        self._pop_to_mark()
         return at
 
-    def _since_mark(self) -> list[Any]:
+    def _pop_to_mark(self) -> list[Any]:
         """Remove the values above the last mark from the stack, and return them."""
         mark = self.marks.pop()
         found = self.stack[mark:]
@@ -249,8 +249,8 @@ class _Machine:
         self.stack.append([])
         return at
 
-    def list_of(self, at: int) -> int:
-        self.stack.append(self._since_mark())
+    def push_list_since_mark(self, at: int) -> int:
+        self.stack.append(self._pop_to_mark())
         return at
 
     def append(self, at: int) -> int:
@@ -259,14 +259,14 @@ class _Machine:
         return at
 
     def appends(self, at: int) -> int:
-        self._extend(self._since_mark())
+        self._extend(self._pop_to_mark())
         return at
 
     def _extend(self, values: Any) -> None:
         target: Any = self.stack[-1]
         if type(target) is Points:  # a pickle writes a long list in several parts
             rows = target.as_list()
-            self.memo[target.first - 1] = self.stack[-1] = target = rows
+            self.memo[target.first_memo_number - 1] = self.stack[-1] = target = rows
         if type(target) is not list:
             raise TypeError("values for something that is not a list")
         target.extend(values)
@@ -275,8 +275,8 @@ class _Machine:
         self.stack.append(())
         return at
 
-    def tuple_of(self, at: int) -> int:
-        self.stack.append(tuple(self._since_mark()))
+    def push_tuple_since_mark(self, at: int) -> int:
+        self.stack.append(tuple(self._pop_to_mark()))
         return at
 
     def tuple1(self, at: int) -> int:
@@ -295,8 +295,8 @@ class _Machine:
         self.stack.append({})
         return at
 
-    def dict_of(self, at: int) -> int:
-        values = self._since_mark()
+    def push_dict_since_mark(self, at: int) -> int:
+        values = self._pop_to_mark()
         self.stack.append({})
         self._set(values)
         return at
@@ -306,7 +306,7 @@ class _Machine:
         return at
 
     def set_items(self, at: int) -> int:
-        self._set(self._since_mark())
+        self._set(self._pop_to_mark())
         return at
 
     def _set(self, values: Any) -> None:
@@ -378,10 +378,10 @@ _OPERATIONS: Final = {
     0x8C: "text 1", 0x58: "text 4", 0x8D: "text 8", 0x43: "raw 1", 0x42: "raw 4", 0x8E: "raw 8", 0x96: "raw 8",
     0x94: "memoize", 0x71: "put 1", 0x72: "put 4", 0x68: "get 1", 0x6A: "get 4",
     0x28: "mark", 0x30: "pop", 0x31: "pop_mark",
-    0x5D: "new_list", 0x6C: "list_of", 0x61: "append", 0x65: "appends",
-    0x29: "new_tuple", 0x74: "tuple_of", 0x85: "tuple1", 0x86: "tuple2", 0x87: "tuple3",
-    0x7D: "new_dict", 0x64: "dict_of", 0x73: "set_item", 0x75: "set_items",
-    0x8F: "new_set", 0x90: "appends", 0x91: "list_of",
+    0x5D: "new_list", 0x6C: "push_list_since_mark", 0x61: "append", 0x65: "appends",
+    0x29: "new_tuple", 0x74: "push_tuple_since_mark", 0x85: "tuple1", 0x86: "tuple2", 0x87: "tuple3",
+    0x7D: "new_dict", 0x64: "push_dict_since_mark", 0x73: "set_item", 0x75: "set_items",
+    0x8F: "new_set", 0x90: "appends", 0x91: "push_list_since_mark",
     0x63: "name_in_lines", 0x93: "name_on_stack", 0x52: "reduce", 0x62: "build",
 }  # fmt: skip
 """Code of an operation (see `pickletools`) -> its method, and the width in bytes of its argument or of the argument's length."""

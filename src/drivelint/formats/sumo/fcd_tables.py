@@ -28,9 +28,9 @@ if TYPE_CHECKING:
     Columns = dict[str, str]
 
 _TIME: Final = "timestep_time"
-_PLAIN: Final = frozenset({"time", "id", "x", "y", "angle", "pos", "lane", "edge", "slope"})
+_PLAIN_COLUMNS: Final = frozenset({"time", "id", "x", "y", "angle", "pos", "lane", "edge", "slope"})
 """Columns without the name of an element (`--output.column-header plain`) are SUMO's if all of these are present."""
-_INFERRED: Final = frozenset({"time", "x", "y", "angle", "speed"})
+_NUMBER_COLUMNS: Final = frozenset({"time", "x", "y", "angle", "speed"})
 """Columns that are read as numbers directly. Columns after `slope` may contain texts of another element."""
 _READ_COLUMNS: Final = (*ATTRIBUTES, "lane", "edge")
 _NUMBER: Final = r"^-?[0-9.]+(e-?[0-9]+)?$"
@@ -44,7 +44,7 @@ def column_groups(names: Sequence[str]) -> dict[str, Columns]:
     The element is "" if the columns are not named after an element.
     """
     there = set(names)
-    if there >= _PLAIN:
+    if there >= _PLAIN_COLUMNS:
         return {"": {name: name for name in ("time", *_READ_COLUMNS) if name in there}}
     groups = {}
     for kind in KINDS if _TIME in there else ():
@@ -73,8 +73,8 @@ def read_csv(path: Path) -> Rows:
     delimiter = max(";,\t", key=lambda d: first.count(d.encode()))
     names = [name.strip('"') for name in first.decode("utf-8-sig", "replace").strip().split(delimiter)]
     groups = column_groups(names)
-    inferred = _INFERRED - ({"time"} if b":" in second else set())
-    texts = {name for columns in groups.values() for key, name in columns.items() if key not in inferred}
+    number_columns = _NUMBER_COLUMNS - ({"time"} if b":" in second else set())
+    texts = {name for columns in groups.values() for key, name in columns.items() if key not in number_columns}
     try:
         table = pa_csv.read_csv(
             path,

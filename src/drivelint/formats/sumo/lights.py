@@ -54,7 +54,7 @@ def add_light_states(recording: Recording, log: Path, is_log: Callable[[Path], b
     ):
         log_files = files
     if len(log_files) == 1:
-        _read(log_files[0], recording)
+        _read_light_states(log_files[0], recording)
     elif files:
         what = "which of them is its own is not known" if log_files else "none is named as it is"
         names = listed([file.name for file in log_files or files])
@@ -71,7 +71,7 @@ def _has_states(file: Path) -> bool:
         return b"<tlsStates" in opened.read(_HEAD_BYTES)
 
 
-def _read(file: Path, recording: Recording) -> None:
+def _read_light_states(file: Path, recording: Recording) -> None:
     try:
         content, lacks_end = with_end_tag(file.read_bytes(), "tlsStates", r"<tlsState\s[^<>]*/>")
         root = safe_xml.parse(content, f"light states of {file.name} are not read: it", TraceError)

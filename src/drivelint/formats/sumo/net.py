@@ -43,9 +43,12 @@ if TYPE_CHECKING:
 
 
 DEFAULT_LANE_WIDTH_M: Final = 3.2  # SUMO's default, for a lane without a width
-_LONGEST_MITRE: Final = 3.0
-_BEGUN_M: Final = 0.5
+_LARGEST_MITRE_FACTOR: Final = 3.0
+"""At a sharp bend, the corner of a lane's bound is at most this multiple of its distance from the centre line away."""
+_ADDED_POINT_M: Final = 0.5
+"""The distance of an added point from the end of a line inside a junction."""
 _LEAST_COS: Final = 0.85
+"""A point is added only if the cosine of the angle between the line and the joined lane is at least this."""
 _KINDS: Final = (
     # the type of a lane is the first of these with a class that may drive on it
     ("driving", {"passenger", "private", "truck", "delivery", "motorcycle", "evehicle", "trailer"}),
@@ -213,7 +216,7 @@ def _beside(line: Floats, off: float) -> Floats:
     before, after = np.vstack([normal[:1], normal]), np.vstack([normal, normal[-1:]])
     between = before + after
     # mitre: at a corner the point keeps the distance from both segments
-    size = np.maximum((between * before).sum(1), 2 / _LONGEST_MITRE**2)
+    size = np.maximum((between * before).sum(1), 2 / _LARGEST_MITRE_FACTOR**2)
     found: Floats = line + off * between / size[:, None]
     return found
 
@@ -228,13 +231,13 @@ def _connect(root: etree._Element, net: _Net) -> None:
             follows[source].append(target)
     for name, targets in follows.items():
         net.lanes[name].successors = tuple(dict.fromkeys(targets))
-    _bend(net)
+    _bend_internal_lanes(net)
     inside = [lane for edge in net.edges if edge in net.internal for lane in net.edges[edge]]
     for _ in range(2):  # a connection has two internal lanes where vehicles wait inside the junction
-        _limits(net.lanes, follows, inside)
+        _spread_speed_limits(net.lanes, follows, inside)
 
 
-def _bend(net: _Net) -> None:
+def _bend_internal_lanes(net: _Net) -> None:
     """Make lanes inside junctions begin and end in the direction of the lanes that they join.
 
     Their shapes are chords of a bend: without this, two lanes that meet at an angle leave a wedge that belongs to neither.
@@ -249,24 +252,29 @@ def _bend(net: _Net) -> None:
         middle, half = (lane.left + lane.right) / 2, float(np.hypot(*(lane.left - lane.right)[0])) / 2
         for end, others in ((0, before[name]), (-1, [to for to in lane.successors if to not in inside])):
             if len(others) == 1:
-                middle = _begun(middle, net.lanes[others[0]], end)
+                middle = _with_direction_of_joined_lane(middle, net.lanes[others[0]], end)
         lane.left, lane.right = _beside(middle, half), _beside(middle, -half)
 
 
-def _begun(middle: Floats, joined_lane: BoundedLane, end: int) -> Floats:
-    """Return the line with one point added near its start (0) or end (-1), in the direction of the lane that it joins there."""
+def _with_direction_of_joined_lane(middle: Floats, joined_lane: BoundedLane, end: int) -> Floats:
+    """Return a centre line with one more point, so that it begins (`end` 0) or ends (-1) in the direction of `joined_lane`.
+
+    The line is unchanged if it is short, or its direction differs too much.
+    """
     line = (joined_lane.left + joined_lane.right) / 2
     step = line[-1] - line[-2] if end == 0 else line[0] - line[1]
     step = step / np.hypot(*step)
     own = middle[1] - middle[0] if end == 0 else middle[-2] - middle[-1]
     length = float(np.hypot(*own))
-    if length < 2 * _BEGUN_M or float(own @ step) < _LEAST_COS * length:
+    if length < 2 * _ADDED_POINT_M or float(own @ step) < _LEAST_COS * length:
         return middle
     at = 1 if end == 0 else len(middle) - 1
-    return np.insert(middle, at, middle[end] + _BEGUN_M * step, axis=0)
+    return np.insert(middle, at, middle[end] + _ADDED_POINT_M * step, axis=0)
 
 
-def _limits(lanes: Mapping[str, BoundedLane], follows: Mapping[str, Iterable[str]], inside: Iterable[str]) -> None:
+def _spread_speed_limits(
+    lanes: Mapping[str, BoundedLane], follows: Mapping[str, Iterable[str]], inside: Iterable[str]
+) -> None:
     waiting = {name for name in inside if not lanes[name].limits}
     found: dict[str, list[tuple[SpeedLimitSpan, ...]]] = defaultdict(list)
     for name, targets in follows.items():

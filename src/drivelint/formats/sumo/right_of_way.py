@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 _TURNS: Final = {
     "s": ("straight",), "l": ("left",), "r": ("right",), "t": ("u_turn",), "L": ("left", "straight"), "R": ("right", "straight"),
 }  # fmt: skip
-_SIGNED: Final = frozenset({"priority", "priority_stop", "allway_stop"})
+_SIGNED_JUNCTION_TYPES: Final = frozenset({"priority", "priority_stop", "allway_stop"})
 """Types of junctions with signs on the minor roads. At other types, right goes before left, lights decide, or the rule is not known."""
-_SIGNS: Final = {"s": "stop", "w": "stop", "m": "give_way"}
+_SIGN_OF_LINK_STATE: Final = {"s": "stop", "w": "stop", "m": "give_way"}
 _TURNED_ROUND: Final = "t"
 
 
@@ -69,12 +69,16 @@ def _signs(
     ends = {edge.get("id"): kinds.get(edge.get("to")) for edge in root.iterfind("edge") if edge.get("to")}
     states: dict[str, set[str]] = defaultdict(set)
     for link in links:
-        if link.get("tl") is None and link.get("dir") != _TURNED_ROUND and ends.get(link.get("from")) in _SIGNED:
+        if (
+            link.get("tl") is None
+            and link.get("dir") != _TURNED_ROUND
+            and ends.get(link.get("from")) in _SIGNED_JUNCTION_TYPES
+        ):
             states[link.get("from", "")].add(link.get("state", ""))
     rows: Rows = []
     stops = set()
     for edge, said in sorted(states.items()):
-        found = {_SIGNS.get(state) for state in said}
+        found = {_SIGN_OF_LINK_STATE.get(state) for state in said}
         if None in found or not found:
             continue
         kind = "stop" if "stop" in found else "give_way"

@@ -45,7 +45,7 @@ formats: Final[dict[str, tuple[str, str]]] = {}
 takes_mapping: Final = True
 _NO_CLASS: Final = frozenset({-1, ACTOR_CLASSES.index("vehicle")})
 """The codes for an unknown class, and for a vehicle of unknown class."""
-_MOST_TEXTS: Final = 5
+_MOST_LISTED_TEXTS: Final = 5
 """A message lists at most this many texts."""
 MAX_HEADING_RAD: Final = 4 * np.pi
 """The largest plausible heading: without wrapping, it exceeds one turn on roundabouts and ramps of car parks."""
@@ -320,7 +320,7 @@ class _Body:
         spec, codes = self.mapping.actor_class, states.codes.get("actor_class")
         if spec is None or codes is None or not self.unmapped_classes or not set(np.unique(codes)) <= _NO_CLASS:
             return
-        texts = listed([repr(text) for text in sorted(self.unmapped_classes)], _MOST_TEXTS)
+        texts = listed([repr(text) for text in sorted(self.unmapped_classes)], _MOST_LISTED_TEXTS)
         are = "is" if len(self.unmapped_classes) == 1 else "are"
         message = f"column {'/'.join(spec.columns)}: {texts} {are} not in [class] values of the mapping"
         self.findings.append(QualityFinding("unmapped_class", "warning", message))

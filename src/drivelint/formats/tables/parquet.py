@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 T = TypeVar("T")
-MOST_BYTES: Final = 512 << 20
-MOST_UNPACKED: Final = 500
-"""A file is refused if it unpacks to more than `MOST_BYTES` and this many times its size: recorded positions do not pack so well."""
+FREE_UNPACKED_BYTES: Final = 512 << 20
+MOST_UNPACKED_PER_PACKED_BYTE: Final = 500
+"""A file is refused if it unpacks to more than `FREE_UNPACKED_BYTES` and this multiple of its size: recorded data do not pack so well."""
 _MAGIC: Final = b"PAR1"
 
 
@@ -68,7 +68,7 @@ def _open(path: Path, take: Callable[[pq.ParquetFile], T]) -> T:
 
 def _refuse_bomb(path: Path, metadata: pq.FileMetaData, n_columns: int) -> None:
     unpacked = metadata.num_rows * n_columns * 8
-    if unpacked > max(MOST_BYTES, MOST_UNPACKED * path.stat().st_size):
+    if unpacked > max(FREE_UNPACKED_BYTES, MOST_UNPACKED_PER_PACKED_BYTE * path.stat().st_size):
         raise TraceError(
             f"{path}: {metadata.num_rows} rows in a file of {path.stat().st_size} bytes would unpack to {unpacked >> 20} MiB: "
             "write it again"

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 MAX_NS = 2.0**63
 TEXT_BLOCK = 1 << 20
-_MOST_PLACES = 5
+_MOST_LISTED_PLACES = 5
 """A message lists at most this many places."""
 
 
@@ -162,7 +162,7 @@ class CsvSheet:
 
     def describe_rows(self, rows: Indices) -> str:
         """Return words with the line numbers of the first rows in `rows`."""
-        return describe_places("line", [self._line(int(row)) for row in rows[:_MOST_PLACES]], len(rows))
+        return describe_places("line", [self._line(int(row)) for row in rows[:_MOST_LISTED_PLACES]], len(rows))
 
     def _line(self, row: int) -> int:
         line = row + self._layout.skip_rows + 2
@@ -236,7 +236,7 @@ class ParquetSheet:
 
     def describe_rows(self, rows: Indices) -> str:
         """Return words with the numbers of the first rows in `rows`."""
-        return describe_places("row", [int(row) + 1 for row in rows[:_MOST_PLACES]], len(rows))
+        return describe_places("row", [int(row) + 1 for row in rows[:_MOST_LISTED_PLACES]], len(rows))
 
 
 Sheet = CsvSheet | ParquetSheet
@@ -245,8 +245,10 @@ Sheet = CsvSheet | ParquetSheet
 
 def describe_places(noun: str, first: list[int], n: int) -> str:
     """Return the first of `n` places as text: `line 7`, `lines 7, 9`, `lines 1, 2, 3, 4, 5 and 12 more`."""
-    more = n - len(first[:_MOST_PLACES])
-    return f"{noun}{'s' * (n > 1)} {', '.join(map(str, first[:_MOST_PLACES]))}" + (f" and {more} more" if more else "")
+    more = n - len(first[:_MOST_LISTED_PLACES])
+    return f"{noun}{'s' * (n > 1)} {', '.join(map(str, first[:_MOST_LISTED_PLACES]))}" + (
+        f" and {more} more" if more else ""
+    )
 
 
 def _trimmed(column: pa.Array | pa.ChunkedArray, null_texts: list[str]) -> pl.Series:

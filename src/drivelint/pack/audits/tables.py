@@ -28,7 +28,7 @@ from drivelint.formats.search import why_not_here
 from drivelint.pack.bag import DATA, Problem, sha256_of
 from drivelint.pack.contents import SAID_OF_FINDINGS, facts_of_rules, hashes
 from drivelint.pack.inputs import located
-from drivelint.result.certainty import LEAST_SHARE
+from drivelint.result.certainty import LEAST_KEEPING_SHARE
 from drivelint.result.counts import group_rows
 from drivelint.result.model import Result
 from drivelint.result.request import RunRequest
@@ -154,7 +154,7 @@ def _by_key(rows: pa.Table) -> dict[str, pa.Table]:
 
 def worst_findings(con: duckdb.DuckDBPyConnection, max_findings: int | None) -> list[Row]:
     """Return the worst findings, each with the key of its drive, in the order of reports. `max_findings`: None: all findings."""
-    sql = statement("audit/worst_findings", least_share=str(LEAST_SHARE))
+    sql = statement("audit/worst_findings", least_share=str(LEAST_KEEPING_SHARE))
     found: list[Row] = con.execute(sql, {"most": max_findings}).to_arrow_table().to_pylist()
     return found
 

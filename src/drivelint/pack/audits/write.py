@@ -18,7 +18,7 @@ from drivelint.pack import again, contents
 from drivelint.pack.audits import tables
 from drivelint.pack.audits.statement import statement
 from drivelint.pack.copying import copy, copy_rules, copy_rules_dirs, write_files
-from drivelint.pack.request import Content
+from drivelint.pack.request import PackFunctions
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,12 +28,12 @@ if TYPE_CHECKING:
     from drivelint.result.request import RunRequest
 
 
-def content(request: PackRequest) -> Content:
+def content(request: PackRequest) -> PackFunctions:
     """Return the functions that pack an audit. Errors: `UsageError` for an audit that has not ended."""
     with open_audits(str(request.folder)) as (_, audit, _):
         if audit.warning:
             raise UsageError(audit.warning)
-    return Content(lambda work: _payload(work, request), statement)
+    return PackFunctions(lambda work: _payload(work, request), statement)
 
 
 def _payload(work: Path, request: PackRequest) -> dict[str, Any]:

@@ -41,7 +41,7 @@ FAR_M: Final = 2000.0
 """A longer safe distance ahead only shows that the ego was hardly faster than the vehicle being passed."""
 _BARS_W, _BARS_H = 560, 230
 _BINS: Final = 12
-_PREFERRED: Final = "nominal"
+_PREFERRED_PROFILE: Final = "nominal"
 
 
 def overtake_views(
@@ -209,7 +209,7 @@ def overtaking_opportunities(records: Sequence[Row]) -> dict[str, Any] | None:
     if not records:
         return None
     profiles = [name for _, name in sorted({(row["style"], row["profile"]) for row in records})]
-    profile = _PREFERRED if _PREFERRED in profiles else profiles[0]
+    profile = _PREFERRED_PROFILE if _PREFERRED_PROFILE in profiles else profiles[0]
     mine = [row for row in records if row["profile"] == profile]
     known = [row for row in mine if row["da_m"] is not None]
     bars, x_ticks, y_ticks = _bars(known) if known else ([], [], [])

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 WIDTH: Final = 600
 _HEIGHT: Final = (190.0, 330.0)
-_LEAST_M: Final = (44.0, 16.0)  # the view shows at least this much of the road, along and across
+_LEAST_VIEW_M: Final = (44.0, 16.0)  # the view shows at least this much of the road, along and across
 _PAD_M: Final = (7.0, 3.5)
 _DOT_M: Final = 0.8  # the drawn size of an actor whose size is unknown
 _MOST_LONG_LABELS: Final = 5
@@ -117,8 +117,8 @@ def _fit(ego: Row, yaw: float, points: Points) -> _View:
     raw = _View(ego["x_m"], ego["y_m"], math.cos(yaw), math.sin(yaw), 0.0, 0.0, 1.0, 0.0)
     flat = raw(points)
     u, v = flat[:, 0] - WIDTH / 2, -flat[:, 1]
-    along = max(float(np.ptp(u)) + 2 * _PAD_M[0], _LEAST_M[0])
-    across = max(float(np.ptp(v)) + 2 * _PAD_M[1], _LEAST_M[1])
+    along = max(float(np.ptp(u)) + 2 * _PAD_M[0], _LEAST_VIEW_M[0])
+    across = max(float(np.ptp(v)) + 2 * _PAD_M[1], _LEAST_VIEW_M[1])
     scale = min(WIDTH / along, _HEIGHT[1] / across)
     height = min(max(across * scale, _HEIGHT[0]), _HEIGHT[1])
     return replace(

@@ -11,11 +11,12 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-_MOST_AROUND: Final = 6.0
+_MOST_UNCUT_SPANS: Final = 6.0
 """An axis that is longer than this many times the distance between the deciding values is cut."""
-_AROUND: Final = 1.5
+_SPANS_BEYOND_VALUES: Final = 1.5
 """A cut axis extends beyond the deciding values by this many times the distance between them."""
-_LEAST_CORE: Final = 0.01
+_LEAST_SPAN_SHARE: Final = 0.01
+"""The distance between the deciding values counts as at least this share of the axis."""
 
 
 def num(value: float) -> str:
@@ -82,10 +83,13 @@ def axis_that_decides(
     whole = axis_around([*found, *core], start, end)
     if not core:
         return whole, []
-    span = max(max(core) - min(core), _LEAST_CORE * (whole.high - whole.low))
-    if whole.high - whole.low <= _MOST_AROUND * span:
+    span = max(max(core) - min(core), _LEAST_SPAN_SHARE * (whole.high - whole.low))
+    if whole.high - whole.low <= _MOST_UNCUT_SPANS * span:
         return whole, []
-    low, high = max(whole.low, min(core) - _AROUND * span), min(whole.high, max(core) + _AROUND * span)
+    low, high = (
+        max(whole.low, min(core) - _SPANS_BEYOND_VALUES * span),
+        min(whole.high, max(core) + _SPANS_BEYOND_VALUES * span),
+    )
     return Axis(low, high, start, end), [v for v in (min(found), max(found)) if not low <= v <= high]
 
 

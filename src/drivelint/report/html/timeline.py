@@ -123,7 +123,7 @@ def _timeline(
         rule_id, profile = key
         rule, href = rules[rule_id], "#" + anchor("rule", rule_id)
         worst = min((row["verdict"] for row in told), key=_ORDER.index)
-        if worst == "not_applicable" or all(_is_missing(row) for row in told):
+        if worst == "not_applicable" or all(_is_unknown_for_lack_of_data(row) for row in told):
             reason = verdict_reason(told[0])
             folded.setdefault((worst, reason.kind), {}).setdefault((rule["title"], href), set()).add(reason)
             continue
@@ -171,9 +171,10 @@ def separate_shared_rules(ego_timelines: Sequence[Timeline]) -> tuple[list[Folde
     return [FoldedRules(*key, why) for key, why in common.items()], [t._replace(folded=rest(t)) for t in ego_timelines]
 
 
-def _is_missing(row: Row) -> bool:
+def _is_unknown_for_lack_of_data(verdict: Row) -> bool:
     """Return whether a verdict is unknown for the whole drive because data are missing that could be provided."""
-    return bool(row["verdict"] == "unknown" and row["t_start_ns"] is None and can_be_provided(row["reason_code"]))
+    is_unknown = verdict["verdict"] == "unknown" and verdict["t_start_ns"] is None
+    return bool(is_unknown and can_be_provided(verdict["reason_code"]))
 
 
 def _bands(stretches: Sequence[Row], clock: TimeAxis) -> list[dict[str, str]]:

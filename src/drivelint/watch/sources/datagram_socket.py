@@ -21,7 +21,8 @@ _TIMESPEC: Final = struct.Struct("@ll")
 _COUNT: Final = struct.Struct("@I")
 ROOM: Final = 16 << 20
 """The size in bytes of the receive buffer that is requested; the system may provide less."""
-MOST_BYTES: Final = 65535
+MOST_DATAGRAM_BYTES: Final = 65535
+"""The largest size of a UDP datagram."""
 
 
 def ask_for_losses(receiver: socket.socket) -> None:
@@ -38,9 +39,9 @@ def datagrams(receiver: socket.socket) -> Generator[Datagram | None, None, None]
     while True:
         try:
             if _LINUX:
-                data, told, _, sender = receiver.recvmsg(MOST_BYTES, _ANCILLARY_BYTES)
+                data, told, _, sender = receiver.recvmsg(MOST_DATAGRAM_BYTES, _ANCILLARY_BYTES)
             else:
-                (data, sender), told = receiver.recvfrom(MOST_BYTES), []
+                (data, sender), told = receiver.recvfrom(MOST_DATAGRAM_BYTES), []
         except TimeoutError:
             yield None
             continue

@@ -15,7 +15,7 @@ from drivelint.watch.source import Frame, WrittenWindows
 from drivelint.watch.sources.growing_file import GrowingFile
 from drivelint.watch.sources.mcap_memory import Memory, is_watched, memory_for
 from drivelint.watch.sources.mcap_scene import SceneMemory
-from drivelint.watch.sources.mcap_stream import DamagedChunk, McapStream, Message, Numbered
+from drivelint.watch.sources.mcap_stream import DamagedChunk, McapStream, Message, NumberedMessage
 from drivelint.watch.sources.osi_static import StaticContent
 
 if TYPE_CHECKING:
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 LIBRARY: Final = "drivelint watch"
 MOST_PENDING_BYTES: Final = 512 << 20
 """The most bytes of pending messages, those later than the start of the last window. No window is as large."""
-MOST_AT_ONCE: Final = 32 << 20
-"""About how many bytes of messages one `read` returns at most, if the file is long when the watch begins."""
+MOST_BYTES_PER_READ: Final = 32 << 20
+"""One `read` returns about this many bytes of messages at most, if the file is long when the watch begins."""
 
 
 class McapFile(WrittenWindows):
@@ -46,10 +46,10 @@ class McapFile(WrittenWindows):
         self._ended = False
         self._count = 0
         self._last_ns = 0
-        self._pending: deque[Numbered] = deque()  # messages after the start of the last window
+        self._pending: deque[NumberedMessage] = deque()  # messages after the start of the last window
         self._pending_bytes = 0
         self._memories: dict[int, Memory] = {}
-        self._first: dict[int, Numbered] = {}  # OSI channel -> its first message
+        self._first: dict[int, NumberedMessage] = {}  # OSI channel -> its first message
         self._static: dict[int, StaticContent] = {}
 
     def read(self, timeout_s: float) -> Sequence[Frame] | None:
@@ -57,7 +57,7 @@ class McapFile(WrittenWindows):
         until = time.monotonic() + timeout_s
         found: list[Frame] = []
         size = 0
-        while not self._ended and size < MOST_AT_ONCE:
+        while not self._ended and size < MOST_BYTES_PER_READ:
             data = self._file.read(0.0 if found else max(until - time.monotonic(), 0.0))
             if data:
                 frames = self._frames(self._stream.take(data))
@@ -81,7 +81,7 @@ class McapFile(WrittenWindows):
                 continue
             if each.log_ns <= LATEST_NS:  # a later time is malformed
                 self._last_ns = each.log_ns
-            numbered = Numbered(self._count, each)
+            numbered = NumberedMessage(self._count, each)
             self._count += 1
             if schema in OSI_SCHEMAS:
                 self._first.setdefault(each.channel, numbered)
@@ -133,7 +133,7 @@ class McapFile(WrittenWindows):
         channel = numbered.message.channel
         if channel not in self._memories:
             self._memories[channel] = memory_for(self._stream.channels[channel], self._schema(channel))
-        self._memories[channel].take(numbered)
+        self._memories[channel].add(numbered)
 
     def _with_static(self, number: int, message: Message) -> Message:
         """Return a window's first message of an OSI channel, with the static content of the file's first message."""

@@ -28,15 +28,20 @@ from drivelint.watch.sources.mcap_scene import SceneMemory
 if TYPE_CHECKING:
     from mcap.records import Channel
 
-    from drivelint.watch.sources.mcap_stream import Numbered
+    from drivelint.watch.sources.mcap_stream import NumberedMessage
 
 RECENT_NS: Final = 2_000_000_000
 """Older messages are not valid: a report of lights is valid for one second, and transforms are joined over at most half a second."""
-MOST_FIRST: Final = 200
-MOST_EVENTS: Final = 20_000
-"""How many first messages of a channel are kept: `MOST_EVENTS` of events and parameters, which may be valid to the end, else
-`MOST_FIRST`."""
-_MOST_FIRST: Final = {EVENT_MESSAGE: MOST_EVENTS, PARAMETERS: MOST_EVENTS, LIGHT_GROUPS: 0, OLD_LIGHT_GROUPS: 0}
+MOST_FIRST_MESSAGES: Final = 200
+MOST_FIRST_EVENTS: Final = 20_000
+"""The largest number of first messages of a channel that are kept: `MOST_FIRST_EVENTS` for events and parameters, which may be valid to the
+end of the log; `MOST_FIRST_MESSAGES` for other channels."""
+_MOST_FIRST_MESSAGES_BY_KIND: Final = {
+    EVENT_MESSAGE: MOST_FIRST_EVENTS,
+    PARAMETERS: MOST_FIRST_EVENTS,
+    LIGHT_GROUPS: 0,
+    OLD_LIGHT_GROUPS: 0,
+}
 MOST_FIRST_BYTES: Final = 64 << 20
 _READABLE_KINDS: Final = {*OSI_SCHEMAS, OPEN_DRIVE, EVENT_MESSAGE, *ROS_ROLES, *FOXGLOVE_ROLES}
 
@@ -44,11 +49,11 @@ _READABLE_KINDS: Final = {*OSI_SCHEMAS, OPEN_DRIVE, EVENT_MESSAGE, *ROS_ROLES, *
 class Memory(Protocol):
     """Keeps the messages of a channel that are still valid when a window begins."""
 
-    def take(self, numbered: Numbered) -> None:
+    def add(self, numbered: NumberedMessage) -> None:
         """Add the next message."""
         ...
 
-    def current_messages(self) -> list[Numbered]:
+    def current_messages(self) -> list[NumberedMessage]:
         """Return messages with the content that is still valid."""
         ...
 
@@ -65,16 +70,16 @@ def memory_for(channel: Channel, schema: str) -> Memory:
         return SceneMemory(channel.message_encoding)
     if kind in OSI_SCHEMAS or ROS_ROLES.get(kind) in {ROAD_USERS, DETECTIONS, ODOMETRY_ROLE}:
         return NoMemory()
-    return LatchedMemory(_MOST_FIRST.get(kind, MOST_FIRST))
+    return LatchedMemory(_MOST_FIRST_MESSAGES_BY_KIND.get(kind, MOST_FIRST_MESSAGES))
 
 
 class NoMemory:
     """Keeps nothing: each message is valid only at its own time."""
 
-    def take(self, numbered: Numbered) -> None:
+    def add(self, numbered: NumberedMessage) -> None:
         """See `Memory`."""
 
-    def current_messages(self) -> list[Numbered]:
+    def current_messages(self) -> list[NumberedMessage]:
         """See `Memory`."""
         return []
 
@@ -84,11 +89,11 @@ class LatchedMemory:
 
     def __init__(self, most_first: int) -> None:
         self._most = most_first
-        self._first: list[Numbered] = []
+        self._first: list[NumberedMessage] = []
         self._first_bytes = 0
-        self._recent: deque[Numbered] = deque()
+        self._recent: deque[NumberedMessage] = deque()
 
-    def take(self, numbered: Numbered) -> None:
+    def add(self, numbered: NumberedMessage) -> None:
         """See `Memory`."""
         data = numbered.message
         if not self._recent and self._first and self._first[-1].message.content == data.content:
@@ -101,6 +106,6 @@ class LatchedMemory:
         while len(self._recent) > 1 and self._recent[0].message.log_ns < data.log_ns - RECENT_NS:
             self._recent.popleft()
 
-    def current_messages(self) -> list[Numbered]:
+    def current_messages(self) -> list[NumberedMessage]:
         """See `Memory`."""
         return [*self._first, *self._recent]

@@ -16,12 +16,12 @@ from drivelint.formats.protobuf.scan import fields, signed
 from drivelint.formats.protobuf.wire import nested
 
 if TYPE_CHECKING:
-    from drivelint.watch.sources.mcap_stream import Numbered
+    from drivelint.watch.sources.mcap_stream import NumberedMessage
 
 GONE_KEPT_NS: Final = 120_000_000_000
 """How long an ended entity is kept: if an entity with its id returns, the old place shows whether it has moved."""
-MOST_DOUBTFUL: Final = 1000
-"""How many deletions are kept that have no effect by the entities' own times: a reader that uses log times may apply them."""
+MOST_INEFFECTIVE_DELETIONS: Final = 1000
+"""The largest number of kept deletions that have no effect by the entities' own times. A reader that uses log times may apply them."""
 _DELETIONS, _ENTITIES = 1, 2
 _TIMESTAMP, _ID, _LIFETIME = 1, 3, 4
 _DELETE_ALL: Final = 1
@@ -31,14 +31,14 @@ _NS: Final = 1_000_000_000
 class _Entity(NamedTuple):
     """An update of an entity: `content` as in its message, its time, and when it expires (None: never)."""
 
-    source: Numbered
+    source: NumberedMessage
     content: Any
     t_ns: int
     expires_ns: int | None
 
 
 class _Deletion(NamedTuple):
-    source: Numbered
+    source: NumberedMessage
     content: Any
 
 
@@ -54,10 +54,10 @@ class SceneMemory:
     def __init__(self, encoding: str) -> None:
         self._codec: _Protobuf | _Json = _Json() if encoding == "json" else _Protobuf()
         self._tracks: dict[Any, _Track] = defaultdict(_Track)
-        self._doubtful: deque[_Deletion] = deque(maxlen=MOST_DOUBTFUL)
+        self._ineffective_deletions: deque[_Deletion] = deque(maxlen=MOST_INEFFECTIVE_DELETIONS)
         self._latest_ns = 0
 
-    def take(self, numbered: Numbered) -> None:
+    def add(self, numbered: NumberedMessage) -> None:
         """Add the next message."""
         try:
             entities, deletions = self._codec.parts(numbered.message.content)
@@ -86,10 +86,12 @@ class SceneMemory:
         for track in tracks:
             if not track.is_gone and track.updates[-1].t_ns < t_ns:
                 track.is_gone = True
-            elif not track.is_gone and (not self._doubtful or self._doubtful[-1] is not deletion):
-                self._doubtful.append(deletion)
+            elif not track.is_gone and (
+                not self._ineffective_deletions or self._ineffective_deletions[-1] is not deletion
+            ):
+                self._ineffective_deletions.append(deletion)
 
-    def current_messages(self) -> list[Numbered]:
+    def current_messages(self) -> list[NumberedMessage]:
         """Return messages with the updates of existing entities, each at the log time of its original message."""
         for track in self._tracks.values():
             expires = track.updates[-1].expires_ns
@@ -98,10 +100,10 @@ class SceneMemory:
         for name in [n for n, track in self._tracks.items() if track.is_gone and track.updates[-1].t_ns < forgotten]:
             del self._tracks[name]
         updates = [update for track in self._tracks.values() if not track.is_gone for update in track.updates]
-        by_source: dict[int, tuple[Numbered, list[Any], list[Any]]] = {}
+        by_source: dict[int, tuple[NumberedMessage, list[Any], list[Any]]] = {}
         for update in updates:
             by_source.setdefault(update.source.number, (update.source, [], []))[1].append(update.content)
-        for deletion in self._doubtful:
+        for deletion in self._ineffective_deletions:
             by_source.setdefault(deletion.source.number, (deletion.source, [], []))[2].append(deletion.content)
         return [
             source._replace(message=source.message.with_content(self._codec.encode(entities, deletions)))

@@ -50,7 +50,7 @@ class Message(NamedTuple):
         return self._replace(record=head + self.record[RECORD.size : RECORD.size + MESSAGE.size] + content)
 
 
-class Numbered(NamedTuple):
+class NumberedMessage(NamedTuple):
     """A message and its number among all watched messages of the file."""
 
     number: int
@@ -81,7 +81,7 @@ class McapStream:
         self._at = 0  # the byte of the file at which the buffer begins
         self._place = 0  # the position in the buffer up to which it was read
         self._skip = 0  # the number of bytes to skip from there on
-        self._begun = False
+        self._magic_is_read = False
         self._in_data = True
 
     def take(self, data: bytes) -> list[Message | DamagedChunk]:
@@ -91,7 +91,7 @@ class McapStream:
         """
         self._buffer += data
         found: list[Message | DamagedChunk] = []
-        if self._begun or self._begins():
+        if self._magic_is_read or self._has_read_magic():
             while (record := self._next_record()) is not None:
                 at = self._at + self._place - len(record)
                 try:
@@ -103,13 +103,13 @@ class McapStream:
         self._place = 0
         return found
 
-    def _begins(self) -> bool:
+    def _has_read_magic(self) -> bool:
         head = bytes(self._buffer[: len(MAGIC)])
         if not MAGIC.startswith(head):
             raise TraceError(f"{self._where}: not an MCAP file: it begins with {head!r}")
         if len(head) == len(MAGIC):
-            self._begun, self._place = True, len(MAGIC)
-        return self._begun
+            self._magic_is_read, self._place = True, len(MAGIC)
+        return self._magic_is_read
 
     def _stop(self, at: int, reason: str) -> None:
         self.ended = True

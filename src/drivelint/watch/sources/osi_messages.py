@@ -40,10 +40,10 @@ class MessageCutter:
             if not 0 < length <= MOST_MESSAGE_BYTES:
                 self._stop(place, f"no message, but one of {length} bytes, begins")
                 break
-            sure = _begins(self._buffer, place)
+            sure = _is_message_start(self._buffer, place)
             if not sure and not ended and len(self._buffer) < end + LENGTH + 1:
                 break  # the following bytes show whether the length was right
-            if not sure and len(self._buffer) > end and not _begins(self._buffer, end):
+            if not sure and len(self._buffer) > end and not _is_message_start(self._buffer, end):
                 self._stop(place, f"no message of {length} bytes and another one behind it begin")
                 break
             found.append(bytes(self._buffer[begin:end]))
@@ -56,7 +56,8 @@ class MessageCutter:
         self.trouble = f"{reason} at byte {self._at + place}"
 
 
-def _begins(buffer: bytearray, at: int) -> bool:
+def _is_message_start(buffer: bytearray, at: int) -> bool:
+    """Return whether a message and its length may begin at byte `at`."""
     return is_osi_trace(bytes(buffer[at : at + LENGTH + 1]), LENGTH + MOST_MESSAGE_BYTES)
 
 

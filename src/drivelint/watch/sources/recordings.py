@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 LIBRARY: Final = "drivelint watch"
 _HEAD: Final = struct.Struct("<BQHIQQ")
 _FIELDS_BYTES: Final = 22
-_MOST_NUMBERS: Final = 1 << 32
+_SEQUENCE_MODULUS: Final = 1 << 32
+"""The sequence number of a message is a 32-bit number, which starts again at 0."""
 
 
 @contextmanager
@@ -65,7 +66,7 @@ class McapRecording:
         records, entries, at = [], [], 0
         for each in messages:
             channel = self._channel(each.channel)
-            size, number = _FIELDS_BYTES + len(each.content), self._count % _MOST_NUMBERS
+            size, number = _FIELDS_BYTES + len(each.content), self._count % _SEQUENCE_MODULUS
             head = _HEAD.pack(Opcode.MESSAGE, size, channel, number, each.log_ns, each.log_ns)
             self._count += 1
             records += [head, each.content]

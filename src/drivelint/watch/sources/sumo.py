@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from drivelint.watch.sources.sumo_process import VehicleType
 
-LEAST_PRECISION: Final = 4
+LEAST_DECIMALS: Final = 4
 """The number of decimals that are recorded, unless the configuration requires more."""
 DEFAULT_SPAN_S: Final = 0.5
 PART_S: Final = 0.5
@@ -73,7 +73,7 @@ class SumoSimulation(WrittenWindows):
         self.recording = own / f"{base}.fcd.xml"
         self._types: dict[bytes, VehicleType | None] = {}
         self._files: dict[Path, tuple[BinaryIO, bytes]] = {}
-        self._sumo = SumoProcess(config, precision=max(LEAST_PRECISION, _precision(options)), until_s=until_s)
+        self._sumo = SumoProcess(config, precision=max(LEAST_DECIMALS, _precision(options)), until_s=until_s)
         self._is_over = False
         self._n_steps = max(1, round(span_s / self._sumo.step_s))
         # a window ends with a span: the first span includes the log's first step, each other starts after the last step of the previous one

@@ -139,5 +139,7 @@ def bound_socket(kind: socket.SocketKind, host: str, port: int, where: str) -> s
             bound.close()
             raise
     except OSError as error:
-        raise TraceError(f"{where}: nothing can be received there: {error.strerror or error}") from error
+        raise TraceError(
+            f"{where}: this address cannot be opened to receive data: {error.strerror or error}"
+        ) from error
     return bound
