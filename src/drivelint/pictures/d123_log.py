@@ -93,7 +93,12 @@ class D123Log:
                 return number, file
         try:
             self._files.append(_open_camera(self._folder, name))
-        except (pa.ArrowException, KeyError, OSError, ValueError) as error:  # ValueError: an empty file cannot be mapped
+        except (
+            pa.ArrowException,
+            KeyError,
+            OSError,
+            ValueError,
+        ) as error:  # ValueError: an empty file cannot be mapped
             raise FrameError(f"a file that cannot be read ({error})") from error
         return len(self._files) - 1, self._files[-1]
 

@@ -203,6 +203,14 @@ def test_a_changed_byte_is_read_or_named(place: int, value: int) -> None:
         ("other/Thing x", "uses the type other/Thing, but has no definition of it"),
         (f"Inner a\n{'=' * 80}\nMSG: p/Inner\nTop b", r"contains itself \(p/Top\)"),
         (f"uint8 a\n{'=' * 80}\nINNER\nuint8 b", "a line that is not understood: 'INNER'"),
+        ("float64[18446744073709551616] a", "a line that is not understood"),
+        ("uint8[99999999999] a", "has arrays of 100000000000 items, more than a message can contain"),
+        (f"Inner[1000000000] a\n{'=' * 80}\nMSG: p/Inner\nuint8 b", "more than a message can contain"),
+        ("string[1000000] a", "more than a message can contain"),
+        (
+            f"A[1000] a\n{'=' * 80}\nMSG: p/A\nB[1000] b\n{'=' * 80}\nMSG: p/B\nC[1000] c\n{'=' * 80}\nMSG: p/C\nuint8 d",
+            "more than a message can contain",
+        ),
     ],
 )
 def test_definitions_that_cannot_be_used(text: str, message: str) -> None:
@@ -213,9 +221,9 @@ def test_definitions_that_cannot_be_used(text: str, message: str) -> None:
 
 
 def test_what_definitions_may_hold() -> None:
-    text = '# comment\nuint8 A=1\nstring NAME="a = b # c"\nstring<=10 name "x"\nfloat64[<=3] d\nHeader header\ntime t\nuint8[2] two'
+    text = '# comment\nuint8 A=1\nstring NAME="a = b # c"\nstring<=10 name "x"\nfloat64[<=3] d\nHeader header\ntime t\nuint8[8388608] two'
     body = f"{text}\n{'=' * 80}\nMSG: std_msgs/Header\nstring frame_id"
     members = ros_types.parse(LOG, "p/msg/Top", body.encode())["p/Top"]
     assert [(each.name, each.kind, each.count) for each in members] == [
-        ("name", "string", None), ("d", "float64", -1), ("header", "std_msgs/Header", None), ("t", "time", None), ("two", "uint8", 2),
+        ("name", "string", None), ("d", "float64", -1), ("header", "std_msgs/Header", None), ("t", "time", None), ("two", "uint8", 8388608),
     ]  # fmt: skip

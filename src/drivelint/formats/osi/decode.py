@@ -74,6 +74,8 @@ VECTORS: dict[str, dict[str, str]] = {
 }
 """Vector of `moving_object.base` -> drivelint's column -> OSI's coordinate."""
 _LANES = ("lane_boundary", "lane", "reference_line", "logical_lane_boundary", "logical_lane")
+_LISTS = frozenset({"identifier"})
+"""Values that are lists in OSI."""
 _NEVER_ZERO = frozenset({"position", "dimension"})
 """Vectors that are unknown if all coordinates are missing, even if the writer omits zeros."""
 
@@ -117,6 +119,8 @@ class Decoder:
             raise TraceError(
                 f"{path}: the schema {name} in the log has no moving_object with id and base.position: not OSI 3"
             )
+        if (repeated := _repeated(kind, FIELD_TREES[name])) is not None:
+            raise TraceError(f"{path}: the schema {name} in the log has {repeated} as a list: not OSI 3")
         self._words = EnumCodes(types, GROUND_TRUTH)
 
     def frames(self, log_messages: list[LogMessage]) -> FrameBatch:
@@ -204,6 +208,21 @@ def read_first_message(data: bytes, name: str) -> FirstMessage:
     # the map format is recognised by its first tag, so lanes must come first
     content = b"".join(part.SerializeToString(deterministic=True) for part in (lanes, beside))
     return head._replace(lanes=content)
+
+
+def _repeated(fields: pa.DataType, tree: FieldTree) -> str | None:
+    """Return the path of the first value in a schema that is a list or a message, where OSI has one value; None: there is none."""
+    for name, inner in tree.items():
+        at = fields.get_field_index(name)
+        if at < 0:
+            continue
+        kind = fields.field(at).type
+        if inner is None:
+            if pa.types.is_nested(kind) and name not in _LISTS:
+                return name
+        elif (items := _inner(fields, name)) is not None and (path := _repeated(items, inner)) is not None:
+            return f"{name}.{path}"
+    return None
 
 
 def _inner(fields: pa.DataType | None, name: str) -> pa.DataType | None:

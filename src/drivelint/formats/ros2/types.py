@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import TraceError
@@ -31,6 +31,8 @@ _OTHER_IN_OLDER: Final = frozenset({"autoware_auto_perception_msgs/TrafficSignal
 """Messages of older packages whose meaning differs from the newer message with the same name: these lights have the ids of lines
 in the map, not of regulatory elements."""
 _NOT_UNDERSTOOD: Final = "has a line that is not understood: {!r}"
+_MOST_DIGITS: Final = 18
+"""The most digits of the length of an array."""
 _CONSTANT = re.compile(r"^[a-z]\w*\s+(?P<name>[A-Za-z]\w*)\s*=\s*(?P<value>-?\d+)$")
 _RULE = re.compile(r"^={10,}\s*$", re.MULTILINE)
 _FIELD = re.compile(
@@ -50,6 +52,10 @@ class Field:
     count: int | None = None
 
 
+MAX_ARRAY_VALUES: Final = 1 << 31
+"""The greatest number of primitives in the arrays of fixed length of one message: more cannot be in a message of 2 GiB."""
+MAX_ARRAY_MESSAGES: Final = 100_000
+"""The greatest number of messages in arrays of fixed length of one message: each is a step of decoding, and takes 50 µs in all."""
 Types = dict[str, list[Field]]
 """Full name (`package/Name`) of a message -> its members in order."""
 
@@ -78,6 +84,7 @@ def parse(path: Path, name: str, text: bytes) -> Types:
     for title, body in sections:
         types[title] = [replace(f, kind=_resolved(f.kind, title, defined, wrong)) for f in _fields(body, wrong)]
     _refuse_loops(short_type_name(name), types, wrong)
+    _refuse_giants(short_type_name(name), types, wrong)
     return types
 
 
@@ -122,6 +129,8 @@ def _fields(body: str, wrong: MakeError) -> Iterator[Field]:
         count = None
         if match["array"]:
             bounded = match["count"] == "" or "<=" in match["array"]
+            if not bounded and len(match["count"]) > _MOST_DIGITS:
+                raise wrong(_NOT_UNDERSTOOD.format(line[:80]))
             count = SEQUENCE if bounded else int(match["count"])
         yield Field(match["name"], match["type"], count)
 
@@ -153,3 +162,24 @@ def _refuse_loops(name: str, types: Types, wrong: MakeError) -> None:
         checked_kinds.add(kind)
 
     visit(name, ())
+
+
+def _refuse_giants(name: str, types: Types, wrong: MakeError) -> None:
+    """Refuse arrays of fixed length that no message can contain: decoding would take as many steps as they have items."""
+
+    @cache
+    def sizes(kind: str) -> tuple[int, int]:
+        """Return how many primitives and how many messages a type contains, with arrays of fixed length; its sequences count once."""
+        n_values, n_messages = 1, 1
+        for field in types.get(kind, []):
+            times = 1 if field.count in {None, SEQUENCE} else field.count
+            values, messages = (1, 0) if field.kind in NUMPY_CODES or field.kind in TEXT_TYPES else sizes(field.kind)
+            n_values += times * values
+            n_messages += times * (messages or field.kind in TEXT_TYPES)
+        return n_values, n_messages
+
+    n_values, n_messages = sizes(name)
+    if n_values > MAX_ARRAY_VALUES or n_messages > MAX_ARRAY_MESSAGES:
+        raise wrong(
+            f"has arrays of {max(n_values, n_messages)} items, more than a message can contain: record it again"
+        )
