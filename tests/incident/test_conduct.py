@@ -129,8 +129,8 @@ def test_every_reason_is_told_before_any_loses_no_more_than_titles() -> None:
     shown, more, is_short = party["reasons"]
     assert (len(shown), more, is_short) == (20, 0, True)
     assert shown[0] == "Why number 00 (20 rules)"
-    assert shown[-1] == REASONS[-1].full
-    assert sum(map(len, shown)) < 3300 < sum(len(reason.full) for reason in REASONS)
+    assert shown[-1] == REASONS[-1].full_text
+    assert sum(map(len, shown)) < 3300 < sum(len(reason.full_text) for reason in REASONS)
 
 
 def test_reasons_come_before_what_the_other_lists_would_take() -> None:

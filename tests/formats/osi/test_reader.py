@@ -394,6 +394,15 @@ def test_nothing_to_read(tmp_path: Path) -> None:
         read(osi_log.write(tmp_path / "n.mcap", []))
 
 
+def repeated(message: str, field: str) -> bytes:
+    """Return a schema in which a field is a list."""
+    changed = descriptor_pb2.FileDescriptorSet.FromString(osi_log.DESCRIPTOR_SET)
+    kinds = {kind.name: kind for file in changed.file for kind in file.message_type}
+    (member,) = (each for each in kinds[message].field if each.name == field)
+    member.label = descriptor_pb2.FieldDescriptorProto.LABEL_REPEATED
+    return changed.SerializeToString()
+
+
 @pytest.mark.parametrize(
     ("descriptor_set", "message"),
     [
@@ -409,6 +418,8 @@ def test_nothing_to_read(tmp_path: Path) -> None:
             ).SerializeToString(),
             r"no moving_object with id and base\.position",
         ),
+        (repeated("Timestamp", "seconds"), r"has timestamp\.seconds as a list: not OSI 3"),
+        (repeated("Vector3d", "x"), r"has moving_object\.base\.\w+\.x as a list: not OSI 3"),
     ],
 )
 def test_schemas_that_cannot_be_used(tmp_path: Path, descriptor_set: bytes, message: str) -> None:
