@@ -199,7 +199,7 @@ def test_the_sheet_and_the_check_of_a_clip_say_what_the_log_s_say_of_sizes_and_f
     ] * 2
     lines = [next(note.words for note in input_notes(each) if note.label == "log") for each in (result, again)]
     # the clip's format has an end mark, the log's has none
-    assert "size from the mapping 'carla-testbench'" in lines[0].replace(" as far as .csv tells", "") == lines[1]
+    assert "size from the mapping 'carla-testbench'" in lines[0].replace(", as far as the format .csv shows it", "") == lines[1]
     assert "y and heading turned, as the mapping 'carla-testbench' states: the log's frame is left-handed" in lines[0]
 
 

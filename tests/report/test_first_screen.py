@@ -38,8 +38,8 @@ SIZES = {
     "message": "size from the mapping 'm', not recorded",
 }
 ASIDE = {**ASSUMED, "check_id": "aside_of_lane", "actor_id": "1", "message": "ego 1 keeps 1.10 m beside the middle"}
-TWO_ASIDE = "2 egos keep far beside the middle of their lanes: is the map moved? --map-offset puts it right"
-WHOLE = "complete as far as .csv tells"
+TWO_ASIDE = "2 egos drive far from the middle of their lanes: the map may be shifted: correct it with --map-offset"
+WHOLE = "complete, as far as the format .csv shows it"
 CONTACT = rule("ukhc.no-collision", tags=["contact"], title="No collision", unit="m")
 
 
@@ -61,7 +61,7 @@ def section(text: str, name: str) -> str:
         (result([verdict("pass")]), f"map: road.xodr fits 1 of 1 drive | log: {WHOLE} | not judged: nothing"),
         (
             result([verdict("pass")], drives=[drive(file_name="A.OSI"), drive("d2"), drive("d3", file_name="c.mcap")]),
-            "map: road.xodr fits 3 of 3 drives | log: complete as far as .csv, .osi tells | not judged: nothing",
+            "map: road.xodr fits 3 of 3 drives | log: complete, as far as the format .csv, .osi shows it | not judged: nothing",
         ),
         (
             result([verdict("unknown", reason_code="missing_registration")], drives=[drive(exposure=EGO, not_judged=[OFF])]),
@@ -217,7 +217,7 @@ def test_a_finding_that_few_copies_keep_is_only_possible() -> None:
 def test_how_sure_a_near_miss_is_was_not_examined() -> None:
     near = verdict("pass", near_miss=True)
     alone = page(result([near], rules=[rule()]))
-    assert "how sure not examined: a near miss is no finding" in plain(section(alone, "worst"))
+    assert "how sure not examined: only findings are examined, and this is a near miss" in plain(section(alone, "worst"))
     both = page(result([verdict("fail"), near], [finding(n_copies=100, n_stays=97)], rules=[rule()]))
     assert "not examined" in plain(section(both, "findings"))
 
@@ -238,7 +238,7 @@ def test_what_a_baseline_lets_through_is_not_the_worst_moment() -> None:
     before = result([verdict("fail")], [old])
     run = GateInputs(date(2026, 11, 20), before, "main").apply_to(result([verdict("fail")], [old, new]))
     shown = section(page(run), "worst")
-    assert "The worst moment that is new" in plain(shown)
+    assert "The worst moment among the new findings" in plain(shown)
     assert 'href="#finding-new"' in shown
 
 
@@ -283,7 +283,7 @@ def test_a_safe_distance_without_end_is_no_number(overtakes: Result) -> None:
     told = plain(section(text, "overtakes"))
     assert "265062" not in told
     assert "265032" not in told
-    assert "needs more than 2.00 km: hardly faster than whom it passes" in told
+    assert "needs more than 2.00 km: the ego is hardly faster than the vehicle that it passes" in told
     ticks = re.findall(r'text-anchor="middle">(\d+)</text>', text.partition('class="zones"')[2].partition("</svg><")[0])
     assert max(map(int, ticks[:7])) < 1000, "one overtake does not shrink the plot of all others"
 

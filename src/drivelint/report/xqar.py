@@ -101,7 +101,7 @@ def _checker(
         _finding(checker, row, rule, drive["t_start_ns"], gate)
     for row in verdict_rows if status != "skipped" else ():
         if row["verdict"] in {"unknown", "error"}:
-            text = f"{row['verdict']}, neither kept nor violated: {with_count(row['reason'], row['count_all'])}"
+            text = f"{row['verdict']}, neither kept nor broken: {with_count(row['reason'], row['count_all'])}"
             _issue(checker, rule, INFORMATION, text)
     add(checker, "AddressedRule", ruleUID=rule_uid(rule["rule_id"], rule["pack"]))
     for verdict in counts.VERDICTS:
