@@ -121,7 +121,7 @@ def test_a_copy_with_another_tag_counts_for_both_values_and_once_in_all(own: Own
 def test_a_parameter_in_what_is_observed_needs_another_audit(judged: Path) -> None:
     done = ran("what-if", judged, "own.slow.factor=2")
     assert done.code == 4
-    assert "needs a new audit: factor is not the required value alone" in done.out
+    assert "needs a new audit: factor is not only the required value" in done.out
     assert "drivelint audit SOURCE --param own.slow.factor=2 --out OTHER" in done.out
 
 

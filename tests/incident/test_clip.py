@@ -116,7 +116,7 @@ def test_more_is_taken_where_the_rule_needs_it(tmp_path: Path, monkeypatch: pyte
 @pytest.mark.slow
 def test_another_log_is_refused(folder: Path, tmp_path: Path) -> None:
     request = ConvertRequest(str(OVERTAKE / "safe.csv"), "mcap", tmp_path)
-    with pytest.raises(UsageError, match="not the log of the finding"):
+    with pytest.raises(UsageError, match="the log of the finding: give that log"):
         clip.write_clip(request, "no-collision@collision", folder, None)
 
 

@@ -345,10 +345,10 @@ def test_parties_that_draw_apart_are_said_to() -> None:
     console = Console(file=io.StringIO(), width=160, force_terminal=False)
     console.print(terminal.render(run, "out", 160))
     for text in (plain(page(run)), console.file.getvalue()):  # type: ignore[attr-defined]
-        assert "drawing apart at 0.30 m/s" in text
+        assert "moving apart at 0.30 m/s" in text
         assert "closing at" not in text
 
 
 def test_the_page_says_how_large_the_errors_are() -> None:
     text = plain(page(one_contact_by_two_rules()))
-    assert "assumed errors (0.1 m in every actor's position, 0.05 s in its clock, 0.1 m in the map's place)" in text
+    assert "assumed errors (0.1 m in every actor's position, 0.05 s in its clock, 0.1 m in the position of the map)" in text

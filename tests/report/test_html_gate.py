@@ -93,7 +93,7 @@ def test_what_is_gone_but_not_fixed_is_told() -> None:
     before = result([verdict("fail")], [finding()])
     now = GateInputs(TODAY, before, "main").apply_to(result([verdict("unknown", t_start_ns=None)]))
     text = Parsed(page(now)).text
-    assert "Not fixed: it cannot be judged any more" in text
+    assert "Not fixed: now unknown" in text
     assert "1 more verdict is unknown than in main" in text
 
 

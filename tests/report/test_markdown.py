@@ -163,9 +163,9 @@ def test_a_baseline_tells_what_is_new_and_what_is_not_fixed() -> None:
     assert "### New findings (1)" in text
     assert tables(text)[1][1][2] == "15.00 s"
     assert [row[-1] for row in tables(text)[2][1:]] == [
-        "known: the baseline has it", "waived until 2027-01-31 by jo: ticket 17",
+        "known: the baseline contains it", "waived until 2027-01-31 by jo: ticket 17",
     ]  # fmt: skip
-    assert "### Not fixed: it cannot be judged any more (1)" in text
+    assert "### Not fixed: now unknown (1)" in text
     assert "### Verdicts that are unknown now and were not before (1)" in text
     assert (
         "### Waivers that need attention\n\n* w.toml:9: expired 2026-01-31 (al): it has no effect; no rule has this id" in text
@@ -181,7 +181,7 @@ def test_new_findings_that_do_not_gate_are_called_new_and_worse_ones_worse() -> 
     assert "### New findings (1); 1 more new findings, listed below, do not gate" in text
     assert "Findings that do not gate (2): 1 new" in text
     assert [row[-1] for row in tables(text)[2][1:]] == [
-        "known: the baseline has it; worse now: margin -26.07 m, was -14.07 m", "new, below --fail-on critical",
+        "known: the baseline contains it; worse now: margin -26.07 m, was -14.07 m", "new, below --fail-on critical",
     ]  # fmt: skip
     assert "1 known finding is worse" in text
 
@@ -212,7 +212,7 @@ def test_a_difference_as_markdown() -> None:
     assert "exit 1: 1 new finding at or above severity critical." in text
     assert tables(text)[0][1:] == [["main", "0", "1", "0", "0", "0"], ["pull|request", "0", "1", "1", "0", "0"]]
     assert "### New (1)\n\n* critical: d1 at 15.00 s:" in text
-    assert "### Not fixed: it cannot be judged any more (1)" in text
+    assert "### Not fixed: now unknown (1)" in text
 
 
 def test_a_time_is_in_utc_too_where_the_log_has_one() -> None:
