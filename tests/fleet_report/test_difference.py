@@ -185,7 +185,9 @@ def test_a_drive_that_cannot_be_judged_any_more_is_listed_though_it_had_no_findi
     assert "Judged in the base, but not in the newer audit (8 drives)" in done.out
     assert done.out.rstrip().endswith("; judged less than the baseline: 8 drives of the baseline not judged")
     assert done.code == 0
-    assert "### Judged in the base, but not in the newer audit (8)" in ran("diff", base, new, "--format", "markdown").out
+    assert (
+        "### Judged in the base, but not in the newer audit (8)" in ran("diff", base, new, "--format", "markdown").out
+    )
     assert compared(base, base)["no_more_judged"] == []
     for kind in ("markdown", "html"):
         name, _ = page.write(str(new), kind, (), str(base))

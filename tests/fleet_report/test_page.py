@@ -254,9 +254,9 @@ def test_a_page_of_100_000_drives_opens(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("--to", "xqar"), "of an audit there are html, markdown, junit, sarif"),
+        (("--to", "xqar"), "an audit can be reported as html, markdown, junit, sarif"),
         (("--by", "sit"), "did you mean 'site'?"),
-        (("--incident", "x"), "are of a check"),
+        (("--incident", "x"), "are only for a check"),
         (("--baseline", "nowhere"), "no audit is here"),
     ],
 )

@@ -268,7 +268,10 @@ def test_unknowns_that_appeared_are_counted_with_their_reason() -> None:
     assert (opened.rule_id, opened.n, opened.base_n, opened.reason, opened.stable) == (SPEED, 3, 1, "fog", True)
     assert diff.compare(new, base).new_unknowns == ()
     said_ = descriptions.difference_text(diff.compare(base, new), [], "critical")
-    assert "Verdicts that are unknown now and were not before (2); unknown does not mean pass\n  2: ukhc.r124.speed-limit: fog" in said_
+    assert (
+        "Verdicts that are unknown now and were not before (2); unknown does not mean pass\n  2: ukhc.r124.speed-limit: fog"
+        in said_
+    )
 
 
 def gating(base: Result, new: Result, fail_on: str) -> list[str]:

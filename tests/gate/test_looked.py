@@ -112,7 +112,10 @@ def test_what_is_judged_less_is_said(now: list[dict[str, Any]], said: str) -> No
 def test_drives_and_rules_that_are_left_out_are_judged_less() -> None:
     base = result([verdict("pass"), verdict("pass", drive_id="d2")], drives=[drive(), drive("d2")], rules=RULES)
     new = result([verdict("pass", drive_id="d3")], drives=[drive("d3")])
-    assert less(base, new) == "judged less than the baseline: 2 drives of the baseline not checked, 1 rule of the baseline not selected"
+    assert (
+        less(base, new)
+        == "judged less than the baseline: 2 drives of the baseline not checked, 1 rule of the baseline not selected"
+    )
     assert less(new, base) == "judged less than the baseline: 1 drive of the baseline not checked"
 
 
@@ -132,5 +135,9 @@ def test_results_without_a_common_drive_say_so_and_count_no_more_unknowns() -> N
     new = result([verdict("unknown", drive_id="converted")], drives=[drive("converted")])
     found = diff.compare(base, new)
     assert found.new_unknowns == ()
-    assert "The two results have no drive in common, by name or content" in descriptions.difference_text(found, [], "critical")
-    assert "The two results have no drive in common" not in descriptions.difference_text(diff.compare(base, base), [], "critical")
+    assert "The two results have no drive in common, by name or content" in descriptions.difference_text(
+        found, [], "critical"
+    )
+    assert "The two results have no drive in common" not in descriptions.difference_text(
+        diff.compare(base, base), [], "critical"
+    )

@@ -358,9 +358,9 @@ def test_case_study_before_the_impact(tmp_path: Path) -> None:
     assert "sizes are assumed, not recorded" in told["rests"]
     motion = Motion.of_steps(case.again.steps, case.finding.moment_ns)
     unknown = np.full_like(motion.gap, np.nan)
-    assert "it is not known whether the boxes touch (no gap is known" in _rests_on(case, replace(motion, gap=unknown))
+    assert "whether the boxes touch is not known (no gap is known" in _rests_on(case, replace(motion, gap=unknown))
     one = np.where(motion.t == 0, motion.gap, unknown)
-    assert "it is not known whether the boxes touch (least gap" in _rests_on(case, replace(motion, gap=one))
+    assert "whether the boxes touch is not known (least gap" in _rests_on(case, replace(motion, gap=one))
     assert _rests_on(case, replace(motion, gap=np.zeros_like(motion.gap))) == "", "they touch"
 
 

@@ -217,7 +217,9 @@ def test_a_finding_that_few_copies_keep_is_only_possible() -> None:
 def test_how_sure_a_near_miss_is_was_not_examined() -> None:
     near = verdict("pass", near_miss=True)
     alone = page(result([near], rules=[rule()]))
-    assert "how sure not examined: only findings are examined, and this is a near miss" in plain(section(alone, "worst"))
+    assert "how sure not examined: only findings are examined, and this is a near miss" in plain(
+        section(alone, "worst")
+    )
     both = page(result([verdict("fail"), near], [finding(n_copies=100, n_stays=97)], rules=[rule()]))
     assert "not examined" in plain(section(both, "findings"))
 
@@ -351,4 +353,7 @@ def test_parties_that_draw_apart_are_said_to() -> None:
 
 def test_the_page_says_how_large_the_errors_are() -> None:
     text = plain(page(one_contact_by_two_rules()))
-    assert "assumed errors (0.1 m in every actor's position, 0.05 s in its clock, 0.1 m in the position of the map)" in text
+    assert (
+        "assumed errors (0.1 m in every actor's position, 0.05 s in its clock, 0.1 m in the position of the map)"
+        in text
+    )

@@ -118,7 +118,10 @@ def test_the_headline() -> None:
         return re.sub(r"<[^>]+>", "", found).strip()
 
     assert headline(result([verdict("pass")])) == "PASS No findings"
-    assert headline(result([verdict("pass"), verdict("unknown")])) == "PASS No findings, but not everything could be judged"
+    assert (
+        headline(result([verdict("pass"), verdict("unknown")]))
+        == "PASS No findings, but not everything could be judged"
+    )
     lost = [drive("d2", status="not_judged", status_reason="broken")]
     assert (
         headline(result([verdict("pass")], drives=[drive(), *lost]))

@@ -168,7 +168,8 @@ def test_a_baseline_tells_what_is_new_and_what_is_not_fixed() -> None:
     assert "### Not fixed: now unknown (1)" in text
     assert "### Verdicts that are unknown now and were not before (1)" in text
     assert (
-        "### Waivers that need attention\n\n* w.toml:9: expired 2026-01-31 (al): it has no effect; no rule has this id" in text
+        "### Waivers that need attention\n\n* w.toml:9: expired 2026-01-31 (al): it has no effect; no rule has this id"
+        in text
     )
 
 

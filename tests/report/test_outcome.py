@@ -138,7 +138,10 @@ def test_a_run_that_could_decide_little_is_no_pass() -> None:
     missing = [verdict("unknown", rule_id=f"ukhc.m{n}", reason_code="missing_map") for n in range(3)]
     of = result([verdict("pass"), *missing], drives=[drive(map_name=None)], rules=rules)
     assert exit_status(of).code == ExitCode.OK
-    words = "mostly unknown no findings, but 3 of the 4 rules that may apply could not be judged; no map was given: 3 rules need one (--map)"
+    words = (
+        "mostly unknown no findings, but 3 of the 4 rules that may apply could not be judged; no "
+        "map was given: 3 rules need one (--map)"
+    )
     assert heads(of) == [words] * 3
     assert screen(of)[2].startswith("MOSTLY UNKNOWN")
     even = result([verdict("pass"), missing[0]], drives=[drive(map_name=None)], rules=rules)
@@ -255,7 +258,10 @@ def test_a_rule_that_did_not_apply_somewhere_is_not_said_to_be_judged_nowhere() 
     assert "2 of the rules could never be judged; 1 could be judged only in part." in text
     packs = " ".join(re.sub(r"<[^>]+>", " ", page(of).partition('id="rules"')[2]).split())
     assert re.findall(r"\d+ judged(?:, \d+ not)*", packs)[0] == "1 judged, 6 not"
-    assert "3 of the rules did not apply at some times and could not be judged at the other times. 1 never applied." in text
+    assert (
+        "3 of the rules did not apply at some times and could not be judged at the other times. 1 never applied."
+        in text
+    )
     off = {"reason_code": "missing_registration", "reason": "off the map"}
     folds = [row | off if row["verdict"] == "unknown" else row for row in rows]
     text = " ".join(re.sub(r"<[^>]+>", " ", page(result(folds, rules=rules)).partition('id="rules"')[2]).split())

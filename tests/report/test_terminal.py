@@ -207,7 +207,9 @@ def test_a_map_that_does_not_fit_is_said_and_is_exit_code_4() -> None:
     assert exit_status(run).code == ExitCode.NOT_JUDGED
     lines = summary(run)
     assert any(
-        line.startswith("NOT JUDGED  no findings, but not everything could be judged; the map does not fit 1 of 2 drives: on")
+        line.startswith(
+            "NOT JUDGED  no findings, but not everything could be judged; the map does not fit 1 of 2 drives: on"
+        )
         for line in lines
     )
     assert any(re.match("off +no finding, but the map does not fit ", line) for line in lines)

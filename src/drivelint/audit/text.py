@@ -62,7 +62,11 @@ def _lines(
         yield f"when all parts have ended: drivelint merge {out}"
         return
     found = [f"{audit_summary.findings.get(severity, 0)} {severity}" for severity in SEVERITIES]
-    sure = f"examined: {audit_summary.possible} only possible" if audit_summary.robust else "not examined (--robustness examines it)"
+    sure = (
+        f"examined: {audit_summary.possible} only possible"
+        if audit_summary.robust
+        else "not examined (--robustness examines it)"
+    )
     yield f"findings: {', '.join(found)}{_contacts(audit_summary)}; certainty: {sure}"
     yield from _broken(audit_summary, out)
     yield from _unknown(audit_summary, out)

@@ -194,7 +194,9 @@ def _notes(case: VerdictContext, now: str) -> list[str]:
             "the SQL and everything computed from it are those of the present version."
         )
     if now != before:
-        notes.append(f"Judged again, the verdict is {now}, but the result contains {before}: the tool or the rule has changed.")
+        notes.append(
+            f"Judged again, the verdict is {now}, but the result contains {before}: the tool or the rule has changed."
+        )
     return notes
 
 

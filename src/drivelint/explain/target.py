@@ -89,7 +89,9 @@ def _under(finding: Row, verdicts: Iterable[Row]) -> list[Row]:
         or (row["object_id"] == finding["object_id"] and row["t_start_ns"] <= finding["t_start_ns"] <= row["t_end_ns"])
     ]
     if not (exact or rows):
-        raise UsageError(f"finding {finding['finding_id']}: the result contains no verdict of it: check the drives again")
+        raise UsageError(
+            f"finding {finding['finding_id']}: the result contains no verdict of it: check the drives again"
+        )
     return exact or rows
 
 

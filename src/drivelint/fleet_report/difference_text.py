@@ -75,7 +75,10 @@ def _exit(difference: AuditDifference, fail_on: str | None) -> str:
 
 def _code_and_reason(difference: AuditDifference, fail_on: str | None) -> str:
     if fail_on is None:
-        return f"exit {int(exit_code(difference, None))}: {_rates_sentence(difference)}; with --fail-on SEVERITY, all findings of the newer audit gate"
+        return (
+            f"exit {int(exit_code(difference, None))}: {_rates_sentence(difference)}; with --fail-on SEVERITY, "
+            "all findings of the newer audit gate"
+        )
     if exit_code(difference, fail_on) == ExitCode.NOT_JUDGED and _warnings(difference):
         return f"exit 4: no new finding at or above severity {fail_on} so far, but {_warnings(difference)[0]}"
     n = difference.n_gone(fail_on)
@@ -110,7 +113,10 @@ def since(difference: AuditDifference) -> str:
     if not rate_texts:
         return "the audits have no drive in common, and no rate differs by more than chance explains"
     more = f" and {len(rate_texts) - _MOST_RISEN} more" if len(rate_texts) > _MOST_RISEN else ""
-    return f"the audits have no drive in common; rates that differ by more than chance explains: {', '.join(rate_texts[:_MOST_RISEN])}{more}"
+    return (
+        "the audits have no drive in common; rates that differ by more than chance explains: "
+        f"{', '.join(rate_texts[:_MOST_RISEN])}{more}"
+    )
 
 
 def rate_line(of: tuple[RateChange, RateTest]) -> str:

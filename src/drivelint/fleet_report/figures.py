@@ -42,7 +42,10 @@ def least_rate(rate: Rate) -> tuple[str, str] | None:
     """
     if rate.findings or not rate.findings_of_unknown or not rate.at_least_per_100km:
         return None
-    return f"at least {figure(rate.at_least_per_100km)}", f"over all km; {interval(rate.per_100km)} over the km that were judged completely"
+    return (
+        f"at least {figure(rate.at_least_per_100km)}",
+        f"over all km; {interval(rate.per_100km)} over the km that were judged completely",
+    )
 
 
 def share(estimate: Estimate) -> str:

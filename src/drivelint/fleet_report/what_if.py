@@ -101,7 +101,9 @@ def _used(con: duckdb.DuckDBPyConnection, rule_id: str, param: str) -> tuple[str
 def to_text(analysis: AskedWhatIf) -> str:
     """Return the result as text: the changes of verdicts, by the values of the tag."""
     answer = analysis.answer
-    lines = [f"{analysis.setting} instead of {analysis.was}, computed from the verdicts that are stored in {analysis.audit.dest}"]
+    lines = [
+        f"{analysis.setting} instead of {analysis.was}, computed from the verdicts that are stored in {analysis.audit.dest}"
+    ]
     if analysis.audit.warning:
         lines.append(analysis.audit.warning)
     if answer.needs_check:
@@ -116,7 +118,9 @@ def to_text(analysis: AskedWhatIf) -> str:
         )
     lines += _table(analysis)
     lines += _flipped_verdict_lines(analysis.flipped, flips + answer.not_known)
-    lines.append("Findings are not predicted: one verdict may have several findings, and the beginning and end of each depend on every step.")
+    lines.append(
+        "Findings are not predicted: one verdict may have several findings, and the beginning and end of each depend on every step."
+    )
     return "\n".join([*lines, _command(analysis)] if answer.not_known else lines)
 
 

@@ -201,7 +201,11 @@ def waiver_warnings(gate: Gate) -> Iterator[str]:
     """Yield a warning for each waiver that has expired or matches no finding."""
     for waiver in gate.waivers:
         if waiver.state == "expired":
-            matches = "no finding matches" if not waiver.findings else f"{plural(waiver.findings, 'finding')} match{'es' if waiver.findings == 1 else ''}"
+            matches = (
+                "no finding matches"
+                if not waiver.findings
+                else f"{plural(waiver.findings, 'finding')} match{'es' if waiver.findings == 1 else ''}"
+            )
             matches = waiver.unknown_rule or f"{matches} it"
             yield f"{waiver.where}: expired {waiver.expires} ({waiver.owner}): it has no effect; {matches}"
         elif waiver.state == "unmatched":

@@ -340,7 +340,7 @@ def _rests_on(case: Case, motion: Motion) -> str:
         at_s = times[np.nanargmin(gaps)] + (case.finding.moment_ns - case.finding.start_ns) / 1e9
         told = f"least gap {known.min():.2f} m, at {at_s:.2f} s"
     boxes = (
-        "the boxes do not touch at that time" if 0 < known.size == gaps.size else "it is not known whether the boxes touch"
+        "the boxes do not touch at that time" if 0 < known.size == gaps.size else "whether the boxes touch is not known"
     )
     assumed = any(size_source(case.drive.trace, who) for who in case.finding.parties)
     sizes = "; sizes are assumed, not recorded" if assumed else ""

@@ -69,9 +69,7 @@ def _map(drives: Sequence[Row]) -> InputNote:
         words += f", but not {off_egos} of {egos} egos"
     aside = [check["message"] for drive in on_map for check in drive["quality"] if check["check_id"] == ASIDE_OF_LANE]
     if aside:
-        far = (
-            f"{len(aside)} egos drive far from the middle of their lanes: the map may be shifted: correct it with --map-offset"
-        )
+        far = f"{len(aside)} egos drive far from the middle of their lanes: the map may be shifted: correct it with --map-offset"
         words += f"{'; ' if off_egos else ', but '}{aside[0] if len(aside) == 1 else far}"
     if bare := len(drives) - len(on_map):
         words += f"; {plural(bare, 'drive')} without a map"

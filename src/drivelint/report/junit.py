@@ -91,7 +91,10 @@ def _unfixed_case(entry: ComparedFinding) -> Case:
     """Return the test case of a baseline finding that this result does not have, but that is not known to be fixed."""
     name = rule_name({"rule_id": entry.rule_id, "profile": entry.profile})
     return Case(
-        f"{name} of {entry.drive_id}", "error", entry.standing, [f"gone, but not fixed: {descriptions.finding_line(entry)}"]
+        f"{name} of {entry.drive_id}",
+        "error",
+        entry.standing,
+        [f"gone, but not fixed: {descriptions.finding_line(entry)}"],
     )
 
 

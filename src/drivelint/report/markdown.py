@@ -79,7 +79,11 @@ def render(result: Result, base_url: str | None = None) -> bytes:
     kept = [part for part, n in zip(parts, room, strict=True) if n <= MAX_CHARS]
     if len(kept) < len(parts):
         kept.append(f"{plural(len(parts) - len(kept), 'part')} left out to keep this comment short.")
-    kept.append(f"[The complete report]({target})" if target else "The complete report is report.html in the folder of the results.")
+    kept.append(
+        f"[The complete report]({target})"
+        if target
+        else "The complete report is report.html in the folder of the results."
+    )
     return ("\n\n".join(kept) + "\n").encode("utf-8", "replace")
 
 

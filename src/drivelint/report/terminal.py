@@ -206,7 +206,9 @@ def _assumptions(result: Result) -> Text | None:
     if not assumed:
         return None
     verb = "verdict assumes" if assumed == 1 else "verdicts assume"
-    return Text(f"{assumed} {verb} that an actor that is missing in a log was not visible from the ego (--visibility)", "dim")
+    return Text(
+        f"{assumed} {verb} that an actor that is missing in a log was not visible from the ego (--visibility)", "dim"
+    )
 
 
 def _table(title: str, style: str, columns: Mapping[str, int] | None = None) -> Table:

@@ -40,7 +40,7 @@ def test_the_option_comes_first() -> None:
             {"handedness": "lht", "voted_handedness": "rht"},
             (
                 "--handedness says lht, the rule attribute of 1 road says rht, the traces fit rht: lht is taken. "
-                "If that is wrong, every direction is wrong: leave the option out, or set rht."
+                "If this is not right, every direction is wrong: leave the option out, or set rht."
             ),
         ),
         (
@@ -48,7 +48,7 @@ def test_the_option_comes_first() -> None:
             {"handedness": "rht", "voted_handedness": "lht"},
             (
                 "--handedness says rht, the rule attribute of 1 road says rht, the traces fit lht: rht is taken. "
-                "If that is wrong, every direction is wrong: give --handedness lht."
+                "If this is not right, every direction is wrong: give --handedness lht."
             ),
         ),
         (
@@ -56,7 +56,7 @@ def test_the_option_comes_first() -> None:
             {"voted_handedness": "lht"},
             (
                 "the rule attribute of 1 road says rht, the traces fit lht: rht is taken. "
-                "If that is wrong, every direction is wrong: give --handedness lht."
+                "If this is not right, every direction is wrong: give --handedness lht."
             ),
         ),
     ],

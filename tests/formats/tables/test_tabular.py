@@ -316,7 +316,7 @@ def test_degrees_are_not_read_as_radians(tmp_path: Path, turns: float, fits: boo
         (first, *_) = states(read(table(tmp_path / "d.csv", lines), mapping=name))
         assert first["yaw_rad"] == pytest.approx(2 * math.pi * (turns - 2)), "within half a turn"
         return
-    with pytest.raises(TraceError, match=r"'yaw' goes up to 13\.1947, which is no angle in radians: .*\"deg\""):
+    with pytest.raises(TraceError, match=r"'yaw' goes up to 13\.1947, which is not an angle in radians: .*\"deg\""):
         read(table(tmp_path / "d.csv", lines), mapping=name)
 
 
@@ -359,7 +359,7 @@ def test_row_order_does_not_matter(tmp_path: Path, data: st.DataObject) -> None:
         (["t,id,x,y,yaw,vx,vy,y", "0,a,0,0,0,0,0,0"], r"the column 'y' is there 2 times"),
         (["t,id,x,y,yaw,vx,vy"], r"no row follows the header|no actor states"),
         (["t,id,x,y,yaw,vx,vy", "0,a,0"], r"line 2: not the 7 cells of the header: no row is left"),
-        (["", "t,id,x,y,yaw,vx,vy"], r"line 1 should name the columns and is blank"),
+        (["", "t,id,x,y,yaw,vx,vy"], r"line 1 should contain the names of the columns, but is blank"),
         (["t,id,x,y,yaw,vx,vy", ",,,,,,"], r"no actor states in this log"),
     ],
 )

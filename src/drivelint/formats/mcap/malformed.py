@@ -30,7 +30,7 @@ def decode_readable(
     def decode_timed(some: list[Packet]) -> T:
         if max(packet.log_time_ns for packet in some) > LATEST_NS:
             late = next(packet for packet in some if packet.log_time_ns > LATEST_NS)
-            raise late.error(container.path, "its log time is no time of this or the next century")
+            raise late.error(container.path, "its log time is not in this or the next century")
         return decode(some)
 
     decoded, malformed = decode_others(packets, decode_timed)
