@@ -169,7 +169,7 @@ def test_length_below_width(tmp_path: Path) -> None:
 def test_unknown_sizes(tmp_path: Path) -> None:
     row = quality(load(tmp_path, cars(), LONG.replace("length = 4.5\n", "")))["no_size"]
     assert (row["n"], row["severity"]) == (2, "warning")
-    assert "of a, b:" in row["message"]
+    assert "of a, b is not known:" in row["message"]
 
 
 def test_a_hole_in_the_log(tmp_path: Path) -> None:

@@ -186,7 +186,7 @@ def test_an_unknown_verdict_for_want_of_a_signal(folder: Path) -> None:
     found = of(folder, "r112.horn@safe", errors=MeasurementErrors(samples=5))
     text = flat(said(found))
     assert "UNKNOWN: it is not known whether the rule was kept: this is not a pass" in text
-    assert "no number changes that" in text
+    assert "no parameter changes that" in text
     assert found.sensitivity is None
     assert found.changes == []
     (table,) = found.rows

@@ -269,4 +269,4 @@ def test_mistakes_are_told(filled: lake.Lake, words: tuple[str, ...], said: str)
 def test_tags_are_of_audits_only(tmp_path: Path) -> None:
     done = ran("report", tmp_path, "--by", "site")
     assert done.code == 2
-    assert "is none" in done.err
+    assert "is not an audit" in done.err

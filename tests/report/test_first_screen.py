@@ -202,7 +202,7 @@ def test_a_finding_that_few_copies_keep_is_only_possible() -> None:
     assert "A contact is possible:" in told
     assert "The recording shows a contact" not in told
     assert "1 of 2 findings only possible" in told
-    assert "possible: in only 53 of 100 copies of the drive" in plain(section(text, "worst")).replace(
+    assert "possible: it is also a finding in only 53 of 100 copies of the drive" in plain(section(text, "worst")).replace(
         "possible :", "possible:"
     )
     table = plain(section(text, "findings"))
@@ -322,7 +322,7 @@ def test_a_contact_is_as_sure_as_its_surest_finding() -> None:
     text = page(run)
     worst = plain(section(text, "worst"))
     assert "No contact in the speeds" in worst
-    assert "sure : in 32 of 32 copies" in worst
+    assert "sure : it is also a finding in 32 of 32 copies" in worst
     assert "the same contact is only possible by ukhc.no-collision, in 61 of 100 copies" in worst
     assert "the contact itself is sure by ukhc.contact-signature, in 32 of 32 copies" in text
     told = plain(text)

@@ -126,7 +126,7 @@ def test_a_sign_or_stop_line_at_no_place_is_refused_with_its_line(tag: str, x: s
     sign = f'<trafficSign id="5"><position>{point if tag == "trafficSign" else ""}</position></trafficSign>'
     with pytest.raises(
         MapError,
-        match="a sign, light or stop line cannot be read, the point in line 2 has impossible values of x and y",
+        match="a sign, light or stop line cannot be read: the point in line 2 has impossible values of x and y",
     ):
         load(scenario(lanelet(1, 0.0, stop), sign))
 

@@ -181,7 +181,7 @@ def test_actors_without_states_stay(tmp_path: Path, source: Trace) -> None:
         ({"indicator": ["left", "lefft"]}, r"indicator is 'lefft'; did you mean 'left'\? \(NULL: unknown\)"),
         ({"actor_class": ["car", "lorry"]}, "actor_class is 'lorry'"),
         ({"x_m": ["a", "b"]}, "column 'x_m' is string, not double"),
-        ({"drive_id": ["d", "e"]}, "holds 2 drives"),
+        ({"drive_id": ["d", "e"]}, "contains 2 drives"),
     ],
 )
 def test_tables_that_are_wrong(tmp_path: Path, columns: dict[str, list[Any]], message: str) -> None:

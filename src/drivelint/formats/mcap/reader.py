@@ -186,7 +186,7 @@ class Container:
 
     def _refuse_second_file(self, view: memoryview, at: int) -> None:
         if bytes(view[at : at + len(MAGIC)]) == MAGIC:
-            raise TraceError(f"{self.path}: a second MCAP file begins at byte {at}: split the file, give each part by itself")
+            raise TraceError(f"{self.path}: a second MCAP file begins at byte {at}: split it and give one part")
 
     def _refuse_second_file_within(self, view: memoryview, start: int, end: int) -> None:
         """Raise `TraceError` if lost bytes contain the beginning of another file: the data after it may be of another drive."""
