@@ -44,7 +44,7 @@ def least_rate(rate: Rate) -> tuple[str, str] | None:
         return None
     return (
         f"at least {figure(rate.at_least_per_100km)}",
-        f"over all km; {interval(rate.per_100km)} over fully judged km",
+        f"over all km; fully judged: {interval(rate.per_100km)}",
     )
 
 

@@ -111,7 +111,7 @@ def test_few_decimals_are_said(folder: Path) -> None:
     found, said = places(folder, xml(degrees(plain(), 6)), map=folder / "n.net.xml")
     worst = math.hypot(1.0, math.cos(math.radians(51.45))) * 0.5e-6 * 111_195
     assert 0.01 < np.hypot(*(found - expected)[:, :2].T).max() < worst + 1e-3
-    assert f"known to {worst:.2g} m" in said["rounded_position"]["message"]
+    assert f"exact to {worst:.2g} m" in said["rounded_position"]["message"]
 
 
 @pytest.mark.parametrize(
