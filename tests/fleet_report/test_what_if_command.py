@@ -87,7 +87,7 @@ def test_the_text_counts_flips_by_release(judged: Path) -> None:
     done = ran("what-if", judged, "own.slow.limit=11", "--by", "release")
     assert done.code == 0
     assert "12 of 12 verdicts change: 12 pass -> fail" in done.out
-    told, _, which = done.out.partition("which:\n")
+    told, _, which = done.out.partition("verdicts that change:\n")
     assert [line for line in told.splitlines() if line.startswith("  ")] == [
         "  v0  6 pass -> fail",
         "  v1  6 pass -> fail",
@@ -111,7 +111,7 @@ def test_a_copy_with_another_tag_counts_for_both_values_and_once_in_all(own: Own
         manifest.write_text(listed, encoding="utf-8")
     done = ran("what-if", out, "own.slow.limit=11", "--by", "release")
     assert "12 of 12 verdicts change: 12 pass -> fail" in done.out
-    told, _, which = done.out.partition("which:\n")
+    told, _, which = done.out.partition("verdicts that change:\n")
     lines = [line for line in told.splitlines() if line.startswith("  ")]
     assert lines == ["  v0  6 pass -> fail", "  v1  7 pass -> fail"]
     assert len([line for line in which.splitlines() if line.startswith("  ")]) == 12
