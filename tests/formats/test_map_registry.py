@@ -87,9 +87,9 @@ def test_a_doctype_is_refused(doctype: str) -> None:
 def test_a_file_that_is_too_large_is_refused_before_it_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(registry, "MAX_BYTES", 100)
     (tmp_path / "some.xodr").write_text(xodr())
-    with pytest.raises(MapError, match="more than the 100 that are read"):
+    with pytest.raises(MapError, match="but at most 100 are read"):
         read_source(tmp_path / "some.xodr")
-    assert "more than the 100" in refused(xodr())
+    assert "at most 100 are read" in refused(xodr())
 
 
 def test_a_map_without_a_lane_says_why() -> None:

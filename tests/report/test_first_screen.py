@@ -202,9 +202,9 @@ def test_a_finding_that_few_copies_keep_is_only_possible() -> None:
     assert "A contact is possible:" in told
     assert "The recording shows a contact" not in told
     assert "1 of 2 findings only possible" in told
-    assert "possible: it is also a finding in only 53 of 100 copies of the drive" in plain(section(text, "worst")).replace(
-        "possible :", "possible:"
-    )
+    assert "possible: it is also a finding in only 53 of 100 copies of the drive" in plain(
+        section(text, "worst")
+    ).replace("possible :", "possible:")
     table = plain(section(text, "findings"))
     assert "possible, 53 of 100" in table
     assert "sure, 97 of 100" in table

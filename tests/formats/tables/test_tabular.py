@@ -358,7 +358,10 @@ def test_row_order_does_not_matter(tmp_path: Path, data: st.DataObject) -> None:
         (["t,id,x,yy,yaw,vx,vy", "0,a,0,0,0,0,0"], r"no column 'y', which mapping 'mapping' needs: did you mean 'yy'"),
         (["t,id,x,y,yaw,vx,vy,y", "0,a,0,0,0,0,0,0"], r"the column 'y' occurs 2 times"),
         (["t,id,x,y,yaw,vx,vy"], r"no row follows the header|no actor states"),
-        (["t,id,x,y,yaw,vx,vy", "0,a,0"], r"line 2: the number of cells differs from the 7 cells of the header: no row is left"),
+        (
+            ["t,id,x,y,yaw,vx,vy", "0,a,0"],
+            r"line 2: the number of cells differs from the 7 cells of the header: no row is left",
+        ),
         (["", "t,id,x,y,yaw,vx,vy"], r"line 1 should contain the names of the columns, but is blank"),
         (["t,id,x,y,yaw,vx,vy", ",,,,,,"], r"no actor states in this log"),
     ],
