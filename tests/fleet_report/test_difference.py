@@ -191,7 +191,7 @@ def test_a_drive_that_cannot_be_judged_any_more_is_listed_though_it_had_no_findi
     assert compared(base, base)["no_more_judged"] == []
     for kind in ("markdown", "html"):
         name, _ = page.write(str(new), kind, (), str(base))
-        assert "udged in the baseline:" in (new / name).read_text(encoding="utf-8")
+        assert "udged in the baseline, but not in this audit:" in (new / name).read_text(encoding="utf-8")
 
 
 def test_an_audit_and_a_check_are_not_compared(audited: Audited, checked: list[Path]) -> None:

@@ -208,7 +208,7 @@ OPEN = said("unknown", 5, 12, reason="the limit is not known")
         (run([], said("pass"), OPEN), "unknown", "unknown", "the limit is not known"),
         (run([], said("pass"), said("unknown", 15, 20)), "fixed", "pass", "because pass"),
         (run([], said("error", t_start_ns=None, t_end_ns=None, t_worst_ns=None)), "unknown", "error", "because error"),
-        (run([at(20)], said("fail", n_expected=9, n_judged=9)), "fixed", "pass", "kept there, but"),
+        (run([at(20)], said("fail", n_expected=9, n_judged=9)), "fixed", "pass", "the rule is kept at this time, but"),
         (run([at(20)], said("fail", n_expected=9, n_judged=7)), "unknown", "unknown", "2 of 9 steps were not judged"),
         (run([], said("pass"), rules=RULES[:1]), "lost", "none", "the rule was not run"),
         (run([], said("pass", ego_id="2")), "lost", "none", "ego 1 was not judged"),

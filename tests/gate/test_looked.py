@@ -48,7 +48,7 @@ WHOLE = [(0.0, 25.0)]
         (WHOLE, [(0.0, 16.9)], "unknown", "object 3 is recorded"),
         ([(0.0, 10.4), (14.1, 25.0)], WHOLE, "unknown", "ego 1 is recorded only from 0.00 s to 10.40 s, 14.10 s to 25.00 s"),
         ([(0.0, 13.0), (14.1, 25.0)], WHOLE, "unknown", "ego 1 is recorded"),
-        ([(0.0, 1.0), (2.0, 3.0), (4.0, 5.0), (6.0, 7.0), (8.0, 9.0)], WHOLE, "unknown", "5.00 s and 2 more times only"),
+        ([(0.0, 1.0), (2.0, 3.0), (4.0, 5.0), (6.0, 7.0), (8.0, 9.0)], WHOLE, "unknown", "4.00 s to 5.00 s and 2 more times"),
         (WHOLE, [], "lost", "object 3 is not in this log, or has another id"),
     ],
 )  # fmt: skip

@@ -39,7 +39,7 @@ def test_the_option_comes_first() -> None:
             'rule="RHT"',
             {"handedness": "lht", "voted_handedness": "rht"},
             (
-                "--handedness says lht, the rule attribute of 1 road says rht, the traces fit rht: lht is taken. "
+                "--handedness says lht, the rule attribute of 1 road says rht, the traces fit rht: lht is used. "
                 "If this is not right, every direction is wrong: leave the option out, or set rht."
             ),
         ),
@@ -47,7 +47,7 @@ def test_the_option_comes_first() -> None:
             'rule="RHT"',
             {"handedness": "rht", "voted_handedness": "lht"},
             (
-                "--handedness says rht, the rule attribute of 1 road says rht, the traces fit lht: rht is taken. "
+                "--handedness says rht, the rule attribute of 1 road says rht, the traces fit lht: rht is used. "
                 "If this is not right, every direction is wrong: give --handedness lht."
             ),
         ),
@@ -55,7 +55,7 @@ def test_the_option_comes_first() -> None:
             'rule="RHT"',
             {"voted_handedness": "lht"},
             (
-                "the rule attribute of 1 road says rht, the traces fit lht: rht is taken. "
+                "the rule attribute of 1 road says rht, the traces fit lht: rht is used. "
                 "If this is not right, every direction is wrong: give --handedness lht."
             ),
         ),
