@@ -192,7 +192,7 @@ def test_rules_are_quoted_and_lay_no_blame(case_of: CaseOf) -> None:
     assert "rule broken: \u201cNo collision\u201d" in text
     assert re.search(r"(?<!\u201c)No collision", text.partition("</style>")[2].partition("Incident sheet")[2]) is None
     assert "not who is at fault" in text
-    assert "Rules of: UK Highway Code, whatever country" in text
+    assert "Rules of: UK Highway Code, in whatever country" in text
     assert "required 0.00 m" not in text
 
 
