@@ -188,7 +188,7 @@ def test_waivers_in_the_settings_and_in_a_file_until_their_day(ran: Ran) -> None
     assert ran(*check, "--today", "2027-03-31")[0] == 0
     code, out, _ = ran(*check, "--today", "2027-04-01")
     assert code == 1
-    assert "drivelint.toml:2: expired 2027-03-31 (jo): it has no effect; 1 finding like that" in out
+    assert "drivelint.toml:2: expired 2027-03-31 (jo): it has no effect; 1 finding matches it" in out
     Path("more.toml").write_text(f"# ours\n{text.replace('162', '126')}", encoding="utf-8")
     code, out, _ = ran(*check, "--today", "2027-01-01", "--waivers", "more.toml", "--format", "json")
     told = json.loads(out)["gate"]

@@ -207,7 +207,7 @@ def test_ctrl_c_before_anything_is_judged_says_so_and_keeps_an_earlier_result_as
         finally:
             process.kill()
     assert (process.returncode, said) == (130, ""), err
-    assert f"drivelint: nothing was judged yet; {out} holds no result" in err.splitlines()
+    assert f"drivelint: nothing was judged yet; {out} contains no result" in err.splitlines()
     told = f"drivelint: the result of an earlier run is now in {out / 'earlier'}"
     assert (told in err.splitlines()) is earlier
     assert not [line for line in err.splitlines() if line.startswith("drivelint: kept")]
@@ -244,7 +244,7 @@ def test_ctrl_c_ends_the_check_at_the_end_of_a_watch(pack: Path, tmp_path: Path,
     assert process.returncode == 130, told + err
     end = json.loads(said.splitlines()[-1])
     assert end == {"type": "end", "exit_code": 130, "why": "interrupted before the recording was judged"}
-    assert f"drivelint: nothing was judged yet; {out} holds no result" in err.splitlines()
+    assert f"drivelint: nothing was judged yet; {out} contains no result" in err.splitlines()
     assert not list(scratch.iterdir())
 
 
@@ -265,7 +265,7 @@ def test_a_second_ctrl_c_leaves_no_temporary_folder(tmp_path: Path, scratch: Pat
             _, err = process.communicate(timeout=30)
         finally:
             process.kill()
-    assert "Ctrl-C again leaves at once" in told
+    assert "press Ctrl-C again to stop at once" in told
     assert process.returncode == 130, err
     assert len(before) == 4
     assert not list(scratch.iterdir())

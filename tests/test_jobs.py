@@ -96,7 +96,7 @@ def test_several_processes_write_the_bytes_of_one(asked: CheckOptions, alone: Al
         found = written(asked, out, 2, two)
     assert files(out) == by_one
     assert sum(name.endswith(".mcap") for name in by_one) == 4
-    damaged, mapping, again = "not judged: ", "collision.mcap: mapping ", "the same log as one before"
+    damaged, mapping, again = "not judged: ", "collision.mcap: mapping ", "the same content as the log of "
     assert [note for note in expected.notes if note.startswith(mapping)] == list(expected.notes[:1])
     assert [sum(words in note for note in expected.notes) for words in (damaged, again)] == [1, 1]
     assert found.notes == expected.notes
@@ -119,7 +119,7 @@ def test_a_log_that_two_parts_have_is_judged_once(alone: Alone) -> None:
     assert set(second.result.drives["drive_id"].to_pylist()) == {*drives[2:], "m"}
     assert not set(second.result.verdicts["drive_id"].to_pylist()) & set(drives[:2])
     told = [note.text for note in second.notes if not note.once]
-    assert [text.endswith(f"({drive}), judged once") for text, drive in zip(told, drives, strict=False)] == [True, True]
+    assert [text.endswith(f" {drive}: judged once") for text, drive in zip(told, drives, strict=False)] == [True, True]
     assert len(second.notes) == len(drives)
 
 

@@ -96,7 +96,10 @@ def test_a_message_is_missing(tmp_path: Path, write: Callable[[Path], bytes], cr
     code, found, _ = checked(path, ego="0")
     assert code == 3
     assert f"counts {drives.N} messages of topic " in found["index_mismatch"]
-    assert f"the file has {drives.N - 1}: these are read, and missing messages are lost" in found["index_mismatch"]
+    assert (
+        f"the file has {drives.N - 1}: the present messages are read, the missing ones are lost"
+        in found["index_mismatch"]
+    )
 
 
 def test_an_index_that_contradicts_itself_is_no_witness(tmp_path: Path) -> None:
@@ -146,7 +149,7 @@ def test_the_index_of_a_chunk_names_a_message_that_is_not_in_it(tmp_path: Path) 
     path.write_bytes(with_message_index_of(less, whole))
     code, found, verdicts = checked(path)
     assert code == 3
-    assert "at 2.000 s is lost: nothing is judged across it" in found["lost_time"]
+    assert "at 2.000 s is lost: no rule is judged across this time" in found["lost_time"]
     assert "unknown" in verdicts
     path.write_bytes(less)
     assert checked(path)[0] == 0
@@ -197,6 +200,6 @@ def test_a_canonical_folder_counts_more(tmp_path: Path) -> None:
 
     folder = drives.canonical(tmp_path / "drive", drives.drive())
     pq.write_table(pa.table({"n_states": [3 * drives.N + 1]}), folder / "data_log.parquet")
-    with pytest.raises(drivelint.DriveLintError, match=r"120 rows, and data_log\.parquet counts 121 states") as error:
+    with pytest.raises(drivelint.DriveLintError, match=r"120 rows, but data_log\.parquet states 121") as error:
         checked(folder, ego="0")
     assert error.value.exit_code == 4

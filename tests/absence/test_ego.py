@@ -251,7 +251,7 @@ def test_a_fast_odometry_among_slow_objects(tmp_path: Path) -> None:
     code, drive, rows = checked(path, ego_size="4.5,1.8")
     assert (code, drive["lossy"]) == (3, True)
     assert absence(drive) == [
-        "the ego ego is absent for 3.0 of 6.0 s (50 %), from 1.990 s to 5.000 s: its conduct then is unknown"
+        "the ego ego is absent for 3.0 of 6.0 s (50 %), from 1.990 s to 5.000 s: what it did in that time is unknown"
     ]
     assert len([row for row in rows if row["verdict"] == "unknown"]) <= 6
     trembling = [message for k, message in enumerate(messages) if k % 40]  # single samples lack
@@ -277,5 +277,5 @@ def test_a_topic_of_road_users_falls_silent(tmp_path: Path, missing: range) -> N
         lost = [each["message"] for each in drive["quality"] if each["check_id"] == "lost_time"]
         decided = any(row["verdict"] in {"pass", "fail"} for row in rows)
         assert (found, bool(lost)) == (code if decided else 4, code == 3)
-        assert not lost or "/objects is silent while the odometry goes on" in lost[0]
+        assert not lost or "/objects has no messages while the odometry continues" in lost[0]
         assert code != 3 or not any(row["verdict"] == "pass" and row["object_id"] is None for row in rows)

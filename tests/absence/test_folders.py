@@ -24,12 +24,12 @@ RULE = "ukhc.no-collision"
 
 def dead_link(logs: Path, elsewhere: Path) -> str:
     (logs / "gone.mcap").symlink_to(elsewhere / "not-fetched.mcap")
-    return "gone.mcap: a dead link, to "
+    return "gone.mcap: a dead link to "
 
 
 def dead_link_to_a_folder(logs: Path, elsewhere: Path) -> str:
     (logs / "recordings").symlink_to(elsewhere / "not-mounted")
-    return "recordings: a dead link, to "
+    return "recordings: a dead link to "
 
 
 def linked_folder(logs: Path, elsewhere: Path) -> str:

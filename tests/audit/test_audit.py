@@ -270,7 +270,7 @@ def test_a_log_of_the_name_and_content_of_another_is_judged_once_and_counted(tmp
         counted = judged(few, tmp_path / "out", sources=str(logs))
         assert (counted.n_drives, counted.n_asked) == (3, 4)
         assert counted.reused >= n_reused
-        assert "1 log of the name and content of another" in summary_text(counted, "out", ExitCode.OK)
+        assert "1 log with the same name, content and tags as another" in summary_text(counted, "out", ExitCode.OK)
 
 
 def tags_in(out: Path) -> list[dict[str, str]]:
@@ -295,7 +295,7 @@ def test_a_copy_of_the_same_name_keeps_its_tags(tmp_path: Path) -> None:
         counted = judged(few, tmp_path / "out")
         assert tags_in(tmp_path / "out") == [{"release": "a"}, {"release": "b"}]
         assert (counted.n_drives, counted.copies, counted.n_asked) == (2, 1, 3)
-        assert "1 log of the name and content of another, with its tags" in summary_text(counted, "out", ExitCode.OK)
+        assert "1 log with the same name, content and tags as another log" in summary_text(counted, "out", ExitCode.OK)
 
 
 @pytest.mark.slow
@@ -346,7 +346,7 @@ def test_drives_that_their_map_does_not_fit_are_no_success(tmp_path: Path) -> No
     told = judged(few, tmp_path / "out")
     assert (told.n_judged, told.off_map) == (4, 1)
     assert told.exit_code("never", strict=False) == ExitCode.NOT_JUDGED
-    assert "4 judged, 1 off their map" in summary_text(told, "out", ExitCode.NOT_JUDGED)
+    assert "4 judged, 1 with a map that does not fit" in summary_text(told, "out", ExitCode.NOT_JUDGED)
 
 
 @pytest.mark.slow

@@ -81,7 +81,7 @@ def test_a_contact_that_is_only_possible_is_not_printed_as_one(audited: tuple[Pa
 def test_where_nobody_looked_the_line_says_how_to(audited: tuple[Path, int]) -> None:
     out, n = audited
     line, _ = told(out, robust=False)
-    assert line.endswith(f"CONTACT in {n} drives; certainty: not examined: --robustness")
+    assert line.endswith(f"CONTACT in {n} drives; certainty: not examined (--robustness examines it)")
 
 
 def test_a_touch_of_two_egos_is_one(audited: tuple[Path, int]) -> None:
@@ -256,7 +256,7 @@ def test_copies_are_told_and_counted_once(tmp_path: Path) -> None:
     lines = summary_text(counted, "out", ExitCode.FAILED).splitlines()
     assert lines[0].startswith("10 drives of ")
     assert lines[1] == "10 judged"
-    assert lines[2] == "2 more logs have the content of another one: each content counts once"
+    assert lines[2] == "2 more logs have the same content as another log: logs with the same content count once"
     told_copies = [line.strip().split(": a copy of ") for line in lines if ": a copy of " in line]
     assert len(told_copies) == 2
     assert {Path(name).name for pair in told_copies for name in pair} == {log.name for log in (first, *copies)}
@@ -282,7 +282,7 @@ def test_a_refused_log_counts_once_whatever_its_copies_are_called(tmp_path: Path
     lines = summary_text(counted, "out", ExitCode.NOT_JUDGED).splitlines()
     assert lines[0].startswith("3 drives of ")
     assert lines[1] == "2 judged, 1 refused"
-    assert lines[2] == "1 more log has the content of another one: each content counts once"
+    assert lines[2] == "1 more log has the same content as another log: logs with the same content count once"
     assert [Path(name).name for name in lines[3].strip().split(": a copy of ")] == [damaged[1].name, damaged[0].name]
     assert "not judged: 1 drive" in lines
     with open_audits(str(tmp_path / "out")) as (con, out, _):
@@ -294,7 +294,7 @@ def test_a_refused_log_counts_once_whatever_its_copies_are_called(tmp_path: Path
 @pytest.mark.parametrize(
     ("column", "value", "words"),
     [
-        ("site", "north", "listed again, with other tags"),
+        ("site", "north", "listed again with other tags"),
         ("ego", "1", "judged again, with another ego or map, or under"),
     ],
 )
@@ -323,14 +323,14 @@ def test_lossy_logs_and_those_off_their_map_are_named(audited: tuple[Path, int])
         create_views(con, LocalFolder(out), out)
         lines = summary_text(summed(con, 0), "out", ExitCode.OK).splitlines()
     assert f"  lossy: {', '.join(lossy)} and 1 more" in lines
-    assert f"  off their map: {off_map}" in lines
+    assert f"  map does not fit: {off_map}" in lines
     results = LocalFolder(out)
     seal(results, [AUDIT_FILE, RULES_FILE], results.read(SUMMARY_FILE) or b"")
     for kind in ("markdown", "html"):
         name, _ = page.write(str(out), kind, (), None)
         text = (out / name).read_text(encoding="utf-8").replace("`", "").replace("&#45;", "-")
-        assert f"4 stand on logs of which parts were lost: {', '.join(lossy)} and 1 more." in text
-        assert f"1 off their map: {off_map}." in text
+        assert f"4 of the judged drives have logs with lost parts: {', '.join(lossy)} and 1 more." in text
+        assert f"1 of the judged drives does not fit its map: {off_map}." in text
 
 
 def test_the_query_that_is_proposed_gives_the_numbers_that_are_printed(audited: tuple[Path, int]) -> None:

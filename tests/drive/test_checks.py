@@ -169,7 +169,7 @@ def test_length_below_width(tmp_path: Path) -> None:
 def test_unknown_sizes(tmp_path: Path) -> None:
     row = quality(load(tmp_path, cars(), LONG.replace("length = 4.5\n", "")))["no_size"]
     assert (row["n"], row["severity"]) == (2, "warning")
-    assert "of a, b:" in row["message"]
+    assert "of a, b is not known:" in row["message"]
 
 
 def test_a_hole_in_the_log(tmp_path: Path) -> None:
@@ -223,7 +223,9 @@ def test_velocity_of_another_motion_is_derived(tmp_path: Path) -> None:
     assert [row["vx_mps"] for row in states(trace, "b")] == pytest.approx([10.0] * 60)
     row = quality(trace)["velocity_derived"]
     assert (row["n"], row["actor_id"], row["severity"]) == (60, "b", "warning")
-    assert row["message"].startswith("velocity that is not the motion of the positions (b): velocity is derived")
+    assert row["message"].startswith(
+        "velocity that does not match the motion of the positions (b): velocity is derived"
+    )
     assert "velocity_mismatch" not in quality(trace)
     trace = load(tmp_path, edited(cars(60), "b", range(20, 30), vx="5.0"))
     assert (at(trace, "b", 2.5)["vx_mps"], at(trace, "b", 2.5)["x_m"]) == (None, None)

@@ -39,7 +39,7 @@ def test_a_sample_upon_another_actor_is_said(at: int, off_m: float, upon: bool) 
     trace = read(replace(other, x=np.where(there, 100 + 10 * T + off_m, other.x)))
     said = [row for row in trace.tables["quality"].to_pylist() if row["check_id"] == "jumps_onto"]
     assert [(row["actor_id"], row["n"], row["t_first_ns"]) for row in said] == [("x", 1, at * 10**8)] * upon
-    assert not upon or "lies on ego" in said[0]["message"]
+    assert not upon or "overlaps ego" in said[0]["message"]
 
 
 def test_the_ego_that_jumps_onto_another_is_said_and_a_parted_track_is_not_upon_itself() -> None:

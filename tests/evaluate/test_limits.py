@@ -125,9 +125,10 @@ def assert_contained(tmp_path: Path, names: tuple[str, ...]) -> subprocess.Compl
 def test_the_command_starts_again_without_a_rule_that_heeds_no_interrupt(tmp_path: Path) -> None:
     found = assert_contained(tmp_path, ("nested_lambda",))
     # which of its limits it meets first depends on what else the machine does
-    beyond = ("takes longer than --rule-timeout", "takes more memory than there is")
+    beyond = ("takes longer than --rule-timeout", "takes more memory than is available")
     said = {
-        f"drivelint: rule bomb.nested_lambda {what} and cannot be stopped: starting again without it" for what in beyond
+        f"drivelint: rule bomb.nested_lambda {what} and cannot be stopped: the run starts again without this rule"
+        for what in beyond
     }
     assert sum(line in said for line in found.stderr.splitlines()) == 1
 

@@ -104,7 +104,7 @@ def test_it_is_counted_and_named_and_no_pass() -> None:
     rules = [rule(), rule("ukhc.b")]
     both = result([verdict("pass"), LACKING | {"rule_id": "ukhc.b"}], rules=rules)
     assert (rule_counts(both).judged_somewhere, rule_counts(both).unrecorded, rule_counts(both).idle) == (1, 1, 0)
-    assert "no findings, as far as it could be judged" in headline(both).sentence
+    assert "no findings, but not everything could be judged" in headline(both).sentence
     notes: dict[str, Any] = {note.label: note for note in input_notes(both)}
     assert notes["not recorded"].words == "indicator (needed by 1 rule)"
     assert notes["not recorded"].is_warning

@@ -38,9 +38,9 @@ def test_text_is_for_people(folder: Path, monkeypatch: pytest.MonkeyPatch, capfd
     )
     assert (code, err) == (0, "")
     assert out.startswith("ukhc.no-collision: ")
-    assert "Critical; a 'must' by its clause" in out, "a rule of another pack is none of the Code's"
-    assert "Passes in 4 of 4." in out
-    assert "0.2 m in the map's place" in " ".join(out.split())
+    assert "Critical; a 'must' in the words of its clause" in out, "a rule of another pack is none of the Code's"
+    assert "Passes in 4 of 4 copies of the drive." in out
+    assert "0.2 m in the position of the map" in " ".join(out.split())
     assert "\x1b" not in out
     assert "Traceback" not in err
 

@@ -177,7 +177,7 @@ FAULTS: Final = (
         "jump of the clock, or a gap",
         ALL,
         (3,),
-        "nothing is judged across",
+        "no rule is judged across",
         (f"{_CHECKS}::test_a_hole_in_the_log", "tests/test_honesty.py::test_a_hole_is_a_row_of_its_own", HERE),
     ),
     Fault(

@@ -114,7 +114,7 @@ def test_lists_are_cut_and_say_so_and_the_rows_are_all_there(filled: lake.Lake, 
     n = Counter(rows["standing"])
     assert n["new"] > 50
     assert f"New ({n['new']})" in done.out
-    assert f"... and {n['new'] - 50} more: --rows FILE has them all" in done.out
+    assert f"... and {n['new'] - 50} more: --rows FILE contains all" in done.out
     assert sum(line.startswith("  critical: ") for line in done.out.splitlines()) >= 50
     assert "Only in the newer audit (300 drives)" in done.out
     found = compared(filled.folder, other.folder)
@@ -160,7 +160,7 @@ def test_more_unknown_is_told_apart_from_fixed(audited: Audited, tmp_path: Path)
         == found["verdicts"]["unknown"]
         == sum(found["base_verdicts"].values())
     )
-    assert "More is unknown than was" in ran("diff", audited.base, new).out
+    assert "Verdicts that are unknown now and were not before" in ran("diff", audited.base, new).out
 
 
 @pytest.mark.slow
@@ -182,14 +182,16 @@ def test_a_drive_that_cannot_be_judged_any_more_is_listed_though_it_had_no_findi
         assert "map" not in each["causes"]
         assert "map" in each["causes_not_known"]
     done = ran("diff", base, new, "--fail-on", "never")
-    assert "Not judged, and judged in the base (8 drives)" in done.out
-    assert done.out.rstrip().endswith("; judged less than the baseline: 8 drives of it not judged")
+    assert "Judged in the base, but not in the newer audit (8 drives)" in done.out
+    assert done.out.rstrip().endswith("; judged less than the baseline: 8 drives of the baseline not judged")
     assert done.code == 0
-    assert "### Not judged, and judged in the base (8)" in ran("diff", base, new, "--format", "markdown").out
+    assert (
+        "### Judged in the base, but not in the newer audit (8)" in ran("diff", base, new, "--format", "markdown").out
+    )
     assert compared(base, base)["no_more_judged"] == []
     for kind in ("markdown", "html"):
         name, _ = page.write(str(new), kind, (), str(base))
-        assert "udged in the baseline:" in (new / name).read_text(encoding="utf-8")
+        assert "udged in the baseline, but not in this audit:" in (new / name).read_text(encoding="utf-8")
 
 
 def test_an_audit_and_a_check_are_not_compared(audited: Audited, checked: list[Path]) -> None:

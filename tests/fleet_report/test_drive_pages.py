@@ -339,4 +339,4 @@ def test_mistakes_are_told(lake_copy: Path, asked: tuple[str, ...], said: str) -
 def test_drive_pages_are_of_audits_only(tmp_path: Path) -> None:
     done = ran("report", tmp_path, "--drive-pages", "5")
     assert done.code == 2
-    assert "is none" in done.err
+    assert "is not an audit" in done.err

@@ -106,8 +106,8 @@ def test_so_much_must_be_decided(audited: Audited, again: Path) -> None:
     ("options", "why"),
     [
         (("--baseline", "{out}"), "is also --out"),
-        (("--baseline", "{out}", "--claim"), "need a whole audit"),
-        (("--min-judged", "0.5", "--shard", "1/2"), "need a whole audit"),
+        (("--baseline", "{out}", "--claim"), "need a complete audit"),
+        (("--min-judged", "0.5", "--shard", "1/2"), "need a complete audit"),
     ],
 )
 def test_a_mistake_is_told_before_anything_is_judged(
@@ -121,7 +121,7 @@ def test_a_mistake_is_told_before_anything_is_judged(
 def test_pages_have_options_that_junit_has_not(again: Path) -> None:
     found = ran("report", again, "--to", "junit", "--by", "site")
     assert found.code == 2
-    assert "has the gate of the last drivelint audit" in found.err
+    assert "contains only the gate of the last drivelint audit" in found.err
 
 
 def test_python_has_the_tables_the_gate_and_the_rates_of_an_audit(audited: Audited, again: Path) -> None:

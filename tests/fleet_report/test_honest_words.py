@@ -59,7 +59,7 @@ def test_at_least_counts_a_touch_of_two_egos_once_and_nothing_that_is_only_possi
         assert (rate.findings_of_unknown, rate.events_sure) == (2, n_sure)
         assert told.content.headline[1] == "1 critical finding in 1 of 1 drives"
         assert rate.at_least_per_100km == pytest.approx(0.0253178 / 2 * n_sure)
-    assert "of all, nothing sure" in told.row("//div[contains(@class, 'rate-table')]", "z-contact").text_content()
+    assert "no lower bound over all km" in told.row("//div[contains(@class, 'rate-table')]", "z-contact").text_content()
 
 
 def test_the_header_names_contacts_and_how_sure_they_are() -> None:
@@ -98,8 +98,8 @@ def test_logs_of_one_content_count_once_everywhere() -> None:
     told = Told(drives, verdicts, [touched(name) for name in "abc"])
     assert told.content.headline[1] == "1 critical finding in 1 of 2 drives"
     assert "2 of 2 drives were judged: 200 km by 2 egos" in told.header
-    assert "2 more logs have the content of another one: each content counts once" in told.header
-    assert "2 more logs of the content of another one" in told.markdown
+    assert "2 more logs have the same content as another log: logs with the same content count once" in told.header
+    assert "2 more logs have the same content as another log" in told.markdown
     (rate,) = [each for each in told.content.rates if each.rule_id == "z-contact"]
     assert (rate.findings, rate.km, len(told.content.worst)) == (1, 200, 1)
     assert told.content.verdicts == {"pass": 2, "fail": 2, "unknown": 0, "not_applicable": 0, "error": 0}
@@ -109,7 +109,7 @@ def test_a_copy_that_was_judged_by_other_options_hides_nothing() -> None:
     drives = [ego_drive(name, sha256="same") for name in "ab"]
     told = Told(drives, [*words("a"), *words("b", "fail"), *words("b", "unknown")], [touched("b")])
     assert told.content.headline[1] == "1 critical finding in 1 of 1 drives"
-    assert "1 finding of them, judged by other options, is in no rate" in told.header
+    assert "1 finding of these logs counts for no rate, because it was judged with other options" in told.header
     assert not told.content.is_all_decided
 
 
@@ -118,7 +118,7 @@ def test_a_rule_that_nothing_decided_says_in_how_many_drives_it_was_unknown() ->
     told = Told([ego_drive("a"), ego_drive("b")], verdicts, [])
     coverage = " ".join(told.html.xpath("//section[@aria-labelledby='coverage']")[0].text_content().split())
     assert "unknown each time" not in coverage
-    assert "Never decided: none passed or failed, some are unknown (2)" in coverage
+    assert "Never decided: no verdict passed or failed, some are unknown (2)" in coverage
     assert "No collision (unknown in 1 of 2 drives)" in coverage
     assert "`z-contact` (unknown in 1 of 2 drives)" in told.markdown
     assert "100 did not apply" in " ".join(
@@ -165,7 +165,7 @@ def test_a_signal_that_decides_nothing_alone_is_not_told_with_zeros() -> None:
         con.register("receipts", RECEIPT_SCHEMA.empty_table())
         audit = Audit("out", LocalFolder(Path("out")), {"settings": {}}, Standing("d"))
         text = page.markdown(content_.content(con, audit, None, ())).decode()
-    assert "decides nothing alone, 1 judgement with other signals" in text
+    assert "no judgement by itself, 1 judgement together with other signals" in text
     assert "at most 0" not in text
 
 

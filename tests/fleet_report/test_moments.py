@@ -122,7 +122,7 @@ def test_other_findings_are_no_moments_of_these(own: Path, monkeypatch: pytest.M
     monkeypatch.setattr(moment_pages, "_judged_again", with_fewer)
     assert ran("report", own).code == 0
     assert not list(own.glob("drives/*-moments.html"))
-    assert "this version of drivelint finds something else" in page_of(own, "collision").text_content()
+    assert "this version of drivelint gives other findings" in page_of(own, "collision").text_content()
 
 
 def test_long_drives_are_left_out_unless_they_are_asked_for(own: Path, monkeypatch: pytest.MonkeyPatch) -> None:

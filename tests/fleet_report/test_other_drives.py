@@ -125,7 +125,7 @@ def test_findings_that_the_newer_audit_did_not_look_at_are_no_pass() -> None:
 
 def test_findings_of_added_drives_are_told_apart() -> None:
     told = compared(base_also=("shared",), new_also=("shared",))
-    assert told.headline.startswith("17 new (17 in drives that the base does not have), ")
+    assert told.headline.startswith("17 new (17 in drives that the base does not contain), ")
     assert difference_text.least_severity(told, None) == "critical"
 
 
@@ -175,4 +175,4 @@ def test_a_rate_of_which_the_base_has_no_event_has_no_ratio() -> None:
             return rates(con)
 
     (change,) = rate_changes(told(0), told(1))
-    assert [difference_text.times(each) for each in change.tests] == ["there was none"] * 2
+    assert [difference_text.times(each) for each in change.tests] == ["none before"] * 2

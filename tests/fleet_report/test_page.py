@@ -209,7 +209,7 @@ def test_a_fleet_without_findings_is_no_pass_if_something_could_not_be_judged(tm
     judged(few, out)
     ran("report", out)
     written = page_of(out)
-    assert written.xpath("//h1")[0].text_content().strip() == "No finding, as far as it could be judged"
+    assert written.xpath("//h1")[0].text_content().strip() == "No finding, but not everything could be judged"
     assert log.name in section(written, "open").text_content()
 
 
@@ -254,9 +254,9 @@ def test_a_page_of_100_000_drives_opens(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("--to", "xqar"), "of an audit there are html, markdown, junit, sarif"),
+        (("--to", "xqar"), "an audit can be reported as html, markdown, junit, sarif"),
         (("--by", "sit"), "did you mean 'site'?"),
-        (("--incident", "x"), "are of a check"),
+        (("--incident", "x"), "are only for a check"),
         (("--baseline", "nowhere"), "no audit is here"),
     ],
 )
@@ -269,4 +269,4 @@ def test_mistakes_are_told(filled: lake.Lake, words: tuple[str, ...], said: str)
 def test_tags_are_of_audits_only(tmp_path: Path) -> None:
     done = ran("report", tmp_path, "--by", "site")
     assert done.code == 2
-    assert "is none" in done.err
+    assert "is not an audit" in done.err

@@ -50,5 +50,5 @@ def test_a_rate_that_leaves_findings_out_is_told_by_its_lower_bound() -> None:
         assert (told is not None) == is_told
         if told is not None:
             assert told[0].startswith("at least 0.0")
-            assert told[1].startswith("over all; 0 (0 to ")
-            assert told[1].endswith(" where all was judged")
+            assert told[1].startswith("over all km; fully judged: 0 (0 to ")
+            assert told[1].endswith(")")

@@ -87,7 +87,7 @@ def test_the_text_counts_flips_by_release(judged: Path) -> None:
     done = ran("what-if", judged, "own.slow.limit=11", "--by", "release")
     assert done.code == 0
     assert "12 of 12 verdicts change: 12 pass -> fail" in done.out
-    told, _, which = done.out.partition("which:\n")
+    told, _, which = done.out.partition("verdicts that change:\n")
     assert [line for line in told.splitlines() if line.startswith("  ")] == [
         "  v0  6 pass -> fail",
         "  v1  6 pass -> fail",
@@ -111,7 +111,7 @@ def test_a_copy_with_another_tag_counts_for_both_values_and_once_in_all(own: Own
         manifest.write_text(listed, encoding="utf-8")
     done = ran("what-if", out, "own.slow.limit=11", "--by", "release")
     assert "12 of 12 verdicts change: 12 pass -> fail" in done.out
-    told, _, which = done.out.partition("which:\n")
+    told, _, which = done.out.partition("verdicts that change:\n")
     lines = [line for line in told.splitlines() if line.startswith("  ")]
     assert lines == ["  v0  6 pass -> fail", "  v1  7 pass -> fail"]
     assert len([line for line in which.splitlines() if line.startswith("  ")]) == 12
@@ -121,7 +121,7 @@ def test_a_copy_with_another_tag_counts_for_both_values_and_once_in_all(own: Own
 def test_a_parameter_in_what_is_observed_needs_another_audit(judged: Path) -> None:
     done = ran("what-if", judged, "own.slow.factor=2")
     assert done.code == 4
-    assert "needs a new audit: factor is not the required value alone" in done.out
+    assert "needs a new audit: factor is not only the required value" in done.out
     assert "drivelint audit SOURCE --param own.slow.factor=2 --out OTHER" in done.out
 
 

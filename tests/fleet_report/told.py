@@ -43,7 +43,7 @@ class Told:
 
     def row(self, table: str, name: str) -> Any:
         rows: list[Any] = self.html.xpath(f"{table}//tbody/tr")
-        return next(row for row in rows if name in row.text_content())
+        return next(row for row in rows if name in str(row.xpath("string(th)")))
 
 
 def touched(drive_id: str, n: int = 0, **over: Any) -> dict[str, Any]:

@@ -36,7 +36,7 @@ def test_reading_that_takes_too_much_is_a_sentence(
 ) -> None:
     monkeypatch.setattr(limits, "BASE_CPU_S", 0.2 if read is for_ever else 60.0)
     monkeypatch.setattr(limits, "BASE_MEMORY_BYTES", 64 << 20 if read is growing else 2 << 30)
-    with pytest.raises(TraceError, match=f"^log: reading it took more than {why}, too much for a file of 5 bytes"):
+    with pytest.raises(TraceError, match=f"^log: reading took more than {why}, too much for a file of 5 bytes"):
         limits.bounded(read, "log", 5, TraceError)
 
 
@@ -60,8 +60,8 @@ def test_readers_of_logs_and_maps_are_bounded(tmp_path: Path, monkeypatch: pytes
     table = tmp_path / "cars.csv"
     table.write_text("\n".join(cars(3)), encoding="utf-8")
     monkeypatch.setattr("drivelint.drive.finish.finish_trace", for_ever)
-    with pytest.raises(TraceError, match=r"cars\.csv: reading it took.*\(in formats/"):
+    with pytest.raises(TraceError, match=r"cars\.csv: reading took.*\(in formats/"):
         read_trace(table, IngestOptions(mapping=str(mapping(tmp_path))))
     monkeypatch.setattr("drivelint.formats.opendrive.reader.read", for_ever)
-    with pytest.raises(MapError, match=r"^map road: reading it took"):
+    with pytest.raises(MapError, match=r"^map road: reading took"):
         load_map(MapSource("road", b"<OpenDRIVE/>"))

@@ -208,7 +208,7 @@ def test_a_log_without_checksums_says_so(tmp_path: Path, kind: str) -> None:
     found = makers.get(kind, sources.xml_traces)(tmp_path)
     source = next((each for each in found if each.name == kind), found[0])
     said = quality(read(source.written(tmp_path / "log"), **source.options))["unprotected"]
-    assert (said["severity"], "damage inside it may go unseen" in said["message"]) == ("info", True)
+    assert (said["severity"], "damage may remain undetected" in said["message"]) == ("info", True)
 
 
 def test_a_log_with_checksums_does_not(tmp_path: Path) -> None:
@@ -232,7 +232,7 @@ def test_messages_of_another_encoding_are_refused(tmp_path: Path) -> None:
     data = path.read_bytes()
     for head in (b"\x00\x03\x00\x00", b"\x01\x00\x00\x00"):
         path.write_bytes(rewritten(data, head))
-        with pytest.raises(TraceError, match=f"encoded otherwise than plain CDR.*{head.hex()}"):
+        with pytest.raises(TraceError, match=f"not encoded as plain CDR.*{head.hex()}"):
             read(path)
 
 

@@ -177,7 +177,7 @@ def test_what_still_fails_at_another_step_is_a_class_of_its_own() -> None:
     told = descriptions.difference_text(diff.compare(base, new), [], "critical")
     assert "gone but not fixed: 1 still failing elsewhere" in told
     assert "Not fixed: the rule still fails, at another step or place (1)" in told
-    assert "cannot be judged any more" not in told
+    assert "Not fixed: now unknown" not in told
     gone = model.exit_status(GateInputs(date(2026, 11, 26), base).apply_to(new))
     assert (gone.code, gone.why[-31:]) == (4, "not fixed: 1 still failing elsewhere"[-31:])
 
@@ -208,12 +208,12 @@ OPEN = said("unknown", 5, 12, reason="the limit is not known")
         (run([], said("pass"), OPEN), "unknown", "unknown", "the limit is not known"),
         (run([], said("pass"), said("unknown", 15, 20)), "fixed", "pass", "because pass"),
         (run([], said("error", t_start_ns=None, t_end_ns=None, t_worst_ns=None)), "unknown", "error", "because error"),
-        (run([at(20)], said("fail", n_expected=9, n_judged=9)), "fixed", "pass", "kept there, but"),
+        (run([at(20)], said("fail", n_expected=9, n_judged=9)), "fixed", "pass", "the rule is kept at this time, but"),
         (run([at(20)], said("fail", n_expected=9, n_judged=7)), "unknown", "unknown", "2 of 9 steps were not judged"),
         (run([], said("pass"), rules=RULES[:1]), "lost", "none", "the rule was not run"),
         (run([], said("pass", ego_id="2")), "lost", "none", "ego 1 was not judged"),
-        (run([], verdict("pass")), "lost", "none", "there is no verdict of this rule"),
-        (run([], said("pass"), drives=[drive(duration_s=5.0)]), "lost", "none", "the log ends before it"),
+        (run([], verdict("pass")), "lost", "none", "the rule has no verdict"),
+        (run([], said("pass"), drives=[drive(duration_s=5.0)]), "lost", "none", "the log ends before the finding"),
         (run([], drives=[drive(status="not_judged", status_reason="no ego")]), "unknown", "unknown", "no ego"),
         (run([], drives=[drive("d2")]), "lost", "none", "the drive was not checked"),
     ],
@@ -268,7 +268,10 @@ def test_unknowns_that_appeared_are_counted_with_their_reason() -> None:
     assert (opened.rule_id, opened.n, opened.base_n, opened.reason, opened.stable) == (SPEED, 3, 1, "fog", True)
     assert diff.compare(new, base).new_unknowns == ()
     said_ = descriptions.difference_text(diff.compare(base, new), [], "critical")
-    assert "More is unknown than was (2 verdicts): unknown is not pass\n  2: ukhc.r124.speed-limit: fog" in said_
+    assert (
+        "Verdicts that are unknown now and were not before (2); unknown does not mean pass\n  2: ukhc.r124.speed-limit: fog"
+        in said_
+    )
 
 
 def gating(base: Result, new: Result, fail_on: str) -> list[str]:
@@ -309,7 +312,7 @@ def test_json_holds_every_entry_and_the_counts() -> None:
 def test_text_says_what_is_not_fixed() -> None:
     told = descriptions.difference_text(diff.compare(run([at(8)]), run([], OPEN)), [], "critical")
     assert "gone but not fixed: 1 unknown now" in told
-    assert "Not fixed: it cannot be judged any more (1)" in told
+    assert "Not fixed: now unknown (1)" in told
     assert "(now unknown: the limit is not known)" in told
     assert told.endswith(
         "exit 4: no new finding at or above severity critical, but 1 earlier finding gone but not fixed"

@@ -42,13 +42,13 @@ WHOLE = [(0.0, 25.0)]
         (WHOLE, WHOLE, "fixed", ""),
         (WHOLE, [(11.5, 17.5)], "fixed", ""),
         (WHOLE, [(0.0, 14.0), (14.9, 25.0)], "fixed", ""),
-        (WHOLE, [(0.0, 5.9)], "unknown", "object 3 is recorded from 0.00 s to 5.90 s only"),
+        (WHOLE, [(0.0, 5.9)], "unknown", "object 3 is recorded only from 0.00 s to 5.90 s"),
         (WHOLE, [(0.0, 11.9)], "unknown", "object 3 is recorded"),
         (WHOLE, [(12.1, 25.0)], "unknown", "object 3 is recorded"),
         (WHOLE, [(0.0, 16.9)], "unknown", "object 3 is recorded"),
-        ([(0.0, 10.4), (14.1, 25.0)], WHOLE, "unknown", "ego 1 is recorded from 0.00 s to 10.40 s, 14.10 s to 25.00 s only"),
+        ([(0.0, 10.4), (14.1, 25.0)], WHOLE, "unknown", "ego 1 is recorded only from 0.00 s to 10.40 s, 14.10 s to 25.00 s"),
         ([(0.0, 13.0), (14.1, 25.0)], WHOLE, "unknown", "ego 1 is recorded"),
-        ([(0.0, 1.0), (2.0, 3.0), (4.0, 5.0), (6.0, 7.0), (8.0, 9.0)], WHOLE, "unknown", "5.00 s and 2 more times only"),
+        ([(0.0, 1.0), (2.0, 3.0), (4.0, 5.0), (6.0, 7.0), (8.0, 9.0)], WHOLE, "unknown", "4.00 s to 5.00 s and 2 more times"),
         (WHOLE, [], "lost", "object 3 is not in this log, or has another id"),
     ],
 )  # fmt: skip
@@ -98,10 +98,10 @@ RULES = [rule(), rule("m", severity="minor")]
         (DECIDED, ""),
         ([*DECIDED, verdict("unknown", object_id="6")], ""),  # nothing was decided of it
         ([verdict("not_applicable"), *DECIDED[1:]], ""),
-        ([verdict("unknown"), *DECIDED[1:]], "1 verdict unknown that had been pass or fail (1 critical)"),
+        ([verdict("unknown"), *DECIDED[1:]], "1 verdict unknown that were pass or fail before (1 critical)"),
         ([verdict("unknown"), verdict("error", object_id="4"), DECIDED[2], verdict("unknown", rule_id="m")],
-         "3 verdicts unknown that had been pass or fail (2 critical)"),
-        ([*DECIDED[:3], verdict("unknown", rule_id="m")], "1 verdict unknown that had been pass or fail"),
+         "3 verdicts unknown that were pass or fail before (2 critical)"),
+        ([*DECIDED[:3], verdict("unknown", rule_id="m")], "1 verdict unknown that were pass or fail before"),
     ],
 )  # fmt: skip
 def test_what_is_judged_less_is_said(now: list[dict[str, Any]], said: str) -> None:
@@ -112,15 +112,18 @@ def test_what_is_judged_less_is_said(now: list[dict[str, Any]], said: str) -> No
 def test_drives_and_rules_that_are_left_out_are_judged_less() -> None:
     base = result([verdict("pass"), verdict("pass", drive_id="d2")], drives=[drive(), drive("d2")], rules=RULES)
     new = result([verdict("pass", drive_id="d3")], drives=[drive("d3")])
-    assert less(base, new) == "judged less than the baseline: 2 drives of it not checked, 1 rule of it not selected"
-    assert less(new, base) == "judged less than the baseline: 1 drive of it not checked"
+    assert (
+        less(base, new)
+        == "judged less than the baseline: 2 drives of the baseline not checked, 1 rule of the baseline not selected"
+    )
+    assert less(new, base) == "judged less than the baseline: 1 drive of the baseline not checked"
 
 
 def test_another_map_is_said_and_a_drive_that_was_perhaps_cut_off() -> None:
     base = result([PASS], drives=[drive(duration_s=14.0, map_sha256="a")])
     for now, said in (
         (drive(duration_s=13.0, map_sha256="a"), ""),
-        (drive(duration_s=12.0, map_sha256="a"), "judged less than the baseline: 1 drive more than a tenth shorter"),
+        (drive(duration_s=12.0, map_sha256="a"), "judged less than the baseline: 1 drive shorter by more than a tenth"),
         (drive(duration_s=14.0, map_sha256="b"), "judged on another map than in the baseline: 1 drive"),
         (drive(duration_s=14.0, map_sha256=None), "judged on another map than in the baseline: 1 drive"),
     ):
@@ -132,5 +135,9 @@ def test_results_without_a_common_drive_say_so_and_count_no_more_unknowns() -> N
     new = result([verdict("unknown", drive_id="converted")], drives=[drive("converted")])
     found = diff.compare(base, new)
     assert found.new_unknowns == ()
-    assert "No drive is in both, by name or content" in descriptions.difference_text(found, [], "critical")
-    assert "No drive is in both" not in descriptions.difference_text(diff.compare(base, base), [], "critical")
+    assert "The two results have no drive in common, by name or content" in descriptions.difference_text(
+        found, [], "critical"
+    )
+    assert "The two results have no drive in common" not in descriptions.difference_text(
+        diff.compare(base, base), [], "critical"
+    )

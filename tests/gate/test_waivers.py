@@ -161,7 +161,7 @@ def test_an_expired_waiver_waives_nothing_and_is_told() -> None:
     assert exit_status(run).code is ExitCode.FAILED
     assert run.gate is not None
     assert list(descriptions.waiver_warnings(run.gate)) == [
-        "w:1: expired 2026-11-19 (jo): it has no effect; 1 finding like that",
+        "w:1: expired 2026-11-19 (jo): it has no effect; 1 finding matches it",
         "w:1: no finding matches none.* (jo); correct or remove it",
     ]
 

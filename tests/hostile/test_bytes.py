@@ -33,7 +33,7 @@ def test_a_file_name_that_is_no_text(tmp_path: Path) -> None:
     status = pq.read_table(tmp_path / "out" / "drives.parquet").to_pydict()
     told = dict(zip(status["file_name"], status["status_reason"], strict=True))
     assert told.keys() == {"bad\\udcff.csv", "good.csv"}
-    assert str(told["bad\\udcff.csv"]).endswith("its name is not UTF-8, which results need: rename it")
+    assert str(told["bad\\udcff.csv"]).endswith("its name is not UTF-8, which the result files require: rename it")
     for format_ in ("html", "junit", "sarif", "xqar", "markdown"):
         assert ran("report", tmp_path / "out", "--to", format_).code == 0
     road = Path(os.fsdecode(bytes(tmp_path) + b"/road\xff.xodr"))

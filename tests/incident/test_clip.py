@@ -116,7 +116,7 @@ def test_more_is_taken_where_the_rule_needs_it(tmp_path: Path, monkeypatch: pyte
 @pytest.mark.slow
 def test_another_log_is_refused(folder: Path, tmp_path: Path) -> None:
     request = ConvertRequest(str(OVERTAKE / "safe.csv"), "mcap", tmp_path)
-    with pytest.raises(UsageError, match="not the log of the finding"):
+    with pytest.raises(UsageError, match="the log of the finding: give that log"):
         clip.write_clip(request, "no-collision@collision", folder, None)
 
 
@@ -130,7 +130,7 @@ def test_clip_and_result_belong_together(
     with pytest.raises(SystemExit) as left:
         cli.main()
     assert left.value.code == 2
-    assert "--clip and --in belong together" in capfd.readouterr().err
+    assert "--clip and --in need each other" in capfd.readouterr().err
 
 
 def test_what_holds_at_the_start_stays() -> None:
@@ -199,8 +199,15 @@ def test_the_sheet_and_the_check_of_a_clip_say_what_the_log_s_say_of_sizes_and_f
     ] * 2
     lines = [next(note.words for note in input_notes(each) if note.label == "log") for each in (result, again)]
     # the clip's format has an end mark, the log's has none
-    assert "size from the mapping 'carla-testbench'" in lines[0].replace(" as far as .csv tells", "") == lines[1]
-    assert "y and heading turned, as the mapping 'carla-testbench' states: the log's frame is left-handed" in lines[0]
+    assert (
+        "size from the mapping 'carla-testbench'"
+        in lines[0].replace(", as far as the format .csv shows it", "")
+        == lines[1]
+    )
+    assert (
+        "y and heading changed in sign, because the frame of the log is left-handed according to the mapping 'carla-testbench'"
+        in lines[0]
+    )
 
 
 @pytest.mark.ci

@@ -75,10 +75,10 @@ def test_kept_is_named_by_what_was_measured_and_when() -> None:
         "params": [{"name": "tolerance_mps", "value": "0.45", "unit": "m/s", "overridden": False}],
     }
     (line,) = conduct([part], [], {**RULES, "limit": limit}, SPAN, 0)["kept"]
-    assert line == "speed 5.90 m/s (at most 18.30 m/s, 0.45 m/s of it tolerance; 0.00 to 7.00 s)"
+    assert line == "speed 5.90 m/s (at most 18.30 m/s, including 0.45 m/s tolerance; 0.00 to 7.00 s)"
     bound = {**part, "cause_code": "lower_bound"}
     assert told([bound], [])["kept"].texts == ["speed at least 5.90 m/s (at most 18.30 m/s; 0.00 to 7.00 s)"]
-    assert told([{**part, "near_miss": True}], [])["kept"].texts[0].endswith("; narrowly)")
+    assert told([{**part, "near_miss": True}], [])["kept"].texts[0].endswith("; near miss)")
 
 
 def test_how_sure_several_findings_are() -> None:
@@ -95,7 +95,7 @@ def test_begin_and_worst_time() -> None:
     lasting = finding("impact", None, t_start_ns=9 * S, t_end_ns=11 * S, t_worst_ns=10 * S)
     assert ": from 9.00 s to 11.00 s, worst at 10.00 s, " in told([], [lasting])["broken"].texts[0]
     once = finding("ahead", None, t_start_ns=7 * S, t_end_ns=7 * S, t_worst_ns=7 * S)
-    assert ": for the manoeuvre of 7.00 s, " in told([], [once])["broken"].texts[0]
+    assert ": for the manoeuvre at 7.00 s, " in told([], [once])["broken"].texts[0]
 
 
 def test_every_profile_is_told_the_mildest_first() -> None:

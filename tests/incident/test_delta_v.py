@@ -75,7 +75,7 @@ def test_words(case_of: CaseOf) -> None:
         told("gap", None)
         == "6.0 m/s (22 km/h, 13 mph), from \u22120.10 s to 0 s: 5.0 to 1.0 m/s, direction changed by 180\u00b0"
     )
-    assert told("velocity_filtered", "ego").startswith("not known: a mean over time")
+    assert told("velocity_filtered", "ego").startswith("not known: the log has only a mean")
     assert told("velocity_filtered", "somebody else") == told("gap", None)
     assert told("velocity_derived", None).endswith("; velocities computed from positions")
     assert told_delta_v(motion, 0, None, trace, "ego") == ""

@@ -107,7 +107,7 @@ def test_relative_speed_of_ways_that_cross() -> None:
     assert motion.relative[0] == pytest.approx(10.0)
     assert motion.closing[0] == pytest.approx(0.0, abs=1e-9)
     assert "relative speed 10.0 m/s" in against_each_other(10.0, 3.8)
-    assert "near at 3.8 m/s" in against_each_other(10.0, 3.8)
+    assert "approach at 3.8 m/s" in against_each_other(10.0, 3.8)
     assert "near" not in against_each_other(10.0, 9.9)
     assert against_each_other(math.nan, 3.8) == "relative speed not known"
 

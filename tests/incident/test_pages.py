@@ -159,7 +159,7 @@ def test_a_crowded_first_page_fits(case_of: CaseOf, tmp_path: Path) -> None:
     html = tmp_path / "sheet.html"
     page_bytes = render(crowded_first_page(case_of("contact-signature@collision")))
     for said in (
-        b"It rests on",
+        b"It is based on",
         b"earlier<br>",
         b"Contact also",
         b"more contacts",

@@ -51,7 +51,7 @@ def test_both_parties_breaches_have_their_certainty(collision: dict[str, Any]) -
 
 @pytest.mark.ci
 def test_assumed_errors_are_named(text: str) -> None:
-    assert "0.1 m in every actor's position, 0.05 s in its clock, 0.1 m in the map's place" in text
+    assert "0.1 m in every actor's position, 0.05 s in its clock, 0.1 m in the position of the map" in text
     assert "95% of the copies or more" in text
 
 
@@ -115,7 +115,7 @@ def test_everything_that_was_not_decided_is_told(collision: dict[str, Any], case
     shared = [reason.partition(": ")[2] for reason in collision["of_both"]["reasons"].texts]
     assert shared
     assert all(text.count(reason) == 1 for reason in shared)
-    assert "Not decided of either, for the same reasons: " in text
+    assert "Not decided for either party, for the same reasons: " in text
 
 
 @pytest.mark.ci
@@ -160,7 +160,7 @@ def test_coordinates_are_the_logs_unless_its_frame_was_turned(case_of: CaseOf) -
     check = {"check_id": TURNED_FRAME, "severity": "info", "message": "turned"}
     drive = {**case.finding.drive, "quality": [*case.finding.drive["quality"], check]}
     turned = replace(case, finding=replace(case.finding, drive=drive))
-    assert coordinates(turned) == "the recording's coordinates with the sign of y turned, as its frame is left-handed"
+    assert coordinates(turned) == "the recording's coordinates with the sign of y changed, as its frame is left-handed"
     assert coordinates(turned) in html.unescape(render(turned).decode())
     drive = {**drive, "quality": [*drive["quality"], {**check, "check_id": "clip"}]}
     assert coordinates(replace(case, finding=replace(case.finding, drive=drive))) == "the clip's coordinates"
@@ -193,7 +193,7 @@ def test_every_rule_is_counted_and_the_ego_is_named_by_its_letter(collision: dic
         n = sum(party["n"].values()) + len(party["beside"]) + party["elsewhere"] + party["never"]
         assert n == collision["n_rules"]
         if party["beside"]:
-            assert f"{len(party['beside'])} neither, " in text
+            assert f"{len(party['beside'])} not counted, " in text
     told = text.partition("What each party did")[2].partition("To check it")[0]
     assert "the ego" not in re.sub("\u201c[^\u201d]*\u201d", "", told).lower()
     assert name_party({"kept": ["\u201cOut of the ego's space\u201d: the ego's own"]}, "B")["kept"] == [

@@ -168,7 +168,7 @@ def test_only_the_worst_findings_are_packed_where_that_is_asked(
         cli_main("pack", str(packed.audit), "--out", str(tmp_path / "pack"), "--findings", "1")
     assert ended.value.code == 0
     said = capsys.readouterr().out
-    assert "1 of 1 findings have SQL that gives their margin; 1 finding of less weight left out" in said
+    assert "1 of 1 findings have SQL that computes their margin; 1 finding that are less severe left out" in said
     told = evidence_of(tmp_path / "pack")
     worst = min(rows_of(packed.pack, "findings"), key=lambda row: float(row["margin"]))
     assert [row["finding_id"] for row in told["findings"]] == [worst["finding_id"]]

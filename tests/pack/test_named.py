@@ -43,7 +43,7 @@ def test_a_signal_that_the_log_has_not(selector: str, verdict: str, tmp_path: Pa
     assert told.verdict["judged_anew"] == verdict
     assert not [note for note in told.notes if "Judged again" in note]
     screen = printed(told)
-    assert ("NOT APPLICABLE: the log has none of a signal that the rule needs" in screen) == (verdict != "unknown")
+    assert ("NOT APPLICABLE: the log does not contain a signal that the rule needs" in screen) == (verdict != "unknown")
     assert "did not happen" not in screen
 
 

@@ -231,7 +231,7 @@ def test_incident_sheets_that_stay_out_are_named(
     assert run_cli(monkeypatch, "pack", packed.result, "--out", tmp_path / "pack") == 0
     (first, line) = capsys.readouterr().out.splitlines()
     assert first.endswith("; 1 incident sheet")
-    assert line.startswith("  not in it (sheets of no finding")
+    assert line.startswith("  left out of the pack (sheets of findings that the result does not contain")
     assert line.endswith(": incidents/abc.html")
 
 

@@ -38,8 +38,8 @@ SIZES = {
     "message": "size from the mapping 'm', not recorded",
 }
 ASIDE = {**ASSUMED, "check_id": "aside_of_lane", "actor_id": "1", "message": "ego 1 keeps 1.10 m beside the middle"}
-TWO_ASIDE = "2 egos keep far beside the middle of their lanes: is the map moved? --map-offset puts it right"
-WHOLE = "complete as far as .csv tells"
+TWO_ASIDE = "2 egos drive far from the middle of their lanes: the map may be shifted: correct it with --map-offset"
+WHOLE = "complete, as far as the format .csv shows it"
 CONTACT = rule("ukhc.no-collision", tags=["contact"], title="No collision", unit="m")
 
 
@@ -61,7 +61,7 @@ def section(text: str, name: str) -> str:
         (result([verdict("pass")]), f"map: road.xodr fits 1 of 1 drive | log: {WHOLE} | not judged: nothing"),
         (
             result([verdict("pass")], drives=[drive(file_name="A.OSI"), drive("d2"), drive("d3", file_name="c.mcap")]),
-            "map: road.xodr fits 3 of 3 drives | log: complete as far as .csv, .osi tells | not judged: nothing",
+            "map: road.xodr fits 3 of 3 drives | log: complete, as far as the format .csv, .osi shows it | not judged: nothing",
         ),
         (
             result([verdict("unknown", reason_code="missing_registration")], drives=[drive(exposure=EGO, not_judged=[OFF])]),
@@ -202,9 +202,9 @@ def test_a_finding_that_few_copies_keep_is_only_possible() -> None:
     assert "A contact is possible:" in told
     assert "The recording shows a contact" not in told
     assert "1 of 2 findings only possible" in told
-    assert "possible: in only 53 of 100 copies of the drive" in plain(section(text, "worst")).replace(
-        "possible :", "possible:"
-    )
+    assert "possible: it is also a finding in only 53 of 100 copies of the drive" in plain(
+        section(text, "worst")
+    ).replace("possible :", "possible:")
     table = plain(section(text, "findings"))
     assert "possible, 53 of 100" in table
     assert "sure, 97 of 100" in table
@@ -217,7 +217,9 @@ def test_a_finding_that_few_copies_keep_is_only_possible() -> None:
 def test_how_sure_a_near_miss_is_was_not_examined() -> None:
     near = verdict("pass", near_miss=True)
     alone = page(result([near], rules=[rule()]))
-    assert "how sure not examined: a near miss is no finding" in plain(section(alone, "worst"))
+    assert "how sure not examined: only findings are examined, and this is a near miss" in plain(
+        section(alone, "worst")
+    )
     both = page(result([verdict("fail"), near], [finding(n_copies=100, n_stays=97)], rules=[rule()]))
     assert "not examined" in plain(section(both, "findings"))
 
@@ -238,7 +240,7 @@ def test_what_a_baseline_lets_through_is_not_the_worst_moment() -> None:
     before = result([verdict("fail")], [old])
     run = GateInputs(date(2026, 11, 20), before, "main").apply_to(result([verdict("fail")], [old, new]))
     shown = section(page(run), "worst")
-    assert "The worst moment that is new" in plain(shown)
+    assert "The worst moment among the new findings" in plain(shown)
     assert 'href="#finding-new"' in shown
 
 
@@ -283,7 +285,7 @@ def test_a_safe_distance_without_end_is_no_number(overtakes: Result) -> None:
     told = plain(section(text, "overtakes"))
     assert "265062" not in told
     assert "265032" not in told
-    assert "needs more than 2.00 km: hardly faster than whom it passes" in told
+    assert "needs more than 2.00 km: the ego is hardly faster than the vehicle that it passes" in told
     ticks = re.findall(r'text-anchor="middle">(\d+)</text>', text.partition('class="zones"')[2].partition("</svg><")[0])
     assert max(map(int, ticks[:7])) < 1000, "one overtake does not shrink the plot of all others"
 
@@ -320,7 +322,7 @@ def test_a_contact_is_as_sure_as_its_surest_finding() -> None:
     text = page(run)
     worst = plain(section(text, "worst"))
     assert "No contact in the speeds" in worst
-    assert "sure : in 32 of 32 copies" in worst
+    assert "sure : it is also a finding in 32 of 32 copies" in worst
     assert "the same contact is only possible by ukhc.no-collision, in 61 of 100 copies" in worst
     assert "the contact itself is sure by ukhc.contact-signature, in 32 of 32 copies" in text
     told = plain(text)
@@ -345,10 +347,13 @@ def test_parties_that_draw_apart_are_said_to() -> None:
     console = Console(file=io.StringIO(), width=160, force_terminal=False)
     console.print(terminal.render(run, "out", 160))
     for text in (plain(page(run)), console.file.getvalue()):  # type: ignore[attr-defined]
-        assert "drawing apart at 0.30 m/s" in text
+        assert "moving apart at 0.30 m/s" in text
         assert "closing at" not in text
 
 
 def test_the_page_says_how_large_the_errors_are() -> None:
     text = plain(page(one_contact_by_two_rules()))
-    assert "assumed errors (0.1 m in every actor's position, 0.05 s in its clock, 0.1 m in the map's place)" in text
+    assert (
+        "assumed errors (0.1 m in every actor's position, 0.05 s in its clock, 0.1 m in the position of the map)"
+        in text
+    )

@@ -118,21 +118,24 @@ def test_the_headline() -> None:
         return re.sub(r"<[^>]+>", "", found).strip()
 
     assert headline(result([verdict("pass")])) == "PASS No findings"
-    assert headline(result([verdict("pass"), verdict("unknown")])) == "PASS No findings, as far as it could be judged"
+    assert (
+        headline(result([verdict("pass"), verdict("unknown")]))
+        == "PASS No findings, but not everything could be judged"
+    )
     lost = [drive("d2", status="not_judged", status_reason="broken")]
     assert (
         headline(result([verdict("pass")], drives=[drive(), *lost]))
-        == "NOT JUDGED No findings, as far as it could be judged"
+        == "NOT JUDGED No findings, but not everything could be judged"
     )
     others = [rule(), rule("ukhc.a"), rule("ukhc.b")]
     mostly = result(
         [verdict("pass"), verdict("unknown", rule_id="ukhc.a"), verdict("unknown", rule_id="ukhc.b")], rules=others
     )
-    assert headline(mostly) == "MOSTLY UNKNOWN No findings, but 2 of the 3 rules that came up could not be judged"
-    assert "2 of the rules could be judged nowhere." in Parsed(page(mostly)).text
+    assert headline(mostly) == "MOSTLY UNKNOWN No findings, but 2 of the 3 rules that may apply could not be judged"
+    assert "2 of the rules could never be judged." in Parsed(page(mostly)).text
     partly = result([verdict("pass"), verdict("unknown"), verdict("unknown", occurrence=1)])
     assert headline(partly).startswith("PASS ")
-    assert "1 of the rules could not be judged everywhere" in Parsed(page(partly)).text
+    assert "1 of the rules could be judged only in part" in Parsed(page(partly)).text
     assert headline(result([], drives=lost)) == "NOT JUDGED Nothing was judged"
     assert headline(result([verdict("fail")], [finding()])) == "FAIL 1 critical finding in 1 of 1 drive"
 
@@ -258,10 +261,10 @@ def test_reasons_are_grouped_by_what_is_to_be_provided() -> None:
         "unknown", rule_id="x.y", reason_code="missing_indicator", reason="the log has no indicators of the ego"
     )
     shown = page(result([*times, signal], rules=[rule(), rule("x.y", title="signals")]))
-    provide, silent = re.findall(r"<caption>(?:What to provide|What the recordings).*?</table>", shown, re.DOTALL)
+    provide, silent = re.findall(r"<caption>(?:Data that would|Data that the recordings).*?</table>", shown, re.DOTALL)
     assert "The log has no indicators of the ego signals 1 1" in plain(provide)
     assert plain(silent).count("Whether it applies is not known") == 1
-    assert "Whether it applies is not known at 0.600 s (and 4 more like it) room to overtake 5 1" in plain(silent)
+    assert "Whether it applies is not known at 0.600 s (and 4 similar) room to overtake 5 1" in plain(silent)
 
 
 @pytest.mark.parametrize(
@@ -273,7 +276,7 @@ def test_reasons_are_grouped_by_what_is_to_be_provided() -> None:
                 ("no_limit", "the map gives no limit for lanelet 7: give one"),
                 ("no_limit", "the map gives no limit for lanelet 12: give one"),
             ],
-            "The map gives no limit for lanelet 7: give one (and 1 more like it)",
+            "The map gives no limit for lanelet 7: give one (and 1 similar)",
         ),
         ([("lost", "Lost."), ("late", "It began late."), ("short", "It ended soon.")], "Lost (and 2 other reasons)"),
         (
@@ -283,7 +286,7 @@ def test_reasons_are_grouped_by_what_is_to_be_provided() -> None:
                 ("row", "No row at 13 s."),
                 ("else", "Something else."),
             ],
-            "No row at 1 s (and 2 more like it and 1 other reason)",
+            "No row at 1 s (and 2 similar and 1 other reason)",
         ),
     ],
 )

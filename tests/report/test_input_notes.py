@@ -14,8 +14,8 @@ PARKED = {"reason_code": "ego_never_moves"}
     ("parked", "words"),
     [
         ((), None),
-        (("a",), "1 of 3 egos never moves: rules about standing alone hold"),
-        (("a", "b"), "2 of 3 egos never move: rules about standing alone hold"),
+        (("a",), "1 of 3 egos never moves: only rules about standing vehicles apply"),
+        (("a", "b"), "2 of 3 egos never move: only rules about standing vehicles apply"),
     ],
 )
 def test_egos_that_never_move_are_counted_once(parked: tuple[str, ...], words: str | None) -> None:

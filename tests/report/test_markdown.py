@@ -69,7 +69,7 @@ def test_a_finding_is_a_row_that_links_to_the_report() -> None:
         "## drivelint: FAIL, exit 1\n\n1 critical finding in 1 of 1 drive.\n\nexit 1: 1 finding at or above"
     )
     assert (
-        "map: road.xodr fits 1 of 1 drive / log: complete as far as .csv tells / not judged: "
+        "map: road.xodr fits 1 of 1 drive / log: complete, as far as the format .csv shows it / not judged: "
         in text.partition("| pack |")[0]
     )
 
@@ -163,12 +163,13 @@ def test_a_baseline_tells_what_is_new_and_what_is_not_fixed() -> None:
     assert "### New findings (1)" in text
     assert tables(text)[1][1][2] == "15.00 s"
     assert [row[-1] for row in tables(text)[2][1:]] == [
-        "known: the baseline has it", "waived until 2027-01-31 by jo: ticket 17",
+        "known: the baseline contains it", "waived until 2027-01-31 by jo: ticket 17",
     ]  # fmt: skip
-    assert "### Not fixed: it cannot be judged any more (1)" in text
-    assert "### More is unknown than was (1)" in text
+    assert "### Not fixed: now unknown (1)" in text
+    assert "### Verdicts that are unknown now and were not before (1)" in text
     assert (
-        "### Waivers to look at\n\n* w.toml:9: expired 2026-01-31 (al): it has no effect; no rule has this id" in text
+        "### Waivers that need attention\n\n* w.toml:9: expired 2026-01-31 (al): it has no effect; no rule has this id"
+        in text
     )
 
 
@@ -178,10 +179,10 @@ def test_new_findings_that_do_not_gate_are_called_new_and_worse_ones_worse() -> 
     )
     late = finding(finding_id="l", t_start_ns=120 * SECOND, t_end_ns=120 * SECOND, t_worst_ns=120 * SECOND)
     text = told(gated([finding(margin=-14.07)], [finding(margin=-26.07), minor, late]))
-    assert "### New findings (1); 1 more new ones below do not gate" in text
+    assert "### New findings (1); 1 more new findings, listed below, do not gate" in text
     assert "Findings that do not gate (2): 1 new" in text
     assert [row[-1] for row in tables(text)[2][1:]] == [
-        "known: the baseline has it; worse now: margin -26.07 m, was -14.07 m", "new, below --fail-on critical",
+        "known: the baseline contains it; worse now: margin -26.07 m, was -14.07 m", "new, below --fail-on critical",
     ]  # fmt: skip
     assert "1 known finding is worse" in text
 
@@ -198,8 +199,8 @@ def test_a_comment_has_room_for_it_whatever_the_names_are() -> None:
     rows = [verdict("unknown", reason=f"{n}", rule_id=f"r{n}.{long}") for n in range(60)]
     text = told(result(rows, [finding(drive_id=long, finding_id=str(n)) for n in range(50)], drives=[drive(long)]))
     assert len(text) < 65_536
-    assert "parts left out here for length, not for weight" in text
-    assert text.endswith("The whole report is report.html of the results.\n")
+    assert "parts left out to keep this comment short" in text
+    assert text.endswith("The complete report is report.html in the folder of the results.\n")
 
 
 def test_a_difference_as_markdown() -> None:
@@ -212,7 +213,7 @@ def test_a_difference_as_markdown() -> None:
     assert "exit 1: 1 new finding at or above severity critical." in text
     assert tables(text)[0][1:] == [["main", "0", "1", "0", "0", "0"], ["pull|request", "0", "1", "1", "0", "0"]]
     assert "### New (1)\n\n* critical: d1 at 15.00 s:" in text
-    assert "### Not fixed: it cannot be judged any more (1)" in text
+    assert "### Not fixed: now unknown (1)" in text
 
 
 def test_a_time_is_in_utc_too_where_the_log_has_one() -> None:

@@ -138,7 +138,10 @@ def test_a_run_that_could_decide_little_is_no_pass() -> None:
     missing = [verdict("unknown", rule_id=f"ukhc.m{n}", reason_code="missing_map") for n in range(3)]
     of = result([verdict("pass"), *missing], drives=[drive(map_name=None)], rules=rules)
     assert exit_status(of).code == ExitCode.OK
-    words = "mostly unknown no findings, but 3 of the 4 rules that came up could not be judged; no map was given: 3 rules need one (--map)"
+    words = (
+        "mostly unknown no findings, but 3 of the 4 rules that may apply could not be judged; no "
+        "map was given: 3 rules need one (--map)"
+    )
     assert heads(of) == [words] * 3
     assert screen(of)[2].startswith("MOSTLY UNKNOWN")
     even = result([verdict("pass"), missing[0]], drives=[drive(map_name=None)], rules=rules)
@@ -155,7 +158,7 @@ def test_of_many_drives_most_must_be_decided() -> None:
     drives = [drive(f"d{n}") for n in range(4)]
     rows = [verdict("pass", drive_id="d0"), *(verdict("unknown", drive_id=f"d{n}") for n in range(1, 4))]
     told = headline(result(rows, drives=drives))
-    words = "no findings, but 3 of the 4 rules that came up could not be judged, counted for each drive and ego"
+    words = "no findings, but 3 of the 4 rules that may apply could not be judged, counted for each drive and ego"
     assert (told.label, told.sentence) == ("MOSTLY UNKNOWN", words)
     assert headline(result(rows[:2], drives=drives)).label == "PASS"
 
@@ -176,7 +179,7 @@ def test_what_is_gone_but_not_fixed_is_no_pass(now: list[dict[str, Any]], why: s
     suites = etree.fromstring(junit.render(of))
     (case,) = suites.findall("testsuite[@name='baseline']/testcase")
     assert (suites.get("errors"), case.get("name")) == ("1", f"{SDA} [nominal] of d1")
-    assert str(case.xpath("string(error/@message)")).startswith("gone, not fixed: critical: d1 at 8.00 s")
+    assert str(case.xpath("string(error/@message)")).startswith("gone, but not fixed: critical: d1 at 8.00 s")
 
 
 def test_what_is_judged_less_and_what_is_worse_stands_in_the_head_of_every_report() -> None:
@@ -184,14 +187,14 @@ def test_what_is_judged_less_and_what_is_worse_stands_in_the_head_of_every_repor
     now = [crash(drive_id="d2") | {"margin": -0.5}]
     head = (
         "findings no new finding; 1 known (1 critical) in 1 of 2 drives; 1 known finding is worse; contact in 1 drive (known); "
-        "judged less than the baseline: 1 verdict unknown that had been pass or fail (1 critical), "
-        "1 drive of it not checked, 1 rule of it not selected"
+        "judged less than the baseline: 1 verdict unknown that were pass or fail before (1 critical), "
+        "1 drive of the baseline not checked, 1 rule of the baseline not selected"
     )
     less = run(now, verdict("unknown"), drives=[drive(), drive("d2")], rules=[rule(), CONTACT])
     assert heads(against(base, less)) == [head] * 3
     dropped = against(run([], verdict("pass")), run([], drives=[drive("d3")]))
     assert headline(dropped).sentence.startswith(
-        "no findings, as far as it could be judged; judged less than the baseline: 2 drives"
+        "no findings, but not everything could be judged; judged less than the baseline: 2 drives"
     )
     assert headline(dropped).kind == "unknown"
 
@@ -234,7 +237,7 @@ def test_the_end_says_that_there_is_no_baseline() -> None:
 
 def test_a_near_miss_in_a_run_with_a_baseline_is_not_said_to_lack_one() -> None:
     near = result([verdict("pass", near_miss=True, margin=0.1)])
-    assert "a near miss is no finding" in page(against(NONE, near))
+    assert "only findings are compared, and this is a near miss" in page(against(NONE, near))
     assert "no baseline was given" not in page(against(NONE, near))
 
 
@@ -250,12 +253,15 @@ def test_a_rule_that_did_not_apply_somewhere_is_not_said_to_be_judged_nowhere() 
         ]
     rows += [verdict("not_applicable", rule_id="ukhc.never", ego_id=ego) for ego in "12"]
     of = result(rows, rules=rules)
-    assert "7 rules: 1 judged, 2 never judgeable, 1 never applied, 3 not applicable or unknown" in screen(of)
+    assert "7 rules: 1 judged, 2 could never be judged, 1 never applied, 3 not applicable or unknown" in screen(of)
     text = " ".join(re.sub(r"<[^>]+>", "", page(of)).split())
-    assert "2 of the rules could be judged nowhere, 1 not everywhere." in text
+    assert "2 of the rules could never be judged; 1 could be judged only in part." in text
     packs = " ".join(re.sub(r"<[^>]+>", " ", page(of).partition('id="rules"')[2]).split())
     assert re.findall(r"\d+ judged(?:, \d+ not)*", packs)[0] == "1 judged, 6 not"
-    assert "3 of the rules did not apply in some places and could not be judged in the others. 1 never applied." in text
+    assert (
+        "3 of the rules did not apply at some times and could not be judged at the other times. 1 never applied."
+        in text
+    )
     off = {"reason_code": "missing_registration", "reason": "off the map"}
     folds = [row | off if row["verdict"] == "unknown" else row for row in rows]
     text = " ".join(re.sub(r"<[^>]+>", " ", page(result(folds, rules=rules)).partition('id="rules"')[2]).split())
@@ -265,7 +271,7 @@ def test_a_rule_that_did_not_apply_somewhere_is_not_said_to_be_judged_nowhere() 
 
 def test_a_run_in_which_no_rule_applied_says_so() -> None:
     of = result([verdict("not_applicable"), verdict("not_applicable", ego_id="2")])
-    words = "not applicable no findings, because no rule applied: the situations that they are about did not happen"
+    words = "not applicable no findings, because no rule applied: the situations of the rules did not occur"
     assert heads(of) == [words] * 3
     assert exit_status(of).code == ExitCode.OK
     assert any(re.match(r"d1 +no rule applied ", line) for line in screen(of))
@@ -305,6 +311,6 @@ def test_findings_do_not_hide_that_most_could_not_be_judged() -> None:
     told = headline(result(rows, minor, rules=rules))
     assert (told.label, told.parts[-1]) == (
         "FINDINGS",
-        ("2 of the 3 rules that came up could not be judged", "warning"),
+        ("2 of the 3 rules that may apply could not be judged", "warning"),
     )
-    assert "rules that came up" not in headline(result(rows[:2], minor, rules=rules)).sentence
+    assert "rules that may apply" not in headline(result(rows[:2], minor, rules=rules)).sentence

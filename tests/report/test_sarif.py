@@ -214,7 +214,7 @@ def test_a_waived_finding_is_suppressed_with_its_reason() -> None:
     assert region == {"startLine": 1}
     notices = run["invocations"][0]["toolExecutionNotifications"]
     assert [n["message"]["text"] for n in notices] == [
-        "w:9: expired 2026-01-31 (al): it has no effect; 2 findings like that"
+        "w:9: expired 2026-01-31 (al): it has no effect; 2 findings match it"
     ]
     assert run["properties"]["gate"]["waived_findings"] == 1
 

@@ -87,7 +87,7 @@ def test_the_summary_fits_one_screen_whatever_the_catalogue() -> None:
     assert len(lines) <= 40
     assert all(sum(name in line for line in lines) >= 1 for name in names)
     assert any(line.startswith("FAIL  60 critical, 60 major, 60 minor findings in 6 of 6 drives") for line in lines)
-    assert "300 rules: 30 judged, 81 never judgeable, 189 never applied" in lines
+    assert "300 rules: 30 judged, 81 could never be judged, 189 never applied" in lines
 
 
 def test_the_worst_drive_and_rule_stand_first() -> None:
@@ -175,7 +175,7 @@ def test_unknown_verdicts_are_grouped_by_what_is_missing() -> None:
     assert [line for line in lines if line.startswith("unknown")] == ["unknown (1 rule, 90 times): a hole at 0 s"]
     told = " ".join(" ".join(lines).split())
     assert " not judged: 2 rules without headlights, 1 rule without indicator; 90 other verdicts" in told
-    assert "4 rules: 1 judged, 3 never judgeable" in lines
+    assert "4 rules: 1 judged, 3 could never be judged" in lines
 
 
 def test_a_run_that_decided_nothing_is_no_pass() -> None:
@@ -207,7 +207,9 @@ def test_a_map_that_does_not_fit_is_said_and_is_exit_code_4() -> None:
     assert exit_status(run).code == ExitCode.NOT_JUDGED
     lines = summary(run)
     assert any(
-        line.startswith("NOT JUDGED  no findings, as far as it could be judged; the map does not fit 1 of 2 drives: on")
+        line.startswith(
+            "NOT JUDGED  no findings, but not everything could be judged; the map does not fit 1 of 2 drives: on"
+        )
         for line in lines
     )
     assert any(re.match("off +no finding, but the map does not fit ", line) for line in lines)

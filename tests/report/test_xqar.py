@@ -121,7 +121,7 @@ def test_what_the_baseline_has_is_told() -> None:
         result([verdict("fail")], [finding()])
     )
     (issue,) = checker(run).iter("Issue")
-    assert issue.get("description").endswith("(known: the baseline has it)")
+    assert issue.get("description").endswith("(known: the baseline contains it)")
 
 
 @pytest.mark.parametrize(

@@ -30,6 +30,9 @@ def test_a_road_network_for_a_small_file_is_refused(monkeypatch: pytest.MonkeyPa
     road = MapSource("huge", huge.opendrive(12, 6).encode())
     assert load_map(road).tables["lanelet"].num_rows == 72
     monkeypatch.setattr(map_registry, "BYTES_PER_SQUARE", 1_000_000)
-    told = r"^map huge: its 72 lanes lie on 18\d\d\d squares of 2 m, .* more than the 2048 MiB for a map of \d+ bytes: give a part"
+    told = (
+        r"^map huge: its 72 lanes cover 18\d\d\d squares of 2 m, .* more than the limit of 2048 MiB for "
+        r"a map of \d+ bytes: give a smaller part"
+    )
     with pytest.raises(MapError, match=told):
         load_map(road)

@@ -100,7 +100,7 @@ def test_on_a_road_of_one_direction_the_lanes_do_not_tell_the_side() -> None:
             if side == "lht"
             else [
                 (
-                    "--handedness says lht, the traces fit rht: lht is taken. If that is wrong, the side for overtaking is wrong: "
+                    "--handedness says lht, the traces fit rht: lht is used. If this is not right, the side for overtaking is wrong: "
                     "leave the option out, or set rht."
                 )
             ]
@@ -122,7 +122,7 @@ def test_not_far_off_nor_above_nor_the_same_way() -> None:
         (one("1", 0.0), one("2", 1.0, back=True)),
     )
     for roads in apart:
-        assert "none has one of the other direction beside it" in _default(load(*roads, voted_handedness="rht"))
+        assert "no lane has a lane of the other direction beside it" in _default(load(*roads, voted_handedness="rht"))
 
 
 def _default(environment: object) -> str:

@@ -47,7 +47,7 @@ def test_no_call_gives_far_more_pairs_than_a_part_may_have(monkeypatch: pytest.M
 def test_a_crowded_place_is_told_before_the_work(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tree_parts, "MOST_SHAPES_AT_ONE_PLACE", 99)
     same = [shapely.box(0, 0, 1, 1)] * 100
-    with pytest.raises(CrowdedPlaceError, match="100 lanes or lines lie at one place"):
+    with pytest.raises(CrowdedPlaceError, match="100 lanes or lines overlap at one place"):
         next(query_in_parts(shapely.STRtree(same), same, "intersects"))
 
 
@@ -59,6 +59,6 @@ def test_a_map_whose_roads_all_lie_at_one_place_is_refused(
     monkeypatch.setattr(tree_parts, "MOST_SHAPES_AT_ONE_PLACE", 15)
     assert load_map(MapSource("apart", make(12, 6).encode())).tables["lanelet"].num_rows == 72
     with pytest.raises(
-        MapError, match=r"^map one: \d+ lanes or lines lie at one place, more than any road network has"
+        MapError, match=r"^map one: \d+ lanes or lines overlap at one place, more than in any road network"
     ):
         load_map(MapSource("one", make(12, 6, apart=False).encode()))

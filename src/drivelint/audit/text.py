@@ -42,12 +42,12 @@ def _lines(
         f"{n_refused} refused" if n_refused else "",
         f"{audit_summary.quarantined} quarantined" if audit_summary.quarantined else "",
         f"{audit_summary.lossy} lossy" if audit_summary.lossy else "",
-        f"{audit_summary.off_map} off their map" if audit_summary.off_map else "",
-        f"{audit_summary.reused} had a result already" if audit_summary.reused else "",
+        f"{audit_summary.off_map} with a map that does not fit" if audit_summary.off_map else "",
+        f"{audit_summary.reused} already judged by an earlier run" if audit_summary.reused else "",
     )
     yield ", ".join(state for state in states if state)
     yield from _log_lines("lossy", audit_summary.lossy_logs, audit_summary.lossy)
-    yield from _log_lines("off their map", audit_summary.off_map_logs, audit_summary.off_map)
+    yield from _log_lines("map does not fit", audit_summary.off_map_logs, audit_summary.off_map)
     yield from _copies(audit_summary, out)
     if audit_summary.missing_parts:
         of = (
@@ -55,14 +55,18 @@ def _lines(
             if audit_summary.n_asked is None
             else f"{audit_summary.n_drives} of {plural(audit_summary.n_asked, 'drive')} have a result: "
         )
-        yield f"INCOMPLETE: these parts have not ended: {', '.join(audit_summary.missing_parts)}: {of}give the same audits again"
+        yield f"INCOMPLETE: these parts have not ended: {', '.join(audit_summary.missing_parts)}: {of}run the same commands again"
     elif audit_summary.n_asked is not None and audit_summary.n_asked != audit_summary.n_drives:
         yield f"asked for: {plural(audit_summary.n_asked, 'log')}{_difference(audit_summary)}"
     if audit_summary.digest is None:
         yield f"when all parts have ended: drivelint merge {out}"
         return
     found = [f"{audit_summary.findings.get(severity, 0)} {severity}" for severity in SEVERITIES]
-    sure = f"examined: {audit_summary.possible} only possible" if audit_summary.robust else "not examined: --robustness"
+    sure = (
+        f"examined: {audit_summary.possible} only possible"
+        if audit_summary.robust
+        else "not examined (--robustness examines it)"
+    )
     yield f"findings: {', '.join(found)}{_contacts(audit_summary)}; certainty: {sure}"
     yield from _broken(audit_summary, out)
     yield from _unknown(audit_summary, out)
@@ -70,12 +74,12 @@ def _lines(
     yield from [audit_summary.undecided] if audit_summary.undecided else []
     yield from gate
     yield f"exit {int(code)}: {why or audit_summary.exit_reason(code, fail_on)}"
-    yield f"rows     {(audit_summary.digest or '')[:12]} (the same for the same results, see summary.json)"
+    yield f"rows     {(audit_summary.digest or '')[:12]} (digest of all rows: equal for equal results, see summary.json)"
     if not audit_summary.n_judged:
         return  # without a judged drive, these commands show nothing
     yield f"look     drivelint report {out}"
     yield f'ask      drivelint sql {out} "SELECT rule_id, count(*) FROM counted_events GROUP BY ALL ORDER BY 2 DESC"'
-    yield "explain  drivelint check LOG --map MAP --out DIR: its findings have the same ids, for drivelint explain ID --in DIR"
+    yield "explain  drivelint check LOG --map MAP --out DIR: its findings have the same ids; then drivelint explain ID --in DIR"
 
 
 def _broken(audit_summary: AuditSummary, out: str) -> Iterator[str]:
@@ -125,7 +129,7 @@ def _copies(audit_summary: AuditSummary, out: str) -> Iterator[str]:
     if not n:
         return
     has = "has" if n == 1 else "have"
-    yield f"{plural(n, 'more log')} {has} the content of another one: each content counts once"
+    yield f"{plural(n, 'more log')} {has} the same content as another log: logs with the same content count once"
     for row in audit_summary.copied:
         yield f"  {row['log']}: {_repeated(row)}"
     if audit_summary.copied and (more := n - len(audit_summary.copied)):
@@ -138,7 +142,7 @@ def _repeated(row: dict[str, Any]) -> str:
     if row["log"] != row["other"]:
         return f"a copy of {row['other']}"
     if row["same_options"]:
-        return "listed again, with other tags"
+        return "listed again with other tags"
     return "judged again, with another ego or map, or under other conditions"
 
 
@@ -152,9 +156,9 @@ def _difference(audit_summary: AuditSummary) -> str:
     parts = []
     if audit_summary.n_absent:
         parts.append(
-            f"{plural(audit_summary.n_absent, 'result')} of earlier runs, of other logs (--prune takes them out)"
+            f"{plural(audit_summary.n_absent, 'result')} of earlier runs for other logs (--prune removes them)"
         )
     doubles = (audit_summary.n_asked or 0) - (audit_summary.n_drives - audit_summary.n_absent)
     if doubles > 0:
-        parts.append(f"{plural(doubles, 'log')} of the name and content of another, with its tags: judged once")
+        parts.append(f"{plural(doubles, 'log')} with the same name, content and tags as another log: judged once")
     return f"; {'; '.join(parts)}" if parts else ""

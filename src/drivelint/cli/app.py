@@ -155,7 +155,9 @@ def convert(
 
     request = converter.ConvertRequest(trace=trace, to=to, out=out, **drive)
     if (clip is None) is not (folder is None):
-        raise UsageError("--clip and --in belong together: the finding, and the folder that check --out wrote")
+        raise UsageError(
+            "--clip and --in need each other: --clip gives the finding, --in the folder that check --out wrote"
+        )
     if clip is not None and folder is not None:
         from drivelint.incident.clip import write_clip
 

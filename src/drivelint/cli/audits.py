@@ -128,7 +128,8 @@ def audit(
     in_parts = shard is not None or claim
     if in_parts and not (baseline is None and waivers is None and min_judged is None):
         raise UsageError(
-            "--baseline, --waivers and --min-judged need a whole audit: when all parts have ended, run the audit without parts"
+            "--baseline, --waivers and --min-judged need a complete audit: when all parts have ended, "
+            "run the audit without --shard and --claim"
         )
     gate = None
     if not in_parts:
@@ -192,7 +193,7 @@ def _stored_results_sentence(out: str) -> str:
     except (DriveLintError, OSError):  # the user wants to stop, so an error of the store is not reported
         return f"results so far stay in {inert_line(out)}: the same command continues with the rest"
     if not n:
-        return f"no drive has a result in {inert_line(out)} yet (drives are judged some at a time): the same command begins again"
+        return f"no drive has a result in {inert_line(out)} yet, because drives are judged in groups: the same command begins again"
     kept = f"{plural(n, 'drive')} {'has' if n == 1 else 'have'} a result, which stays in {inert_line(out)}"
     return f"{kept}: the same command continues with the rest"
 

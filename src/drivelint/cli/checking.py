@@ -225,7 +225,7 @@ def check(
         receipts.keep(result, stdout, code, grown_files=grown, gate=gate_inputs, interruption=interruption)
         if memory is not None and jobs == 1 and (most := peak_bytes()) is not None:  # the peak of this process only
             progress.note(
-                f"{format_bytes(most)} of memory were taken at most, with everything that is not the database's"
+                f"the process took at most {format_bytes(most)} of memory, including memory outside the database"
             )
     typer.echo(stdout, nl=False)
     if result.interrupted:
@@ -254,7 +254,8 @@ def _with_manifests(settings: CheckOptions, *, packed: bool) -> CheckOptions:
     )
     if manifest_options and packed:
         raise UsageError(
-            "--evidence: a pack has one set of options for all logs: audit the manifest, and pack that audit"
+            "--evidence: a pack needs the same options for all logs, but this manifest has options per log: "
+            "audit the manifest, and pack the audit"
         )
     return replace(settings, traces=logs, manifest_options=manifest_options)
 

@@ -44,9 +44,7 @@ def write_incident_sheet(request: IncidentRequest) -> None:
         typer.echo(inert_line(str(path)))
     if others := other_drives(request):
         name = request.name
-        message = (
-            f"{name} is a finding in {listed(others)}, too: the sheet is about the worst; name another by {name}@DRIVE"
-        )
+        message = f"{name} also has findings in {listed(others)}: the sheet is about the worst; choose another with {name}@DRIVE"
         typer.echo(f"drivelint: {inert_line(message)}", err=True)
 
 

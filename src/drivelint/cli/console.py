@@ -42,7 +42,8 @@ def run_interruptible(job: Callable[[], T], interrupt: Callable[[], None] | None
             if interrupt is not None and asked():
                 if not is_told:
                     typer.echo(
-                        "drivelint: interrupted: stops; Ctrl-C again leaves at once, and keeps nothing", err=True
+                        "drivelint: interrupted: finishing what is begun; press Ctrl-C again to stop at once and keep nothing",
+                        err=True,
                     )
                 is_told = True
                 interrupt()
@@ -52,8 +53,8 @@ def run_interruptible(job: Callable[[], T], interrupt: Callable[[], None] | None
 
 def say_nothing_kept(out: Path | None, *, judged_none: bool) -> None:
     """Print on stderr why an interrupted check has no result, and that its folder contains none."""
-    why = "nothing was judged yet" if judged_none else "left at once: nothing is kept"
-    typer.echo(f"drivelint: {why}{'' if out is None else f'; {inert_line(str(out))} holds no result'}", err=True)
+    why = "nothing was judged yet" if judged_none else "stopped at once: nothing is kept"
+    typer.echo(f"drivelint: {why}{'' if out is None else f'; {inert_line(str(out))} contains no result'}", err=True)
 
 
 @contextmanager

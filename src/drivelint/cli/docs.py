@@ -48,7 +48,7 @@ def docs(
 
     if html is not None:
         if topic is not None:
-            raise UsageError(f"docs {topic} --html: the site has every guide: leave out {topic}, or --html")
+            raise UsageError(f"docs {topic} --html: --html writes all guides: leave out {topic} or --html")
         from drivelint.guide import site
 
         typer.echo(str(site.write(html, _commands(ctx.find_root().command, "drivelint"))))

@@ -37,11 +37,12 @@ def report_audit(
 
     if to not in (*page.FORMATS, *gated.FORMATS):
         known = listed([*page.FORMATS, *gated.FORMATS])
-        raise UsageError(f"--to {to}: of an audit there are {known}: other formats are of a check")
+        raise UsageError(f"--to {to}: an audit can be reported as {known}; the other formats are for a check")
     if to in gated.FORMATS:
         if by or baseline is not None or drive_pages is not None or moments is not None:
             raise UsageError(
-                f"--by, --baseline, --drive-pages and --moments are of pages: {to} has the gate of the last drivelint audit"
+                f"--by, --baseline, --drive-pages and --moments are for html and markdown: {to} contains only "
+                "the gate of the last drivelint audit"
             )
         name, audit = run_interruptible(lambda: gated.write_report(dest, to))
         _warn(audit)

@@ -95,18 +95,18 @@ def write_and_tell(request: PackRequest, *, err: bool = False) -> None:
     n = sum(1 for finding in findings if finding["sql"])
     signed = "signed" if request.key else "not signed"
     left = told.get("findings_left_out")
-    less = f"; {plural(left, 'finding')} of less weight left out (drivelint pack --findings all)" if left else ""
+    less = f"; {plural(left, 'finding')} that are less severe left out (drivelint pack --findings all)" if left else ""
     pages = sum(name.endswith(".html") for name in told.get("incidents", ()))
     sheets = f"; {plural(pages, 'incident sheet')}" if pages else ""
-    said = f"{signed}; {n} of {len(findings)} findings have SQL that gives their margin{less}{sheets}"
+    said = f"{signed}; {n} of {len(findings)} findings have SQL that computes their margin{less}{sheets}"
     typer.echo(f"{inert_line(str(request.out))}: {said}", err=err)
     for finding in findings:
         if finding["without_sql_because"]:
-            why = f"  {finding['finding_id']} {finding['rule_id']}: none, as {finding['without_sql_because']}"
+            why = f"  {finding['finding_id']} {finding['rule_id']}: no SQL, because {finding['without_sql_because']}"
             typer.echo(inert_line(why), err=err)
     if left_out := [name for name in told["left_out"] if name.startswith("incidents/")]:
-        why = "sheets of no finding of the result, and PDFs without the page that is written now"
-        typer.echo(inert_line(f"  not in it ({why}): {', '.join(left_out)}"), err=err)
+        why = "sheets of findings that the result does not contain, and PDFs without an HTML page"
+        typer.echo(inert_line(f"  left out of the pack ({why}): {', '.join(left_out)}"), err=err)
 
 
 def verify(

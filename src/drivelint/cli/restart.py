@@ -24,7 +24,7 @@ DEAF_RULES_VARIABLE: Final = "DRIVELINT_DEAF_RULES"
 """The environment variable that passes the rules that cannot be interrupted to the next process: JSON, task -> rule -> limit."""
 _EXCESS_TEXTS: Final[dict[Excess, str]] = {
     "rule_timeout": "takes longer than --rule-timeout",
-    "out_of_memory": "takes more memory than there is",
+    "out_of_memory": "takes more memory than is available",
 }
 
 
@@ -50,7 +50,9 @@ class Restart:
 
     def restart_without(self, task: str, rule_id: str, excess: Excess) -> NoReturn:
         """Replace this process by a new process that does not run this rule."""
-        self._progress.note(f"rule {rule_id} {_EXCESS_TEXTS[excess]} and cannot be stopped: starting again without it")
+        self._progress.note(
+            f"rule {rule_id} {_EXCESS_TEXTS[excess]} and cannot be stopped: the run starts again without this rule"
+        )
         temporary.remove_all()
         if self._work is not None:
             shutil.rmtree(self._work, ignore_errors=True)

@@ -96,18 +96,21 @@ def report(
     of_an_audit = bool(by) or baseline is not None or drive_pages is not None or moments is not None
     if is_audit(dest := destination(folder)):
         if incident is not None or of_the_sheet or base_url is not None:
-            raise UsageError(f"{dest} is an audit: --incident, --pdf, --trace, --map and --base-url are of a check")
+            raise UsageError(
+                f"{dest} is an audit: --incident, --pdf, --trace, --map and --base-url are only for a check"
+            )
         fleets.report_audit(dest, to, by or (), baseline, drive_pages=drive_pages, moments=moments, quiet=quiet)
     elif of_an_audit:
         raise UsageError(
-            f"--by, --baseline, --drive-pages and --moments are of an audit, and {dest} is none: name the folder of audit --out"
+            f"--by, --baseline, --drive-pages and --moments are only for an audit, and {dest} is not an "
+            "audit: give the folder of audit --out"
         )
     elif incident is not None:
         from drivelint.incident import IncidentRequest
 
         checks.write_incident_sheet(IncidentRequest(incident, folder, pdf, trace, map_))
     elif of_the_sheet:
-        raise UsageError("--pdf, --trace and --map are about an incident sheet: name its finding with --incident")
+        raise UsageError("--pdf, --trace and --map are for an incident sheet: choose its finding with --incident")
     else:
         checks.report_check(folder, to, base_url)
 
@@ -142,7 +145,7 @@ def diff(
     if is_audit(destination(base)) or is_audit(destination(new)):
         fleets.diff_audits(destination(base), destination(new), format_, fail_on, rows)
     elif rows is not None:
-        raise UsageError("--rows is of two audits: of two checks, --format json has all findings")
+        raise UsageError("--rows is only for two audits: for two checks, --format json contains all findings")
     else:
         checks.diff_checks(base, new, format_, fail_on)
 

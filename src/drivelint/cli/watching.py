@@ -243,7 +243,7 @@ def _watch_and_check(
             interruption=interruption.of_check,
         )
         if interruption.of_check.requested and not result.interrupted:
-            emit(messages.note("interrupted: in how many copies the findings stay was not counted to the end"))
+            emit(messages.note("interrupted: the test of how sure the findings are was not finished"))
         told = conclude(result, watch, emit)
         if settings.out is not None:
             write(result, settings.out, work, overwrite=overwrite)

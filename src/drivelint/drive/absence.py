@@ -205,7 +205,10 @@ def absence_findings(missed: Sequence[Absence], states: States) -> list[QualityF
             when = f"in {len(begins)} stretches, the first {when}"
         whole = f"{of_ns / 1e9:.1f} s{' of its track' if absence.of_track else ''}"
         percent = "" if not of_ns else f" ({100 * lost_ns / of_ns:.0f} %)" if 200 * lost_ns >= of_ns else " (under 1 %)"
-        message = f"the ego {absence.ego_id} is absent for {lost_ns / 1e9:.1f} of {whole}{percent}, {when}: its conduct then is unknown"
+        message = (
+            f"the ego {absence.ego_id} is absent for {lost_ns / 1e9:.1f} of {whole}{percent}, {when}: "
+            "what it did in that time is unknown"
+        )
         mine = (
             states.t_ns[states.actor == states.ids.index(absence.ego_id)]
             if absence.ego_id in states.ids

@@ -157,7 +157,7 @@ def _implausible(states: States, actors: Actors) -> list[QualityFinding]:
     starts = track_starts(states.actor)
     ends = np.r_[starts[1:], len(states)] - 1
     message = (
-        f"no {'vehicle' if len(ids) > 1 else actors.classes[actors.ids.index(ids[0])]} has that size: {listed(ids)}"
+        f"size that no {'vehicle' if len(ids) > 1 else actors.classes[actors.ids.index(ids[0])]} has: {listed(ids)}"
     )
     doubts = tuple(
         Doubt(name, "size", int(states.t_ns[first]), int(states.t_ns[last]))

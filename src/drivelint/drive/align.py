@@ -54,7 +54,7 @@ def align_to_ego(states: States, egos: list[str]) -> tuple[States, list[QualityF
     if not names:
         return states, []
     message = (
-        f"actors sampled at other times than the ego ({listed(names)}): their states are interpolated at its steps, "
+        f"actors that are sampled at other times than the ego ({listed(names)}): their states are interpolated at its steps, "
         f"between samples no more than {MAX_GAP_PERIODS * longest / 1e9:g} s apart"
     )
     finding = QualityFinding.of_actors("aligned", "info", message, names)

@@ -62,7 +62,7 @@ def run(states: States, step: Steps, actors: Actors, *, derived: bool) -> list[Q
     findings += [*_sizes(actors), *_gaps(states, step)]
     if len(states) > 1:
         jump = _jumps(states, step)
-        text = "position jumps further than any speed explains in {n} of {of} states ({ids})"
+        text = "position jumps farther than any vehicle can drive in {n} of {of} states ({ids})"
         is_unit = jump.sum() > max(WRONG_UNITS_SHARE * step.continuous.sum(), LEAST_MOVING_SAMPLES)
         why = ": the unit of position, speed or time is wrong" if is_unit else ""
         findings += states.findings(jump, "teleport", "error" if is_unit else "warning", text + why)
@@ -81,7 +81,7 @@ def _sizes(actors: Actors) -> list[QualityFinding]:
         (
             "no_size",
             np.isnan(length) | np.isnan(width),
-            "no length or width is known of {}: distances to their boxes are unknown",
+            "length or width of {} is not known: distances to their boxes are unknown",
         ),
         ("length_below_width", long_kind & (length < width), "shorter than wide: {}: length and width may be swapped"),
     ):
@@ -102,7 +102,7 @@ def _gaps(states: States, step: Steps) -> list[QualityFinding]:
         n, first = int(wide.sum()), int(times[:-1][wide][0])
         message = (
             f"gaps in the log of more than {MAX_GAP_PERIODS} periods ({step.period_ns / 1e9:g} s each): {n}, "
-            f"the longest {dt.max() / 1e9:g} s, the first from {first / 1e9:g} s: nothing is judged across them"
+            f"the longest {dt.max() / 1e9:g} s, the first from {first / 1e9:g} s: no rule is judged across a gap"
         )
         findings.append(QualityFinding("gap", "warning", message, n, first))
     hole = np.zeros(len(states), np.bool_)
@@ -110,7 +110,7 @@ def _gaps(states: States, step: Steps) -> list[QualityFinding]:
     if findings:  # a hole that is a gap of the whole log is reported once
         inside = np.searchsorted(times, states.t_ns[:-1][hole[:-1]])
         hole[np.flatnonzero(hole)[wide[inside]]] = False
-    text = "interruptions of single tracks: {n} ({ids}): those actors are unknown in between"
+    text = "interruptions of single tracks: {n} ({ids}): these actors are unknown during the interruptions"
     return findings + states.findings(hole, "track_gap", "info", text)
 
 
@@ -155,12 +155,12 @@ def _velocity(states: States, step: Steps, jump: Mask) -> list[QualityFinding]:
         if n > WRONG_UNITS_SHARE * n_moving:
             ratio = float(np.nanmedian((speed / step_speed)[moving]))
             text = (
-                f"velocity disagrees with the steps in position in {100.0 * n / n_moving:.0f} % "
-                f"of the moving samples (speed is {ratio:.3g} times the step): {_cause(ratio)}"
+                f"velocity does not match the changes of position in {100.0 * n / n_moving:.0f} % "
+                f"of the moving samples (the speed is {ratio:.3g} times the change): {_cause(ratio)}"
             )
             return states.findings(wrong, "velocity_mismatch", "error", text)
         break
-    text = "velocity disagrees with the step in position in {n} of {of} states ({ids})"
+    text = "velocity does not match the change of position in {n} of {of} states ({ids})"
     return states.findings(wrong, "velocity_mismatch", "warning", text)
 
 

@@ -57,8 +57,8 @@ def unknown_at_restarts(states: States) -> tuple[States, list[QualityFinding]]:
     codes = {name: np.where(twice, UNKNOWN_CODE, codes) for name, codes in states.codes.items()}
     n, first = int(twice.sum()), int(states.t_ns[twice].min())
     message = (
-        f"the clock goes back and repeats the same time, from {first / 1e9:g} s on: what {n} of {len(states)} states "
-        "of that time say is unknown"
+        f"the clock goes back and repeats the same time, from {first / 1e9:g} s on: the values of {n} of "
+        f"{len(states)} states in that time are unknown"
     )
     return replace(states, numbers=numbers, codes=codes), [QualityFinding("clock_restart", "error", message, n, first)]
 

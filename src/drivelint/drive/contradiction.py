@@ -90,20 +90,20 @@ def resolve(
         frozen = _frozen(states, step)
         if frozen.any():
             places.append(states.take(frozen))
-        text = COUNT_PREFIX + "position and velocity contradict each other: they are unknown"
+        text = COUNT_PREFIX + "position and velocity contradict each other: both are unknown"
         findings += states.findings(frozen, "motion_unknown", "warning", text)
         set_unknown(states, frozen)
         astray = _mismatched(states, step)
-        text = "for half a second or longer, the velocity does not match the positions: it is unknown"
+        text = "for half a second or longer, the velocity does not match the positions: the velocity is unknown"
         findings += states.findings(astray, "velocity_unknown", "warning", COUNT_PREFIX + text)
         set_unknown(states, astray, MOTION_COLUMNS)
     for each in places:
         findings += _upon_others(states, step, actors, each, split_tracks.alias)
     turned, sideways = _headings(states, step, actors)
     yaw = states.numbers["yaw_rad"]
-    text = COUNT_PREFIX + "the heading is turned round, but the motion is not: the motion is used"
+    text = COUNT_PREFIX + "the heading is opposite to the motion: the direction of motion is used"
     findings += states.findings(turned, "heading_turned", "warning", text)
-    text = COUNT_PREFIX + "the heading is across the motion: it is unknown"
+    text = COUNT_PREFIX + "the heading is at an angle to the motion: the heading is unknown"
     findings += states.findings(sideways, "heading_unknown", "warning", text)
     yaw = np.where(turned, wrapped(yaw + np.pi), yaw)
     states.numbers["yaw_rad"] = np.where(sideways, np.nan, yaw)
@@ -138,7 +138,9 @@ def _upon_others(
         rows = upon & (rejected_states.actor[place] == number)
         others = sorted({states.ids[i] for i in states.actor[other_row[rows]]})
         times = np.unique(rejected_states.t_ns[place[rows]])
-        message = f"a position of {name} that is not credible lies on {listed(others)}: it is unknown whether they touched there"
+        message = (
+            f"a position of {name} that is not credible overlaps {listed(others)}: whether they touched is unknown"
+        )
         findings.append(QualityFinding("jumps_onto", "warning", message, len(times), int(times[0]), name))
     return findings
 

@@ -72,8 +72,8 @@ def fill_sizes(actors: Actors, egos: list[str], size: EgoSize | None) -> list[Qu
                 actors.sizes[name][i] = given
             elif abs(has - given) > SIZE_DIFFERENCE_M:
                 message = (
-                    f"--ego-size gives {actors.ids[i]} a {name.removesuffix('_m')} of {given:g} m, but the log states "
-                    f"{has:g} m, which is used"
+                    f"--ego-size gives {actors.ids[i]} a {name.removesuffix('_m')} of {given:g} m, but the log "
+                    f"states {has:g} m: the value of the log is used"
                 )
                 findings.append(QualityFinding("ego_size", "warning", message, actor_id=actors.ids[i]))
     return findings
@@ -87,5 +87,5 @@ def _every(path: Path, actors: Actors) -> tuple[list[str], list[QualityFinding]]
         raise TraceError(f"{path}: no ego: {why}: use --ego ID or --ego all (ids: {listed(actors.ids)})")
     if not unknown:
         return egos, []
-    message = f"actors of unknown class are not judged as egos ({listed(unknown)})"
+    message = f"actors without a known class are not judged as egos ({listed(unknown)})"
     return egos, [QualityFinding("ego_count", "warning", message, len(unknown))]

@@ -201,8 +201,8 @@ def _refuse_no_drive(path: Path, states: States) -> None:
     longest = max(states.ids, key=len)
     if len(longest) > LONGEST_ID:
         raise TraceError(
-            f"{path}: an actor's id of {len(longest)} characters, which begins {longest[:40]!r}: the log is damaged, or another "
-            "column has the ids"
+            f"{path}: an actor's id of {len(longest)} characters, which begins {longest[:40]!r}: the log is damaged, or the ids are "
+            "in another column"
         )
     first, last = int(states.t_ns.min()), int(states.t_ns.max())
     if max(-first, last) > LATEST_NS:
@@ -216,7 +216,7 @@ def _refuse_wrong_units(path: Path, recording: Recording, findings: list[Quality
     remedy = (
         "correct the mapping's units or frame"
         if recording.strict_units
-        else "record or convert it again in its format's"
+        else "record or convert it again with the units and frame of its format"
     )
     if errors := [finding for finding in findings if finding.severity == "error"]:
         raise TraceError(f"{path}: {errors[0].message}: {remedy}")

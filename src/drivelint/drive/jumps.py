@@ -69,13 +69,15 @@ def split_tracks(states: States, step: Steps, *, kept_ids: Collection[str]) -> S
     if len(states) < 3 or not {"x_m", "y_m"} <= states.numbers.keys():
         return NO_SPLIT
     unknown, pieces = _around_jumps(states, jumps(states, step))
-    text = COUNT_PREFIX + "the position jumps: they are unknown around it"
+    text = COUNT_PREFIX + "the position jumps: the states around the jump are unknown"
     findings = states.findings(unknown, "teleport", "warning", text)
     alias = _renamed(states, pieces, kept_ids, findings)
     recorded = replace(states, numbers=dict(states.numbers))
     set_unknown(states, unknown)
     beside = outlier_samples(states, step)
-    text = "the position is beside its track, for one sample or by a step that no vehicle can drive: they are unknown there"
+    text = (
+        "the position is off the track, for one sample or by a step that no vehicle can drive: these states are unknown"
+    )
     findings += states.findings(beside, "teleport", "warning", COUNT_PREFIX + text)
     set_unknown(states, beside)
     return SplitTracks(findings, alias, recorded.take(unknown | beside)) if findings else NO_SPLIT
@@ -176,7 +178,7 @@ def _renamed(
             ids.append(name)
             alias[name] = states.ids[i]
     if alias:
-        message = f"the track continues at another place after a jump: from there on it is another actor's ({listed(sorted(alias))})"
+        message = f"the track continues at another place after a jump: from there on it counts as another actor ({listed(sorted(alias))})"
         findings.append(QualityFinding("track_parted", "warning", message, len(alias), actor_id=None))
     states.ids, states.actor = ids, actor
     return alias
@@ -207,7 +209,7 @@ def without_removed_actors(
     out = np.zeros(len(states), np.bool_)
     for first, end in gone:
         out[first:end] = True
-    text = "after a jump they stand in one place: they were removed from the scene, and their tracks end there"
+    text = "after a jump, several actors stand at the same position: they count as removed from the scene, and their tracks end at the jump"
     return states.take(~out), states.findings(out, "removed", "warning", COUNT_PREFIX + text)
 
 

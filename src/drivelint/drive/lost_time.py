@@ -71,7 +71,9 @@ def lost_time_findings(lost_times: Sequence[LostTime], frames: FrameTimes | None
     findings = []
     for each in lost_times:
         since, until = _in_clock_of_states(each, frames)
-        message = f"{each.cause}: the recording {_words(since, until, start)} is lost: nothing is judged across it"
+        message = (
+            f"{each.cause}: the recording {_words(since, until, start)} is lost: no rule is judged across this time"
+        )
         findings.append(QualityFinding(LOST_TIME, "error", message, 1, since, None, until))
     return findings
 

@@ -88,7 +88,7 @@ def _velocity(states: States, step: Steps, starts: Indices, most_replaced_share:
     for tracks, why in (
         (absent, "no velocity in the log"),
         (false_zero, "velocity 0 throughout although the positions move"),
-        (astray & ~still, "velocity that is not the motion of the positions"),
+        (astray & ~still, "velocity that does not match the motion of the positions"),
         (
             biased & ~astray & ~still,
             "velocity that is too high or too low by a constant factor, compared with the positions",
@@ -112,8 +112,8 @@ def _velocity(states: States, step: Steps, starts: Indices, most_replaced_share:
 def _filtered(states: States, rows: Mask) -> list[QualityFinding]:
     """Return a finding for each actor whose velocities were filtered because its positions are noisy, with their accuracy."""
     text = (
-        "the positions of {ids} tremble: its velocity is a mean over up to two seconds, "
-        f"known to {LARGEST_ERROR_MPS:g} m/s, its acceleration is not known"
+        f"the positions of {{ids}} are noisy: the velocity is a mean over up to two seconds, known to "
+        f"{LARGEST_ERROR_MPS:g} m/s, the acceleration is not known"
     )
     found = []
     for number in np.unique(states.actor[rows]):

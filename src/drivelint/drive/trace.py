@@ -204,7 +204,10 @@ class QualityFinding:
 def single_map(maps: Mapping[bytes, str]) -> tuple[bytes | None, tuple[QualityFinding, ...]]:
     """Return the log's only OpenDRIVE map, or None with a finding if there are several. `maps`: map text -> topic that first had it."""
     if len(maps) > 1:
-        message = f"the log has {len(maps)} different OpenDRIVE maps (topics {listed(sorted(maps.values()))}), and none is used: keep one"
+        message = (
+            f"the log has {len(maps)} different OpenDRIVE maps (topics {listed(sorted(maps.values()))}), and "
+            "none is used: keep only one in the log"
+        )
         return None, (QualityFinding.unusable_map(message),)
     return next(iter(maps), None), ()
 

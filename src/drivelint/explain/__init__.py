@@ -190,16 +190,18 @@ def _notes(case: VerdictContext, now: str) -> list[str]:
     version, before = case.target.verdict_row["rule_version"], case.target.verdict["verdict"]
     if case.rule.version != version:
         notes.append(
-            f"The rule has changed since (version {version[:8]} then, {case.rule.version[:8]} now): "
+            f"The rule has changed since (version {version[:8]} before, {case.rule.version[:8]} now): "
             "the SQL and everything computed from it are those of the present version."
         )
     if now != before:
-        notes.append(f"Judged again it is {now}, not {before} as in the result: the tool or the rule has changed.")
+        notes.append(
+            f"Judged again, the verdict is {now}, but the result contains {before}: the tool or the rule has changed."
+        )
     return notes
 
 
 def _left_out(drive: Row, reason_code: str | None) -> list[str]:
     """Return notes on tracks whose ends drivelint removed, if the verdict is unknown because a track ends."""
     removed = [check["message"] for check in drive["quality"] if check["check_id"] == "removed"]
-    told = "drivelint left out the ends of tracks, which no longer recording brings back"
+    told = "drivelint removed the ends of tracks; a longer recording would not change this"
     return [f"{told}: {message}." for message in removed if (reason_code or "").startswith("lost_")]

@@ -63,14 +63,14 @@ def _from_log(
     path = trace or Path(run_options.traces.get(drive_id, ""))
     if not path.exists() or not (trace or drive_id in run_options.traces):
         raise UsageError(
-            f"the log of {drive_id} is not at {path} any more and the result has no database (check --keep-db): "
-            "name its new path with --trace FILE"
+            f"the log of {drive_id} is no longer at {path}, and the result contains no database (check --keep-db): "
+            "give its new path with --trace FILE"
         )
     drive = _read(run_options, path, map_, drive_id, ego_id)
     if drive.environment and map_sha256 not in {None, *drive.environment.tables["environment"]["sha256"].to_pylist()}:
         name = drive.environment.tables["environment"]["name"][0].as_py()
         raise UsageError(
-            f"map {name} has changed since {drive_id} was judged: name the old map with --map, or check again"
+            f"map {name} has changed since {drive_id} was judged: give the old map with --map, or check the drives again"
         )
     return drive, f"the log {path.name}, read again"
 
@@ -78,14 +78,14 @@ def _from_log(
 def _read(run_options: RunRequest, path: Path, map_: Path | None, drive_id: str, ego_id: str) -> Drive:
     map_path = map_ or run_options.map
     if map_path is not None and not map_path.exists():
-        raise UsageError(f"the map {map_path} is not there any more: name its new path with --map FILE")
+        raise UsageError(f"the map {map_path} does not exist any more: give its new path with --map FILE")
     run_options = replace(
         run_options, ego=ego_id, map=map_path, map_dir=None if map_path is not None else run_options.map_dir
     )
     read = read_trace(path, run_options.ingest_options())
     if read.drive_id.rpartition("-")[2] != drive_id.rpartition("-")[2]:
         raise UsageError(
-            f"{path} is not the log that was judged ({drive_id}) but {read.drive_id}: name the right log with --trace"
+            f"{path} is the log {read.drive_id}, but {drive_id} was judged: give the right log with --trace"
         )
     if read.drive_id != drive_id:  # the same content under another name
         read = renamed(read, drive_id)
@@ -104,7 +104,7 @@ def _from_database(file: Path, drive_id: str, ego_id: str) -> Drive:
     with store.open_as_is(file, read_only=True) as con:
         tables = {name: _rows(con, name, "drive_id", drive_id) for name in TRACE_TABLES}
         if not tables["data_log"].num_rows:
-            raise DriveLintError(f"{file}: the drive {drive_id} is not in it: check the drives again")
+            raise DriveLintError(f"{file}: does not contain the drive {drive_id}: check the drives again")
         place = tables["data_log"]["environment_id"][0].as_py()
         environment = None
         if place is not None:

@@ -89,7 +89,9 @@ def _under(finding: Row, verdicts: Iterable[Row]) -> list[Row]:
         or (row["object_id"] == finding["object_id"] and row["t_start_ns"] <= finding["t_start_ns"] <= row["t_end_ns"])
     ]
     if not (exact or rows):
-        raise UsageError(f"finding {finding['finding_id']}: no verdict belongs to it: check the drives again")
+        raise UsageError(
+            f"finding {finding['finding_id']}: the result contains no verdict of it: check the drives again"
+        )
     return exact or rows
 
 
@@ -114,9 +116,9 @@ def _matching_verdicts(rows: list[Row], verdict_filter: VerdictFilter, starts: d
     around = [row for row in rows if _covers(row, verdict_filter.at_s, starts)]
     if not around:
         spans = sorted({_span(row, starts) for row in rows if row["t_start_ns"] is not None})
-        there = ", ".join(spans[:MAX_OTHER_VERDICTS]) or "none with a time"
+        there = ", ".join(spans[:MAX_OTHER_VERDICTS]) or "none"
         raise UsageError(
-            f"no such verdict of {rows[0]['rule_id']} is about {verdict_filter.at_s:g} s of the drive; there are {there}"
+            f"no such verdict of {rows[0]['rule_id']} includes {verdict_filter.at_s:g} s of the drive; its verdicts have the times {there}"
         )
     return around
 
@@ -185,5 +187,5 @@ def _complete_name(name: str, names: Sequence[str], kind: str) -> str:
 def _only_match(name: str, matches: Sequence[str], kinds: str) -> str:
     if len(matches) > 1:
         shown = ", ".join(matches[:5]) + (", ..." if len(matches) > 5 else "")
-        raise UsageError(f"{name!r} is the beginning of several {kinds}: {shown}: write more of the name")
+        raise UsageError(f"{name!r} is the beginning of several {kinds}: {shown}: give more characters of the name")
     return matches[0]

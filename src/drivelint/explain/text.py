@@ -44,12 +44,12 @@ _MEANS: Final = {
     "fail": "the rule was broken",
     "pass": "the rule was kept",
     "unknown": "it is not known whether the rule was kept: this is not a pass",
-    "not_applicable": "the situation that the rule is about did not happen",
+    "not_applicable": "the situation that the rule is about did not occur",
     "error": "the rule could not be run",
 }
 _DOES_NOT_APPLY: Final = {
     "other_nation": "the rule is the law of another nation",
-    "outside_conditions": "the rule is for other conditions",
+    "outside_conditions": "the rule applies only in other conditions",
 }
 
 
@@ -78,8 +78,8 @@ def render(explanation: Explanation, width: int) -> Group:
         ("How sure it is", prose["sure"]),
         ("What would change it", prose["changes"]),
         ("Margin over time" if explanation.rule["sense"] != "holds" else "Over time", _series(explanation, width)),
-        ("What it was judged on", prose["rows"]),
-        ("What the rule demands", prose["asks"]),
+        ("Data on which it was judged", prose["rows"]),
+        ("What the rule requires", prose["asks"]),
         ("How it was judged", [*prose["judged"], *_sql(explanation)]),
     ]
     for heading, lines in sections:
@@ -109,7 +109,7 @@ def _title(explanation: Explanation, width: int) -> list[RenderableType]:
 def _meaning(row: Mapping[str, Any]) -> str:
     """Return the meaning of a verdict in words."""
     if row["verdict"] == "not_applicable" and row["reason_code"].startswith(UNRECORDED_PREFIX):
-        return f"the log has none of a signal that the rule needs; `--rules {row['rule_id']}` makes it unknown"
+        return f"the log does not contain a signal that the rule needs; with `--rules {row['rule_id']}` the verdict is unknown"
     return _DOES_NOT_APPLY.get(row["reason_code"], _MEANS[row["verdict"]])
 
 
@@ -195,7 +195,7 @@ def _series(explanation: Explanation, width: int) -> list[str]:
     ]
     if not lines:
         return ["It was judged at one moment only."] if len(explanation.series) == 1 else []
-    key = "Above the limit: kept, and by how much; below: broken; ?: not known."
+    key = "Above the limit line: kept; below: broken; the height is the margin. ?: not known."
     measured = any(step.margin is not None for step in explanation.series)
     return [*lines, key if measured else "█ broken, · kept, ? not known."]
 

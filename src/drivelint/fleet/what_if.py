@@ -108,13 +108,13 @@ def needs_check(rule: Rule, param: str) -> str | None:
         or rule.combine != "each"
         or rule.quantifier != "always"
     ):
-        return "its verdict is more than one observed value against one required value"
+        return "its verdict does not depend only on one observed and one required value"
     text = re.sub(r"--.*", "", "\n".join(rule.sections.values()))
     condition = re.sub(r"--.*", "", rule.sections["condition"])
     is_required = re.search(rf",\s*\${param}\s+AS\s+required\s*(,|FROM\b)", condition)
     elsewhere = len(re.findall(rf"\${param}\b", text)) > 1 or len(re.findall(r"\brequired\b", condition)) > 1
     if not is_required or elsewhere or re.search(r"\bUNION\b", condition):
-        return f"{param} is not the required value alone: it also decides what is observed, or when the rule applies"
+        return f"{param} is not only the required value: it also affects the observed value, or when the rule applies"
     if param in {rule.window_s, rule.exempt_after_s, rule.merge_gap_s}:
-        return f"{param} is also a time that decides which steps count"
+        return f"{param} is also a time that determines which steps count"
     return None

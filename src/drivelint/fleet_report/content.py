@@ -122,7 +122,7 @@ class FleetContent:
         if not self.verdicts["pass"]:
             return "unknown", "Nothing could be decided"
         if self.audit.warning or self.verdicts["unknown"] or self.verdicts["error"] or self.n_not_judged:
-            return "unknown", "No finding, as far as it could be judged"
+            return "unknown", "No finding, but not everything could be judged"
         return "pass", "No finding"
 
 

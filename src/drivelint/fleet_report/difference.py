@@ -37,18 +37,18 @@ _WHY: Final = {
     "rule_not_run": "the rule was not run",
     "profile_not_run": "the profile was not run",
     "ego_not_judged": "the ego was not judged",
-    "log_ends_before": "the log ends before it",
-    "no_verdict": "there is no verdict of this rule",
+    "log_ends_before": "the log ends before the finding",
+    "no_verdict": "the rule has no verdict",
     "ego_not_there": "the ego is not in this log, or has another id",
-    "ego_not_recorded": "the ego is not recorded there all the time",
-    "object_not_recorded": "the object is not recorded there all the time",
+    "ego_not_recorded": "the ego is not recorded throughout the finding",
+    "object_not_recorded": "the object is not recorded throughout the finding",
     "object_not_there": "the object is not in this log, or has another id",
     "not_applicable": "the rule does not apply there",
 }
 """Reason code of `drivelint.fleet.compare` -> the reason as text."""
 _VERDICT_SENTENCES: Final = {
     "pass": "the rule is kept there",
-    "fail": "the rule fails there still, at another step or place",
+    "fail": "the rule still fails, at another step or place",
     "unknown": "the rule is unknown there",
     "error": "the rule could not be run there",
 }
@@ -131,7 +131,7 @@ class AuditDifference:
         """One sentence with the counts, or that the audits have no drive in common."""
         if self.is_disjoint:
             return f"{NOTHING_IN_COMMON}; compare rates"
-        added = f" ({self.of_new_drives} in drives that the base does not have)" if self.of_new_drives else ""
+        added = f" ({self.of_new_drives} in drives that the base does not contain)" if self.of_new_drives else ""
         return f"{self.counts['new']} new{added}, {counts_sentence(self.counts, self.worse, self.fixed)}"
 
     @property

@@ -70,13 +70,16 @@ def _warnings(difference: AuditDifference) -> list[str]:
 def _exit(difference: AuditDifference, fail_on: str | None) -> str:
     """Return one line with the exit code, its reason, and how many drives were not judged any more."""
     n = len(difference.no_more_judged)
-    less = f"; judged less than the baseline: {plural(n, 'drive')} of it not judged" if n else ""
+    less = f"; judged less than the baseline: {plural(n, 'drive')} of the baseline not judged" if n else ""
     return f"{_code_and_reason(difference, fail_on)}{less}"
 
 
 def _code_and_reason(difference: AuditDifference, fail_on: str | None) -> str:
     if fail_on is None:
-        return f"exit {int(exit_code(difference, None))}: {_rates_sentence(difference)}; --fail-on SEVERITY gates on all of the newer audit"
+        return (
+            f"exit {int(exit_code(difference, None))}: {_rates_sentence(difference)}; with --fail-on SEVERITY, "
+            "all findings of the newer audit gate"
+        )
     if exit_code(difference, fail_on) == ExitCode.NOT_JUDGED and _warnings(difference):
         return f"exit 4: no new finding at or above severity {fail_on} so far, but {_warnings(difference)[0]}"
     n = difference.n_gone_unfixed(fail_on)
@@ -109,9 +112,12 @@ def since(difference: AuditDifference) -> str:
         f"{rate_name(change)} per {test.per} {times(test)}" for change, test in difference.tested if test.is_significant
     ]
     if not rate_texts:
-        return "no drive is in both, and no rate differs by more than chance explains"
+        return "the audits have no drive in common, and no rate differs by more than chance explains"
     more = f" and {len(rate_texts) - _MOST_RISEN_RATES} more" if len(rate_texts) > _MOST_RISEN_RATES else ""
-    return f"no drive is in both; rates that differ by more than chance explains: {', '.join(rate_texts[:_MOST_RISEN_RATES])}{more}"
+    return (
+        "the audits have no drive in common; rates that differ by more than chance explains: "
+        f"{', '.join(rate_texts[:_MOST_RISEN_RATES])}{more}"
+    )
 
 
 def rate_line(of: tuple[RateChange, RateTest]) -> str:
@@ -124,7 +130,7 @@ def rate_line(of: tuple[RateChange, RateTest]) -> str:
 
 def times(test: RateTest) -> str:
     """Return the ratio of the later rate to the earlier one as text."""
-    return "there was none" if test.ratio == math.inf else f"{figure(test.ratio)} times"
+    return "none before" if test.ratio == math.inf else f"{figure(test.ratio)} times"
 
 
 def rate_sides(test: RateTest) -> list[str]:

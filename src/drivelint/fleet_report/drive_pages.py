@@ -171,7 +171,7 @@ def _headline(drive: Row, by_severity: Mapping[str, int], counts: Mapping[str, i
     if not counts["pass"]:
         return "unknown", "Nothing could be decided"
     if counts["unknown"] or counts["error"]:
-        return "unknown", "No finding, as far as it could be judged"
+        return "unknown", "No finding, but not everything could be judged"
     return "pass", "No finding"
 
 

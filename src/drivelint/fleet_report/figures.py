@@ -42,7 +42,10 @@ def least_rate(rate: Rate) -> tuple[str, str] | None:
     """
     if rate.findings or not rate.findings_of_unknown or not rate.at_least_per_100km:
         return None
-    return f"at least {figure(rate.at_least_per_100km)}", f"over all; {interval(rate.per_100km)} where all was judged"
+    return (
+        f"at least {figure(rate.at_least_per_100km)}",
+        f"over all km; fully judged: {interval(rate.per_100km)}",
+    )
 
 
 def share(estimate: Estimate) -> str:

@@ -81,7 +81,7 @@ def _moments(drive: Row, audit: Audit) -> Moments:
 def _judged_again(drive: Row, audit: Audit) -> Result:
     """Check a drive by the settings of its audit. Errors: `DriveLintError`."""
     if is_url(drive["log"]):
-        raise DriveLintError("the log lies in an object store: check a copy of it")
+        raise DriveLintError("the log is in an object store: copy it, and check the copy")
     if not Path(drive["log"]).exists():
         raise DriveLintError(f"the log is not at {drive['log']} any more")
     options = msgspec.json.decode(drive["options"] or "{}", type=DriveInput, dec_hook=lambda kind, value: kind(value))
@@ -109,7 +109,7 @@ def _difference(result: Result, drive: Row) -> str:
     if row["map_sha256"] != drive["map_sha256"]:
         return "the map has changed since the audit"
     if sorted(result.findings["finding_id"].to_pylist()) != drive["finding_ids"]:
-        return "this version of drivelint finds something else"
+        return "this version of drivelint gives other findings"
     return ""
 
 

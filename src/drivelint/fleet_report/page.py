@@ -38,10 +38,10 @@ FORMATS: Final = ("html", "markdown")
 NO_LINKS: Final[Mapping[str, str]] = MappingProxyType({})
 _FILES: Final = {"html": "fleet.html", "markdown": "fleet.md"}
 _STANDING_TITLES: Final = {
-    "never_decided": "Never decided: none passed or failed, some are unknown",
-    "never_triggered": "Never triggered: what they are about did not happen",
-    "never_in_force": "Never in force: another nation, other conditions, or no automated driver",
-    "not_run": "Not run: no drive was judged by them",
+    "never_decided": "Never decided: no verdict passed or failed, some are unknown",
+    "never_triggered": "Never triggered: the situations of these rules did not occur",
+    "never_in_force": "Never in force: the drives were in another nation, in other conditions, or without an automated driver",
+    "not_run": "Not run: no drive was judged by these rules",
 }
 _HERE: Final = Path(__file__).parent
 
@@ -130,7 +130,7 @@ def _note_beside_rate(rate: Rate) -> str:
     if not rate.findings_of_unknown:
         return ""
     least = rate.at_least_per_100km
-    return f", at least {figures.figure(least)} over all" if least else ", of all nothing sure"
+    return f", at least {figures.figure(least)} over all km" if least else ", no lower bound over all km"
 
 
 def _provide(missing_signal: MissingSignal) -> str:

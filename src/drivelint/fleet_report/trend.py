@@ -84,7 +84,7 @@ def audit_trend(dests: Sequence[str], warn: Callable[[str], None]) -> AuditTrend
     `warn`: called with a sentence for each audit that has not ended. Errors: `UsageError` for fewer than two audits, or where no audit is.
     """
     if len(dests) < 2:
-        raise UsageError("a trend needs two audits or more, in the order of time")
+        raise UsageError("a trend needs at least two audits, in the order of time")
     totals: list[AuditTotals] = []
     rates_by_audit: list[list[Rate]] = []
     known: list[str] = []

@@ -70,7 +70,7 @@ def what_if_in_audit(dest: str, setting: str, tag: str | None) -> AuditWhatIf:
         version, old_value = _version_and_value(con, rule_id, param)
         rule = rules[rule_id]
         if version != rule.version:
-            why = "the rule has changed since the audit: its stored verdicts do not apply to the present rule"
+            why = "the rule has changed since the audit: its stored verdicts cannot be used for the present rule"
             return AuditWhatIf(audit, setting, old_value, tag, WhatIf(rule_id, param, float(value), why))
         by_tag = _answer(con, rule, param, value, tag)
         if by_tag.needs_check:
@@ -95,13 +95,15 @@ def _version_and_value(con: duckdb.DuckDBPyConnection, rule_id: str, param: str)
     if rule_id not in known:
         raise UsageError(f"the audit has no verdicts of rule {rule_id}; {hint(rule_id, known)}")
     values = {each["name"]: each["value"] for each in known[rule_id]["params"]}
-    return known[rule_id]["version"], values.get(param, "not there")
+    return known[rule_id]["version"], values.get(param, "not set")
 
 
 def to_text(analysis: AuditWhatIf) -> str:
     """Return the result as text: the changes of verdicts, by the values of the tag."""
     answer = analysis.answer
-    lines = [f"{analysis.setting} instead of {analysis.old_value}, by the verdicts that {analysis.audit.dest} stores"]
+    lines = [
+        f"{analysis.setting} instead of {analysis.old_value}, computed from the verdicts that are stored in {analysis.audit.dest}"
+    ]
     if analysis.audit.warning:
         lines.append(analysis.audit.warning)
     if answer.needs_check:
@@ -116,7 +118,9 @@ def to_text(analysis: AuditWhatIf) -> str:
         )
     lines += _table(analysis)
     lines += _flipped_verdict_lines(analysis.flipped, flips + answer.not_known)
-    lines.append("Findings are not predicted: one verdict may have several, and their ends depend on every step.")
+    lines.append(
+        "Findings are not predicted: one verdict may have several findings, and the beginning and end of each depend on every step."
+    )
     return "\n".join([*lines, _command(analysis)] if answer.not_known else lines)
 
 
@@ -140,13 +144,13 @@ def _table(analysis: AuditWhatIf) -> list[str]:
         said = [f"{each.n} {_becomes(each)}" for each in flips]
         lines.append(one_line(f"  {' '.join(key).strip():{width}}  {', '.join(said)}"))
     if len(flips_by_group) > MAX_VALUES:
-        lines.append(f"  ... and {len(flips_by_group) - MAX_VALUES} more: --format json has them all")
+        lines.append(f"  ... and {len(flips_by_group) - MAX_VALUES} more: --format json contains all")
     return lines
 
 
 def _flipped_verdict_lines(verdicts: Sequence[Flipped], n: int) -> list[str]:
     """Return one line with the log for each changed verdict. `n`: the number of all changed verdicts."""
-    lines = ["which:"] if verdicts else []
+    lines = ["verdicts that change:"] if verdicts else []
     for each in verdicts[:MAX_VALUES]:
         whom = f" for object {each.object_id}" if each.object_id else ""
         profile = f" [{each.profile}]" if each.profile else ""
@@ -156,7 +160,7 @@ def _flipped_verdict_lines(verdicts: Sequence[Flipped], n: int) -> list[str]:
             )
         )
     if n > MAX_VALUES:
-        lines.append(f"  ... and {n - MAX_VALUES} more: --format json has the first {MAX_FLIPPED:,}")
+        lines.append(f"  ... and {n - MAX_VALUES} more: --format json contains the first {MAX_FLIPPED:,}")
     return lines
 
 

@@ -58,12 +58,12 @@ def expand_traces(traces: Sequence[str], *, but: Path | None = None) -> list[Pat
 
 def _matches(text: str) -> list[Path]:
     if not text.strip():
-        raise UsageError("an empty trace name was given: name a file, a glob or a folder")
+        raise UsageError("an empty trace name was given: give a file, a glob or a folder")
     path = Path(text)
     if _exists(path):
         return _inside(path)
     if re.match(r"[A-Za-z][A-Za-z0-9+.-]+://", text):
-        raise UsageError(f"{text}: URIs cannot be read yet: copy the log to this machine and name the file")
+        raise UsageError(f"{text}: URIs are not supported: copy the log to this machine and give the path of the file")
     matches = [Path(match) for match in sorted(glob(text, recursive=True))]  # noqa: PTH207 (Path.glob refuses absolute patterns)
     if not matches:
         what = "no file matches this pattern" if re.search(r"[*?\[]", text) else "no such file or folder"
@@ -159,7 +159,7 @@ def identify(path: Path) -> Identity:
         raise _unreadable(path, error) from error
     whole = os.path.abspath(path)  # noqa: PTH100 (resolve would name the target of a link)
     if not is_utf8(whole):
-        raise TraceError(f"{escape_invisible(whole)}: its name is not UTF-8, which results need: rename it")
+        raise TraceError(f"{escape_invisible(whole)}: its name is not UTF-8, which the result files require: rename it")
     name = Path(whole).name
     stem = name if path.is_dir() else Path(name).stem
     return Identity(f"{stem}-{digest[:8]}", name, digest)

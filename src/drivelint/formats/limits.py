@@ -101,6 +101,6 @@ def bounded(read_file: Callable[[], T], name: str, n_bytes: int, kind: type[Driv
         ]
         place = inner[-1].with_suffix("").as_posix() if inner else "the end"
         raise kind(
-            f"{name}: reading it took {watch.excess}, too much for a file of {n_bytes} bytes (in {place}): "
-            "it describes more than a drive or a road network has; use a part of it"
+            f"{name}: reading took {watch.excess}, too much for a file of {n_bytes} bytes (in {place}): the file "
+            "describes more than a drive or a road network contains: use a part of it"
         ) from None

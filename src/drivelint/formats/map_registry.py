@@ -49,7 +49,7 @@ def read_source(path: Path) -> MapSource:
     try:
         size = path.stat().st_size
         if is_pipe_or_device(path):
-            raise MapError(f"map {path}: a pipe or a device: write its output to a file, and name that file")
+            raise MapError(f"map {path}: a pipe or a device: write its output to a file, and give that file")
         content = path.read_bytes() if size <= MAX_BYTES else b""
     except FileNotFoundError:
         raise MapError(f"map {path} does not exist: give the path of an OpenDRIVE file with --map") from None
@@ -64,12 +64,14 @@ def read_source(path: Path) -> MapSource:
     if (told := wrapping(content)) is not None:
         raise MapError(f"map {path}: {told}")
     if not is_utf8(path.name):
-        raise MapError(f"map {escape_invisible(path.name)}: its name is not UTF-8, which results need: rename it")
+        raise MapError(
+            f"map {escape_invisible(path.name)}: its name is not UTF-8, which the result files require: rename it"
+        )
     return MapSource(path.name, content)
 
 
 def _too_large(name: str, size: int) -> MapError:
-    return MapError(f"map {name} has {size} bytes, more than the {MAX_BYTES} that are read: use a smaller extract")
+    return MapError(f"map {name} has {size} bytes, but at most {MAX_BYTES} are read: use a smaller extract")
 
 
 def load_map(
@@ -101,7 +103,7 @@ def load_map(
             tables = import_module(f"drivelint.formats.{_reader(source)}").read(source, request)
         except CrowdedPlaceError as error:
             raise MapError(
-                f"map {source.name}: {error}, more than any road network has: give a map without copies"
+                f"map {source.name}: {error}, more than in any road network: give a map without duplicates"
             ) from None
         _refuse_endless_ground(source, tables)
         return tables
@@ -115,8 +117,9 @@ def _refuse_endless_ground(source: MapSource, tables: MapTables) -> None:
     if squares * BYTES_PER_SQUARE > most:
         lanes = tables.tables["lanelet"].num_rows
         raise MapError(
-            f"map {source.name}: its {lanes} lanes lie on {squares:.0f} squares of {SQUARE_M:g} m, of which each takes {BYTES_PER_SQUARE} "
-            f"bytes: more than the {most >> 20} MiB for a map of {len(source.content)} bytes: give a part of it"
+            f"map {source.name}: its {lanes} lanes cover {squares:.0f} squares of {SQUARE_M:g} m, and each takes "
+            f"{BYTES_PER_SQUARE} bytes: more than the limit of {most >> 20} MiB for a map of {len(source.content)} "
+            "bytes: give a smaller part of the map"
         )
 
 

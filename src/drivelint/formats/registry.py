@@ -39,7 +39,7 @@ READERS: Final = (
 FIXED_BEGINNINGS: Final = {".mcap": b"\x89MCAP", ".parquet": b"PAR1", ".pkl": b"\x80"}
 """Suffix -> the first bytes that a file with this suffix must have, after any byte order mark. Other files are refused as damaged."""
 UNPROTECTED: Final = QualityFinding(
-    "unprotected", "info", "not all of the log is covered by checksums: damage inside it may go unseen"
+    "unprotected", "info", "checksums do not cover the whole log: damage may remain undetected"
 )
 """The finding of every log that is not MCAP. The MCAP reader adds its own finding, for chunks without a CRC."""
 
@@ -80,14 +80,18 @@ def _read(probe: Probe, before: list[tuple[str, int, int]]) -> Trace:
             recording.findings.append(UNPROTECTED)
         if options.mapping is not None and not reader.takes_mapping:
             refuse_if_none(options.mapping)
-            recording.notes.append(f"mapping {options.mapping!r} is not needed: the log is {recording.format}")
+            recording.notes.append(
+                f"mapping {options.mapping!r} is not used: the log has the format {recording.format}"
+            )
         from drivelint.drive.finish import finish_trace
 
         return finish_trace(path, identity, recording, options)
     if b"<OpenDRIVE" in probe.head:
         raise TraceError(f"{path}: this is a map, not a log: use it with --map, together with a log")
     if probe.head.startswith(b"ARROW1"):
-        raise TraceError(f"{path}: an Arrow table is read as part of a log of Argoverse 2 or 123D: name the folder")
+        raise TraceError(
+            f"{path}: an Arrow table is read only as part of a log of Argoverse 2 or 123D: give the folder of the log"
+        )
     if probe.head.startswith(b"SQLite format 3") and path.suffix.lower() == ".db3":
         from drivelint.formats.mcap.bag import not_mcap
 
@@ -113,8 +117,8 @@ def _probe(path: Path, options: IngestOptions) -> Probe:
     if path.is_dir():
         if not is_drive_folder(path):
             why = why_not_followed(path) or (
-                "not a folder that is one drive: it has no actor_state.parquet, no metadata.yaml of a bag, and no log of "
-                "Argoverse 2 or 123D: name the files in it"
+                "not a folder of one drive: it has no actor_state.parquet, no metadata.yaml of a bag, and no log "
+                "of Argoverse 2 or 123D: give the files in it"
             )
             raise TraceError(f"{path}: {why}")
         return Probe(path, b"", options)

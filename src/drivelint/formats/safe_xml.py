@@ -19,7 +19,7 @@ def parse(content: bytes, name: str, kind: type[DriveLintError]) -> etree._Eleme
     parser = etree.XMLParser(
         resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False, remove_comments=True, remove_pis=True
     )
-    doctype = kind(f"{name} carries a DOCTYPE, which no map or log needs and which is refused: remove it")
+    doctype = kind(f"{name} contains a DOCTYPE, which is refused, because no map or log needs it: remove it")
     try:
         root = etree.fromstring(content, parser)
     except etree.XMLSyntaxError as error:

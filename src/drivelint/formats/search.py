@@ -61,11 +61,11 @@ def folder_tree(root: Path, suffixes: Collection[str]) -> Tree:
 def why_not_here(path: Path) -> str | None:
     """Return why a path that may be a log cannot be read, and the remedy; None if it can be read or does not exist."""
     if os.path.islink(path) and not path.exists():  # noqa: PTH114 - no error for an invalid name, as in a damaged bag
-        return f"a dead link, to {path.readlink()}: its target is not here: fetch or mount it (git annex get, dvc pull)"
+        return f"a dead link to {path.readlink()}: the target is missing: fetch or mount it (git annex get, dvc pull)"
     if _is_pointer(path) and path.is_file():
-        return "a pointer of DVC, and its file is not here: fetch it with dvc pull"
+        return "a pointer of DVC without its file: fetch the file with dvc pull"
     if is_pipe_or_device(path):
-        return "a pipe or a device, but a log is read more than once: write its output to a file, and name that file"
+        return "a pipe or a device, but a log is read more than once: write its output to a file, and give that file"
     if not os.path.isdir(path):  # noqa: PTH112 - as above
         return None
     try:
@@ -84,7 +84,7 @@ def why_not_followed(path: Path) -> str | None:
     """Return why a folder that is not a drive was not searched, and the remedy; None if it is not a link."""
     if not path.is_symlink():
         return None
-    return f"a link to the folder {path.readlink()}, which a search does not follow: name that folder, too"
+    return f"a link to the folder {path.readlink()}, which the search does not follow: give that folder, too"
 
 
 def _is_pointer(path: Path) -> bool:

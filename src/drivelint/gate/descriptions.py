@@ -30,10 +30,10 @@ DIFF_SCHEMA: Final = 1
 
 DIFF_STATUS_TITLES: Final = {
     "new": "New",
-    "changed": "Changed: known, but different from before",
+    "changed": "Changed: in both results, with different values",
     "elsewhere": "Not fixed: the rule still fails, at another step or place",
-    "unknown": "Not fixed: it cannot be judged any more",
-    "lost": "Not fixed: not judged any more",
+    "unknown": "Not fixed: now unknown",
+    "lost": "Not fixed: not judged in the newer result",
     "fixed": "Fixed",
 }
 """Diff status -> heading, in the order of the text. Unchanged findings are only counted."""
@@ -85,13 +85,13 @@ def judged_otherwise(difference: Difference) -> str:
     """Return a sentence about what the newer result judged less than the earlier one, or on another map; '' if there is nothing."""
     n, critical = sum(difference.undecided.values()), difference.undecided.get("critical", 0)
     more = f" ({critical} critical)" if critical else ""
-    parts = [f"{plural(n, 'verdict')} unknown that had been pass or fail{more}"] if n else []
+    parts = [f"{plural(n, 'verdict')} unknown that were pass or fail before{more}"] if n else []
     for noun, names, done in (
         ("drive", difference.base_only, "checked"),
         ("rule", difference.rules_not_run, "selected"),
     ):
-        parts += [f"{plural(len(names), noun)} of it not {done}"] if names else []
-    parts += [f"{plural(len(difference.shorter), 'drive')} more than a tenth shorter"] if difference.shorter else []
+        parts += [f"{plural(len(names), noun)} of the baseline not {done}"] if names else []
+    parts += [f"{plural(len(difference.shorter), 'drive')} shorter by more than a tenth"] if difference.shorter else []
     told = [f"judged less than the baseline: {', '.join(parts)}"] if parts else []
     if difference.other_maps:
         told.append(f"judged on another map than in the baseline: {plural(len(difference.other_maps), 'drive')}")
@@ -201,9 +201,13 @@ def waiver_warnings(gate: Gate) -> Iterator[str]:
     """Yield a warning for each waiver that has expired or matches no finding."""
     for waiver in gate.waivers:
         if waiver.state == "expired":
-            like_that = plural(waiver.findings, "finding") if waiver.findings else "no finding is"
-            like_that = waiver.unknown_rule or f"{like_that} like that"
-            yield f"{waiver.where}: expired {waiver.expires} ({waiver.owner}): it has no effect; {like_that}"
+            matches = (
+                "no finding matches"
+                if not waiver.findings
+                else f"{plural(waiver.findings, 'finding')} match{'es' if waiver.findings == 1 else ''}"
+            )
+            matches = waiver.unknown_rule or f"{matches} it"
+            yield f"{waiver.where}: expired {waiver.expires} ({waiver.owner}): it has no effect; {matches}"
         elif waiver.state == "unmatched":
             if waiver.unknown_rule:
                 yield f"{waiver.where}: {waiver.rule} ({waiver.owner}): {waiver.unknown_rule}"
@@ -231,9 +235,9 @@ def reason_not_gating(gate: Gate | None, finding_id: str) -> str:
         return waiver_reason(waiver)
     entry = gate.compared(finding_id) if gate else None
     if entry is not None and entry.standing != "new":
-        return "known: the baseline has it" + (f"; worse now: {entry.why}" if entry.worse else "")
+        return "known: the baseline contains it" + (f"; worse now: {entry.why}" if entry.worse else "")
     if gate and gate.is_possible(finding_id):
-        return f"possible: less than {100 * (gate.confidence or 0.0):g} % of its copies with recording errors keep it"
+        return f"possible: the finding occurs in less than {100 * (gate.confidence or 0.0):g} % of the copies with recording errors"
     return ""
 
 

@@ -94,7 +94,7 @@ def _drive(
         elif wholes := [j for j, each in enumerate(theirs) if match.is_part_of(now, each, same_log=same_log)]:
             told.add(wholes[0])
             was = theirs[wholes[0]]
-            said = LookupResult("fail", f"a part of {was.row['finding_id']}, which was one")
+            said = LookupResult("fail", f"the finding {was.row['finding_id']} was split; this is a part of it")
             entries.append(_entry("changed", now, was, has, said))
         else:
             said = had.verdict_at(base_id, now)
@@ -103,7 +103,7 @@ def _drive(
     for was in (each for j, each in enumerate(theirs) if j not in told):
         wholes = [i for i in sorted(pairs) if match.is_part_of(was, ours[i], same_log=same_log)]
         if wholes:
-            said = LookupResult("fail", f"{was.row['finding_id']} is a part of it now")
+            said = LookupResult("fail", f"it now contains the earlier finding {was.row['finding_id']}")
             gone.append(_entry("changed", ours[wholes[0]], was, has, said))
         else:
             said = _noting_rule(has.verdict_at(drive_id, was), was, had, has)
@@ -277,11 +277,11 @@ class ResultLookup:
         assert drive_id is not None  # noqa: S101 - for the type checker: without a drive, _why_not_judged has returned a result
         drive = self.drives[drive_id]
         if drive["duration_s"] is not None and at.worst > drive["duration_s"] + match.NEAR_S:
-            return LookupResult("none", "the log ends before it")
+            return LookupResult("none", "the log ends before the finding")
         rows = self._rows.get((drive_id, row["ego_id"], row["rule_id"]), [])
         rows = [each for each in rows if each["profile"] in {row["profile"], None}]
         if not rows:
-            return LookupResult("none", "there is no verdict of this rule")
+            return LookupResult("none", "the rule has no verdict")
         there = [each for each in rows if self._about(each, row, drive_id) and _overlaps(each, at, drive)]
         said = [judged for each in there if (judged := self._outcome_of(each, at)).verdict in _WEIGHT]
         not_applicable = LookupResult(
@@ -303,7 +303,7 @@ class ResultLookup:
                 return LookupResult("none", f"{what} {actor} is not in this log, or has another id")
             times = ", ".join(f"{start:.2f} s to {end:.2f} s" for start, end in stretches[:3])
             more = f" and {len(stretches) - 3} more times" if len(stretches) > 3 else ""
-            return LookupResult("unknown", f"{what} {actor} is recorded from {times}{more} only")
+            return LookupResult("unknown", f"{what} {actor} is recorded only from {times}{more}")
         return None
 
     def _outcome_of(self, verdict: Row, at: TimedFinding) -> LookupResult:
@@ -315,9 +315,9 @@ class ResultLookup:
         mine = self.findings.get(verdict["drive_id"], ())
         alike = [other for other in mine if match.finding_key(other.row) == match.finding_key(at.row)]
         if any(match.gap_s(other, at) <= match.NEAR_S for other in alike):
-            return LookupResult("fail", "the rule fails there still, at another step or place")
+            return LookupResult("fail", "the rule still fails, at another step or place")
         if verdict["n_judged"] == verdict["n_expected"]:
-            return LookupResult("pass", "kept there, but not at another time of the same stretch of driving")
+            return LookupResult("pass", "the rule is kept at this time, but broken at another time of the same verdict")
         missing = verdict["n_expected"] - verdict["n_judged"]
         why = f"the rule fails at another time, and {missing} of {verdict['n_expected']} steps were not judged"
         return LookupResult("unknown", why)

@@ -59,7 +59,7 @@ def kept_line(rule: Row, rows: Sequence[Row], span: tuple[int, int], start_ns: i
         said = minus(f"{rule['observes']}{whom} {least}{amount(row['observed'], row['unit'])}")
         about.insert(0, f"{SENSE.get(rule['sense'], '')}{required(row, rule)}")
     if any(each["near_miss"] for each in rows):
-        about.append("narrowly")
+        about.append("near miss")
     told = "; ".join(each for each in about if each)
     return f"{said} ({told})" if told else said
 
@@ -89,7 +89,7 @@ def _measured_by_profile(rule: Row, rows: Sequence[Row]) -> str:
 def _when(row: Row, rule: Row, start_ns: int) -> str:
     worst = seconds(row["t_worst_ns"], start_ns)
     if rule["kind"] == "execution":
-        return f"for the manoeuvre of {worst}"
+        return f"for the manoeuvre at {worst}"
     if row["t_start_ns"] in {None, row["t_end_ns"]}:
         return f"at {worst}"
     start, end = (seconds(row[key], start_ns) for key in ("t_start_ns", "t_end_ns"))

@@ -58,7 +58,7 @@ def write_clip(request: ConvertRequest, name: str, folder: Path, memory: int | N
             options = of_rules(run_options, result.rules["rule_id"].to_pylist())
             return replace(written, notes=notes, check_options=tuple(options))
     raise UsageError(
-        f"finding {finding.row['finding_id']}: not even the whole log, judged again, gives it: the tool, the rule or an option "
+        f"finding {finding.row['finding_id']}: judging the whole log again does not give this finding: the tool, the rule or an option "
         "has changed: check the drive again"
     )
 
@@ -67,7 +67,7 @@ def _with_run_options(request: ConvertRequest, run_options: RunRequest, finding:
     """Return the request with the finding's ego, and with the run's options that the request does not set. Errors: `UsageError`."""
     paths = expand_traces([request.trace])
     if len(paths) == 1 and identify(paths[0]).sha256 != finding.drive["sha256"]:
-        raise UsageError(f"{paths[0]} is not the log of the finding, {finding.drive['file_name']}: its content differs")
+        raise UsageError(f"{paths[0]} differs from {finding.drive['file_name']}, the log of the finding: give that log")
     unset = {field.name: field.default for field in fields(DriveInput)}
     set_options = {name for name, default in unset.items() if getattr(request, name) != default}
     # if the request sets map or map_dir, the run's other option of the two does not apply
@@ -107,15 +107,15 @@ def _clip_sentence(finding: NamedFinding, clip: Clip, before_s: float | None, af
     from_s, to_s = ((t_ns - finding.start_ns) / _S for t_ns in (clip.from_ns, clip.to_ns))
     row = finding.row
     if before_s is None:
-        span = "the whole log, as no part that was tried gives the finding"
+        span = "the whole log, because no shorter part that was tried gives the finding"
         whole = (row["t_start_ns"] - clip.from_ns, clip.to_ns - row["t_end_ns"])
         if whole[0] <= SPANS_S[0][0] * _S and whole[1] <= SPANS_S[0][1] * _S:
-            span = "the whole log, which is no longer"
+            span = "the whole log, which is not longer than this"
     else:
         span = f"{before_s:g} s before to {after_s:g} s after the finding"
         if (before_s, after_s) != SPANS_S[0]:
-            span += f", as {SPANS_S[0][0]} s and {SPANS_S[0][1]} s do not give it"
+            span += f", because {SPANS_S[0][0]} s and {SPANS_S[0][1]} s do not give it"
     return (
-        f"the clip is {from_s:.2f} s to {to_s:.2f} s of the drive ({span}); judged alone it gives the same finding of "
+        f"the clip is {from_s:.2f} s to {to_s:.2f} s of the drive ({span}); judged by itself, it gives the same finding of "
         f"{row['rule_id']}; its other findings, and all ids, may differ: drivelint docs convert says why"
     )

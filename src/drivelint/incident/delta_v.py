@@ -56,7 +56,7 @@ def told_delta_v(motion: Motion, party: int, before: int | None, trace: Trace, a
     rows = trace.tables["quality"].to_pylist()
     checks = {row["check_id"] for row in rows if row["actor_id"] in {None, actor_id}}
     if "velocity_filtered" in checks:
-        return "not known: a mean over time stands for its velocity, which hides an impact"
+        return "not known: the log has only a mean of its velocity, which hides an impact"
     found = delta_v(motion, party, before)
     if found is None:
         return f"not known: its velocity is missing in part, from {_at(motion.t[before])} to {_at(WINDOW_S)}"

@@ -86,7 +86,7 @@ def _worst_of(verdict: Row, result: Result) -> dict[str, Any]:
         }
         failed = sorted(there, key=lambda rule_id: (CONTACT not in tags[rule_id], rule_id))
         raise UsageError(
-            f"{verdict['rule_id']} in {verdict['drive_id']} is {verdict['verdict']}, and no finding: "
+            f"{verdict['rule_id']} in {verdict['drive_id']} is {verdict['verdict'].replace('_', ' ')}, so it has no finding: "
             f"name a finding by its id, or a rule that failed there ({listed(failed) or 'none did'})"
         )
     return min(about, key=lambda row: (row["margin"] is not None, row["margin"], row["t_worst_ns"], row["finding_id"]))

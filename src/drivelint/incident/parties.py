@@ -121,7 +121,7 @@ def _lane(case: Case, number: int, at: int | None) -> str:
     said: str = _SIDES.get(step["with_traffic"], "lane not known")
     if step["out_since_ns"] is not None:
         said += f"; left its lane at {seconds(step['out_since_ns'], case.finding.start_ns)}"
-        said += " and is not wholly back" if step["with_traffic"] else ""
+        said += " and is not completely back" if step["with_traffic"] else ""
     return said
 
 
@@ -176,4 +176,4 @@ def against_each_other(relative_mps: float, closing_mps: float | None) -> str:
     said = f"relative speed {speed(relative_mps)}"
     if closing_mps is None or nearly_same(relative_mps, closing_mps):
         return said
-    return f"{said}; the box centres {'draw apart' if closing_mps < 0 else 'near'} at {abs(closing_mps):.1f} m/s"
+    return f"{said}; the box centres {'move apart' if closing_mps < 0 else 'approach'} at {abs(closing_mps):.1f} m/s"

@@ -30,7 +30,7 @@ def find_browser() -> str:
     found = next((path for name in _BROWSERS if (path := shutil.which(name))), None)
     if found is None:
         raise UsageError(
-            "no Chromium is installed, which prints the PDF: install chromium (or Google Chrome), or print the HTML page "
+            "--pdf needs Chromium to print the PDF, and none is installed: install chromium (or Google Chrome), or print the HTML page "
             "from any browser on A4"
         )
     return found
@@ -50,6 +50,6 @@ def print_page(html: bytes, browser: str) -> bytes:
             content = out.read_bytes()
         except (OSError, subprocess.SubprocessError) as error:
             raise PdfError(
-                f"{browser} did not print the page: {str(error).splitlines()[0]}: print the HTML page"
+                f"{browser} did not print the page: {str(error).splitlines()[0]}: print the HTML page from another browser"
             ) from error
     return _DATE.sub(rb"\g<1>19700101000000", content)

@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 
 _SURROUNDINGS: Final = ("weather", "light")
 _INFERRED: Final = {
-    "junctions": "inferred from how the map's junctions are linked",
-    "lanes": "inferred from how the map's lanes lie",
-    "traces": "inferred from how the log's traffic drives",
-    "default": "assumed: neither map nor user says it",
+    "junctions": "inferred from the links in the map's junctions",
+    "lanes": "inferred from the positions of the map's lanes",
+    "traces": "inferred from the traffic in the log",
+    "default": "assumed: neither map nor user states it",
 }
 """The source of the side of the road that is driven on, in words, if neither map nor user states that side."""
 
@@ -74,7 +74,7 @@ def coordinates(case: Case) -> str:
     if CLIP in checks:
         said = "the clip's coordinates"  # a clip contains the coordinates that were judged
     elif TURNED_FRAME in checks:
-        said += " with the sign of y turned, as its frame is left-handed"
+        said += " with the sign of y changed, as its frame is left-handed"
     dx, dy = _map_offset(case)
     return f"{said}{minus(f' (the map was moved by {dx:+g} m, {dy:+g} m)')}" if dx or dy else said
 

@@ -54,7 +54,7 @@ SPAN_S: Final = (15, 7)
 _NO_NUMBER: Final = "-"
 _CLIP: Final = re.compile(r"^(.+)-clip-[0-9a-f]{8}$")
 """The name of a clip from `convert --clip`, see `clip.py`."""
-_CLIP_NOTE: Final = "; numbers that depend on what is before or after it may differ from the log's"
+_CLIP_NOTE: Final = "; values that depend on the time before or after it may differ from those of the log"
 _SPACES: Final = "danger_space"
 _LONGEST: Final = 330
 _NOTE_CHARACTERS: Final = 370
@@ -341,11 +341,11 @@ def _rests_on(case: Case, motion: Motion) -> str:
         at_s = times[np.nanargmin(gaps)] + (case.finding.moment_ns - case.finding.start_ns) / 1e9
         told = f"least gap {known.min():.2f} m, at {at_s:.2f} s"
     boxes = (
-        "the boxes do not touch at that time" if 0 < known.size == gaps.size else "nobody knows whether the boxes touch"
+        "the boxes do not touch at that time" if 0 < known.size == gaps.size else "whether the boxes touch is not known"
     )
     assumed = any(size_source(case.drive.trace, who) for who in case.finding.parties)
     sizes = "; sizes are assumed, not recorded" if assumed else ""
-    return f"It rests on a sudden change of speed: {boxes} ({told}{sizes})."
+    return f"It is based on a sudden change of speed: {boxes} ({told}{sizes})."
 
 
 def _plan(case: Case) -> dict[str, Any]:

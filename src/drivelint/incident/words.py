@@ -32,7 +32,7 @@ def closing(mps: float | None) -> str | None:
     """Return a closing speed in words; None if it is not known."""
     if mps is None:
         return None
-    return f"none, as they draw apart at {speed(-mps)}" if mps < 0 else speed(mps)
+    return f"none: they move apart at {speed(-mps)}" if mps < 0 else speed(mps)
 
 
 def told_unit(unit: str | None) -> str:
@@ -74,7 +74,7 @@ def measured_text(row: Row, rule: Row) -> str:
 def required(row: Row, rule: Row) -> str:
     """Return the required value as text, and the tolerance that it includes, if any."""
     said, given = amount(row["required"], row["unit"]), tolerance(row, rule)
-    return said if given is None else f"{said}, {amount(given, row['unit'])} of it tolerance"
+    return said if given is None else f"{said}, including {amount(given, row['unit'])} tolerance"
 
 
 def profile(name: str | None) -> str:
@@ -146,7 +146,7 @@ def story(
     if not nearly_same(relative, closing_mps):
         how = f"{how}, relative speed {speed(relative)}" if how else f"relative speed {speed(relative)}"
     elif closing_mps is not None:
-        nearer = f"drawing apart at {-closing_mps:.1f} m/s" if closing_mps < 0 else f"closing at {speed(closing_mps)}"
+        nearer = f"moving apart at {-closing_mps:.1f} m/s" if closing_mps < 0 else f"closing at {speed(closing_mps)}"
         how = f"{how}, {nearer}" if how else nearer
     parts.append(how)
     text = "; ".join(part for part in parts if part)

@@ -234,7 +234,7 @@ def _fit(fit: model.MapRegistration) -> Text:
         return Text(fit.reason, style="bold yellow")
     off = "" if fit.lateral_median_m is None else f", {fit.lateral_median_m:.2f} m from its middle (median)"
     if fit.aside:
-        return Text(f"{fit.reason}{off}: is the map moved? --map-offset puts it right", style="bold yellow")
+        return Text(f"{fit.reason}{off}: the map may be shifted: correct it with --map-offset", style="bold yellow")
     return Text(f"{fit.reason}{off}", style="green")
 
 

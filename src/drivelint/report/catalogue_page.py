@@ -162,7 +162,7 @@ def _asking(rules: Iterable[Rule], requirements: Sequence[str], reads: Sequence[
             and named.search(_COMMENT.sub("", "\n".join(rule.sections.values())))
         )
     ]
-    return f"{len(ids)} rules" if len(ids) > _MAX_LISTED_RULES else ", ".join(ids) or "no rule yet"
+    return f"{len(ids)} rules" if len(ids) > _MAX_LISTED_RULES else ", ".join(ids) or "no rule"
 
 
 def _applies(rule: Rule) -> str:

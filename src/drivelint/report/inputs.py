@@ -69,9 +69,7 @@ def _map(drives: Sequence[Row]) -> InputNote:
         words += f", but not {off_egos} of {egos} egos"
     aside = [check["message"] for drive in on_map for check in drive["quality"] if check["check_id"] == ASIDE_OF_LANE]
     if aside:
-        far = (
-            f"{len(aside)} egos keep far beside the middle of their lanes: is the map moved? --map-offset puts it right"
-        )
+        far = f"{len(aside)} egos drive far from the middle of their lanes: the map may be shifted: correct it with --map-offset"
         words += f"{'; ' if off_egos else ', but '}{aside[0] if len(aside) == 1 else far}"
     if bare := len(drives) - len(on_map):
         words += f"; {plural(bare, 'drive')} without a map"
@@ -112,7 +110,7 @@ def _whole(drives: Sequence[Row]) -> str:
     """Return in words that the logs are complete, as far as their formats show it."""
     names = [drive["file_name"].lower() for drive in drives]
     without = [end for end in _WITHOUT_END if any(name.endswith(end) for name in names)]
-    return f"complete as far as {listed(without)} tells" if without else "complete"
+    return f"complete, as far as the format {listed(without)} shows it" if without else "complete"
 
 
 def _copies(drives: Sequence[Row]) -> list[str]:
@@ -139,7 +137,7 @@ def _parked(result: Result) -> list[InputNote]:
     """Return the note on egos that never move (two thirds in perception logs); only rules about standing apply to them."""
     parked = result.verdicts.filter(pc.equal(result.verdicts["reason_code"], _NEVER_MOVES))
     n, of = (len(counts.distinct_rows(verdicts, _EGO)) for verdicts in (parked, result.verdicts))
-    words = f"{n} of {plural(of, 'ego')} never move{'s' if n == 1 else ''}: rules about standing alone hold"
+    words = f"{n} of {plural(of, 'ego')} never move{'s' if n == 1 else ''}: only rules about standing vehicles apply"
     return [InputNote("parked", words, is_warning=False)] if n else []
 
 

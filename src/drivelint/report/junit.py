@@ -82,7 +82,7 @@ def _of_drive(drive: Row) -> Iterator[Case]:
     if drive["status"] == "not_judged":
         yield Case("the drive can be judged", "error", "not_judged", [drive["status_reason"] or ""])
     elif drive["lossy"]:
-        yield Case("the log is whole", "error", "lossy", ["parts of the log were lost", *ego_absences(drive)])
+        yield Case("the log is complete", "error", "lossy", ["parts of the log were lost", *ego_absences(drive)])
     if (reason := off_map_reason(drive)) is not None:
         yield Case("the map fits the drive", "error", "map", [reason])
 
@@ -91,7 +91,10 @@ def _unfixed_case(entry: ComparedFinding) -> Case:
     """Return the test case of a baseline finding that this result does not have, but that is not known to be fixed."""
     name = rule_name({"rule_id": entry.rule_id, "profile": entry.profile})
     return Case(
-        f"{name} of {entry.drive_id}", "error", entry.standing, [f"gone, not fixed: {descriptions.finding_line(entry)}"]
+        f"{name} of {entry.drive_id}",
+        "error",
+        entry.standing,
+        [f"gone, but not fixed: {descriptions.finding_line(entry)}"],
     )
 
 

@@ -50,7 +50,7 @@ class LogNotes:
 
 def same_log(path: Path, drive_id: str) -> LogNote:
     """Return the note on a log with the same content as an earlier log."""
-    return LogNote(path, f"{path}: the same log as one before ({drive_id}), judged once")
+    return LogNote(path, f"{path}: the same content as the log of {drive_id}: judged once")
 
 
 def told_once(notes: Iterable[LogNote]) -> Iterator[LogNote]:

@@ -78,8 +78,12 @@ def render(result: Result, base_url: str | None = None) -> bytes:
     room = list(accumulate(len(part) + 2 for part in parts))
     kept = [part for part, n in zip(parts, room, strict=True) if n <= MAX_CHARS]
     if len(kept) < len(parts):
-        kept.append(f"{plural(len(parts) - len(kept), 'part')} left out here for length, not for weight.")
-    kept.append(f"[The whole report]({target})" if target else "The whole report is report.html of the results.")
+        kept.append(f"{plural(len(parts) - len(kept), 'part')} left out to keep this comment short.")
+    kept.append(
+        f"[The complete report]({target})"
+        if target
+        else "The complete report is report.html in the folder of the results."
+    )
     return ("\n\n".join(kept) + "\n").encode("utf-8", "replace")
 
 

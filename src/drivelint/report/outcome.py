@@ -40,7 +40,7 @@ LET_THROUGH: Final = {"known": "known", "waived": "waived", "possible": "only po
 """The standings (`Gate.standing`) of findings that a gate lets through, in words."""
 _NO_MAP: Final = {
     OWN_MAP_UNUSABLE: "the log's own map cannot be used",
-    NOT_IN_FOLDER: "no map in the folder is of the place",
+    NOT_IN_FOLDER: "no map in the folder covers the place",
 }
 """Data-quality checks because of which a drive has no map, in words."""
 _COUNTED_LABEL: Final = "counted"
@@ -88,7 +88,7 @@ class _OpenRules(NamedTuple):
     @property
     def words(self) -> str:
         """The part of the outcome's sentence about undecided rules."""
-        which = "the rule that came up" if self.of == 1 else f"{self.n} of the {self.of} rules that came up"
+        which = "the rule that may apply" if self.of == 1 else f"{self.n} of the {self.of} rules that may apply"
         return f"{which} could not be judged{', counted for each drive and ego' if self.several else ''}"
 
 
@@ -206,11 +206,11 @@ def _without_findings(result: Result, verdict_counts: Mapping[str, int], label: 
     ):
         return "no findings, because nothing could be decided"
     if not verdict_counts["pass"] + verdict_counts["fail"]:
-        return "no findings, because no rule applied: the situations that they are about did not happen"
+        return "no findings, because no rule applied: the situations of the rules did not occur"
     if label == _MOSTLY:
         open_rules = _open_rules(result)
-        return f"no findings, but {open_rules.words if open_rules.n else 'less was decided than --min-judged demands'}"
-    return "no findings" if whole else "no findings, as far as it could be judged"
+        return f"no findings, but {open_rules.words if open_rules.n else 'fewer rules were decided than --min-judged requires'}"
+    return "no findings" if whole else "no findings, but not everything could be judged"
 
 
 def _findings(result: Result, rows: Sequence[Row]) -> str:

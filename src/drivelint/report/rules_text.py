@@ -38,7 +38,7 @@ def listing(rules: Iterable[Rule], width: int = 120) -> Table:
     wide = width >= NARROW_WIDTH
     for name in ("rule", *(("kind",) if wide else ()), "severity", "status"):
         table.add_column(name, no_wrap=True)
-    table.add_column("what it asks", ratio=1)
+    table.add_column("question", ratio=1)
     for rule in rules:
         kind = [f"{rule.kind}, {rule.subtype}" if rule.subtype else rule.kind] if wide else []
         table.add_row(rule.id, *kind, rule.severity, rule.status, Text(one_line(rule.title)))
@@ -50,8 +50,8 @@ def rule_details(rule: Rule) -> Group:
     facts = Table(box=None, show_header=False, pad_edge=False)
     facts.add_column(style="bold", no_wrap=True)
     facts.add_column(overflow="fold")
-    requires = ", ".join(sorted(rule.requires)) or "nothing beyond positions"
-    sense = "must hold" if rule.sense == "holds" else f"observed {rule.sense} required, in {rule.unit}"
+    requires = ", ".join(sorted(rule.requires)) or "positions only"
+    sense = "must be true" if rule.sense == "holds" else f"observed {rule.sense} required, in {rule.unit}"
     for name, value in (
         ("clause", f"{rule.clause} ({rule.legal}, {rule.derivation})"),
         ("law", ", ".join(rule.law)),

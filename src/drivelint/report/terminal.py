@@ -57,7 +57,7 @@ def render(result: Result, out: str | None = None, width: int = 120, *, verbose:
         _drives(result, wide=wide),
         _rules(result, wide=wide),
         *_findings(result, wide=wide),
-        _measurement_table(result, "Near misses: kept, but only just", near, "yellow", wide=wide),
+        _measurement_table(result, "Near misses: kept, but with a small margin", near, "yellow", wide=wide),
         _open(result),
         _quality(result),
         _assumptions(result),
@@ -193,7 +193,7 @@ def _quality(result: Result) -> Table | None:
     seen = counts.group_rows(worse, lambda told: tuple(told[1][name] for name in ("severity", "check_id", "message")))
     if not seen:
         return None
-    table = _table(_title("Data quality", len(seen)), "yellow", {"check": 1, "what was seen": 3})
+    table = _table(_title("Data quality", len(seen)), "yellow", {"check": 1, "message": 3})
     for (severity, check_id, message), told in list(seen.items())[:MAX_ROWS]:
         drives = {drive_id for drive_id, _ in told}
         where = told[0][0] if len(drives) == 1 else f"{len(drives)} drives"
@@ -206,7 +206,9 @@ def _assumptions(result: Result) -> Text | None:
     if not assumed:
         return None
     verb = "verdict assumes" if assumed == 1 else "verdicts assume"
-    return Text(f"{assumed} {verb} that an actor that a log does not have is not in plain view (--visibility)", "dim")
+    return Text(
+        f"{assumed} {verb} that an actor that is missing in a log was not visible from the ego (--visibility)", "dim"
+    )
 
 
 def _table(title: str, style: str, columns: Mapping[str, int] | None = None) -> Table:

@@ -40,9 +40,9 @@ MOST_REASONS: Final = 3
 STYLE: Final = {"critical": "bold red", "major": "red", "minor": "yellow"}
 _SHORT: Final = {"critical": "crit", "major": "maj", "minor": "min"}
 PROFILES: Final = {
-    "relaxed": "planned with much room",
-    "nominal": "planned as usual",
-    "aggressive": "planned with little room",
+    "relaxed": "planned with a large margin",
+    "nominal": "planned with a usual margin",
+    "aggressive": "planned with a small margin",
     "observed": "as it was driven",
 }
 """The profiles that drivelint ships, each with the overtake that it assumes, in words."""
@@ -252,8 +252,8 @@ def _broken(findings: list[Row], without: str) -> Table:
 def _lines(result: Result) -> list[Text]:
     """Return the lines on the number of rules judged, profiles, unknown verdicts by reason, map and logs."""
     n = rule_counts(result)
-    said = [f"{n.judged_somewhere} judged", f"{n.never} never judgeable" if n.never else ""]
-    said += [f"{n.unrecorded} lack a signal in the log" if n.unrecorded else ""]
+    said = [f"{n.judged_somewhere} judged", f"{n.never} could never be judged" if n.never else ""]
+    said += [f"{n.unrecorded} need a signal that the log lacks" if n.unrecorded else ""]
     said += [f"{n.idle} never applied" if n.idle else "", f"{n.open} not applicable or unknown" if n.open else ""]
     near = int(pc.sum(result.verdicts["near_miss"]).as_py() or 0)
     first = f"{plural(result.rules.num_rows, 'rule')}: {', '.join(part for part in said if part)}"

@@ -101,7 +101,7 @@ def _checker(
         _finding(checker, row, rule, drive["t_start_ns"], gate)
     for row in verdict_rows if status != "skipped" else ():
         if row["verdict"] in {"unknown", "error"}:
-            text = f"{row['verdict']}, neither kept nor violated: {with_count(row['reason'], row['count_all'])}"
+            text = f"{row['verdict']}, neither kept nor broken: {with_count(row['reason'], row['count_all'])}"
             _issue(checker, rule, INFORMATION, text)
     add(checker, "AddressedRule", ruleUID=rule_uid(rule["rule_id"], rule["pack"]))
     for verdict in counts.VERDICTS:
@@ -117,7 +117,7 @@ def _finding(checker: etree._Element, row: Row, rule: Row, start_ns: int | None,
     text = profile + line(row, moment)
     notes = [] if stable else [f"{rule['status']}, does not gate"]
     notes += [descriptions.waiver_reason(waiver)] if waiver else []
-    notes += ["known: the baseline has it"] if gate and gate.in_baseline(row["finding_id"]) else []
+    notes += ["known: the baseline contains it"] if gate and gate.in_baseline(row["finding_id"]) else []
     level = LEVELS[row["severity"]] if stable and waiver is None else INFORMATION
     issue = _issue(checker, rule, level, f"{text} ({'; '.join(notes)})" if notes else text)
     where = f"{subject(row)}, {moment} into the drive; map metres"

@@ -33,7 +33,7 @@ def went_wrong(rule: Row) -> str:
 def closing(mps: float) -> str:
     """Return in words how fast two road users approach each other, or move apart if `mps` is negative."""
     apart = mps < 0 and round(mps, 2) != 0
-    return f"{'drawing apart' if apart else 'closing'} at {number(abs(mps), 'm/s')}"
+    return f"{'moving apart' if apart else 'closing'} at {number(abs(mps), 'm/s')}"
 
 
 def non_breaking(text: str) -> str:

@@ -97,7 +97,7 @@ def build_lanes(lanes: Iterable[BoundedLane], offset: tuple[float, float], quali
     for lane in built.values():
         lost = [name for name in lane.successors if name not in built]
         if lost:
-            message = f"lanelet {lane.lanelet_id} leads to {', '.join(lost)}, which the map does not have"
+            message = f"lanelet {lane.lanelet_id} leads to {', '.join(lost)}, which the map does not contain"
             quality.add("missing_link", "warning", lane.lanelet_id, message, len(lost))
         lane.successors = tuple(name for name in lane.successors if name in built)
         if lane.left_id not in built:

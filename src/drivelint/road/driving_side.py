@@ -143,7 +143,7 @@ def choose_side(
     """Return the first of the statements (source, side) that has a side, as side and source; report disagreement in `quality`."""
     stated_sides = [(source, side) for source, side in statements if side is not None]
     if not stated_sides:
-        message = f"{where} does not state which side is driven on: right-hand traffic is a guess; set --handedness"
+        message = f"{where} does not state which side is driven on: right-hand traffic is assumed; set --handedness"
         quality.add("handedness_default", "warning", None, message)
         return "rht", "default"
     source, side = stated_sides[0]

@@ -86,17 +86,17 @@ def why_unusable(frame: GeoFrame, x_m: float, y_m: float) -> str | None:
     try:
         places = transform(np.array([[x, y], [x + 1.0, y]]), frame.reference, WGS84)
     except duckdb.Error:
-        return "PROJ does not understand it"
+        return "PROJ cannot read it"
     if not np.isfinite(places).all():
-        return "it has no place on the earth for the coordinates"
+        return "it gives no latitude and longitude for the coordinates"
     (longitude, latitude), (beside, above) = places.tolist()
     turned = math.remainder(beside - longitude, 360.0) * math.cos(math.radians(latitude))
     if not _METRE[0] < math.hypot(turned, above - latitude) * _DEGREE_M < _METRE[1]:
-        return "its unit is not the metre, or the coordinates are far outside the area for which it is made"
+        return "its unit is not the metre, or the coordinates are far outside its area"
     local = max(abs(x), abs(y)) < _LOCAL_M and not _has_local_origin(frame.reference)
     if local and (abs(latitude) < _EQUATOR_DEG or abs(latitude) > 90.0 - _POLE_DEG):
         return (
-            f"it is a placeholder: the coordinates are local ones, and it would put them at latitude {latitude:.3f}, "
+            f"it is a placeholder: the coordinates are local, and it would place them at latitude {latitude:.3f}, "
             f"longitude {longitude:.3f}"
         )
     return None

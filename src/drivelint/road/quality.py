@@ -66,14 +66,17 @@ class MapQuality:
         for vocabulary, words in self._unknown_words.items():
             severity, what, follows = _UNKNOWN_WORDS[vocabulary]
             counted = listed([f"{escape_invisible(word[:40])} ({n})" for word, n in sorted(words.items())])
-            message = f"{what} in unknown words: {counted}: {follows}"
+            message = f"{what} with unknown names: {counted}: {follows}"
             if words:
                 rows.append(_row("unknown_word", severity, None, message, words.total()))
         if self._stand_ins:
-            message = f"{_NETCONVERT_STAND_IN_MPS:g} m/s is what netconvert writes for a road without a limit: treated as unknown"
+            message = (
+                f"{_NETCONVERT_STAND_IN_MPS:g} m/s is the value that netconvert writes for a road without a "
+                "limit: the limit is treated as unknown"
+            )
             rows.append(_row("invalid_speed", "warning", None, message, self._stand_ins))
         if self._sides_by_number:
-            message = "lane sections have lanes with numbers of the other side than that under which they stand: the numbers count"
+            message = "lane sections list lanes under <left> or <right> whose numbers belong to the other side: the numbers are used"
             rows.append(_row("lane_side", "info", None, message, self._sides_by_number))
         return sorted(rows, key=lambda r: (_ORDER[r["severity"]], r["check_id"], r["lanelet_id"] or "", r["message"]))
 

@@ -27,7 +27,7 @@ class CrowdedPlaceError(Exception):
     """Raised if more shapes overlap at one position than in any road network."""
 
     def __init__(self, n: int) -> None:
-        super().__init__(f"{n} lanes or lines lie at one place")
+        super().__init__(f"{n} lanes or lines overlap at one place")
 
 
 def query_in_parts(

@@ -77,13 +77,13 @@ def test_a_folder_has_its_map_and_city(tmp_path: Path) -> None:
     assert trace.notes == []
     alone = read(file)
     assert alone.embedded_map is None
-    assert alone.notes == ["its map log_map_archive_s.json lies beside it: name the folder, or use --map"]
+    assert alone.notes == ["its map log_map_archive_s.json is in the same folder: give the folder, or use --map"]
     assert [path.name for path in expand_traces([str(tmp_path)])] == ["s"]
 
 
 def test_a_folder_without_a_map_or_with_two(tmp_path: Path) -> None:
     scenario(tmp_path / "s", ROWS)
-    assert read(tmp_path / "s").notes == ["its map is not there: log_map_archive_*.json"]
+    assert read(tmp_path / "s").notes == ["its map is missing: log_map_archive_*.json"]
     for name in "ab":
         (tmp_path / "s" / f"log_map_archive_{name}.json").write_text("{}")
     assert "2 maps" in quality(read(tmp_path / "s"))["own_map_unusable"]["message"]

@@ -103,7 +103,7 @@ def test_a_map_that_is_cut_says_so() -> None:
     assert lanelets(environment)["1"]["left_id"] is None
     (row,) = rows(environment, "map_quality")
     assert (row["check_id"], row["severity"], row["n"]) == ("missing_link", "info", 2)
-    assert "1 lanes that follow and 1 lanes beside others are not in it" in row["message"]
+    assert "1 lanes that follow its lanes and 1 lanes beside them" in row["message"]
 
 
 def crossroads(z: float = 0.0) -> dict[str, Any]:
@@ -166,7 +166,7 @@ def test_crossings_lie_across_lanes(turned: bool) -> None:
         ({"left_lane_boundary": points((0, -6), (100, -6))}, "its left bound lies on the right"),
         ({"right_lane_boundary": [{"x": 1.0}, {"x": 2.0}]}, "it has no 'y'"),
         ({"id": "eleven"}, "eleven"),
-        ({"id": 1}, "another one has its id"),
+        ({"id": 1}, "another segment has the same id"),
     ],
 )
 def test_a_lane_that_cannot_be_read_is_named_and_the_others_stay(change: dict[str, Any], says: str) -> None:
@@ -200,8 +200,8 @@ def test_a_map_without_the_table_of_crossings() -> None:
     [
         (json.dumps(road(straight(1))).encode()[:-30], "not readable as JSON"),
         (b"{" * 100_000, "not readable as JSON"),
-        (b'{"R": [1.0], "t": [0.0], "s": 3.3}', "no map of Argoverse 2"),
-        (b'{"lane_segments": []}', "no map of Argoverse 2"),
+        (b'{"R": [1.0], "t": [0.0], "s": 3.3}', "not a map of Argoverse 2"),
+        (b'{"lane_segments": []}', "not a map of Argoverse 2"),
         (json.dumps(road()).encode(), "no lane that can be built"),
         (json.dumps(road({"id": 1})).encode(), "no lane that can be built: lane segment 1 is left out"),
     ],

@@ -36,7 +36,7 @@ def test_a_rider_has_the_box_around_both(tmp_path: Path) -> None:
     assert found["height_m"] == pytest.approx(1.3 - -0.75)
     first = states(trace, "rider")[0]
     assert (first["x_m"], first["y_m"], first["z_m"]) == pytest.approx((10.0, 2.0, (1.3 - 0.75) / 2))
-    assert any("each rider and vehicle" in note and "rider" in note for note in trace.notes)
+    assert any("each rider and the vehicle" in note and "rider" in note for note in trace.notes)
 
 
 def test_the_box_lies_along_what_is_ridden(tmp_path: Path) -> None:

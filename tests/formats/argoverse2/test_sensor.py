@@ -79,7 +79,7 @@ def test_the_ego_has_the_documented_box_at_the_steps_of_the_annotations(tmp_path
     expected = (1.0 + 1.339 * math.cos(0.1), 1.339 * math.sin(0.1), 0.438, 0.1)
     assert place(at_step(trace, "ego", 2)) == pytest.approx(expected)
     assert quality(trace)["assumed_size"]["actor_id"] == "ego"
-    assert "documented, not recorded" in quality(trace)["assumed_size"]["message"]
+    assert "documentation, not recorded" in quality(trace)["assumed_size"]["message"]
 
 
 def test_the_ego_is_no_second_body(tmp_path: Path) -> None:
@@ -108,7 +108,7 @@ def test_every_category_has_its_class(tmp_path: Path) -> None:
     trace = read(sensor_log(tmp_path / "log", rows))
     assert len(CLASSES) == 30
     assert {name: row["actor_class"] for name, row in actors(trace).items() if name != "ego"} == CLASSES
-    assert trace.notes == ["its map is not there: map/log_map_archive_*.json"]
+    assert trace.notes == ["its map is missing: map/log_map_archive_*.json"]
 
 
 def test_a_category_that_argoverse_does_not_have_may_be_anything(tmp_path: Path) -> None:
@@ -232,7 +232,7 @@ def test_argoverse_s_own_annotations_go_before_others(tmp_path: Path) -> None:
     folder = sensor_log(tmp_path / "log", [box(k, "other") for k in range(N)], name="annotations_a.feather")
     trace = read(sensor_log(folder, [box(k) for k in range(N)]))
     assert set(actors(trace)) == {"a", "ego"}
-    assert "annotations.feather is read, and not annotations_a.feather beside it" in trace.notes
+    assert "annotations.feather is read; annotations_a.feather in the same folder is not read" in trace.notes
 
 
 def test_the_map_goes_along_with_its_city(tmp_path: Path) -> None:
@@ -261,7 +261,7 @@ def test_a_folder_of_logs_is_searched(tmp_path: Path) -> None:
 
 def test_a_single_file_of_a_log_names_the_folder(tmp_path: Path) -> None:
     folder = sensor_log(tmp_path / "log", [box(k) for k in range(N)])
-    with pytest.raises(TraceError, match=r"annotations\.feather: .*name the folder"):
+    with pytest.raises(TraceError, match=r"annotations\.feather: .*give the folder"):
         read(folder / "annotations.feather")
 
 

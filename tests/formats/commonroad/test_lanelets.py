@@ -125,7 +125,8 @@ def test_a_sign_or_stop_line_at_no_place_is_refused_with_its_line(tag: str, x: s
     stop = f"<stopLine>{point}</stopLine>" if tag == "stopLine" else '<trafficSignRef ref="5"/>'
     sign = f'<trafficSign id="5"><position>{point if tag == "trafficSign" else ""}</position></trafficSign>'
     with pytest.raises(
-        MapError, match="of a sign, light or stop line, the point in line 2 has impossible values of x and y"
+        MapError,
+        match="a sign, light or stop line cannot be read: the point in line 2 has impossible values of x and y",
     ):
         load(scenario(lanelet(1, 0.0, stop), sign))
 
@@ -251,10 +252,10 @@ def test_a_limit_that_is_not_sure_is_not_taken_and_named() -> None:
     assert limits(environment) == {"5": (10.0, "sign"), "6": (9.0, "sign")}
     found = said(environment)
     assert [message for check, message in found if check == "invalid_speed"] == [
-        "the limit of sign 90 is not taken: 50 m/s is more than any sign allows: it may be in km/h",
-        "the limit of sign 91 is not taken: it has no number",
-        "the limit of sign 92 is not taken: it applies only as its plates state (1053-35)",
-        "the limit of lanelet 7 is not taken: -1 m/s is no limit",
+        "the limit of sign 90 is not used: 50 m/s is more than any sign allows: the value may be in km/h",
+        "the limit of sign 91 is not used: it has no number",
+        "the limit of sign 92 is not used: it applies only as its plates state (1053-35)",
+        "the limit of lanelet 7 is not used: -1 m/s is not a speed limit",
     ]
 
 
@@ -268,7 +269,7 @@ def test_what_is_not_read_is_named() -> None:
         )
     )
     assert [message for _, message in said(environment)] == [
-        "lanelets refer to signs or lights that the map does not have: 7 (1)",
+        "lanelets refer to signs or lights that the map does not contain: 7 (1)",
         "signs with a number and a code that is not known (USA): R9-9 (1): whether they limit the speed is not known",
         "signs and lights to which no lanelet refers apply to no lane: 91",
         "signs that no rule reads (USA): R8-8 (1)",

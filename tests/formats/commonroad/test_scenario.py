@@ -202,7 +202,7 @@ def test_the_cycle_of_a_light_over_the_time_of_the_log(of: str, expected: str, t
     [
         (light(7), [], "7 are not known: it has no cycle"),
         (light(7, (0, "green")), [], "has no duration"),
-        (light(7, (5, "green"), offset="soon"), [], "time offset is no number"),
+        (light(7, (5, "green"), offset="soon"), [], "time offset is not a number"),
         (light(7, (5, "green"), (90, "blue")), [(0.0, "green"), (0.5, None)], "not known: blue"),
     ],
 )

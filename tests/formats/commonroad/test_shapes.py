@@ -165,7 +165,7 @@ def test_an_origin_that_cannot_be_is_not_known(shift: str, tmp_path: Path) -> No
         ("<semiTrailerTruckShape>" + TRUCK + "</semiTrailerTruckShape>", (10.5, 0.0), "a truck with its trailer"),
         (f"<rectangle>{SIZE}</rectangle><rectangle>{SIZE}</rectangle>", (None, None), "several shapes"),
         (f"<shapeGroup><shape><rectangle>{SIZE}</rectangle></shape></shapeGroup>", (None, None), "several shapes"),
-        ("", (8.0, 0.0), "no shape that is read"),
+        ("", (8.0, 0.0), "a shape that is not supported"),
     ],
 )
 def test_what_is_no_box_has_no_size(

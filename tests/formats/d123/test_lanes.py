@@ -100,7 +100,7 @@ def test_ways_on(tmp_path: Path) -> None:
     environment = load(tmp_path, lanes)
     links = {(row["from_id"], row["to_id"]) for row in environment.tables["lane_link"].to_pylist()}
     assert links == {("1", "2"), ("2", "3")}
-    assert problems(environment, "missing_link") == ["lanelet 1 leads to 9, which the map does not have"]
+    assert problems(environment, "missing_link") == ["lanelet 1 leads to 9, which the map does not contain"]
 
 
 def test_limits(tmp_path: Path) -> None:
@@ -185,7 +185,7 @@ def test_what_is_not_read_is_said(tmp_path: Path) -> None:
     assert problems(environment, "layers_unread") == [
         "objects of layers that are not read: 1 of walkway, 1 of stop zone"
     ]
-    assert problems(environment, "unknown_word") == ["layers that 123D does not have: 55: their objects are not read"]
+    assert problems(environment, "unknown_word") == ["layers that 123D does not define: 55: their objects are not read"]
     assert "of lanes through intersections" in problems(environment, "estimated_bounds")[0]
     assert len(problems(environment, "signs_unmapped")) == 1
 
@@ -213,10 +213,10 @@ def test_a_lane_that_cannot_be_read_is_reported(tmp_path: Path) -> None:
 def test_what_is_no_map_of_123d_is_refused(tmp_path: Path) -> None:
     with pytest.raises(MapError, match="has no lane for vehicles that can be built: it has no lane"):
         load(tmp_path, [crosswalk(1, 0, 0, 1, 1)])
-    with pytest.raises(MapError, match=r"version 0\.9\.0 of py123d wrote it"):
+    with pytest.raises(MapError, match=r"py123d 0\.9\.0 wrote the file"):
         load(tmp_path, [straight(1, 0, 50, 0.0)], version="0.9.0")
     other = read_source(arrow(tmp_path / "other.arrow", {"a": pa.array([1])}, {}))
-    with pytest.raises(MapError, match="no column object_id, map_layer, features, wkb: it is no map of 123D"):
+    with pytest.raises(MapError, match="no column object_id, map_layer, features, wkb: this is not a map of 123D"):
         load_map(other)
     nameless = {
         name: pa.array([None], kind)

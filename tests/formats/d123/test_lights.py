@@ -53,7 +53,7 @@ def test_states_by_lane(tmp_path: Path) -> None:
 def test_a_state_that_is_not_known(tmp_path: Path) -> None:
     folder = write(tmp_path / "log", [(1_000_000, [(7, 9), (8, RED)])])
     assert light_colours(folder) == {("7", 1000): None, ("8", 1000): "red"}
-    assert "does not have (9): 1" in quality(read(folder))["unknown_light_state"]["message"]
+    assert "does not define (9): 1" in quality(read(folder))["unknown_light_state"]["message"]
 
 
 def test_lanes_and_states_that_differ_in_number(tmp_path: Path) -> None:

@@ -118,7 +118,7 @@ def test_labels_of_data_sets(tmp_path: Path, enumeration: str, number: int, word
 @pytest.mark.parametrize(
     ("labels", "number", "what"),
     [
-        (LABELS, 30, "labels that AV2SensorBoxDetectionLabel does not have (30) of 3 boxes"),
+        (LABELS, 30, "labels that AV2SensorBoxDetectionLabel does not define (30) of 3 boxes"),
         ("my.own.Labels", 1, "their labels are numbers of my.own.Labels"),
         ("my.own.AV2SensorBoxDetectionLabel", 1, "their labels are numbers of my.own.AV2SensorBoxDetectionLabel"),
         ("", 1, "their labels are numbers of an enumeration without a name"),
@@ -252,14 +252,16 @@ def test_folders_are_searched_for_logs(tmp_path: Path) -> None:
 def test_a_folder_without_the_table_of_frames_is_no_log(tmp_path: Path) -> None:
     folder = plain(tmp_path / "log")
     (folder / "sync.arrow").unlink()
-    with pytest.raises(TraceError, match="not a folder that is one drive"):
+    with pytest.raises(TraceError, match="not a folder of one drive"):
         read(folder)
 
 
 @pytest.mark.parametrize("version", ["0.1.0", "0.8.0", "1.0.0", "unknown", None])
 def test_a_version_that_is_not_known_is_refused(tmp_path: Path, version: str | None) -> None:
     folder = plain(tmp_path / "log", version=version)
-    with pytest.raises(TraceError, match=rf"version {version} of py123d wrote it, and 0\.2 to 0\.7 are read"):
+    with pytest.raises(
+        TraceError, match=rf"version {version} wrote the file, but only the versions 0\.2 to 0\.7 are read"
+    ):
         read(folder)
 
 

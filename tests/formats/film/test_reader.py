@@ -220,7 +220,7 @@ def test_boxes_without_a_camera_or_of_nobody_are_refused(tmp_path: Path) -> None
     with pytest.raises(UsageError, match="focal_px"):
         read_trace(log, IngestOptions(mapping=str(own)))
     own.write_text(CAMERA + "[camera]\nfocal_px = 1000.0\n", encoding="utf-8")
-    with pytest.raises(TraceError, match="no box has one of the ids"):
+    with pytest.raises(TraceError, match="no box has an id that the mapping names"):
         read_trace(log, IngestOptions(mapping=str(own)))
 
 

@@ -145,7 +145,7 @@ def test_chunk_that_unpacks_to_another_size(whole: Path, compression: Compressio
 def test_record_longer_than_the_file(whole: Path) -> None:
     data = bytearray(whole.read_bytes())
     struct.pack_into("<Q", data, 9, 2**60)
-    with pytest.raises(TraceError, match=rf"a header record of {2**60} bytes, of which \d+ are there, at byte 8"):
+    with pytest.raises(TraceError, match=rf"a header record of {2**60} bytes, of which \d+ are present, at byte 8"):
         read(put(whole, bytes(data)))
 
 

@@ -39,24 +39,24 @@ def test_the_option_comes_first() -> None:
             'rule="RHT"',
             {"handedness": "lht", "voted_handedness": "rht"},
             (
-                "--handedness says lht, the rule attribute of 1 road says rht, the traces fit rht: lht is taken. "
-                "If that is wrong, every direction is wrong: leave the option out, or set rht."
+                "--handedness says lht, the rule attribute of 1 road says rht, the traces fit rht: lht is used. "
+                "If this is not right, every direction is wrong: leave the option out, or set rht."
             ),
         ),
         (
             'rule="RHT"',
             {"handedness": "rht", "voted_handedness": "lht"},
             (
-                "--handedness says rht, the rule attribute of 1 road says rht, the traces fit lht: rht is taken. "
-                "If that is wrong, every direction is wrong: give --handedness lht."
+                "--handedness says rht, the rule attribute of 1 road says rht, the traces fit lht: rht is used. "
+                "If this is not right, every direction is wrong: give --handedness lht."
             ),
         ),
         (
             'rule="RHT"',
             {"voted_handedness": "lht"},
             (
-                "the rule attribute of 1 road says rht, the traces fit lht: rht is taken. "
-                "If that is wrong, every direction is wrong: give --handedness lht."
+                "the rule attribute of 1 road says rht, the traces fit lht: rht is used. "
+                "If this is not right, every direction is wrong: give --handedness lht."
             ),
         ),
     ],

@@ -12,7 +12,7 @@ MARK = '<roadMark sOffset="0" type="{}" color="{}" laneChange="{}"/>'
 
 
 def unknown(environment: object) -> list[tuple[str, str, int]]:
-    """Return severity, message and number of what the map says in unknown words."""
+    """Return severity, message and number of what the map says with unknown names."""
     found = [row for row in rows(environment, "map_quality") if row["check_id"] == "unknown_word"]  # type: ignore[arg-type]
     return [(row["severity"], row["message"], row["n"]) for row in found]
 
@@ -42,7 +42,7 @@ def test_a_lane_of_a_type_that_is_not_known_is_named_and_not_driven_on() -> None
     environment = load(road(lanes=lanes))
     found = {name: (row["lane_type"], row["drivable"]) for name, row in lanelets(environment).items()}
     assert found == {"1.0.1": ("driving", True), **dict.fromkeys(["1.0.-1", "1.0.-2", "1.0.-3"], ("unknown", False))}
-    message = "types of lanes in unknown words: drivng (2), hoverlane (1): vehicles are assumed not to drive there"
+    message = "types of lanes with unknown names: drivng (2), hoverlane (1): vehicles are assumed not to drive there"
     assert unknown(environment) == [("warning", message, 3)]
 
 
@@ -64,10 +64,10 @@ def test_marks_and_roads_in_words_that_are_not_known_are_not_known() -> None:
     assert [(r["marking"], r["color"], r["lane_change"]) for r in edges] == [(None, None, None)]
     assert lanelets(environment)["1.0.-1"]["road_type"] is None
     assert [message.partition(":")[0] for _, message, _ in unknown(environment)] == [
-        "colors of road marks in unknown words",
-        "lane changes over road marks in unknown words",
-        "road marks in unknown words",
-        "types of roads in unknown words",
+        "colors of road marks with unknown names",
+        "lane changes over road marks with unknown names",
+        "road marks with unknown names",
+        "types of roads with unknown names",
     ]
     assert {severity for severity, _, _ in unknown(environment)} == {"info"}
 

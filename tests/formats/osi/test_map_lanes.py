@@ -161,7 +161,7 @@ def test_lanes_by_their_bounds_alone(ahead: bool) -> None:
 
 def test_a_lane_without_centre_line_and_direction_is_not_guessed_at() -> None:
     with pytest.raises(
-        MapError, match=r"3 lanes .* 2 of them because the direction in which it is driven is not known"
+        MapError, match=r"3 lanes .* 2 of them fail because the direction in which it is driven is not known"
     ):
         bounded(None).load()
     trace = bounded()
@@ -226,7 +226,7 @@ def test_the_lanes_of_a_real_log_have_boundaries_and_no_direction() -> None:
     truth = message_class("GroundTruth").FromString(trace.embedded_map)
     assert (len(truth.lane), len(truth.lane_boundary)) == (4, 7)
     with pytest.raises(
-        MapError, match=r"own 4 lanes .* 3 of them because the direction in which it is driven is not known"
+        MapError, match=r"4 lanes .* 3 of them fail because the direction in which it is driven is not known"
     ):
         load_map(MapSource("embedded", trace.embedded_map))
     for lane in truth.lane:  # if it said that they are driven as their boundaries run, as the host drives

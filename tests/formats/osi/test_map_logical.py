@@ -165,9 +165,9 @@ def test_a_lane_driven_both_ways() -> None:
 @pytest.mark.parametrize(
     ("spoil", "what"),
     [
-        (lambda road: road.truth.logical_lane[0].left_boundary_id.add(value=99), "left boundary 99 is not in the log"),
+        (lambda road: road.truth.logical_lane[0].left_boundary_id.add(value=99), "the log lacks its left boundary 99"),
         (lambda road: road.truth.logical_lane[0].ClearField("right_boundary_id"), "no right boundary"),
-        (lambda road: setattr(road.truth.logical_lane[0], "end_s", 130.0), "its boundaries reach from 0 to 100 m"),
+        (lambda road: setattr(road.truth.logical_lane[0], "end_s", 130.0), "its boundaries extend from 0 to 100 m"),
         (lambda road: setattr(road.truth.logical_lane[0], "end_s", 0.0), "it ends at 0 m"),
         (
             lambda road: setattr(road.truth.logical_lane_boundary[2].boundary_line[2], "s_position", 1.0),
@@ -188,7 +188,7 @@ def test_where_no_lane_can_be_driven_on_the_reason_is_told() -> None:
     road = two_way()
     for lane in road.truth.logical_lane:
         lane.move_direction = 0
-    with pytest.raises(MapError, match=r"none .* 3 lanes .*, 2 of them because its move_direction does not state"):
+    with pytest.raises(MapError, match=r"none .* 3 lanes .*; 2 of them fail because its move_direction does not state"):
         road.load()
 
 

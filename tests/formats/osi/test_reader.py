@@ -159,7 +159,7 @@ def test_the_host_is_that_of_most_frames(odd: int, tmp_path: Path) -> None:
     trace = read(write(tmp_path, frames))
     assert [k for k, v in actors(trace).items() if v["is_ego"]] == ["0"]
     found = quality(trace)["ego_count"]
-    assert "2 host vehicles (0, 2): 0 is the ego, which 1 of 5 frames do not name" in found["message"]
+    assert "2 host vehicles (0, 2): 0 is used as the ego; 1 of 5 frames do not name it" in found["message"]
     assert (found["severity"], found["actor_id"], found["t_first_ns"]) == ("warning", "0", odd * 100_000_000)
 
 
@@ -346,7 +346,7 @@ def test_embedded_map(tmp_path: Path) -> None:
     several = read(osi_log.write(tmp_path / "e.mcap", messages))
     assert several.embedded_map is None
     assert unusable(several) == [
-        "the log has 2 different OpenDRIVE maps (topics /ground_truth_map, other), and none is used: keep one"
+        "the log has 2 different OpenDRIVE maps (topics /ground_truth_map, other), and none is used: keep only one in the log"
     ]
 
 

@@ -180,7 +180,7 @@ def test_too_long() -> None:
 
 @pytest.mark.parametrize("head", ["00030000", "00070000", "01010000"])
 def test_other_encodings(head: str) -> None:
-    with pytest.raises(TraceError, match=f"record at byte 1001: .* encoded otherwise than plain CDR .* {head}"):
+    with pytest.raises(TraceError, match=f"record at byte 1001: .* not encoded as plain CDR .* {head}"):
         arrays([WHOLE, bytes.fromhex(head) + WHOLE[4:]])
 
 

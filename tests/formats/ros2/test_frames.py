@@ -148,7 +148,7 @@ def test_two_clocks(tmp_path: Path) -> None:
     ]
     trace = seen(tmp_path, [*ego(), *objects])
     assert states(trace, "9")[0]["t_ns"] == 100_000_000_000
-    assert "no moment in common: two clocks" in quality(trace)["log_time_used"]["message"]
+    assert "do not overlap: they come from two clocks" in quality(trace)["log_time_used"]["message"]
 
 
 def test_float_stamps(tmp_path: Path) -> None:
@@ -279,7 +279,7 @@ def test_order_of_messages_and_objects_changes_nothing(
 
 
 def test_nothing_to_read(tmp_path: Path) -> None:
-    said = "no nav_msgs/Odometry and no road users: it has tf2_msgs/TFMessage on /tf, .* on /tf_static; see drivelint docs traces"
+    said = "no nav_msgs/Odometry and no road users: the log has tf2_msgs/TFMessage on /tf, .* on /tf_static; see drivelint docs traces"
     with pytest.raises(TraceError, match=said):
         seen(tmp_path, chain())
     folder = tmp_path / "bag"
@@ -292,5 +292,7 @@ def test_nothing_to_read(tmp_path: Path) -> None:
 
 
 def test_definition_in_idl(tmp_path: Path) -> None:
-    with pytest.raises(TraceError, match=r"nav_msgs/msg/Odometry is described by ros2idl: only ros2msg is read"):
+    with pytest.raises(
+        TraceError, match=r"nav_msgs/msg/Odometry has a definition of the kind ros2idl, but only ros2msg is supported"
+    ):
         read(ros.write(tmp_path / "idl.mcap", ego(), encoding="ros2idl"))

@@ -152,7 +152,7 @@ def test_one_body_on_several_topics_is_one_track(tmp_path: Path) -> None:
     assert len(states(trace, TWO)) == N
     (note,) = [note for note in trace.notes if "road users" in note]
     assert note == (
-        f"road users: topic /perception/object_recognition/objects is read, {TRACKING} is left out: --topic chooses another"
+        f"road users: topic /perception/object_recognition/objects is read, {TRACKING} is not read: --topic chooses another topic"
     )
     chosen = seen(tmp_path, messages, topic=TRACKING)
     assert set(actors(chosen)) == {TWO, "ego"}

@@ -51,7 +51,7 @@ def test_size_and_centre(tmp_path: Path) -> None:
         (AHEAD * math.cos(TURN), AHEAD * math.sin(TURN), 1.25)
     )
     assert "reference_point" not in quality(trace)
-    assert trace.notes[0] == ("the ego's box is that of /a: 4.89 m by 1.90 m, its centre 1.34 m ahead of base_link")
+    assert trace.notes[0] == ("the ego's box is taken from /a: 4.89 m by 1.90 m, its centre 1.34 m ahead of base_link")
 
 
 def test_without_parameters_nothing_is_made_up(tmp_path: Path) -> None:
@@ -162,8 +162,8 @@ def test_the_log_counts_before_the_option(tmp_path: Path) -> None:
     assert size(trace) == SIZE
     assert at(trace, "ego", T0)["x_m"] == pytest.approx(AHEAD * math.cos(TURN))
     assert [row["message"] for row in trace.tables["quality"].to_pylist() if row["check_id"] == "ego_size"] == [
-        "--ego-size puts the centre of the ego's box 0.7 m ahead of base_link, but the log states 1.345 m, which is used",
-        "--ego-size gives ego a length of 3 m, but the log states 4.89 m, which is used",
+        "--ego-size puts the centre of the ego's box 0.7 m ahead of base_link, but the log states 1.345 m: the value of the log is used",
+        "--ego-size gives ego a length of 3 m, but the log states 4.89 m: the value of the log is used",
     ]
 
 

@@ -145,7 +145,7 @@ def test_a_lane_of_which_nobody_gives_the_width_is_left_out() -> None:
     found = load({"a": bounded(), "alone": lane(shifted(EAST, y=50.0))})
     assert set(lanelets(found)) == {"a"}
     assert checks(found, "invalid_lane") == [
-        "lane alone is left out: neither it nor what it joins has bounds, and so it has no width"
+        "lane alone is left out: neither it nor the lanes that it joins have bounds, so its width is unknown"
     ]
 
 
@@ -191,7 +191,7 @@ def test_links_that_the_scenario_gives() -> None:
     }
     found = load(features)
     assert [(row["from_id"], row["to_id"]) for row in rows(found, "lane_link")] == [("1", "2"), ("2", "3")]
-    assert checks(found, "missing_link") == ["lanelet 3 leads to 99, which the map does not have"]
+    assert checks(found, "missing_link") == ["lanelet 3 leads to 99, which the map does not contain"]
 
 
 def test_lanes_that_meet_at_their_ends_are_linked_but_not_backwards() -> None:
@@ -384,7 +384,7 @@ def test_lights_stand_at_their_stop_points_on_the_lanes_that_they_hold_for() -> 
     )
     assert (row["lane_s_m"], row["x_m"], row["y_m"]) == pytest.approx((40.0, 40.0, 0.3))
     assert checks(found, "signal_without_lane") == [
-        "lights that hold for no lane that is built, or have no place: gone"
+        "lights that apply to no lane of the map, or have no position: gone"
     ]
 
 
@@ -408,7 +408,7 @@ def test_stop_signs() -> None:
     ]  # fmt: skip
     assert [row["lane_s_m"] for row in rows(found, "traffic_signal")] == pytest.approx([90.0, 90.0])
     assert checks(found, "signal_without_lane") == [
-        "stop signs that hold for no lane that is built, or have no place: far, none"
+        "stop signs that apply to no lane of the map, or have no position: far, none"
     ]
 
 
@@ -461,7 +461,7 @@ def test_an_offset_moves_everything() -> None:
 @pytest.mark.parametrize(
     ("content", "says"),
     [
-        (b"\x80\x04}\x94.", "has no scenario of ScenarioNet"),
+        (b"\x80\x04}\x94.", "is not a scenario of ScenarioNet"),
         (b"\x80\x04\x95", "cut off or damaged"),
         (
             pickle.dumps(scenario({"ego": track(straight(3, 1.0))}), 4),
@@ -469,7 +469,7 @@ def test_an_offset_moves_everything() -> None:
         ),
         (
             pickle.dumps(scenario({"ego": track(straight(3, 1.0))}, features={"1": lane(EAST)}), 4),
-            "it has no width: give --map",
+            "its width is unknown: give --map",
         ),
     ],
 )

@@ -131,7 +131,7 @@ def test_a_box_that_moves_along_its_short_side_is_turned(tmp_path: Path) -> None
     assert (actors(trace)["a"]["length_m"], actors(trace)["a"]["width_m"]) == (4.5, 1.8)
     (row,) = checks(trace, "box_turned")
     assert row["actor_id"] == "a"
-    assert "as its motion along the short side shows: they are exchanged" in row["message"]
+    assert "as its motion along the short side shows: this is corrected" in row["message"]
 
 
 @pytest.mark.parametrize("case", ["standing", "sideways"])
@@ -141,7 +141,7 @@ def test_a_wide_box_is_unknown_where_no_motion_tells(tmp_path: Path, case: str) 
     trace = ego_and(tmp_path, {"a": track(straight(41, 0.0 if case == "standing" else 2.0, y=4.0), heading, **swapped)})
     assert (actors(trace)["a"]["length_m"], actors(trace)["a"]["width_m"]) == (None, None)
     assert [row["message"] for row in checks(trace, "box_turned")] == [
-        "wider than long, and no motion tells which side is the length: a: the size is unknown"
+        "wider than long, and no motion shows which side is the length: a: the size is unknown"
     ]
 
 
@@ -316,7 +316,7 @@ def test_the_ego_of_nuscenes_is_put_where_it_was_at_the_steps(tmp_path: Path, be
     assert np.abs(speed - (8.0 + 2.0 * at * STEP_S) * np.hypot(1.0, 0.02))[1:-1].max() < 0.25
     assert column(trace, "ego", "z_m") == pytest.approx(np.full(len(at), 0.78))
     (row,) = checks(trace, "ego_clock")
-    assert "4 of its messages are lost, and the steps over them are 0.02 s longer each" in row["message"]
+    assert "4 of its messages are lost, and each lost message makes a step 0.02 s longer" in row["message"]
     assert f"show that it begins {begins_s:.2f} s after these".replace("-0.00", "0.00") in row["message"]
     assert len(at) >= 118
 
@@ -368,17 +368,17 @@ def test_light_states(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("content", "says"),
     [
-        ({"a": 1}, "has no scenario of ScenarioNet, which has a dict 'metadata'"),
-        ({"metadata": {}, "tracks": {}, "dynamic_map_states": {}}, "has a dict 'map_features'"),
-        (scenario({"ego": track(straight(5, 1.0))}, ts=None), "metadata['ts'] is no array of numbers"),
-        (scenario({"ego": track(straight(5, 1.0))}, ts=np.array([np.nan] * 5)), "metadata['ts'] is no list of times in seconds"),
+        ({"a": 1}, "it is not a scenario of ScenarioNet, because it has no dict 'metadata'"),
+        ({"metadata": {}, "tracks": {}, "dynamic_map_states": {}}, "has no dict 'map_features'"),
+        (scenario({"ego": track(straight(5, 1.0))}, ts=None), "metadata['ts'] is not an array of numbers"),
+        (scenario({"ego": track(straight(5, 1.0))}, ts=np.array([np.nan] * 5)), "metadata['ts'] is not a list of times in seconds"),
         (scenario({"ego": track(straight(5, 1.0))}, ts=np.arange(4.0)), "is of the shape (5, 3), and the scenario has 4 steps"),
         (scenario({"ego": track(straight(5, 1.0)), "a": {"state": 5}}), "tracks['a'] has no dict 'state'"),
-        (scenario({"ego": track(straight(5, 1.0)), "a": 7}), "tracks['a'] is no dict"),
-        (scenario({"ego": track(straight(5, 1.0), velocity=np.array(["a"] * 5))}), "['state']['velocity'] is no array of numbers"),
-        (scenario({"ego": track(straight(5, 1.0), position=None)}), "['state']['position'] is no array of numbers"),
+        (scenario({"ego": track(straight(5, 1.0)), "a": 7}), "tracks['a'] is not a dict"),
+        (scenario({"ego": track(straight(5, 1.0), velocity=np.array(["a"] * 5))}), "['state']['velocity'] is not an array of numbers"),
+        (scenario({"ego": track(straight(5, 1.0), position=None)}), "['state']['position'] is not an array of numbers"),
         (scenario({"ego": track(straight(5, 1.0))}, lights={"9": light(["LANE_STATE_GO"], 9, (0, 0, 0))}), "has not one word per step (5)"),
-        (scenario({"ego": track(straight(5, 1.0))}, ts=np.arange(5.0) * 1e9), "no list of times in seconds"),
+        (scenario({"ego": track(straight(5, 1.0))}, ts=np.arange(5.0) * 1e9), "not a list of times in seconds"),
     ],
 )  # fmt: skip
 def test_what_is_no_scenario(tmp_path: Path, content: Any, says: str) -> None:
@@ -406,7 +406,7 @@ def test_a_file_that_is_no_pickle(tmp_path: Path) -> None:
     with pytest.raises(TraceError, match=r"not pkl: it should begin b'\\x80' and begins"):
         read(path)
     put(tmp_path, [1, 2], name="sd_1.pkl")
-    with pytest.raises(TraceError, match="has no scenario of ScenarioNet"):
+    with pytest.raises(TraceError, match="is not a scenario of ScenarioNet"):
         read(path)
 
 
@@ -464,5 +464,5 @@ def test_a_folder_is_searched_for_scenarios_only(tmp_path: Path) -> None:
     assert expand_traces([str(tmp_path / "*" / "[ds]*.pkl")]) == scenarios[1:]
     summary = tmp_path / "nuscenes_0" / "dataset_summary.pkl"
     assert expand_traces([str(summary)]) == [summary]
-    with pytest.raises(TraceError, match="has no scenario of ScenarioNet"):
+    with pytest.raises(TraceError, match="is not a scenario of ScenarioNet"):
         read(summary)

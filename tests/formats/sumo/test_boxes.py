@@ -85,7 +85,7 @@ def test_types_that_two_files_know_differently_are_unknown(tmp_path: Path) -> No
     put(tmp_path / "b.rou.xml", BUS.replace('length="12"', 'length="14"'))
     trace = read(put(tmp_path / "a.xml", xml()), ego="a.0")
     assert (actors(trace)["b.0"]["length_m"], actors(trace)["a.0"]["length_m"]) == (None, 4.0)
-    assert any("the type bus is another in b.rou.xml than in a.rou.xml" in note for note in trace.notes)
+    assert any("the type bus differs between b.rou.xml and a.rou.xml" in note for note in trace.notes)
 
 
 @pytest.mark.parametrize("ego", ["b.0", "all"])

@@ -111,7 +111,7 @@ def test_few_decimals_are_said(folder: Path) -> None:
     found, said = places(folder, xml(degrees(plain(), 6)), map=folder / "n.net.xml")
     worst = math.hypot(1.0, math.cos(math.radians(51.45))) * 0.5e-6 * 111_195
     assert 0.01 < np.hypot(*(found - expected)[:, :2].T).max() < worst + 1e-3
-    assert f"known to {worst:.2g} m" in said["rounded_position"]["message"]
+    assert f"exact to {worst:.2g} m" in said["rounded_position"]["message"]
 
 
 @pytest.mark.parametrize(
@@ -120,7 +120,7 @@ def test_few_decimals_are_said(folder: Path) -> None:
         (None, "", r"longitude and latitude .* give the net that was simulated"),
         ("!", "0,0", "no projection"),
         (UTM, "east", "its netOffset is 'east'"),
-        ("+proj=nothing", "0,0", "PROJ does not understand it"),
+        ("+proj=nothing", "0,0", "PROJ cannot read it"),
         ("xodr", "", "is no SUMO net"),
     ],
 )
@@ -224,5 +224,5 @@ def test_the_reported_logs_are_one_drive(name: str, exact_m: float) -> None:
 
 
 def test_the_reported_log_without_angles_is_refused() -> None:
-    with pytest.raises(TraceError, match="no heading: nobody has an angle"):
+    with pytest.raises(TraceError, match="no heading: no vehicle has an angle"):
         reported("few")

@@ -91,8 +91,8 @@ def test_what_is_not_line_by_line_is_left_to_the_parser(found: str, change: str,
     [
         ({"x": "abc"}, "x of vehicles: Failed to parse string: 'abc'"),
         ({"time": "12:3"}, "time of vehicles: "),
-        ({"time": ""}, "without a time that can be: "),
-        ({"time": "1e300"}, "without a time that can be: "),
+        ({"time": ""}, "without a valid time: "),
+        ({"time": "1e300"}, "without a valid time: "),
     ],
 )
 def test_a_cell_that_is_no_number_is_refused(tmp_path: Path, form: str, cell: dict[str, str], message: str) -> None:
@@ -164,7 +164,7 @@ def test_a_log_without_types(tmp_path: Path, form: str) -> None:
 def test_sizes_that_nobody_says_are_unknown(tmp_path: Path) -> None:
     trace = read(put(tmp_path / "a.xml", xml()), ego="a.0")
     assert actors(trace)["a.0"]["length_m"] is None
-    assert "no size is known of the vehicle types bus, quick" in quality(trace)["bumper_position"]["message"]
+    assert "the sizes of the vehicle types bus, quick are not known" in quality(trace)["bumper_position"]["message"]
 
 
 def test_sumos_default_types_are_known(tmp_path: Path) -> None:

@@ -71,7 +71,7 @@ def test_a_table_of_another_program_is_not_sumos(tmp_path: Path) -> None:
 @pytest.mark.parametrize("form", ["csv", "xml"])
 def test_a_log_without_angles_says_so(tmp_path: Path, form: str) -> None:
     rows = [{k: v for k, v in row.items() if k != "angle"} for row in ROWS]
-    with pytest.raises(TraceError, match="no heading: nobody has an angle"):
+    with pytest.raises(TraceError, match="no heading: no vehicle has an angle"):
         read(put(tmp_path / f"a.{form}", (xml if form == "xml" else csv)(rows)), ego="a.0")
 
 

@@ -83,7 +83,7 @@ def test_what_holds_in_the_drive_is_said_by_the_log_or_given_and_then_that_count
     [
         ("weather", "wett", "did you mean 'wet'"),
         ("wether", "wet", "did you mean 'weather'"),
-        ("weather", None, "without a name or a value"),
+        ("weather", None, "lacks its name or its value"),
         ("weather", "dry", "both 'wet' and 'dry'"),
     ],
 )
@@ -181,7 +181,7 @@ def test_actors_without_states_stay(tmp_path: Path, source: Trace) -> None:
         ({"indicator": ["left", "lefft"]}, r"indicator is 'lefft'; did you mean 'left'\? \(NULL: unknown\)"),
         ({"actor_class": ["car", "lorry"]}, "actor_class is 'lorry'"),
         ({"x_m": ["a", "b"]}, "column 'x_m' is string, not double"),
-        ({"drive_id": ["d", "e"]}, "holds 2 drives"),
+        ({"drive_id": ["d", "e"]}, "contains 2 drives"),
     ],
 )
 def test_tables_that_are_wrong(tmp_path: Path, columns: dict[str, list[Any]], message: str) -> None:
@@ -213,7 +213,7 @@ def test_a_table_of_states_that_is_not_the_one_counted_is_refused(rows: int, tmp
         pa.Table.from_pylist([state | {"t_ns": k * 100_000_000} for k in range(rows)]), tmp_path / "actor_state.parquet"
     )
     pq.write_table(pa.Table.from_pylist([{"n_states": 2}]), tmp_path / "data_log.parquet")
-    with pytest.raises(TraceError, match=rf"actor_state\.parquet: {rows} rows, and data_log\.parquet counts 2 states"):
+    with pytest.raises(TraceError, match=rf"actor_state\.parquet: {rows} rows, but data_log\.parquet states 2"):
         read(tmp_path)
     pq.write_table(pa.Table.from_pylist([{"n_states": rows}]), tmp_path / "data_log.parquet")
     assert len(states(read(tmp_path))) == rows

@@ -40,7 +40,7 @@ def test_the_registration_of_the_case_study_lives_in_its_mapping() -> None:
             LONG.replace('yaw = "yaw"', 'yaw = { column = "yaw", unit = "degree" }'),
             r"yaw: unknown unit 'degree': use rad, deg",
         ),
-        (LONG.replace('vy = "vy"\n', ""), r"vx and vy, and ax and ay, go in pairs"),
+        (LONG.replace('vy = "vy"\n', ""), r"vx and vy need each other, and so do ax and ay"),
         (LONG.replace('vx = "vx"', 'speed = "v"\nvx = "vx"'), r"vx and vy or speed, not both"),
         (LONG.replace('yaw = "yaw"\n', "") + '[reference]\npoint = "front_bumper"\n', r"need columns\.yaw"),
         (LONG + '[reference]\npoint = "rear_axle"\n', r"'rear_axle' needs reference\.forward"),

@@ -225,7 +225,7 @@ def test_malformed_rows_are_counted_and_placed(tmp_path: Path) -> None:
     ]
     found = {row["check_id"] + row["message"]: row["n"] for row in rows}
     for check, text in (
-        ("malformed_row", "line 5: not the 7 cells"),
+        ("malformed_row", "line 5: the number of cells differs from the 7 cells"),
         ("malformed_cell", "line 7: column 'x' is not a number"),
         ("dropped_row", "line 10: the time is missing or not a number"),
         ("dropped_row", "line 12: the actor id is missing"),
@@ -302,7 +302,7 @@ def test_a_shipped_mapping_is_found_by_its_columns(tmp_path: Path) -> None:
 
 def test_wrong_units_are_refused(tmp_path: Path) -> None:
     lines = [line.replace(",10.0,0.0", ",36.0,0.0") for line in cars(40)]
-    with pytest.raises(TraceError, match=r"d\.csv: velocity disagrees .*km/h read as m/s: correct the mapping"):
+    with pytest.raises(TraceError, match=r"d\.csv: velocity does not match .*km/h read as m/s: correct the mapping"):
         read(table(tmp_path / "d.csv", lines), mapping=mapping(tmp_path))
 
 
@@ -316,7 +316,7 @@ def test_degrees_are_not_read_as_radians(tmp_path: Path, turns: float, fits: boo
         (first, *_) = states(read(table(tmp_path / "d.csv", lines), mapping=name))
         assert first["yaw_rad"] == pytest.approx(2 * math.pi * (turns - 2)), "within half a turn"
         return
-    with pytest.raises(TraceError, match=r"'yaw' goes up to 13\.1947, which is no angle in radians: .*\"deg\""):
+    with pytest.raises(TraceError, match=r"'yaw' goes up to 13\.1947, which is not an angle in radians: .*\"deg\""):
         read(table(tmp_path / "d.csv", lines), mapping=name)
 
 
@@ -356,10 +356,13 @@ def test_row_order_does_not_matter(tmp_path: Path, data: st.DataObject) -> None:
     ("lines", "message"),
     [
         (["t,id,x,yy,yaw,vx,vy", "0,a,0,0,0,0,0"], r"no column 'y', which mapping 'mapping' needs: did you mean 'yy'"),
-        (["t,id,x,y,yaw,vx,vy,y", "0,a,0,0,0,0,0,0"], r"the column 'y' is there 2 times"),
+        (["t,id,x,y,yaw,vx,vy,y", "0,a,0,0,0,0,0,0"], r"the column 'y' occurs 2 times"),
         (["t,id,x,y,yaw,vx,vy"], r"no row follows the header|no actor states"),
-        (["t,id,x,y,yaw,vx,vy", "0,a,0"], r"line 2: not the 7 cells of the header: no row is left"),
-        (["", "t,id,x,y,yaw,vx,vy"], r"line 1 should name the columns and is blank"),
+        (
+            ["t,id,x,y,yaw,vx,vy", "0,a,0"],
+            r"line 2: the number of cells differs from the 7 cells of the header: no row is left",
+        ),
+        (["", "t,id,x,y,yaw,vx,vy"], r"line 1 should contain the names of the columns, but is blank"),
         (["t,id,x,y,yaw,vx,vy", ",,,,,,"], r"no actor states in this log"),
     ],
 )

@@ -104,9 +104,9 @@ def same_bodies(states: States, actors: Actors, egos: Collection[str]) -> list[Q
         kept, left = (states.ids[i] for i in order)
         rows[(rows_a if states.ids[a] == left else rows_b)[deep]] = True
         pairs.append(f"{left} is the same body as {kept}")
-    text = f"{listed(pairs)}, in {{n}} of {{of}} states: it is not used" if pairs else ""
+    text = f"{listed(pairs)}, in {{n}} of {{of}} states: the first of the two is not used" if pairs else ""
     findings = states.findings(rows, "same_body", "warning", text, quantity="identity")
-    text = "boxes of moving actors overlap from their first sample, in {n} of {of} states ({ids}): their places are not exact"
+    text = "boxes of moving actors overlap from their first sample, in {n} of {of} states ({ids}): their positions are not exact"
     return findings + states.findings(begun, "begin_overlap", "warning", text, quantity="position")
 
 
@@ -125,7 +125,9 @@ def false_entries(states: States, step: Steps) -> list[QualityFinding]:
         faster = np.hypot(*moved[:, first]) > np.hypot(*moved[:, first + 1])
         for at in first[hard & faster]:
             rows[at - k : at + 1] = True
-    text = "tracks begin at one place and continue at another, which no motion explains, in {n} of {of} states ({ids})"
+    text = (
+        "tracks begin at one position and continue at another that no motion can reach, in {n} of {of} states ({ids})"
+    )
     return states.findings(rows, "false_entry", "warning", text, quantity="existence")
 
 
@@ -165,8 +167,8 @@ def held_tracks(states: States, actors: Actors) -> list[QualityFinding]:
         if (depth > BEGIN_M + LEAVING_MPS2 / 2.0 * since_s**2).any():
             rows[first : last + 1] |= states.t_ns[first : last + 1] >= states.t_ns[last] - HELD_NS
     text = (
-        "tracks stand still at their end, at a place from which another vehicle continues at once, in {n} of "
-        "{of} states ({ids}): they are repeated positions"
+        "tracks end with a standstill at a position from which another vehicle drives on at once, in {n} of {of} "
+        "states ({ids}): these positions are repeated, not measured"
     )
     return states.findings(rows, "held_track", "warning", text, quantity="existence")
 

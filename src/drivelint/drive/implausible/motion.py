@@ -57,7 +57,7 @@ def implausible_motion(states: States, step: Steps, actors: Actors, *, derived: 
         jolt,
         "velocity_jolt",
         "warning",
-        "velocity jumps and returns, faster than any tyre can, in {n} of {of} states ({ids})",
+        "velocity jumps and returns, faster than tyres allow, in {n} of {of} states ({ids})",
         quantity="velocity",
     )
     text = (
@@ -67,7 +67,7 @@ def implausible_motion(states: States, step: Steps, actors: Actors, *, derived: 
     findings += states.findings(common_jolts(states, step), "common_jolt", "warning", text, quantity="velocity")
     if not derived:
         aside = _displaced(states, step)
-        text = "position steps aside, but the velocity does not, in {n} of {of} states ({ids})"
+        text = "position changes sideways, but the velocity shows no such motion, in {n} of {of} states ({ids})"
         findings += states.findings(aside, "position_step", "warning", text, quantity="position")
     spin = _spins(states, step, actors)
     text = "heading turns on the spot, as no vehicle can, in {n} of {of} states ({ids})"

@@ -46,7 +46,10 @@ class MeasurementErrors:
     @property
     def words(self) -> str:
         """The standard deviations as text."""
-        return f"{self.position_m:g} m in every actor's position, {self.time_s:g} s in its clock, {self.map_m:g} m in the map's place"
+        return (
+            f"{self.position_m:g} m in every actor's position, {self.time_s:g} s in its clock, "
+            f"{self.map_m:g} m in the position of the map"
+        )
 
 
 def copies(drive: Drive, errors: MeasurementErrors, numbers: Sequence[int]) -> tuple[list[str], Drive]:

@@ -57,5 +57,5 @@ def class_codes(words: pa.Array, classes: dict[str, str | None]) -> tuple[Codes,
         return -1 if name is None else ACTOR_CLASSES.index(name)
 
     codes = coded(words, code_of)
-    note = f"categories that are not Argoverse's, so the class is not known: {listed(sorted(foreign))}"
+    note = f"categories that Argoverse does not define, so the class is not known: {listed(sorted(foreign))}"
     return codes, [note] if foreign else []

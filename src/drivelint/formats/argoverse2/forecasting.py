@@ -99,7 +99,7 @@ def _scenario(path: Path) -> Path:
     files = sorted(path.glob("scenario_*.parquet"))
     if len(files) > 1:
         raise TraceError(
-            f"{path}: {len(files)} scenarios in one folder ({listed([file.name for file in files])}): name one of them"
+            f"{path}: {len(files)} scenarios in one folder ({listed([file.name for file in files])}): give one of them"
         )
     return files[0]
 
@@ -155,10 +155,10 @@ def _add_map(recording: Recording, path: Path) -> None:
         name = path.name.removeprefix("scenario_").removesuffix(".parquet")
         own = [file for file in files if name in file.name]
         if own:
-            recording.notes.append(f"its map {own[0].name} lies beside it: name the folder, or use --map")
+            recording.notes.append(f"its map {own[0].name} is in the same folder: give the folder, or use --map")
     elif len(files) > 1:
         names = listed([file.name for file in files])
-        message = f"the scenario has {len(files)} maps ({names}), and none is used: keep one"
+        message = f"the scenario has {len(files)} maps ({names}), and none is used: keep only one"
         recording.findings.append(QualityFinding.unusable_map(message))
     elif files:
         try:
@@ -166,4 +166,4 @@ def _add_map(recording: Recording, path: Path) -> None:
         except OSError as error:
             raise TraceError(f"{files[0]}: cannot be read: {error.strerror or error}") from error
     else:
-        recording.notes.append(f"its map is not there: {_MAP}")
+        recording.notes.append(f"its map is missing: {_MAP}")

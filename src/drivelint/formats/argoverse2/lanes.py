@@ -104,7 +104,7 @@ def _archive(source: MapSource) -> dict[str, Any]:
     parts = [archive.get(name, {}) for name in ("lane_segments", "pedestrian_crossings")]
     if "lane_segments" not in archive or not all(isinstance(part, dict) for part in parts):
         raise MapError(
-            f"map {source.name} is JSON, but no map of Argoverse 2 (lane_segments by their ids): give an OpenDRIVE file"
+            f"map {source.name} is JSON, but not a map of Argoverse 2 (lane_segments by their ids): give an OpenDRIVE file"
         )
     return dict(archive)
 
@@ -116,7 +116,7 @@ def _segments(records: Mapping[str, Any], quality: MapQuality) -> dict[str, _Seg
         try:
             name = _name(segment["id"])
             if name in segments:
-                raise ValueError("another one has its id")
+                raise ValueError("another segment has the same id")
             segments[name] = _segment(segment)
         except _UNREADABLE as error:
             quality.add("invalid_lane", "error", key, f"lane segment {key} is left out: {_why(error)}")
@@ -206,7 +206,7 @@ def _report_cut(segments: Mapping[str, _Segment], quality: MapQuality) -> None:
         for name in (segment.left_id, segment.right_id)
     )
     if behind or beside:
-        message = f"the map is cut out of a larger one: {behind} lanes that follow and {beside} lanes beside others are not in it"
+        message = f"the map is a part of a larger one: it lacks {behind} lanes that follow its lanes and {beside} lanes beside them"
         quality.add("missing_link", "info", None, message, behind + beside)
 
 

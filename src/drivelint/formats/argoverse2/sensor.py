@@ -87,7 +87,7 @@ def _annotations(folder: Path) -> tuple[Path, list[str]]:
     files = sorted(folder.glob("annotations*.feather"))
     first = next((file for file in files if file.name == "annotations.feather"), files[0])
     others = [file.name for file in files if file != first]
-    return first, [f"{first.name} is read, and not {listed(others)} beside it"] if others else []
+    return first, [f"{first.name} is read; {listed(others)} in the same folder is not read"] if others else []
 
 
 def _poses_at(path: Path, t_ns: Times) -> Poses:
@@ -139,7 +139,7 @@ def _annotated_states(path: Path, rows: pa.Table, t_ns: Times, rear_axle: Poses)
     names = ids.dictionary.to_pylist()
     if riders:
         who = listed([names[i] for i in riders])
-        notes.append(f"each rider and vehicle are one road user, with the box around both: {who}")
+        notes.append(f"each rider and the vehicle count as one road user, with a box around both: {who}")
     if is_ego.any():
         notes.append(f"the boxes of category {EGO_CATEGORY} are the ego itself: they are not read")
     states = States([EGO_ID, *names], actor + np.int32(1), t_ns, boxes, {"actor_class": classes}, odd)
@@ -167,7 +167,7 @@ def _add_map(recording: Recording, folder: Path) -> None:
     files = sorted((folder / "map").glob("log_map_archive_*.json"))
     if len(files) > 1:
         names = listed([file.name for file in files])
-        message = f"the log has {len(files)} maps ({names}), and none is used: keep one"
+        message = f"the log has {len(files)} maps ({names}), and none is used: keep only one"
         recording.findings.append(QualityFinding.unusable_map(message))
     elif files:
         try:
@@ -177,4 +177,4 @@ def _add_map(recording: Recording, folder: Path) -> None:
         if frame := frame_by_file_name(files[0].name):
             recording.geo_reference, recording.geo_offset = frame.reference, (frame.x_m, frame.y_m, 0.0)
     else:
-        recording.notes.append("its map is not there: map/log_map_archive_*.json")
+        recording.notes.append("its map is missing: map/log_map_archive_*.json")

@@ -38,5 +38,5 @@ def box_places(x_m: Floats, y_m: Floats, yaw_rad: Floats) -> tuple[Floats, Float
 
 def assumed_size(ego_id: str) -> QualityFinding:
     """Return the finding that the ego's size is assumed, not recorded."""
-    message = "size as Argoverse's Ford Fusion is documented, not recorded"
+    message = "size of Argoverse's Ford Fusion from its documentation, not recorded"
     return QualityFinding(ASSUMED_SIZE, "info", message, actor_id=ego_id)

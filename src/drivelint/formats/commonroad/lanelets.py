@@ -84,7 +84,9 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
         lines = stop_line_stations(root, lanes, request.offset)
         signals = signal_rows(root, signs, lanes, request.offset, lines)
     except ValueError as error:
-        raise MapError(f"map {source.name}: of a sign, light or stop line, {error}: correct or remove it") from error
+        raise MapError(
+            f"map {source.name}: a sign, light or stop line cannot be read: {error}: correct or remove it"
+        ) from error
     furniture = {
         "traffic_signal": signals,
         "stop_line": [
@@ -150,7 +152,7 @@ def _remove_contradicted_towns(root: etree._Element, lanes: Sequence[BoundedLane
     if towns and tags & {"highway", "interstate"} and "urban" not in tags:
         for lane in towns:
             lane.road_type = None
-        message = "lanelets are urban and the scenario's tags say highway: the kind of the road is not known"
+        message = "the lanelets are urban, but the scenario's tags are highway: the type of the road is not known"
         quality.add("road_type_contradicted", "warning", None, message, len(towns))
 
 

@@ -72,7 +72,7 @@ def _unrolled(light: etree._Element, first: float, last: float) -> tuple[Floats,
         raise _UnreadError("a phase of its cycle has no duration")
     offset = safe_xml.number(_child_text(light, "timeOffset") or "0")
     if not math.isfinite(offset):
-        raise _UnreadError("its time offset is no number")
+        raise _UnreadError("its time offset is not a number")
     ends = np.cumsum(durations)
     cycles = np.arange(np.floor((first - offset) / ends[-1]), np.floor((last - offset) / ends[-1]) + 1)
     begins = (offset + cycles[:, None] * ends[-1] + np.r_[0.0, ends[:-1]]).ravel()

@@ -148,7 +148,7 @@ def _unread(root: etree._Element, obstacles: Sequence[etree._Element]) -> list[Q
         message = f"values of obstacles given as intervals or areas: {uncertain}: they are not known"
         findings.append(QualityFinding("uncertain_value", "warning", message, uncertain))
     if sets:
-        message = f"of {listed(sets)} only the initial state is known: after it, there is only a set of areas where the actor may be"
+        message = f"of {listed(sets)} only the initial state is known: afterwards the scenario gives only areas in which the actor may be"
         findings.append(QualityFinding.of_actors("uncertain_value", "warning", message, sets))
     if still:
         message = (

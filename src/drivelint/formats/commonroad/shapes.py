@@ -35,7 +35,7 @@ READINGS_AGREE_M: Final = 0.01
 _POLYGON: Final = "a polygon"
 _TRAILER: Final = "a truck with its trailer"
 _SEVERAL: Final = "several shapes"
-_NO_SHAPE: Final = "no shape that is read"
+_NO_SHAPE: Final = "a shape that is not supported"
 
 
 class ObstacleShape(NamedTuple):
@@ -132,8 +132,9 @@ def shape_findings(
         findings.append(QualityFinding.of_actors("no_box", "warning", message, names))
     if names := [name for name, lost in zip(ids, unplaced, strict=True) if lost]:
         message = (
-            f"where the boxes of {listed(names)} lie against the places of their states is not known: give originXShift alone, a number "
-            "that lies within the box (whether a center turns with the obstacle, the format does not say)"
+            f"the position of the boxes of {listed(names)} relative to their states is not known: give only "
+            "originXShift, a number within the box (the format does not define whether a center turns with the "
+            "obstacle)"
         )
         findings.append(QualityFinding.of_actors("shape_origin", "warning", message, names))
     return findings

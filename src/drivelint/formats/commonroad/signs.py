@@ -70,7 +70,7 @@ class Signs:
         own_limit = _number(lanelet.findtext("speedLimit"))
         if own_limit is not None and (trouble := _implausible(own_limit)):
             name = lanelet.get("id")
-            self.quality.add("invalid_speed", "warning", name, f"the limit of lanelet {name} is not taken: {trouble}")
+            self.quality.add("invalid_speed", "warning", name, f"the limit of lanelet {name} is not used: {trouble}")
             own_limit = None
         sure = [own_limit] if own_limit is not None else []
         perhaps: list[float] = []
@@ -92,7 +92,7 @@ class Signs:
         known_ids = {*self.elements, *lights}
         lost = Counter(ref for lanelet in lanelets for ref in signal_refs(lanelet) if ref not in known_ids)
         if lost:
-            message = f"lanelets refer to signs or lights that the map does not have: {_counts_text(lost)}"
+            message = f"lanelets refer to signs or lights that the map does not contain: {_counts_text(lost)}"
             self.quality.add("missing_signal", "warning", None, message, lost.total())
         held = {ref for lanelet in lanelets for ref in signal_refs(lanelet)}
         if idle := sorted(known_ids - held):
@@ -125,7 +125,7 @@ class Signs:
                     )
                 if trouble:
                     self.quality.add(
-                        "invalid_speed", "warning", None, f"the limit of sign {name} is not taken: {trouble}"
+                        "invalid_speed", "warning", None, f"the limit of sign {name} is not used: {trouble}"
                     )
 
 
@@ -244,9 +244,9 @@ def _number(text: str | None) -> float | None:
 def _implausible(limit_mps: float) -> str | None:
     """Return why a number cannot be a speed limit in m/s, or None if it can."""
     if limit_mps <= 0:
-        return f"{limit_mps:g} m/s is no limit"
+        return f"{limit_mps:g} m/s is not a speed limit"
     if limit_mps > _FASTEST_MPS:
-        return f"{limit_mps:g} m/s is more than any sign allows: it may be in km/h"
+        return f"{limit_mps:g} m/s is more than any sign allows: the value may be in km/h"
     return None
 
 

@@ -89,8 +89,8 @@ def log_info(path: Path | str, entries: Mapping[str, Any]) -> LogInfo:
     version, location = str(entries.get("version", "unknown")), entries.get("location")
     if not facts.is_read(version):
         raise TraceError(
-            f"{path}: version {version} of py123d wrote it, and {facts.VERSIONS[0]} to {facts.VERSIONS[-1]} are read: convert it "
-            "again with one of these"
+            f"{path}: py123d {version} wrote the file, but only the versions {facts.VERSIONS[0]} to "
+            f"{facts.VERSIONS[-1]} are supported: convert the log again with one of these"
         )
     return LogInfo(str(entries.get("dataset", "")), None if location is None else str(location), version)
 
@@ -99,7 +99,7 @@ def metadata(path: Path | str, schema: pa.Schema) -> dict[str, Any]:
     """Return the metadata of a schema. Errors: `TraceError` if they are missing or not readable."""
     packed = (schema.metadata or {}).get(METADATA_KEY)
     if packed is None:
-        raise TraceError(f"{path}: its schema has no {METADATA_KEY.decode()!r}: it was not written by py123d")
+        raise TraceError(f"{path}: its schema has no {METADATA_KEY.decode()!r}: py123d did not write this file")
     try:
         return msgspec.msgpack.decode(packed, type=dict[str, Any])
     except (msgspec.DecodeError, UnicodeDecodeError) as error:

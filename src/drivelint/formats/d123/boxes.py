@@ -63,7 +63,7 @@ def box_states(
     notes = []
     if is_ego.any():
         notes.append(
-            f"{int(is_ego.sum())} boxes with the label {facts.EGO_LABEL} are left out: the ego's state is its own"
+            f"{int(is_ego.sum())} boxes with the label {facts.EGO_LABEL} are left out: the ego has its own file of states"
         )
         keep = np.flatnonzero(~is_ego)
         flat, frame, labels = {name: values.take(keep) for name, values in flat.items()}, frame[keep], labels[keep]
@@ -92,10 +92,10 @@ def box_states(
     )
     if on_something:
         who = listed([states.ids[i] for i in on_something])
-        notes.append(f"each rider and vehicle are one road user, with the box around both: {who}")
+        notes.append(f"each rider and the vehicle count as one road user, with a box around both: {who}")
     if not about.box_velocities_global:
         _forget_velocities(states, np.ones(len(states), np.bool_))
-        notes.append("velocities of boxes are not read: in this data set they are along the boxes' own axes in 123D")
+        notes.append("velocities of boxes are not read: in this data set, 123D states them along the axes of the boxes")
     else:
         findings += _without_untold_velocities(states, frame)
     return (states.take(~inside) if inside.any() else states), findings, notes
@@ -120,7 +120,10 @@ def _classes(boxes: Modality, numbers: Any) -> tuple[Codes, list[QualityFinding]
     enumeration = _enumeration(boxes)
     codes, none_own = facts.label_classes(enumeration), np.zeros(len(numbers), np.bool_)
     if codes is None:
-        message = f"what {len(numbers)} boxes are is not known: their labels are numbers of {qualified or 'an enumeration without a name'}"
+        message = (
+            f"the classes of {len(numbers)} boxes are not known: their labels are numbers of "
+            f"{qualified or 'an enumeration without a name'}"
+        )
         finding = [QualityFinding("unknown_label", "warning", message, len(numbers))] if len(numbers) else []
         return np.full(len(numbers), -1, np.int8), finding, none_own
     inside = (numbers >= 0) & (numbers < len(codes))
@@ -129,7 +132,7 @@ def _classes(boxes: Modality, numbers: Any) -> tuple[Codes, list[QualityFinding]
     findings = []
     if unknown.any():
         which = listed([str(n) if n >= 0 else "NULL" for n in np.unique(numbers[unknown]).tolist()])
-        message = f"labels that {enumeration} does not have ({which}) of {int(unknown.sum())} boxes: what these are is not known"
+        message = f"labels that {enumeration} does not define ({which}) at {int(unknown.sum())} boxes: the classes of these are not known"
         findings.append(QualityFinding("unknown_label", "warning", message, int(unknown.sum())))
     ego_number = facts.LABELS[enumeration].get(facts.EGO_LABEL, (-1, ""))[0]
     own = (numbers == ego_number) & inside
@@ -153,7 +156,7 @@ def _without_untold_velocities(states: States, frame: Indices) -> list[QualityFi
     if zero[has_velocity].all():
         if not _moves(states):
             return []  # every recorded actor stands: zero is correct
-        why = "velocity (0, 0, 0) of all {n} boxes, although they move, means that there is no velocity"
+        why = "velocity (0, 0, 0) of all {n} boxes, although they move: treated as not recorded"
     elif _way_between_boxes(states, frame, has_velocity):
         why = (
             "velocities of {n} boxes were computed by the converter from the boxes before and after: they are not read"

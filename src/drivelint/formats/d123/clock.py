@@ -35,9 +35,7 @@ class Clock(NamedTuple):
         """The note for the user that times count from `zero_us`; none if that is 0."""
         if not self.zero_us:
             return []
-        return [
-            f"times count from {self.zero_us} us of the log: whether that is UTC is not documented for this data set"
-        ]
+        return [f"times count from {self.zero_us} us of the log: the data set does not document whether this is UTC"]
 
 
 def clock(folder: Path, columns: Iterable[pa.Array], *, utc: bool) -> Clock:

@@ -46,7 +46,7 @@ def read_ego(folder: Path) -> Modality:
     """Return the file of ego states. Errors: as `modality`, and `TraceError` if it is missing or has no row."""
     found = modality(folder, EGO_STATE, _COLUMNS)
     if found is None or not found.n:
-        raise TraceError(f"{folder / EGO_STATE}.arrow: it has no state of the ego: convert the log again")
+        raise TraceError(f"{folder / EGO_STATE}.arrow: the file has no state of the ego: convert the log again")
     return found
 
 
@@ -79,7 +79,7 @@ def ego_box(ego: Modality, about: facts.Dataset, name: str, forward_m: float) ->
         findings.append(QualityFinding("reference_point", "warning", message, actor_id=name))
     elif not about.ego_size_recorded and not np.isnan(sizes[:2]).any():
         model = entries.get("vehicle_name") or "its model"
-        message = f"the ego's size is that of 123D for {model}, not recorded"
+        message = f"the ego's size is the size that 123D states for {model}, not recorded"
         findings.append(QualityFinding(ASSUMED_SIZE, "info", message, actor_id=name))
     return EgoBox(centre[:3], centre[[4, 5, 6, 3]], sizes), findings
 

@@ -57,7 +57,7 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     if not any(lane.drivable for lane in built):
         first = next((row["message"] for row in quality.rows if row["check_id"] == "invalid_lane"), "it has no lane")
         raise MapError(
-            f"map {source.name} has no lane for vehicles that can be built: {first}: use another one with --map"
+            f"map {source.name} has no lane for vehicles that can be built: {first}: give another map with --map"
         )
     if layers.header.get("map_has_z"):
         _set_heights(built, lanes, request.offset)

@@ -75,7 +75,7 @@ def _codes(status: Indices) -> tuple[Codes, list[QualityFinding]]:
         return np.asarray(codes[status], np.int8), []
     n = int((~inside).sum())
     which = listed([str(number) for number in np.unique(status[~inside]).tolist()])
-    message = f"states of traffic lights that 123D does not have ({which}): {n}: they are not known"
+    message = f"states of traffic lights that 123D does not define ({which}): {n}: treated as unknown"
     found = np.where(inside, codes[np.where(inside, status, 0)], -1).astype(np.int8)
     return found, [QualityFinding("unknown_light_state", "warning", message, n)]
 
@@ -91,9 +91,8 @@ def _without_doubtful_colours(codes: Codes, light: Indices, n: int) -> tuple[Cod
     if not doubtful.any():
         return codes, []
     message = (
-        f"traffic lights that are red or amber in all of the log: {int(doubtful.sum())}: they may be "
-        "flashing, which 123D does not distinguish: their "
-        "state is not known"
+        f"traffic lights that are red or amber throughout the log: {int(doubtful.sum())}: their state is not known, "
+        "because they may be flashing, which 123D does not distinguish"
     )
     finding = QualityFinding("flashing_or_steady", "warning", message, int(doubtful.sum()))
     return np.where(doubtful[light], np.int8(-1), codes), [finding]

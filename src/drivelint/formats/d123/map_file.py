@@ -37,7 +37,7 @@ def find_map(
     path = next((path for path in (folder / OWN_MAP, shared) if path is not None and looked_for(path).is_file()), None)
     if path is None:
         looked = " nor at ".join(str(each) for each in (folder / OWN_MAP, shared) if each is not None)
-        return None, [], [f"the log has no map: there is none at {looked}: give one with --map"]
+        return None, [], [f"the log has no map: no file at {looked}: give a map with --map"]
     try:
         source = read_source(path)
         layers = Layers.of_source(source)

@@ -86,8 +86,11 @@ def report_unread(layers: Layers, about: facts.Dataset, quality: MapQuality) -> 
         message = f"objects of layers that are not read: {', '.join(unread)}"
         quality.add("layers_unread", "info", None, message, sum(counts.values()))
     if layers.unknown:
-        message = f"layers that 123D does not have: {', '.join(map(str, layers.unknown))}: their objects are not read"
+        message = f"layers that 123D does not define: {', '.join(map(str, layers.unknown))}: their objects are not read"
         quality.add("unknown_word", "warning", None, message, len(layers.unknown))
     if about.estimated_bounds:
-        message = f"the converter estimates bounds {about.estimated_bounds}: an actor beside them may be within, or the other way round"
+        message = (
+            f"the converter estimated bounds {about.estimated_bounds}: near such a bound, an actor that seems "
+            "to be outside may be inside, or the reverse"
+        )
         quality.add("estimated_bounds", "warning", None, message)

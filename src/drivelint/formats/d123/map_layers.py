@@ -65,7 +65,7 @@ class Layers:
     def __init__(self, name: str, rows: pa.Table) -> None:
         """Take a table with the columns `COLUMNS`. Errors: `TraceError` if it is not a map of 123D, or of a version that is not read."""
         if missing := [column for column in COLUMNS if column not in rows.schema.names]:
-            raise TraceError(f"{name}: no column {', '.join(missing)}: it is no map of 123D")
+            raise TraceError(f"{name}: no column {', '.join(missing)}: this is not a map of 123D")
         self.header = metadata(name, rows.schema)
         self.info = log_info(name, self.header)
         try:

@@ -44,9 +44,7 @@ _NO_ROAD_USERS: Final = QualityFinding(
     f"the log has no {BOXES}.arrow: the actors around the ego are not recorded: rules about other actors are unknown",
 )
 _ROUNDED_US: Final = 10  # a difference in time in which no actor moves by a millimetre
-_MALFORMED: Final = (
-    "frames whose lists of boxes differ in length or lack a track, or that point to rows that are not there"
-)
+_MALFORMED: Final = "frames whose lists of boxes differ in length or lack a track, or that refer to missing rows"
 
 
 def accepts(probe: Probe) -> bool:

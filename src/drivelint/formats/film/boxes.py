@@ -87,7 +87,7 @@ def _sightings(
         ahead.append(np.where(np.isfinite(distance), distance, np.nan))
     if not any(np.isfinite(each).any() for each in ahead):
         wanted = ", ".join(str(actor.box) for actor in film.actor)
-        raise TraceError(f"{path}: no box has one of the ids of the mapping ({wanted})")
+        raise TraceError(f"{path}: no box has an id that the mapping names ({wanted}): correct the ids in the mapping")
     return Sightings(whole, ahead)
 
 

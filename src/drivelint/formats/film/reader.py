@@ -76,10 +76,10 @@ def read(probe: Probe) -> Recording:
     judged = detections.frames % film.frames.every == 0
     frames = detections.frames[judged]
     if not len(frames):
-        raise TraceError(f"{path}: no frame that mapping {stem!r} judges: see its [frames]")
+        raise TraceError(f"{path}: no frame is in the range of the mapping {stem!r}: see its [frames]")
     t_ns = np.rint((film.frames.start_s + frames / film.frames.rate_hz) * 1e9).astype(np.int64)
     states, egos_x = _states(film, frames, t_ns, [ahead[judged] for ahead in detections.ahead_m])
-    assumed = "speeds, lanes and the ego's way across them"
+    assumed = "speeds, lanes and the ego's path across them"
     message = (
         f"mapping {stem!r} assumes {assumed}; only distances ahead are measured: all other rules judge assumed values"
     )
@@ -120,7 +120,7 @@ def _table(path: Path, name: str, film: VideoMapping, findings: list[QualityFind
         odd &= ~bad
         if odd.any():
             where = sheet.describe_rows(np.flatnonzero(odd))
-            message = f"{path.name}, {where}: column {actor.ahead!r} is not a number: there without a place"
+            message = f"{path.name}, {where}: column {actor.ahead!r} is not a number: the actor is present, but its position is not known"
             findings.append(QualityFinding("malformed_cell", "warning", message, int(odd.sum())))
         distance = np.full(len(whole), np.nan)
         distance[at] = np.where(odd, np.inf, values)[rows[first]]
@@ -129,7 +129,10 @@ def _table(path: Path, name: str, film: VideoMapping, findings: list[QualityFind
     if lost or bad.any():
         n = len(lost) + int(bad.sum())
         where = describe_places("line", lost, len(lost)) if lost else sheet.describe_rows(np.flatnonzero(bad))
-        message = f"{path.name}, {where}: not the {len(sheet.names)} cells of the header: no actor has a place in these frames"
+        message = (
+            f"{path.name}, {where}: the number of cells differs from the {len(sheet.names)} cells of the header: "
+            "no actor has a position in these frames"
+        )
         findings.append(QualityFinding("malformed_row", "warning", message, n))
     return Sightings(whole, ahead)
 

@@ -48,13 +48,15 @@ def with_persisted(
     extra.place = np.where(stood_still[:, None], extra.place, np.nan)
     rows.at_ns = rows.t_ns
     kinds: tuple[tuple[Mask, str, Severity, str], ...] = (
-        (stood_still, "entity_held", "info", "stood still and are where they were"),
-        (~stood_still, "entity_stale", "warning", "moved before and are there but not placed"),
+        (stood_still, "entity_held", "info", "stood still and keep their positions"),
+        (~stood_still, "entity_stale", "warning", "moved before: they are present, but their positions are unknown"),
     )
     for some, check, severity, what in kinds:
         if some.any():
             n, names = int(some.sum()), sorted({unique[i] for i in np.unique(actor[row[some]])})
-            message = f"{topic}: {n} states of entities that are not updated nor gone ({listed(names)}): they {what}"
+            message = (
+                f"{topic}: {n} states of entities that are neither updated nor deleted ({listed(names)}): they {what}"
+            )
             findings.append(QualityFinding(check, severity, message, n, int(t_ns[some].min())))
     return join_batches([rows, extra])
 

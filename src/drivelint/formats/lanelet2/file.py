@@ -39,7 +39,7 @@ def load(source: MapSource, request: MapOptions, quality: MapQuality) -> tuple[A
     if local:
         _place_locally(root, quality)
         if request.origin is not None:
-            message = "the map has local coordinates, which are used: --map-origin is not"
+            message = "the map has local coordinates: these are used, and --map-origin is ignored"
             quality.add("map_origin_unused", "info", None, message)
     elif request.origin is None:
         raise MapError(
@@ -81,7 +81,7 @@ def _place_locally(root: etree._Element, quality: MapQuality) -> None:
         node.set("lon", repr(math.degrees(east / _EARTH_M)))
         node.set("lat", repr(math.degrees(north / _EARTH_M)))
     if n_lost:
-        message = "nodes have no local_x and local_y, as the others have: what they belong to is left out"
+        message = "nodes lack local_x and local_y, which the other nodes have: the elements that use them are left out"
         quality.add("unplaced_node", "warning", None, message, n_lost)
 
 

@@ -76,8 +76,8 @@ def _lanes(layers: Any, quality: MapQuality) -> Iterable[BoundedLane]:
         limits = () if limit_mps is None else ((0.0, 1.0, limit_mps if readable else None),)
         if not readable:
             said = limit_text(x)
-            what = "its sign gives no limit that is read" if said is None else f"{said[:20]!r} is no speed limit"
-            quality.add("invalid_speed", "warning", str(x.id), f"{what}: taken as unknown")
+            what = "its sign has no limit that can be read" if said is None else f"{said[:20]!r} is not a speed limit"
+            quality.add("invalid_speed", "warning", str(x.id), f"{what}: treated as unknown")
         lane = BoundedLane(
             str(x.id), xy(x.leftBound), xy(x.rightBound), lane_type, drivable, bidirectional=bidirectional,
             road_type=_road_type(x),

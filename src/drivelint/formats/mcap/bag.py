@@ -60,7 +60,7 @@ def mcap_files(path: Path) -> list[Path]:
         files.append(file)
     if unlisted := sorted(each.name for each in path.glob("*.mcap") if each not in files):
         raise TraceError(
-            f"{path}: its {METADATA_FILE} does not list {unlisted[0]}: reindex the bag, or take the file out of its folder"
+            f"{path}: its {METADATA_FILE} does not list {unlisted[0]}: reindex the bag, or remove the file from its folder"
         )
     return files
 
@@ -76,7 +76,7 @@ def not_mcap(path: Path, storage: str) -> TraceError:
     command = f"rosbags-convert --src {quote(str(whole))} --dst {quote(str(converted))} --dst-storage mcap"
     return TraceError(
         f"{path}: a bag in {storage}: convert it to MCAP with {command} (of PyPI's package rosbags), "
-        "or with ros2 bag convert and storage_id: mcap, and give that"
+        "or with ros2 bag convert and storage_id: mcap, and give the converted bag"
     )
 
 

@@ -30,7 +30,7 @@ def decode_readable(
     def decode_timed(some: list[LogMessage]) -> T:
         if max(log_message.log_time_ns for log_message in some) > LATEST_NS:
             late = next(log_message for log_message in some if log_message.log_time_ns > LATEST_NS)
-            raise late.error(container.path, "its log time is no time of this or the next century")
+            raise late.error(container.path, "its log time is not in this or the next century")
         return decode(some)
 
     decoded, malformed = decode_others(log_messages, decode_timed)

@@ -228,7 +228,9 @@ def open_log(path: Path) -> BinaryIO:
 
 
 def _unreadable(path: Path, error: OSError) -> TraceError:
-    return TraceError(f"{path}: the log cannot be read any more ({error.strerror or error}): check it again")
+    return TraceError(
+        f"{path}: the log can no longer be read ({error.strerror or error}): make it readable and check it again"
+    )
 
 
 def index_arrays(messages: Iterable[tuple[int, int, int, int]]) -> ChunkMessageIndex:

@@ -160,7 +160,7 @@ class Container:
             raise self._damaged(at, "no record (zero bytes)")
         self._refuse_second_file(view, at)
         if length > len(view) - start:
-            what = f"a {_name(opcode)} record of {length} bytes, of which {len(view) - start} are there,"
+            what = f"a {_name(opcode)} record of {length} bytes, of which {len(view) - start} are present,"
             if length >= MOST_RECORD_BYTES and opcode in _OPCODES:
                 raise TraceError(str(self._damaged(at, what)))
             raise self._damaged(at, what)
@@ -186,7 +186,7 @@ class Container:
 
     def _refuse_second_file(self, view: memoryview, at: int) -> None:
         if bytes(view[at : at + len(MAGIC)]) == MAGIC:
-            raise TraceError(f"{self.path}: a second MCAP file begins at byte {at}: split the two, use each by itself")
+            raise TraceError(f"{self.path}: a second MCAP file begins at byte {at}: split it and give one part")
 
     def _refuse_second_file_within(self, view: memoryview, start: int, end: int) -> None:
         """Raise `TraceError` if lost bytes contain the beginning of another file: the data after it may be of another drive."""
@@ -322,14 +322,14 @@ class Container:
         elif not has_footer and not self._in_data:
             if not self.salvage:
                 raise self._damaged(size, "the file ends without a footer")
-            message = f"the file ends without a footer at byte {size}, behind the end of its data: nothing is lost"
+            message = f"the file ends without a footer at byte {size}, after the end of its data: nothing is lost"
             self.findings.append(QualityFinding("no_footer", "warning", message))
 
     def _check_footer(self, view: memoryview, at: int, start: int, end: int) -> None:
         """Report a wrong CRC of the index, bytes after the file's end, or missing magic bytes; none of these loses messages."""
         footer = self._parsed(Footer.read, view[start:end], at)
         if not summary_is_whole(footer, view, at, end):
-            message = f"the index has a wrong CRC (footer at byte {at}): only what it counts is compared"
+            message = f"the index has a wrong CRC (footer at byte {at}): only its message counts are compared"
             self.findings.append(QualityFinding("index_damaged", "warning", message))
         extra = len(view) - end - len(MAGIC)
         if extra > 0:
@@ -358,13 +358,13 @@ class Container:
             is_damaged = any(each.check_id == "index_damaged" for each in self.findings)
             told = self.counts.contradiction(self._statistics, self.channels, is_damaged=is_damaged)
             if told is not None:
-                message = f"the index counts {told}: these are read, and missing messages are lost"
+                message = f"the index counts {told}: the present messages are read, the missing ones are lost"
                 self.findings.append(QualityFinding("index_mismatch", "error", message))
         if self._unprotected:
-            message = f"chunks without a CRC: {self._unprotected}: flipped bits in them go undetected"
+            message = f"chunks without a CRC: {self._unprotected}: flipped bits in them remain undetected"
             self.findings.append(QualityFinding("unprotected", "info", message, self._unprotected))
         elif self._loose and not self._data_crc:
-            message = f"messages outside of chunks, without a CRC: {self._loose}: flipped bits in them go undetected"
+            message = f"messages outside chunks, without a CRC: {self._loose}: flipped bits in them remain undetected"
             self.findings.append(QualityFinding("unprotected", "info", message, self._loose))
 
 

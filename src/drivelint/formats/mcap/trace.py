@@ -49,7 +49,7 @@ def read(probe: Probe) -> Recording:
     if family == "none":
         _refuse_other_messages(probe.path)
     if probe.path.is_dir():
-        raise TraceError(f"{probe.path}: a bag of OSI messages: give one of its files")
+        raise TraceError(f"{probe.path}: a bag of OSI messages is not read as a whole: give one of its files")
     return osi.read_mcap(probe.path, probe.options.topic)
 
 
@@ -60,4 +60,6 @@ def _refuse_other_messages(path: Path) -> None:
     kinds = bag.topics(path)
     if path.is_dir() or any("/" in kind or kind.startswith("foxglove.") for kind in kinds.values()):
         has = listed([f"{kind} on {topic}" for topic, kind in sorted(kinds.items())], _MAX_TOPICS) or "no topic"
-        raise TraceError(f"{path}: no nav_msgs/Odometry and no road users: it has {has}; see drivelint docs traces")
+        raise TraceError(
+            f"{path}: no nav_msgs/Odometry and no road users: the log has {has}; see drivelint docs traces"
+        )

@@ -95,7 +95,7 @@ class DrivingSideStatements:
         """
         if len(self.rules) > 1:
             counts = ", ".join(f"{side} {n}" for side, n in sorted(self.rules.items()))
-            message = f"roads of both rules in one map ({counts}): one is taken for all"
+            message = f"the map has roads with both rules ({counts}): one rule is used for all"
             quality.add("handedness_mixed", "warning", None, message)
         direction = (
             self._without_opposing(quality)
@@ -103,11 +103,11 @@ class DrivingSideStatements:
             else self._with_side_by_lanes(side_by_lanes, quality)
         )
         if direction.source == "default":
-            message = "the map does not state which side is driven on: right-hand traffic is a guess; set --handedness"
+            message = "the map does not state which side is driven on: right-hand traffic is assumed; set --handedness"
             if side_by_lanes is None and direction.forward_source != "default":
                 message = (
-                    f"which way the lanes run is known by {direction.forward_source}, but none has one of the other direction beside it: "
-                    "that right-hand traffic drives on them is a guess; give --handedness"
+                    f"the direction of the lanes is known from {direction.forward_source}, but no lane has a lane "
+                    "of the other direction beside it: right-hand traffic is assumed; set --handedness"
                 )
             quality.add("handedness_default", "warning", None, message)
         return direction
@@ -119,8 +119,8 @@ class DrivingSideStatements:
         ):
             statements.remove(rule)  # by this rule, the lanes run so that the other side is driven on
             message = (
-                f"{rule.text} {rule.side}, but by its rule the lanes run so that the oncoming ones lie on the other side: it is "
-                "not counted; give --handedness if the side is wrong"
+                f"{rule.text} {rule.side}, but with this rule, the oncoming lanes would be on the other side: it is "
+                "ignored; set --handedness if the side is wrong"
             )
             quality.add("handedness_disagrees", "warning", None, message)
         statements = [
@@ -168,7 +168,7 @@ def _disagreements(
         # if the second statement agrees with the option, leaving out the option changes nothing
         remedy = advice or correction_hint(first.side, first.source if second.side != first.side else "")
         opinions = ", ".join(f"{w.text} {w.side}" for w in statements)
-        message = f"{opinions}: {first.side} is taken. If that is wrong, {wrong} is wrong: {remedy}."
+        message = f"{opinions}: {first.side} is used. If this is not right, {wrong} is wrong: {remedy}."
         quality.add("handedness_disagrees", "warning", None, message)
 
 
@@ -210,5 +210,7 @@ def report_lanes_against_side(net: Network, direction: Direction, quality: MapQu
             for lane in strip.lanes:
                 if lane.invalid is None and direction.lane_direction(lane) != plain.lane_direction(lane):
                     name = f"{road.road_id}.{strip.section}.{lane.number}"
-                    message = f"lane {name} is driven {lane.travel}, as its userData says, against the rule of its side"
+                    message = (
+                        f"lane {name} is driven {lane.travel} according to its userData, against the rule of its side"
+                    )
                     quality.add("direction_exception", "warning", name, message)

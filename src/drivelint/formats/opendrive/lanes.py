@@ -55,7 +55,7 @@ def _check_plan(road: Road, quality: MapQuality) -> None:
         message = f"{name} turn on the spot by up to {float(np.degrees(kink.max())):.1f} degrees"
         quality.add("reference_kink", "warning", road.road_id, message, int((kink > 0.05).sum()))
     if abs(road.plan.end - road.said_length_m) > 0.01:
-        message = f"{name} are {road.plan.end:.2f} m long, the road states {road.said_length_m:.2f} m: the shorter one is used"
+        message = f"{name} are {road.plan.end:.2f} m long, the road states {road.said_length_m:.2f} m: the shorter length is used"
         quality.add("length_mismatch", "warning", road.road_id, message)
 
 
@@ -76,7 +76,7 @@ class _StripBuilder:
         length, name = strip.end_m - strip.start_m, f"section {strip.section} of road {road.road_id}"
         if length < SHORT_M:
             self.lanes.short.update(keys)
-            message = f"{name} is {length:.4f} m long: left out, links pass through"
+            message = f"{name} is {length:.4f} m long: it is left out, and links lead through it"
             self.quality.add("short_section", "info", road.road_id, message, max(len(keys), 1))
             return
         self._fail(_unbuildable(strip))
@@ -110,7 +110,7 @@ class _StripBuilder:
             outer, inner = row[lane.number], row[lane.number] + (1 if lane.number > 0 else -1)
             if float(np.abs(edges.t[outer] - edges.t[inner]).max()) < NARROW_M:
                 self.lanes.narrow.add(key)
-                message = f"lane {lanelet_id(key)} is nowhere wider than {NARROW_M} m: left out, its neighbours adjoin"
+                message = f"lane {lanelet_id(key)} is nowhere wider than {NARROW_M} m: it is left out, and its neighbours are adjacent"
                 self.quality.add("narrow_lane", "info", lanelet_id(key), message)
                 continue
             lanelets.append(self._lanelet(lane, edges, s, (min(outer, inner), max(outer, inner))))
@@ -137,7 +137,8 @@ class _StripBuilder:
             name = lanelet_id(self._key(lane))
             severity = "error" if lane.kind in DRIVABLE and (forward <= 0.0).any() else "warning"
             message = (
-                f"an edge of lane {name} folds back on itself: the bend is tighter than the edge is far from its line"
+                f"an edge of lane {name} folds back on itself: the bend is too tight for the distance "
+                "of the edge from the reference line"
             )
             self.quality.add("folded_lane", severity, name, message, int(folded.sum()))
         z = self.road.elevation.evaluate(s, s)[0] if len(self.road.elevation.start) else np.full_like(s, np.nan)

@@ -89,7 +89,7 @@ def _contacts_at(
     contact = join.contact or (back[0] if len(back) == 1 else None)
     if contact is None:
         name = lanelet_id(key)
-        message = f"lane {name} goes on in road {join.element_id}, but the file does not state at which end"
+        message = f"lane {name} continues in road {join.element_id}, but the file does not state at which end"
         quality.add("missing_link", "error", name, message)
         return
     for target in targets:
@@ -107,7 +107,7 @@ def _junction_contacts(net: Network, connection: Connection, quality: MapQuality
     incoming, connecting = net.roads.get(connection.incoming), net.roads.get(connection.connecting)
     if incoming is None or connecting is None:
         gone = connection.incoming if incoming is None else connection.connecting
-        message = f"junction {connection.junction_id} connects road {gone}, which is not there"
+        message = f"junction {connection.junction_id} connects road {gone}, which does not exist"
         quality.add("missing_link", "error", gone, message, max(len(connection.lanes), 1))
         return
     end, contact = _end_at_junction(incoming, connecting, connection), connection.contact
@@ -162,7 +162,7 @@ def _directed(a: LaneEnd, b: LaneEnd, lanes: BuiltLanes, quality: MapQuality) ->
         return second, first
     if not (first.bidirectional or second.bidirectional) and first.drivable and second.drivable:
         message = (
-            f"{first.lanelet_id} and {second.lanelet_id} are linked, but are driven towards each other: not linked"
+            f"{first.lanelet_id} and {second.lanelet_id} are linked, but have opposite directions: the link is ignored"
         )
         quality.add("direction_conflict", "warning", first.lanelet_id, message)
     return None

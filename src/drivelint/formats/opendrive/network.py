@@ -281,7 +281,7 @@ def _valid_lane(element: etree._Element, lane_no: int, kind: str, section_start:
     fits = (side == "left") == (lane_no > 0)
     section = None if parent is None else parent.getparent()
     if lane_no == 0 or not (fits or (section is not None and _has_numbers_of_other_side(section))):
-        raise MalformedError(f"lane {lane_no} stands on the wrong side, under <{side}>")
+        raise MalformedError(f"lane {lane_no} is listed on the wrong side, under <{side}>")
     widths, borders = element.findall("width"), element.findall("border")
     if not widths and not borders:
         raise MalformedError("it has neither <width> nor <border>")
@@ -357,7 +357,7 @@ def _connections(root: etree._Element, quality: MapQuality) -> Iterable[Connecti
     for junction in root.findall("junction"):
         name = junction.get("id", f"in line {junction.sourceline}")
         if junction.get("type") == "virtual":
-            message = f"junction {name} is virtual: its links in mid-road are left out"
+            message = f"junction {name} is virtual: its links in the middle of roads are left out"
             quality.add("virtual_junction", "warning", name, message)
             continue
         for element in junction.findall("connection"):

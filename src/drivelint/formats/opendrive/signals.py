@@ -147,9 +147,7 @@ class _Reader:
     def report(self) -> None:
         """Report contradictions, and signals that apply to no lane, neither directly nor by a reference."""
         if self.contradictions:
-            message = (
-                f"the orientation of signals contradicts their lanes (the first: {self.contradictions[0]}): lanes taken"
-            )
+            message = f"the orientation of signals contradicts their lanes (the first: {self.contradictions[0]}): the lanes are used"
             self.quality.add("signal_orientation", "warning", None, message, len(self.contradictions))
         placed = {row["signal_id"] for row in self.signals}
         for name, (road, _) in self.defined.items():

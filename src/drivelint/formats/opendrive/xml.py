@@ -28,7 +28,7 @@ def number(element: etree._Element, name: str, default: float | None = None) -> 
     if not math.isfinite(value):
         raise MalformedError(f"{_where(element, name)} is not a finite number")
     if abs(value) > MAX_NUMBER:
-        raise MalformedError(f"{_where(element, name)} is larger than anything on a road")
+        raise MalformedError(f"{_where(element, name)} is larger than any value on a road")
     return value
 
 

@@ -195,7 +195,9 @@ def read_first_message(data: bytes, name: str) -> FirstMessage:
     head = head._replace(nation=nation_of(int(truth.country_code)))
     if not (truth.lane_boundary or truth.logical_lane_boundary):
         n = len(truth.lane) + len(truth.logical_lane)
-        message = f"lanes in the log: {n}, all of them centre lines without boundaries: without a width they make no map: give --map"
+        message = (
+            f"the log has {n} lanes, all without boundaries: without widths, they cannot be used as a map: give --map"
+        )
         return head._replace(findings=(QualityFinding("lanes_without_width", "info", message, n),) if n else ())
     if not (truth.lane or truth.logical_lane):
         return head

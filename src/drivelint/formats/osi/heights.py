@@ -20,7 +20,7 @@ def forget_copied_heights(states: States) -> QualityFinding | None:
         return None
     states.numbers["height_m"] = np.full(len(states), np.nan)
     message = (
-        "every height of an object is its width, as omega-prime 0.3.7 writes an MCAP file of its Parquet: heights are treated as unknown; "
-        "use the Parquet file, or write the log again"
+        "all heights of objects equal their widths, an error of omega-prime 0.3.7 when it converts Parquet to "
+        "MCAP: heights are treated as unknown; use the Parquet file, or write the log again"
     )
     return QualityFinding("copied_height", "warning", message, int(has_height.sum()))

@@ -49,7 +49,7 @@ def read(
             continue
         symbol = classification.traffic_main_sign_type if classification.type == kinds.SYMBOL_MARKING else None
         if not np.isfinite(_outline(mark, road)).all():
-            message = f"road marking {mark.id.value} is left out: the log does not state where it lies"
+            message = f"road marking {mark.id.value} is left out: the log does not state its position"
             quality.add("road_marking_without_place", "warning", None, message)
         elif symbol == kinds.ZEBRA:
             crossings += _zebra(mark, road)

@@ -48,7 +48,7 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     covers = _covers(logical, physical)
     alone = {i: lane for i, lane in physical.items() if i not in covers}
     for i in sorted(alone.keys() & logical.keys()):
-        message = f"lane {i} is left out: a logical lane of another place has the same id"
+        message = f"lane {i} is left out: a logical lane at another place has the same id"
         quality.add("invalid_lane", "error", str(i), message)
         del alone[i]
     ways = osi_physical.intersection_lanes(truth, alone)
@@ -101,6 +101,6 @@ def _why_none(truth: Any, quality: MapQuality) -> str:
         row["message"].partition(" is left out: ")[2] for row in quality.rows if row["check_id"] == "invalid_lane"
     )
     if not reasons:
-        return f"none of the log's own {n} lanes is one for driving"
+        return f"none of the {n} lanes in the log is a lane for driving"
     reason, most = min(reasons.items(), key=lambda item: (-item[1], item[0]))
-    return f"none of the log's own {n} lanes is one for driving that can be built, {most} of them because {reason}: give --map"
+    return f"none of the {n} lanes in the log is a lane for driving that can be built; {most} of them fail because {reason}: give --map"

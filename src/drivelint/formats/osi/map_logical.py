@@ -94,7 +94,7 @@ def _lane(message: Any, bounds: Mapping[int, Any]) -> LogicalLane:
     driven = kinds.LANE_KINDS.get(message.type) in kinds.DRIVABLE
     way = message.move_direction
     if driven and way not in {kinds.INCREASING, kinds.DECREASING, kinds.BOTH}:
-        raise UnbuildableError("its move_direction does not state in which direction it is driven")
+        raise UnbuildableError("its move_direction does not state the direction of travel")
     left, right = _side(message.left_boundary_id, bounds, "left"), _side(message.right_boundary_id, bounds, "right")
     begin, end = message.start_s, message.end_s
     low, high = max(left[0, 3], right[0, 3]), min(left[-1, 3], right[-1, 3])
@@ -102,7 +102,7 @@ def _lane(message: Any, bounds: Mapping[int, Any]) -> LogicalLane:
         raise UnbuildableError(f"it ends at {end:g} m of its reference line and begins at {begin:g} m")
     if low > begin + _SHORT_M or high < end - _SHORT_M:
         raise UnbuildableError(
-            f"its boundaries reach from {low:g} to {high:g} m of its reference line, the lane from {begin:g} to {end:g} m"
+            f"its boundaries extend from {low:g} to {high:g} m of its reference line, the lane from {begin:g} to {end:g} m"
         )
     begin, end = max(begin, low), min(end, high)
     if not end > begin:
@@ -121,7 +121,7 @@ def _side(ids: Iterable[Any], bounds: Mapping[int, Any], word: str) -> Floats:
     lost = [str(i) for i in names if i not in bounds]
     if not names or lost:
         raise UnbuildableError(
-            f"its {word} boundary {', '.join(lost)} is not in the log" if lost else f"it has no {word} boundary"
+            f"the log lacks its {word} boundary {', '.join(lost)}" if lost else f"it has no {word} boundary"
         )
     parts = []
     for name in names:

@@ -85,7 +85,7 @@ def _turned(lane: Any, bounds: Mapping[int, Any], *, drops: bool) -> PhysicalLan
     ]
     if not (lines[0] and lines[1]):
         lacks = "no boundaries" if not (lines[0] or lines[1]) else f"no {'right' if lines[0] else 'left'} boundary"
-        raise UnbuildableError(f"it has {lacks}, and so no width")
+        raise UnbuildableError(f"it has {lacks} and therefore no width")
     centre = _xyz(classification.centerline)
     if not all((np.abs(points) < FARTHEST_M).all() for points in (centre, *lines[0], *lines[1])):
         raise UnbuildableError("a point of it has an impossible coordinate")

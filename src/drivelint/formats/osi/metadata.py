@@ -138,7 +138,7 @@ def parse_conditions(path: Path, rows: Iterable[tuple[str | None, str | None]]) 
     condition_words: dict[str, str] = {}
     for given in rows:
         if given[0] is None or given[1] is None:
-            raise TraceError(f"{path}: a condition of the drive without a name or a value: give both")
+            raise TraceError(f"{path}: a condition of the drive lacks its name or its value: give both")
         name, word = conditions.canonical_spelling(given[0], given[1])
         if wrong := conditions.condition_problem(name) or conditions.value_problem(name, word):
             raise TraceError(f"{path}: condition of the drive: {wrong}")

@@ -147,7 +147,7 @@ def _map_text(container: Container, log_message: LogMessage) -> bytes | QualityF
         text, why = content.field(0)[0].as_py() if content.type.num_fields else None, "is empty"
     if not text:
         where = f"topic {log_message.channel.topic!r}, byte {log_message.offset}"
-        return QualityFinding.unusable_map(f"the log's own map is not used: the one on {where}, {why}")
+        return QualityFinding.unusable_map(f"the log's own map (on {where}) is not used: {why}")
     return text if isinstance(text, bytes) else str(text).encode()
 
 
@@ -204,7 +204,10 @@ def read(probe: Probe) -> Recording:
     n = sum(len(batch.t_ns) for batch in batches)
     untimed = n - sum(int(batch.timed.sum()) for batch in batches)
     if untimed:
-        raise TraceError(f"{path}: {untimed} of {n} messages have no time stamp, and the file has none of its own")
+        raise TraceError(
+            f"{path}: {untimed} of {n} messages have no time stamp, and a file of this format has no other "
+            "times: record the log with time stamps"
+        )
     recording = _recording("osi-file", batches, head, np.zeros(n, np.uint64))
     recording.frame_times = None
     recording.lost_times += trace_file.lost_times(path, losses, np.concatenate([batch.t_ns for batch in batches]))
@@ -304,7 +307,9 @@ def _clock(batches: list[FrameBatch], log_ns: Times, findings: list[QualityFindi
     timed = np.concatenate([batch.timed for batch in batches])
     if not timed.all() or (len(stamps) > 1 and stamps.min() == stamps.max()):
         stamps = log_ns
-        message = "the messages' own time stamps are missing or stand still: the log times of the container are used"
+        message = (
+            "the time stamps of the messages are missing or do not advance: the log times of the container are used"
+        )
         findings.append(
             QualityFinding("log_time_used", "warning", message, int((~timed).sum()) or len(stamps), int(stamps.min()))
         )
@@ -325,7 +330,10 @@ def _host(hosts: list[int | None], t_ns: Times, findings: list[QualityFinding]) 
     if len(host_counts) > 1:
         frames, n = host_counts.total(), host_counts.total() - host_counts[ego]
         names = listed(sorted(map(str, host_counts)))
-        message = f"the log names {len(host_counts)} host vehicles ({names}): {ego} is the ego, which {n} of {frames} frames do not name"
+        message = (
+            f"the log names {len(host_counts)} host vehicles ({names}): {ego} is used as the ego; "
+            f"{n} of {frames} frames do not name it"
+        )
         since = min(at for host, at in first.items() if host != ego)
         findings.append(QualityFinding("ego_count", "warning", message, n, since, str(ego)))
     return [str(ego)]

@@ -83,7 +83,7 @@ def _doubt(content: mmap.mmap, at: int) -> str | None:
     end = start + length
     if _is_message_start(content, at) or end == len(content) or _is_message_start(content, end):
         return None
-    return f"no message begins at byte {at}, nor at byte {end} behind the {length} bytes that it should have"
+    return f"no message begins at byte {at}, nor at byte {end} after the {length} bytes that the message should have"
 
 
 def _is_message_start(content: mmap.mmap, at: int) -> bool:

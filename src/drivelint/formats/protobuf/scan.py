@@ -42,7 +42,7 @@ def fields(data: bytes, start: int = 0, end: int | None = None) -> Iterator[Fiel
         else:
             raise ValueError(f"a field of kind {kind}")
         if at > stop:
-            raise ValueError("a field that ends behind its message")
+            raise ValueError("a field that ends after the end of its message")
         yield Field(key >> 3, value, begin, at)
 
 

@@ -78,7 +78,7 @@ class Table:
     def _has(self, members: dict[str, T], path: str) -> T:
         if path not in members:
             raise TraceError(
-                f"{self.where} has no {path} of the kind that is read: record the log with its own definitions"
+                f"{self.where} has no {path} of the expected type: record the log with its own definitions"
             )
         return members[path]
 
@@ -234,7 +234,7 @@ class _Batch:
         if wrong:
             odd = next(i for i, head in enumerate(heads) if head in wrong)
             header = log_messages[odd].data[:4].hex()
-            raise self._misfit(odd, f"is encoded otherwise than plain CDR like the others (header {header})")
+            raise self._misfit(odd, f"is not encoded as plain CDR like the other messages (header {header})")
         # with four bytes before the first header, every message body begins at a multiple of eight bytes
         padded = -(-(sizes + HEADER_BYTES) // _MAX_ALIGN) * _MAX_ALIGN
         self._start = np.cumsum(padded) - padded + 2 * HEADER_BYTES

@@ -92,8 +92,8 @@ class Log:
         if channel.schema_id not in decoders:
             if schema.encoding != "ros2msg":
                 raise TraceError(
-                    f"{path}: {schema.name} is described by {schema.encoding or 'nothing'}: only ros2msg is read: record or "
-                    "convert it with message definitions"
+                    f"{path}: {schema.name} has a definition of the kind {schema.encoding or 'none'}, but only "
+                    "ros2msg is supported: record or convert the log with message definitions"
                 )
             decoders[channel.schema_id] = Decoder(path, schema, MESSAGES[kind].fields)
         return kind
@@ -109,7 +109,8 @@ class Log:
                 )
             if topic not in read_topics:
                 raise TraceError(
-                    f"{self.path}: nothing that is read is on topic {topic!r}: there is {listed(sorted(read_topics)) or 'nothing'}"
+                    f"{self.path}: topic {topic!r} has no messages that can be read: topics that can be read: "
+                    f"{listed(sorted(read_topics)) or 'none'}"
                 )
 
     def frames(self, topics: Iterable[str], *, own_times: bool) -> Times:
@@ -146,7 +147,9 @@ class Log:
             selection = [usual] if (usual := _usual(of_kind)) else sorted(candidates)
             if usual and len(candidates) > 1:
                 left = listed(sorted(candidates.keys() - {usual}))
-                self.notes.append(f"{content}: topic {usual} is read, {left} is left out: --topic chooses another")
+                self.notes.append(
+                    f"{content}: topic {usual} is read, {left} is not read: --topic chooses another topic"
+                )
         if len(selection) > 1:
             raise TraceError(
                 f"{self.path}: {content} on {len(selection)} topics ({', '.join(selection)}): choose with --topic (several: A,B)"

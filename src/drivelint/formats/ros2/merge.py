@@ -48,8 +48,8 @@ def merge_ego(
         ego.ids = ids_in_objects[:1] or [_free_id(names[0] if names else DEFAULT_EGO_ID, object_states.ids)]
     if not carla and not is_centre:
         message = (
-            f"{odometry[0]}: the ego's place is that of the odometry's child frame, used as the centre of its box: if "
-            "that frame is at the rear axle, set how far ahead of it the centre is: --ego-size LENGTH,WIDTH,AHEAD"
+            f"{odometry[0]}: the origin of the odometry's child frame is used as the centre of the ego's box: if "
+            "this frame is at the rear axle, set the distance from it to the centre: --ego-size LENGTH,WIDTH,AHEAD"
         )
         first = int(ego.t_ns.min())
         findings.append(QualityFinding("reference_point", "warning", message, len(ego), first, ego.ids[0]))
@@ -66,7 +66,7 @@ def _with_one_ego_track(ego: States, object_states: States, topic: str, findings
     n = int(twin.sum())
     message_start = f"the ego is {name!r} on {topic} too"
     if n >= len(ego):
-        message = f"{message_start}: its {n} states there count, not the odometry's"
+        message = f"{message_start}: its {n} states on that topic are used instead of the odometry"
         findings.append(QualityFinding("ego_twice", "info", message, len(ego)))
         return Recording(FORMAT, object_states, ego_ids=[name], findings=findings)
     for size in SIZE_COLUMNS:
@@ -77,7 +77,7 @@ def _with_one_ego_track(ego: States, object_states: States, topic: str, findings
     kinds = object_states.codes["actor_class"][twin]
     if (kinds >= 0).any():
         ego.codes["actor_class"][:] = kinds[kinds >= 0][0]
-    message = f"{message_start}: its size there counts, its {len(ego)} states are the odometry's"
+    message = f"{message_start}: its size is taken from that topic, its {len(ego)} states from the odometry"
     findings.append(QualityFinding("ego_twice", "info", message, n))
     return Recording(FORMAT, concatenate_states(ego, object_states.take(~twin)), ego_ids=[name], findings=findings)
 
@@ -110,7 +110,7 @@ def _carla_origins(topic: str, states: States, findings: list[QualityFinding]) -
     lift = np.where(walks, 0.0, np.nan_to_num(0.5 * states.numbers["height_m"]))
     states.numbers["z_m"] = states.numbers["z_m"] + lift
     message = (
-        f"{topic}: places are the origins of CARLA's actors, used as the centres of their boxes: by the model of the vehicle "
-        "these lie up to a few decimetres ahead or behind; vehicles are lifted by half their height"
+        f"{topic}: the origins of CARLA's actors are used as the centres of their boxes: depending on the model, "
+        "the true centre is up to a few decimetres ahead or behind; vehicles are raised by half their height"
     )
     findings.append(QualityFinding("reference_point", "info", message, len(states), int(states.t_ns.min())))

@@ -160,7 +160,7 @@ def _ego_rows(log: Log, odometry: Topics, option: EgoSize | None) -> tuple[dict[
             log.findings += _other_centre(box, ahead_m)
             is_centre = True
     if box is not None and rows:
-        log.notes.append(f"the ego's box is that of {box.source}: {box.described()}")
+        log.notes.append(f"the ego's box is taken from {box.source}: {box.described()}")
     return rows, is_centre
 
 
@@ -168,7 +168,10 @@ def _other_centre(box: VehicleBox, ahead_m: float) -> list[QualityFinding]:
     said = box.centre[0]
     if ahead_m == 0.0 or abs(ahead_m - said) <= SIZE_DIFFERENCE_M:
         return []
-    message = f"--ego-size puts the centre of the ego's box {ahead_m:g} m ahead of base_link, but the log states {said:g} m, which is used"
+    message = (
+        f"--ego-size puts the centre of the ego's box {ahead_m:g} m ahead of base_link, but the log states "
+        f"{said:g} m: the value of the log is used"
+    )
     return [QualityFinding("ego_size", "warning", message)]
 
 
@@ -189,7 +192,7 @@ def _outlined(rows: RecordedPoses, topic: str) -> list[QualityFinding]:
     if rows.outlined is None or not rows.outlined.any():
         return []
     n = int(rows.outlined.sum())
-    message = f"{topic}: the shape is a polygon in {n} of {len(rows)} states: the box around it counts, which is larger"
+    message = f"{topic}: the shape is a polygon in {n} of {len(rows)} states: the box around the polygon is used, which is larger"
     return [QualityFinding("polygon_box", "info", message, n, int(rows.t_ns[rows.outlined].min()))]
 
 

@@ -169,7 +169,10 @@ def _unresolved_frame(topic: str, frame: str, fixed: str, frames: TransformTree,
     else:
         why = f"the transform from {frame!r} to {fixed!r} is not recorded at their time"
     first = int(t_ns.min())
-    message = f"{topic}: {len(t_ns)} poses from {first / 1e9:g} s on cannot be placed, since {why}: they are present but not placed"
+    message = (
+        f"{topic}: {len(t_ns)} poses from {first / 1e9:g} s on cannot be placed, because {why}: "
+        "the actors are present, but not placed"
+    )
     return QualityFinding("frame_unresolved", "error", message, len(t_ns), first)
 
 
@@ -203,8 +206,8 @@ def _other_frame(states: States, swapped: Vectors, along: Mask, topic: str) -> l
     ways = ("along the actor's axes", "in the frame of the positions")
     given, is_ = ways if bool(along[0]) else reversed(ways)
     message = (
-        f"{topic}: velocities should be given {given} and then miss the positions' changes by {off:.2f} m/s (median); "
-        f"they are {is_} ({fit:.2f} m/s), and are read in this way"
+        f"{topic}: velocities should be {given}, but then differ from the changes of position by {off:.2f} m/s "
+        f"(median); {is_} they differ by {fit:.2f} m/s, and are read in this way"
     )
     return [QualityFinding("twist_frame", "warning", message, len(states), int(states.t_ns.min()))]
 
@@ -224,13 +227,13 @@ def choose_clock(parts: dict[str, RecordedPoses], findings: list[QualityFinding]
         if missing.any():
             why = f"{topic}: {int(missing.sum())} of {len(rows)} poses are without a time stamp"
         elif len(rows) > 1 and rows.stamp_ns.min() == rows.stamp_ns.max() and rows.log_ns.min() < rows.log_ns.max():
-            why = f"the time stamps of {topic} stand still"
+            why = f"the time stamps of {topic} do not advance"
         else:
             ranges.append((int(rows.stamp_ns.min()), int(rows.stamp_ns.max()), topic))
     if why is None and len(ranges) > 1:
         latest, earliest = max(ranges), min(ranges, key=lambda item: item[1])
         if latest[0] > earliest[1]:
-            why = f"the time stamps of {latest[2]} and {earliest[2]} have no moment in common: two clocks"
+            why = f"the time stamps of {latest[2]} and {earliest[2]} do not overlap: they come from two clocks"
     for topic, rows in parts.items():
         rows.t_ns = rows.stamp_ns if why is None else rows.log_ns
         if len(rows):

@@ -33,7 +33,7 @@ def silences(topic: str, sent_ns: Times, odometry_ns: Times) -> list[LostTime]:
     goes_on = np.searchsorted(others, edges[1:]) - np.searchsorted(others, edges[:-1], side="right") > 1
     silent = np.flatnonzero((np.diff(edges) > least) & goes_on)
     begins, ends = (edges[side].tolist() for side in (silent, silent + 1))
-    what = f"{topic} is silent while the odometry goes on"
+    what = f"{topic} has no messages while the odometry continues"
     return [
         LostTime(None if k == 0 else since, None if k == len(sent) else until, what)
         for k, since, until in zip(silent.tolist(), begins, ends, strict=True)

@@ -127,7 +127,9 @@ def signal_states(
     since, until = span_ns
     usable = (t_ns != 0) | (until < LEAST_UTC_NS)
     if not usable.any() or t_ns[usable].min() > until or t_ns[usable].max() + LONGEST_HOLD_NS < since:
-        why = f"{topic}: the messages are of another time than the states of the drive: the states of the lights are unknown"
+        why = (
+            f"{topic}: the messages have other times than the states of the drive: the states of the lights are unknown"
+        )
         return None, [QualityFinding("signal_clock", "warning", why, len(t_ns))]
     keep = usable[message]
     message, group, state = message[keep], group[keep], state[keep]

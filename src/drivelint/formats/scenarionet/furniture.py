@@ -90,7 +90,7 @@ def _place(value: Any, offset: tuple[float, float]) -> Floats | None:
 
 def _report_lost(names: list[str], kind: str, quality: MapQuality) -> None:
     if names:
-        message = f"{kind} that hold for no lane that is built, or have no place: {', '.join(sorted(names)[:5])}"
+        message = f"{kind} that apply to no lane of the map, or have no position: {', '.join(sorted(names)[:5])}"
         quality.add("signal_without_lane", "warning", None, message, len(names))
 
 

@@ -79,7 +79,9 @@ def _bounded(centres: Mapping[str, CentreLine], scenario: Scenario, quality: Map
     bounded_lanes, beside = [], find_neighbours(centres)
     for name, lane in centres.items():
         if np.isnan(lane.half).any():
-            message = f"lane {name} is left out: neither it nor what it joins has bounds, and so it has no width"
+            message = (
+                f"lane {name} is left out: neither it nor the lanes that it joins have bounds, so its width is unknown"
+            )
             quality.add("invalid_lane", "error", name, message)
             continue
         bounded_lanes.append(

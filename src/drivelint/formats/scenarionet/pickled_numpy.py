@@ -105,5 +105,5 @@ def _view(raw: Any, kind: Any, shape: Any, order: Any) -> np.ndarray[Any, Any]:
     if type(shape) is not tuple or {*map(type, shape)} - {int} or min(shape, default=0) < 0:
         raise TypeError("an array without a shape")
     if prod(shape) * kind.numpy.itemsize != len(raw):
-        raise ValueError(f"an array is of another size than its shape {shape} says")
+        raise ValueError(f"the size of an array does not match its shape {shape}")
     return np.ndarray(shape, kind.numpy, raw, order=order)

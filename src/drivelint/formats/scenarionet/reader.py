@@ -95,8 +95,8 @@ def _place_ego(tracks: Tracks, scenario: Scenario, even: Mask) -> tuple[list[Qua
         tracks.place[ego, :, 1] += dataset.ego_ahead_m * np.sin(heading)
         tracks.place[ego, :, 2] += tracks.size[ego, :, 2] / 2.0
         notes.append(
-            f"the ego's positions are its rear axle's on the ground: the middle of its box is {dataset.ego_ahead_m:g} m ahead and "
-            "half its height above"
+            "the ego's positions are those of its rear axle on the ground: the middle of its box is "
+            f"{dataset.ego_ahead_m:g} m ahead and half its height above"
         )
     return findings, notes
 
@@ -104,15 +104,15 @@ def _place_ego(tracks: Tracks, scenario: Scenario, even: Mask) -> tuple[list[Qua
 def _of_clock(ego: str, lost_messages: int, shift_s: float, message_s: float) -> list[QualityFinding]:
     if not lost_messages and not np.isfinite(shift_s):
         return []
-    steps = f"{lost_messages} of its messages are lost, and the steps over them are {message_s:g} s longer each than the scenario says"
+    steps = f"{lost_messages} of its messages are lost, and each lost message makes a step {message_s:g} s longer than the scenario states"
     parts = [steps] if lost_messages else []
     if np.isfinite(shift_s):
         parts.append(
-            f"its last positions, which are of the annotated frames, show that it begins {round(shift_s, 2) + 0.0:.2f} s after these"
+            f"its last positions, which match the annotated frames, show that it begins {round(shift_s, 2) + 0.0:.2f} s after these"
         )
     message = (
-        f"the positions of {ego} are counted messages of a stream, not timed: {'; '.join(parts)}: it is moved to its places at the steps, "
-        "which are known to about 0.1 s against the others'"
+        f"the positions of {ego} have message numbers instead of times: {'; '.join(parts)}: its positions are moved "
+        "to the times of the steps, with an error of about 0.1 s relative to the other actors"
     )
     return [QualityFinding("ego_clock", "warning", message, max(lost_messages, 1), actor_id=ego)]
 

@@ -101,14 +101,14 @@ def _n_points(feature: Mapping[str, Any]) -> int:
 
 def _part(content: Any, name: str) -> dict[str, Any]:
     if not isinstance(content, dict) or not isinstance(content.get(name), dict):
-        raise PickleError(f"it has no scenario of ScenarioNet, which has a dict {name!r}: give a file sd_*.pkl")
+        raise PickleError(f"it is not a scenario of ScenarioNet, because it has no dict {name!r}: give a file sd_*.pkl")
     return dict(content[name])
 
 
 def _each_a_dict(part: dict[Any, Any], name: str) -> dict[str, dict[str, Any]]:
     for key, value in part.items():
         if not isinstance(value, dict):
-            raise PickleError(f"{name}[{str(key)[:100]!r}] is no dict: write the scenario again")
+            raise PickleError(f"{name}[{str(key)[:100]!r}] is not a dict: write the scenario again")
     return {str(key): value for key, value in part.items()}
 
 
@@ -116,7 +116,7 @@ def times_s(metadata: Mapping[str, Any]) -> Floats:
     """Return the times of the steps (T,) in seconds. Errors: `PickleError`."""
     t_s = numbers(metadata.get("ts"), "metadata['ts']").reshape(-1)
     if not len(t_s) or not (np.abs(t_s) < _LONGEST_S).all():
-        raise PickleError("metadata['ts'] is no list of times in seconds: write the scenario again")
+        raise PickleError("metadata['ts'] is not a list of times in seconds: write the scenario again")
     return t_s
 
 
@@ -134,7 +134,7 @@ def numbers(value: Any, where: str) -> Floats:
             return value.array
     except OverflowError:
         pass  # an integer beyond any float
-    raise PickleError(f"{where} is no array of numbers: write the scenario again")
+    raise PickleError(f"{where} is not an array of numbers: write the scenario again")
 
 
 def points(value: Any, where: str) -> Floats:
@@ -151,4 +151,4 @@ def points(value: Any, where: str) -> Floats:
             return np.fromiter(chain.from_iterable(rows), np.float64, len(rows) * k).reshape(-1, k)
         except (TypeError, ValueError, OverflowError):
             pass  # a text, a list of lists, or an integer beyond any float
-    raise PickleError(f"{where} is no list of points: write the scenario again")
+    raise PickleError(f"{where} is not a list of points: write the scenario again")

@@ -159,11 +159,11 @@ def turn_boxes(tracks: Tracks, dataset: Dataset) -> list[QualityFinding]:
     ids_by_reason: dict[str, list[str]] = {}
     for i in np.flatnonzero(long_kind & (width > _WIDER * length)):
         if _moves_ahead(tracks, int(i)):
-            why = "length and width of {} are exchanged, as its motion along the short side shows: they are exchanged"
+            why = "length and width of {} are swapped in the log, as its motion along the short side shows: this is corrected"
         elif i == tracks.ego and np.allclose((width[i], length[i]), dataset.ego_box_m or (0.0, 0.0), atol=0.01):
-            why = "length and width of {} are exchanged, as always in this data set: they are exchanged"
+            why = "length and width of {} are swapped in the log, as always in this data set: this is corrected"
         else:
-            why = "wider than long, and no motion tells which side is the length: {}: the size is unknown"
+            why = "wider than long, and no motion shows which side is the length: {}: the size is unknown"
         tracks.size[i, :, :2] = np.nan if why.endswith("unknown") else tracks.size[i, :, 1::-1]
         ids_by_reason.setdefault(why, []).append(tracks.ids[i])
     return [

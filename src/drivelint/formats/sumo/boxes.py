@@ -111,7 +111,7 @@ def _findings(tracks: Tracks, changing: Mask, sizeless: Mask) -> list[QualityFin
     findings = []
     if sizeless.any():
         message = (
-            f"no size is known of the vehicle types {_types(tracks, sizeless)}: give the route file "
+            f"the sizes of the vehicle types {_types(tracks, sizeless)} are not known: give the route file "
             "with their vType elements with --mapping; until then their positions are those of the front bumper"
         )
         findings.append(QualityFinding("bumper_position", "warning", message, int(sizeless.sum())))
@@ -133,7 +133,5 @@ def _types(tracks: Tracks, rows: Mask) -> str:
 def _copies(tracks: Tracks, copies: Mapping[str, str]) -> QualityFinding:
     rows = np.isin(tracks.type_code, [i for i, name in enumerate(tracks.type_names) if name in copies])
     ids = [tracks.ids[i] for i in np.unique(tracks.actor[rows])]
-    message = (
-        f"types that were changed for one vehicle have the size of the type that they were: {listed(sorted(copies))}"
-    )
+    message = f"types that were changed for one vehicle have the size of the original type: {listed(sorted(copies))}"
     return QualityFinding.of_actors("copied_type", "info", message, ids)

@@ -58,7 +58,7 @@ def net_positions(
     frame, trouble = location.frame(), location.trouble()
     if frame is None or trouble:
         raise TraceError(
-            f"{path}: {_DEGREES}, and the net {net.name} does not lead back to metres: {trouble}: {_REMEDY}"
+            f"{path}: {_DEGREES}, and the net {net.name} cannot convert them to metres: {trouble}: {_REMEDY}"
         )
     placed = np.isfinite(xy).all(axis=1)
     found = np.full_like(xy, np.nan)
@@ -76,7 +76,7 @@ def _are_degrees(path: Path, rows: Rows, xy: Floats, actor: NDArray[np.int32], n
     if moves is False and rows.geo_option:
         raise TraceError(
             f"{path}: its configuration says that its positions are longitude and latitude (fcd-output.geo), and they are not: "
-            "write the log anew"
+            "write the log again"
         )
     if moves is not None or rows.geo_option is not None:
         return bool(rows.geo_option if moves is None else moves)
@@ -113,7 +113,7 @@ def _rounding(degrees: Floats, net: Path) -> list[QualityFinding]:
     if error_m < _LEAST_ERROR_M:
         return []
     message = (
-        f"positions are longitude and latitude with {digits} decimals, brought back into the metres of {net.name}: they are known to "
-        f"{error_m:.2g} m; SUMO's option precision.geo gives more"
+        f"positions are longitude and latitude with {digits} decimals, converted to the metres of {net.name}: they "
+        f"are exact to {error_m:.2g} m; SUMO's option precision.geo gives more decimals"
     )
     return [QualityFinding("rounded_position", "warning", message, len(degrees))]

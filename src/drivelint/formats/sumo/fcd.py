@@ -87,7 +87,7 @@ def read(probe: Probe) -> Recording:
     rows = rows.take(~nameless)
     untimed = int((~(np.abs(rows.numbers("time")) < _LONGEST_S)).sum())
     if untimed:
-        raise TraceError(f"{path}: rows of vehicles without a time that can be: {untimed}: write the log anew")
+        raise TraceError(f"{path}: rows of vehicles without a valid time: {untimed}: write the log again")
     types, notes = types_for(path, probe.options.mapping)
     rows = rows._replace(kind=_kinds_by_type(rows, types))
     rides = riding(rows)
@@ -97,7 +97,10 @@ def read(probe: Probe) -> Recording:
     recording = _recording(path, rows.take(~rides), types, probe.options)
     recording.notes += notes
     if rides.any():
-        message = f"rows of persons or containers that ride in a vehicle: {int(rides.sum())}: there they are no road users of their own"
+        message = (
+            f"rows of persons or containers that ride in a vehicle: {int(rides.sum())}: in these "
+            "rows they are not separate road users"
+        )
         recording.findings.append(QualityFinding("riding", "info", message, int(rides.sum())))
     if rows.lacks_end:
         recording.lost_times.append(
@@ -177,7 +180,10 @@ def _actors(rows: Rows) -> tuple[list[str], NDArray[np.int32], list[str]]:
     twice = np.bincount(whose, minlength=len(ids))[whose] > 1
     names = [f"{KINDS[k]}:{ids[i]}" if both and k else ids[i] for i, k, both in zip(whose, kinds, twice, strict=True)]
     shared = sorted({ids[i] for i in whose[twice]})
-    note = f"persons or containers have the ids of others ({listed(shared)}): they are called {KINDS[PERSON]}:ID or {KINDS[CONTAINER]}:ID"
+    note = (
+        f"persons or containers have the same ids as vehicles ({listed(shared)}): they are renamed "
+        f"{KINDS[PERSON]}:ID or {KINDS[CONTAINER]}:ID"
+    )
     return names, code.astype(np.int32), [note] if shared else []
 
 
@@ -186,7 +192,7 @@ def _recording(path: Path, rows: Rows, types: Mapping[str, VehicleType], options
     angle = rows.numbers("angle")
     if not np.isfinite(angle).any():
         raise TraceError(
-            f"{path}: no heading: nobody has an angle, without which the boxes behind the front bumpers cannot be placed: record the "
+            f"{path}: no heading: no vehicle has an angle, which is needed to place the boxes behind the front bumpers: record the "
             "log with the attribute angle (SUMO's option fcd-output.attributes)"
         )
     names = pc.dictionary_encode(rows.table["type"]).combine_chunks()

@@ -98,7 +98,7 @@ def _rows(path: Path, table: pa.Table, groups: Mapping[str, Columns]) -> Rows:
         try:
             kind, own = _of_one_group({name: table[column] for name, column in columns.items()})
         except pa.ArrowException as error:
-            raise TraceError(f"{path}: {' '.join(str(error).split())}: write the log anew") from error
+            raise TraceError(f"{path}: {' '.join(str(error).split())}: write the log again") from error
         return typed_rows(path, own, kind)
     parts, order = [], []
     for element, columns in groups.items():

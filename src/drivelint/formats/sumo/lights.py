@@ -56,7 +56,7 @@ def add_light_states(recording: Recording, log: Path, is_log: Callable[[Path], b
     if len(log_files) == 1:
         _read_light_states(log_files[0], recording)
     elif files:
-        what = "which of them is its own is not known" if log_files else "none is named as it is"
+        what = "it is not known which of them belongs to the log" if log_files else "no log has the name of this file"
         names = listed([file.name for file in log_files or files])
         note = f"{log.name}: light states in {names} are not read: {what}: call it {_first_part(log)}.tls.xml"
         recording.notes.append(note)

@@ -121,7 +121,7 @@ def _geo_frame(root: etree._Element, quality: MapQuality) -> GeoFrame | None:
 def _handedness(request: MapOptions, net_side: str | None, quality: MapQuality) -> tuple[str, str]:
     """Return the side that is driven on, and its source. `net_side`: the side that the net states; None: its import lost the side."""
     if net_side is not None and request.side not in {None, net_side}:
-        message = f"the option --handedness: {request.side}; the net: {net_side}; the option is taken"
+        message = f"the option --handedness: {request.side}; the net: {net_side}; the option is used"
         quality.add("handedness_disagrees", "warning", None, message)
     return choose_side(
         [("option", request.side), ("attribute", None if request.side else net_side)], quality, "the net"
@@ -175,7 +175,7 @@ def _lane(
     half = float(element.get("width") or DEFAULT_LANE_WIDTH_M) / 2
     limit = float(element.attrib["speed"])
     if not 0 < half < math.inf or not 0 <= limit < math.inf:
-        raise ValueError(f"its width of {2 * half:g} m or speed of {limit:g} m/s cannot be")
+        raise ValueError(f"its width of {2 * half:g} m or speed of {limit:g} m/s is not possible")
     kind = _kind(element.get("allow"), element.get("disallow"))
     inside = edge.get("function") == "internal"
     # inside a junction the speed is what the bend allows, not a limit
@@ -201,7 +201,7 @@ def _points(shape: str) -> Floats:
     """Return the points (n, 2) of a shape, without heights and repeated points. Errors: `ValueError` for an invalid shape."""
     points = np.array([[float(v) for v in point.split(",")[:2]] for point in shape.split()], np.float64)
     if points.shape[1:] != (2,) or not (np.abs(points) < FARTHEST_M).all():
-        raise ValueError("its shape is no line of points x,y")
+        raise ValueError("its shape is not a list of points x,y")
     points = points[np.r_[True, np.hypot(*np.diff(points, axis=0).T) > 1e-3]]
     if len(points) < 2:
         raise ValueError("its shape has no length")

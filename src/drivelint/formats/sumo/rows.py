@@ -63,7 +63,7 @@ def typed_rows(path: Path, columns: dict[str, pa.ChunkedArray | pa.Array], kind:
             arrays[name] = _typed(name, column)
         except pa.ArrowException as error:
             raise TraceError(
-                f"{path}: {name} of vehicles: {' '.join(str(error).split())}: write the log anew"
+                f"{path}: {name} of vehicles: {' '.join(str(error).split())}: write the log again"
             ) from error
     return Rows(pa.table(arrays), kind)
 

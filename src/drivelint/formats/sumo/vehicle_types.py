@@ -84,8 +84,8 @@ def types_for(log: Path, types_file: str | None) -> tuple[dict[str, VehicleType]
         for name, vehicle_type in here.items():
             if name in types and types[name] != vehicle_type:
                 notes.append(
-                    f"{log.name}: the type {name} is another in {file.name} than in {files[name]}, both beside it, and is taken for "
-                    "unknown: give the file of the simulation with --mapping"
+                    f"{log.name}: the type {name} differs between {file.name} and {files[name]} in the same folder, "
+                    "and is treated as unknown: give the file of the simulation with --mapping"
                 )
                 types[name] = UNKNOWN_TYPE
             else:

@@ -86,7 +86,7 @@ def read(probe: Probe) -> Recording:
         counted, found = log.get("n_states"), len(states) + sum(f.n for f in findings if f.check_id == "dropped_row")
         if counted is not None and counted != found:  # it is unknown which states are missing
             raise TraceError(
-                f"{path / 'actor_state.parquet'}: {found} rows, and data_log.parquet counts {counted} states: copy or "
+                f"{path / 'actor_state.parquet'}: {found} rows, but data_log.parquet states {counted}: copy or "
                 "convert the folder again"
             )
         recording.sensor_range_m, recording.utc_start_ns = log.get("sensor_range_m"), log.get("utc_start_ns")
@@ -146,7 +146,7 @@ def _need(path: Path, table: pa.Table, names: tuple[str, ...]) -> None:
         raise TraceError(f"{path}: no column {', '.join(missing)}: a canonical table needs {', '.join(names)}")
     drives = pc.unique(_column(path, table, "drive_id", pa.string())) if "drive_id" in table.schema.names else []
     if len(drives) > 1:
-        raise TraceError(f"{path}: holds {len(drives)} drives: write one folder or file per drive")
+        raise TraceError(f"{path}: contains {len(drives)} drives: write one folder or file per drive")
 
 
 def _states(path: Path) -> Recording:
@@ -242,5 +242,5 @@ def _every_cell(path: Path, required: tuple[str, ...], optional: str) -> pa.Tabl
         return None
     for name in required:
         if table[name].null_count:
-            raise TraceError(f"{path}: {table[name].null_count} rows have no {name}: give every row one")
+            raise TraceError(f"{path}: {table[name].null_count} rows have no {name}: fill this column in every row")
     return table if optional in table.schema.names else table.append_column(optional, pa.nulls(len(table), pa.string()))

@@ -31,7 +31,7 @@ def chosen_columns(path: Path, rows: pa.Table, required: Iterable[str], optional
         raise TraceError(f"{path}: no column {', '.join(missing)}: it needs {', '.join(required)}: get the log again")
     chosen = [*required, *(name for name in optional if name in names)] or names
     if twice := [name for name in chosen if names.count(name) > 1]:
-        raise TraceError(f"{path}: the column {twice[0]!r} stands twice: rename one, or remove it")
+        raise TraceError(f"{path}: the column {twice[0]!r} occurs twice: rename or remove one of them")
     rows = rows.select(chosen)
     rows.validate(full=True)  # in a damaged file, offsets may point outside of the buffers
     return rows.combine_chunks()

@@ -67,7 +67,9 @@ def read(probe: Probe) -> Recording:
     path, name = probe.path, probe.options.mapping
     if name is None:
         name, mapping, sheet = _fitting(path)
-        notes = [f"read through the shipped mapping {name!r}, the only one whose columns the file has"]
+        notes = [
+            f"read through the shipped mapping {name!r}, the only shipped mapping that matches the columns of the file"
+        ]
     else:
         name, mapping = mappings.load(name)
         sheet = open_sheet(path, mapping)
@@ -91,7 +93,7 @@ def _assumptions(name: str, mapping: Mapping) -> list[QualityFinding]:
         findings.append(QualityFinding(ASSUMED_SIZE, "info", f"size from the mapping {name!r}, not recorded"))
     turns = {"y": mapping.frame.flip_y, "heading": mapping.frame.flip_yaw}
     if turned := [what for what, is_turned in turns.items() if is_turned]:
-        message = f"{' and '.join(turned)} turned, as the mapping {name!r} states: the log's frame is left-handed"
+        message = f"{' and '.join(turned)} changed in sign, because the frame of the log is left-handed according to the mapping {name!r}"
         findings.append(QualityFinding(TURNED_FRAME, "info", message))
     return findings
 
@@ -103,7 +105,7 @@ def _refuse_misread(path: Path, name: str, recording: Recording) -> None:
     if lost > kept > 0:
         why = next(finding.message for finding in recording.findings if finding.check_id in LOSS_CHECKS)
         raise TraceError(
-            f"{path}: mapping {name!r} cannot read {lost} of {lost + kept} rows ({why}): give the right one with --mapping"
+            f"{path}: mapping {name!r} cannot read {lost} of {lost + kept} rows ({why}): give the right mapping with --mapping"
         )
 
 
@@ -130,7 +132,7 @@ def _fitting(path: Path) -> tuple[str, Mapping, Sheet]:
     if not fits:
         shipped = ", ".join(mappings.shipped_mappings())
         what = f"read as a table, no shipped mapping fits its columns (shipped: {shipped})"
-    raise TraceError(f"{path}: {what}: say how to read it with --mapping FILE|NAME; drivelint inspect drafts one")
+    raise TraceError(f"{path}: {what}: give a mapping with --mapping FILE|NAME; drivelint inspect drafts one")
 
 
 def _groups(path: Path, name: str, mapping: Mapping, sheet: Sheet) -> list[str]:
@@ -150,7 +152,7 @@ def _groups(path: Path, name: str, mapping: Mapping, sheet: Sheet) -> list[str]:
             known = hint(column, sheet.names)
             raise TraceError(f"{path}: no column {column!r}, which mapping {name!r} needs: {known}")
         if count > 1:
-            raise TraceError(f"{path}: the column {column!r} is there {count} times")
+            raise TraceError(f"{path}: the column {column!r} occurs {count} times")
     return groups
 
 
@@ -218,7 +220,7 @@ class _Body:
         """Return the time ranges of lost rows and of malformed lines, whose times are unknown."""
         cause = f"{self.path.name}: rows that cannot be read"
         if self.sheet.has_zeros_within:
-            return [LostTime(None, None, f"{cause}, for zero bytes stand there")]
+            return [LostTime(None, None, f"{cause}, because the file contains zero bytes there")]
         places = self.sheet.rows_before_bad_lines() + [len(t_ns)] * (self.sheet.zeros_at is not None)
         t_ns, timed, lost_rows = (
             np.insert(t_ns, places, 0),
@@ -262,8 +264,8 @@ class _Body:
         largest = float(np.nanmax(np.abs(values), initial=0.0))
         if largest > MAX_HEADING_RAD:
             raise TraceError(
-                f"{self.path}: column {column!r} goes up to {largest:g}, which is no angle in radians: "
-                'give a mapping with --mapping in which its unit is "deg"; drivelint inspect drafts one'
+                f"{self.path}: column {column!r} goes up to {largest:g}, which is not an angle in radians: "
+                'give a mapping with --mapping in which the unit is "deg"; drivelint inspect drafts one'
             )
 
     def _codes(self, spec: WordMapping, words: tuple[str, ...], k: str) -> Codes:
@@ -304,7 +306,7 @@ class _Body:
             return []
         first = states.ids[states.actor[rows[0]]]
         names = " or ".join(self.mapping.ego.ids)
-        message = f"no actor is called {names}: the first vehicle of the file, {first}, is taken as the ego"
+        message = f"no actor has the name {names}: the first vehicle of the file, {first}, is used as the ego"
         self.findings.append(QualityFinding("ego_assumed", "info", message, actor_id=first))
         return [first]
 
@@ -327,14 +329,15 @@ class _Body:
 
     def _report_lines(self, n: int) -> None:
         if self.sheet.zeros_at is not None:
-            message = (
-                f"{self.path.name}: zero bytes from byte {self.sheet.zeros_at} on: what should stand there is lost"
-            )
+            message = f"{self.path.name}: zero bytes from byte {self.sheet.zeros_at} on: the original content is lost"
             self.findings.append(QualityFinding("malformed_row", "error", message))
         lines = self.sheet.bad_lines
         if not lines:
             return
-        what = f"{describe_places('line', lines, len(lines))}: not the {len(self.sheet.names)} cells of the header"
+        what = (
+            f"{describe_places('line', lines, len(lines))}: the number of cells differs from the "
+            f"{len(self.sheet.names)} cells of the header"
+        )
         if n == 0:
             raise TraceError(f"{self.path}: {what}: no row is left; check the mapping's separator and skip_rows")
         message = f"{self.path.name}, {what}: not judged"

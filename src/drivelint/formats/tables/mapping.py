@@ -174,7 +174,7 @@ def refuse_if_none(name: str) -> None:
     """Raise `UsageError` if `name` is neither a file nor a shipped mapping; it proposes the most similar name."""
     known = sorted(file.stem for file in MAPPINGS_FOLDER.parents[1].glob("*/mappings/*.toml"))  # also mappings of films
     if is_pipe_or_device(name):
-        raise UsageError(f"mapping {name}: a pipe or a device: write its output to a file, and name that file")
+        raise UsageError(f"mapping {name}: a pipe or a device: write its output to a file, and give that file")
     if not os.path.isfile(name) and name not in known:  # noqa: PTH113 - also of a name that is too long for a file
         raise UsageError(f"mapping {name!r}: neither a file nor a shipped mapping: {hint(name, known)}")
 
@@ -284,13 +284,13 @@ def _contradictions(mapping: Mapping, names: AbstractSet[str]) -> list[tuple[boo
     heading = "speed" in names or mapping.frame.velocity == "vehicle" or point != "centre"
     has_groups = any(GROUP_PLACEHOLDER in name for name in needed_columns(mapping))
     return [
-        (("vx" in names) != ("vy" in names) or ("ax" in names) != ("ay" in names), "vx and vy, and ax and ay, go in pairs"),
+        (("vx" in names) != ("vy" in names) or ("ax" in names) != ("ay" in names), "vx and vy need each other, and so do ax and ay"),
         ("vx" in names and "speed" in names, "give vx and vy or speed, not both"),
         (heading and "yaw" not in names,
          "speed, frame.velocity = 'vehicle' and a reference point other than the centre need columns.yaw"),
         (point == "rear_axle" and "forward" not in names, "reference.point = 'rear_axle' needs reference.forward"),
         (point == "front_bumper" and ("length" not in names or "forward" in names),
-         "reference.point = 'front_bumper' needs columns.length and takes no reference.forward"),
+         "reference.point = 'front_bumper' needs columns.length and must not have reference.forward"),
         (point == "centre" and not names.isdisjoint({"forward", "left", "up"}),
          "reference.forward, left and up need reference.point = 'rear_axle'"),
         (mapping.ego.otherwise is not None and not has_groups,

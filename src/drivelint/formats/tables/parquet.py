@@ -60,7 +60,7 @@ def _open(path: Path, take: Callable[[pq.ParquetFile], T]) -> T:
             _refuse_second_file(path, file)
             names = opened.schema_arrow.names
             if twice := [name for name in names if names.count(name) > 1]:
-                raise TraceError(f"{path}: the column {twice[0]!r} stands twice: rename one, or remove it")
+                raise TraceError(f"{path}: the column {twice[0]!r} occurs twice: rename or remove one of them")
             return take(opened)
     except (pa.ArrowException, OSError, UnicodeDecodeError) as error:
         raise TraceError(f"{path}: not readable as Parquet: {' '.join(str(error).split())}: copy it again") from error
@@ -85,7 +85,9 @@ def _refuse_second_file(path: Path, file: BufferedReader) -> None:
         while at >= 0:
             end = at + len(_MAGIC)
             if _is_whole(data[:end]):
-                raise TraceError(f"{path}: a second Parquet file begins at byte {end}: give each by itself")
+                raise TraceError(
+                    f"{path}: a second Parquet file begins at byte {end}: split the file, and give each part by itself"
+                )
             at = data.find(_MAGIC * 2, at + 1)
 
 

@@ -60,7 +60,9 @@ class CsvSheet:
         except csv.Error as error:
             raise TraceError(f"{self._path}: not a CSV table: {error}") from error
         if not any(name.strip() for name in header):
-            raise TraceError(f"{self._path}: line {self._layout.skip_rows + 1} should name the columns and is blank")
+            raise TraceError(
+                f"{self._path}: line {self._layout.skip_rows + 1} should contain the names of the columns, but is blank"
+            )
         return header, following
 
     def _check_text(self) -> None:

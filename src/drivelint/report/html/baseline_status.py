@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 MAX_LISTED: Final = 40
 """The page lists this many findings of the earlier result per status."""
 _FOLDED_STATUSES: Final = ("changed", *NOT_FIXED, "fixed")
-_STATES: Final = {"expired": "expired", "unmatched": "no such finding", "active": "in force"}
+_STATES: Final = {"expired": "expired", "unmatched": "matches no finding", "active": "in force"}
 """The states of a waiver in words; states that need action come first."""
 _LABELS: Final = {"new": "new", "open": "not waived", "known": "known", "waived": "waived", "possible": "only possible"}
 

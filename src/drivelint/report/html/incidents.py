@@ -121,7 +121,7 @@ def how_sure(finding: Row, same: Sequence[Row] = ()) -> dict[str, str]:
         return {"kind": "", "label": "not tested", "why": "no copies with assumed errors were judged"}
     of = f"{finding['n_stays']} of {finding['n_copies']}"
     only = "only " if said == POSSIBLE else ""
-    why = f"in {only}{of} copies of the drive with assumed errors ({MeasurementErrors().words}) it is a finding too"
+    why = f"it is also a finding in {only}{of} copies of the drive with assumed errors ({MeasurementErrors().words})"
     if others := as_others_say(finding, same):
         why += f"; {others}"
     return {"kind": said, "label": f"{said}, {of}", "why": why}

@@ -39,7 +39,7 @@ def summarise_reasons(reasons_given: Iterable[VerdictReason]) -> str:
     """
     first, *others = sorted(set(reasons_given), key=lambda reason: (len(reason.text), reason.text, reason.kind))
     alike = sum(reason.kind == first.kind for reason in others)
-    more = [f"{alike} more like it"] if alike else []
+    more = [f"{alike} similar"] if alike else []
     more += [plural(len(others) - alike, "other reason")] if len(others) > alike else []
     shown = f"{first.text.removesuffix('.')} (and {' and '.join(more)})" if more else first.text
     return shown[:1].upper() + shown[1:]

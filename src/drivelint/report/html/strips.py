@@ -115,7 +115,7 @@ def _strip(
     inside = [v for line in lines for t, v in zip(line.t_ns, line.values, strict=True) if v is not None and _in(x, t)]
     inside = inside or [v for line in lines for v in line.values if v is not None]
     y, cut = axis_that_decides(inside, _deciding(lines, course, worst_ns), top + _HEIGHT, top)
-    cut_off = f"cut: goes {' and '.join(f'to {number(v, unit)}' for v in cut)}" if cut else ""
+    cut_off = f"line cut off: the value goes {' and '.join(f'to {number(v, unit)}' for v in cut)}" if cut else ""
     at_worst = _at_worst(lines, worst_ns)
     words = f"{title}, {unit} {f'({cut_off}) ' if cut else ''}{at_worst}"
     beside = len(words) * _CHAR <= RIGHT - LEFT

@@ -95,7 +95,7 @@ def _files(row: Row, folder: Path | None) -> list[tuple[str, str]]:
     """Return the files beside the page that are about a finding, each as description and link."""
     if folder is None:
         return []
-    beside = [("log with the verdicts in it, for a viewer", f"annotated/{row['drive_id']}.mcap")]
+    beside = [("log that also contains the verdicts, for a viewer", f"annotated/{row['drive_id']}.mcap")]
     if "finding_id" in row:
-        beside.append(("incident sheet, two pages to file", f"incidents/{row['finding_id']}.html"))
+        beside.append(("incident sheet, two pages on paper", f"incidents/{row['finding_id']}.html"))
     return [(words, quote(name)) for words, name in beside if (folder / name).is_file()]
