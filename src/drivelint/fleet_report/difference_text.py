@@ -102,15 +102,14 @@ def _rates_sentence(difference: AuditDifference) -> str:
 
 def since(difference: AuditDifference) -> str:
     """Return one sentence about the changes since the base, for a headline."""
-    if not difference.is_disjoint:
-        return difference.headline
     rate_texts = [
         f"{rate_name(change)} per {test.per} {times(test)}" for change, test in difference.tested if test.is_called
     ]
-    if not rate_texts:
-        return "no drive is in both, and no rate differs by more than chance explains"
     more = f" and {len(rate_texts) - _MOST_RISEN} more" if len(rate_texts) > _MOST_RISEN else ""
-    return f"no drive is in both; rates that differ by more than chance explains: {', '.join(rate_texts[:_MOST_RISEN])}{more}"
+    differ = f"rates that differ by more than chance explains: {', '.join(rate_texts[:_MOST_RISEN])}{more}"
+    if not difference.is_disjoint:
+        return f"{differ}; {difference.headline}" if rate_texts else difference.headline
+    return f"no drive is in both; {differ}" if rate_texts else "no drive is in both, and no rate differs by more than chance explains"
 
 
 def rate_line(of: tuple[RateChange, RateTest]) -> str:
