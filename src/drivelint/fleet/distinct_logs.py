@@ -52,4 +52,10 @@ def subject(of: str = "", by: str | None = None, without: str = "", value: str |
     `of`: prefix of the audit's views. `by`: a tag or a situation. `without`: a join that removes drives `d`. `value`: the SQL
     expression of a drive's value; default: that of `by`.
     """
-    return statement("fleet/subject", of=of, value=value_of(by) if value is None else value, without=without, first=statement("fleet/first_result"))
+    return statement(
+        "fleet/subject",
+        of=of,
+        value=value_of(by) if value is None else value,
+        without=without,
+        first=statement("fleet/first_result"),
+    )

@@ -109,7 +109,11 @@ def since(difference: AuditDifference) -> str:
     differ = f"rates that differ by more than chance explains: {', '.join(rate_texts[:_MOST_RISEN])}{more}"
     if not difference.is_disjoint:
         return f"{differ}; {difference.headline}" if rate_texts else difference.headline
-    return f"no drive is in both; {differ}" if rate_texts else "no drive is in both, and no rate differs by more than chance explains"
+    return (
+        f"no drive is in both; {differ}"
+        if rate_texts
+        else "no drive is in both, and no rate differs by more than chance explains"
+    )
 
 
 def rate_line(of: tuple[RateChange, RateTest]) -> str:

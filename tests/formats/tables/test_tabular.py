@@ -114,22 +114,6 @@ def test_time_units(tmp_path: Path, unit: str, factor: float) -> None:
     assert [row["t_ns"] for row in states(trace, "a")] == [i * 100_000_000 for i in range(20)]
 
 
-@pytest.mark.parametrize(("rate", "first"), [("25", 40_000_000), ("29.97", 33_366_700)])
-@pytest.mark.parametrize("is_parquet", [False, True])
-def test_a_column_that_counts_frames_is_a_time(tmp_path: Path, rate: str, first: int, is_parquet: bool) -> None:
-    step = 10.0 / float(rate)
-    lines = ["t,id,x,y,yaw,vx,vy", *(f"{i},a,{i * step},0,0,10,0" for i in range(20))]
-    name = mapping(tmp_path, LONG.replace('column = "t"', f'column = "t"\nunit = "frames"\nrate_hz = {rate}'))
-    path = table(tmp_path / "d.csv", lines)
-    if is_parquet:
-        path = tmp_path / "d.parquet"
-        rows = {"t": range(20), "id": ["a"] * 20, "x": [i * step for i in range(20)], "y": [0.0] * 20, "yaw": [0.0] * 20}
-        pq.write_table(pa.table(rows | {"vx": [10.0] * 20, "vy": [0.0] * 20}), path)
-    found = [row["t_ns"] for row in states(read(path, mapping=name))]
-    assert found[:2] == [0, first]
-    assert found == [round(i * 1e9 / float(rate)) for i in range(20)]
-
-
 def test_nanoseconds_of_the_epoch_stay_exact(tmp_path: Path) -> None:
     start = 1_700_000_000_123_456_789
     lines = ["t,id,x,y,yaw,vx,vy", *(f"{start + i * 100_000_001},a,{i},0,0,10,0" for i in range(5))]
