@@ -102,10 +102,14 @@ def _rates_sentence(difference: AuditDifference) -> str:
 
 def since(difference: AuditDifference) -> str:
     """Return one sentence about the changes since the base, for a headline."""
-    rate_texts = [
-        f"{rate_name(change)} per {test.per} {times(test)}" for change, test in difference.tested if test.is_called
-    ]
-    more = f" and {len(rate_texts) - _MOST_RISEN} more" if len(rate_texts) > _MOST_RISEN else ""
+    called = [each for each in difference.tested if each[1].is_called]
+    rate_texts = [f"{rate_name(change)} per {test.per} {times(test)}" for change, test in called]
+    if len(rate_texts) > _MOST_RISEN:  # then the nearest test of each rule
+        nearest = {
+            rate_name(change): text for (change, _), text in reversed(list(zip(called, rate_texts, strict=True)))
+        }
+        rate_texts = sorted(nearest.values(), key=rate_texts.index)
+    more = f" and {plural(len(rate_texts) - _MOST_RISEN, 'more rule')}" if len(rate_texts) > _MOST_RISEN else ""
     differ = f"rates that differ by more than chance explains: {', '.join(rate_texts[:_MOST_RISEN])}{more}"
     if not difference.is_disjoint:
         return f"{differ}; {difference.headline}" if rate_texts else difference.headline
