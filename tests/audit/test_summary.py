@@ -156,6 +156,11 @@ def test_the_lists_use_words_and_say_how_many_more_there_are() -> None:
             "exit 4: 1 of 3 drives could not be judged",
         ),
         (
+            AuditSummary(n_drives=9, n_judged=6, n_refused=3, copies=2, copies_not_judged=1, digest="0"),
+            "critical",
+            "exit 4: 2 of 6 drives could not be judged",
+        ),
+        (
             AuditSummary(n_drives=1, n_judged=1, digest="0", lossy=1),
             "critical",
             "exit 3: judged on lossy input: parts of a log were lost",

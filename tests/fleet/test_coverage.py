@@ -73,6 +73,19 @@ def test_situations_that_never_occurred_and_drives_that_do_not_say() -> None:
     assert found.cannot_tell
 
 
+def test_a_tag_does_not_hide_the_condition_of_the_same_name() -> None:
+    way = {"ego_id": "1", "km": 60.0, "hours": 1.0, "engaged_km": 60.0, "engaged_hours": 1.0, "n_steps": 9}
+    said = [{"condition": "weather", "value": "wet", "source": "env"}]
+    with duckdb.connect() as con:
+        rainy = drive("a", sha256="a", exposure=[way], tags={"weather": "rain"}, conditions=said)
+        audits.add_rows(con, [rainy], [verdict("pass", drive_id="a")], [], [rule()])
+        found = coverage(con)
+        (tagged,) = {each.tag_value for each in rates(con, by="weather")}
+    assert [each.value for each in found.situations if each.situation == "weather" and each.egos] == ["wet"]
+    assert ("weather", "wet") not in [(each.situation, each.value) for each in found.never_occurred()]
+    assert tagged == "rain", "--by asks for the tag"
+
+
 @pytest.mark.slow
 def test_coverage_and_rates_of_a_real_check_agree_with_its_tables(checked: Checked) -> None:
     folder = checked()

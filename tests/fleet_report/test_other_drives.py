@@ -86,6 +86,16 @@ def test_their_rates_gate_unless_findings_are_asked_for(disjoint: AuditDifferenc
     assert difference_text.since(disjoint).endswith(f"differ by more than chance explains: {said}")
 
 
+def test_a_headline_names_rates_also_if_some_drives_are_in_both(disjoint: AuditDifference) -> None:
+    shared = replace(disjoint, comparison=disjoint.comparison._replace(drives_both=1))
+    assert difference_text.since(shared).startswith(
+        "rates that differ by more than chance explains: overtake per occasion 7.79 times, overtake per 100 km 8.50 times; 17 new"
+    )
+    other = [replace(each, profile=name) for each in disjoint.rates for name in ("a", "b", "c", "d")]
+    assert "d] per occasion" not in (told := difference_text.since(replace(shared, rates=other)))
+    assert "overtake [c] per occasion 7.79 times and 1 more rule; 17 new" in told
+
+
 def test_a_rate_that_fell_or_that_does_not_gate_is_no_failure(disjoint: AuditDifference) -> None:
     minor = replace(disjoint, gating_rules={"overtake": "minor"})
     assert difference_text.exit_code(minor, None) == ExitCode.OK

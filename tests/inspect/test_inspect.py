@@ -286,6 +286,8 @@ def test_a_file_that_does_not_begin_as_its_suffix_says_is_no_table(
           'speed = { column = "Speed [km/h]", unit = "km/h" }', 'yaw = { column = "Heading (deg)", unit = "deg" }']),
         ("t,object_id,xCenter,yCenter,xVelocity,yVelocity", ['x = "xCenter"', 'vx = "xVelocity"', 'vy = "yVelocity"', "# yaw"]),
         ('t,id,x,y,vx,"say ""hi""\\n"', ['x = "x"']),
+        ("trackId,frame,xCenter,yCenter,heading", ['column = "frame"\nunit = "frames"\n# rate_hz = 25', 'actor_id = "trackId"']),
+        ("Vehicle_ID,Frame_ID,Global_Time,Local_X,Local_Y,Global_X", ['column = "Global_Time"', 'x = "Local_X"']),
     ],
 )  # fmt: skip
 def test_drafts(tmp_path: Path, columns: str, lines: list[str]) -> None:

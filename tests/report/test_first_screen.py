@@ -38,7 +38,9 @@ SIZES = {
     "message": "size from the mapping 'm', not recorded",
 }
 ASIDE = {**ASSUMED, "check_id": "aside_of_lane", "actor_id": "1", "message": "ego 1 keeps 1.10 m beside the middle"}
+ONE_OF_FIVE = "1 of 5 egos drive far from the middle of their lanes"
 TWO_ASIDE = "2 egos drive far from the middle of their lanes: the map may be shifted: correct it with --map-offset"
+WAY = {"ego_id": "1", "km": 1.0, "hours": 0.1, "engaged_km": 1.0, "engaged_hours": 0.1, "n_steps": 9}
 WHOLE = "complete, as far as the format .csv shows it"
 CONTACT = rule("ukhc.no-collision", tags=["contact"], title="No collision", unit="m")
 
@@ -89,6 +91,10 @@ def section(text: str, name: str) -> str:
         (
             result([verdict("pass")], drives=[drive(quality=[ASIDE]), drive("d2", quality=[ASIDE])]),
             f"map: road.xodr fits 2 of 2 drives, but {TWO_ASIDE} | log: {WHOLE} | not judged: nothing",
+        ),
+        (
+            result([verdict("pass")], drives=[drive(quality=[ASIDE], exposure=[{**WAY, "ego_id": str(k)} for k in range(5)])]),
+            f"map: road.xodr fits 1 of 1 drive, but {ONE_OF_FIVE} | log: {WHOLE} | not judged: nothing",
         ),
         (
             result([verdict("pass")], drives=[drive(name, sha256="same" if name < "d" else name) for name in "abcd"]),

@@ -83,6 +83,11 @@ class AuditSummary:
     n_unknown_for: int = 0
     """The number of broken rules, and the number of reasons for unknown verdicts."""
 
+    @property
+    def n_contents(self) -> int:
+        """The number of drives; logs with the same content count once."""
+        return self.n_drives - self.copies - self.copies_not_judged
+
     def count(self, receipt: Receipt) -> None:
         """Add the drive of a receipt to the sums."""
         self.n_drives += 1
@@ -160,12 +165,12 @@ class AuditSummary:
         return "failures do not gate" if fail_on == "never" else f"nothing failed at or above severity {fail_on}"
 
     def _not_judged_reason(self) -> str:
-        if lost := self.n_refused + self.quarantined:
-            return f"{lost} of {plural(self.n_drives, 'drive')} could not be judged"
+        if lost := self.n_refused + self.quarantined - self.copies_not_judged:
+            return f"{lost} of {plural(self.n_contents, 'drive')} could not be judged"
         if self.beyond_limits:
             return f"{plural(self.beyond_limits, 'verdict')} in error: exceeded its limits"
         if self.off_map:
-            return f"the map does not fit {self.off_map} of {plural(self.n_drives, 'drive')}"
+            return f"the map does not fit {self.off_map} of {plural(self.n_contents, 'drive')}"
         if self.missing_parts:
             return f"parts have not ended: {listed(self.missing_parts)}"
         return self.undecided or (

@@ -35,8 +35,7 @@ def _lines(
     audit_summary: AuditSummary, out: str, code: ExitCode, gate: Iterable[str], *, fail_on: str, why: str
 ) -> Iterator[str]:
     n_refused = audit_summary.n_refused - audit_summary.copies_not_judged
-    n_drives = audit_summary.n_drives - audit_summary.copies - audit_summary.copies_not_judged
-    yield f"{plural(n_drives, 'drive')} of {audit_summary.hours:,.2f} h; their egos drove {audit_summary.km:,.2f} km"
+    yield f"{plural(audit_summary.n_contents, 'drive')} of {audit_summary.hours:,.2f} h; their egos drove {audit_summary.km:,.2f} km"
     states = (
         f"{audit_summary.n_judged - audit_summary.copies} judged",
         f"{n_refused} refused" if n_refused else "",

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.fleet.distinct_logs import subject
-from drivelint.fleet.situations import CANNOT_TELL, SITUATIONS, bound_tag
+from drivelint.fleet.situations import CANNOT_TELL, SITUATIONS, bound_tag, condition_of
 from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
@@ -100,7 +100,7 @@ def _situation_coverage(
     The last row, without a value, counts the drives in which the condition is not known.
     """
     rows: list[tuple[Any, ...]] = con.execute(
-        statement("fleet/situation", of=of, subject=subject(of, name)), bound_tag(name)
+        statement("fleet/situation", of=of, subject=subject(of, value=condition_of(name))), bound_tag(name)
     ).fetchall()
     told = {row[0]: SituationCoverage(name, *row) for row in rows}
     order = dict.fromkeys([*values, *(value for value in told if value is not None)])

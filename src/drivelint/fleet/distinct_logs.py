@@ -46,9 +46,16 @@ def create_counted_views(con: duckdb.DuckDBPyConnection, of: str = "") -> str:
     return counted
 
 
-def subject(of: str = "", by: str | None = None, without: str = "") -> str:
+def subject(of: str = "", by: str | None = None, without: str = "", value: str | None = None) -> str:
     """Return the SQL fragment `subject` of a statement: one row per ego that counts, with its distance and time.
 
-    `of`: prefix of the audit's views. `by`: a tag or a situation. `without`: a join that removes drives `d`.
+    `of`: prefix of the audit's views. `by`: a tag or a situation. `without`: a join that removes drives `d`. `value`: the SQL
+    expression of a drive's value; default: that of `by`.
     """
-    return statement("fleet/subject", of=of, value=value_of(by), without=without, first=statement("fleet/first_result"))
+    return statement(
+        "fleet/subject",
+        of=of,
+        value=value_of(by) if value is None else value,
+        without=without,
+        first=statement("fleet/first_result"),
+    )

@@ -26,9 +26,15 @@ CANNOT_TELL: Final = {
 
 def value_of(by: str | None) -> str:
     """Return the SQL expression for a drive's value of a tag or situation. It reads `d`, the drive, and `ego`, the exposure of an ego."""
-    if by is None:
-        return "NULL::VARCHAR"
-    name = _STATEMENTS.get(by, "value_of_tag")
+    return "NULL::VARCHAR" if by is None else _expression(_STATEMENTS.get(by, "value_of_tag"))
+
+
+def condition_of(situation: str) -> str:
+    """Return such an expression for the coverage, where a tag of the same name does not hide the condition that rules were judged under."""
+    return _expression(_STATEMENTS.get(situation, "value_of_condition"))
+
+
+def _expression(name: str) -> str:
     _, _, sql = statement(f"fleet/{name}").partition("\n")
     return sql.strip()
 

@@ -13,9 +13,9 @@ from drivelint.fleet.compare import INTERVAL_TOLERANCE_S, compare
 from drivelint.fleet.distinct_logs import create_counted_views
 from drivelint.fleet.rate_change import RateChange, RateTest, compare_rates
 from drivelint.fleet_report.audit_views import BASE
-from drivelint.fleet_report.rows import rows
+from drivelint.fleet_report.rows import counted_ids, rows
 from drivelint.gate.descriptions import DIFF_STATUS_TITLES, counts_sentence
-from drivelint.result.counts import SEVERITIES, VERDICTS
+from drivelint.result.counts import SEVERITIES, VERDICTS, rows_sentence
 from drivelint.result.gate import DIFF_STATUSES, ComparedFinding
 from drivelint.result.text import number
 from drivelint.sql.statements import statement
@@ -99,6 +99,8 @@ class NewUnknowns(NamedTuple):
 class AuditDifference:
     """The difference of two audits. `entries`: standing -> its most severe findings, a limited number.
 
+    `counts`: standing -> number of rows. All other numbers count one finding of each event, as the headline of an audit does.
+    `event_counts`: standing -> number of findings. `has_profiles`: whether several profiles found one event.
     `of_new_drives`: new findings in drives that the base does not have. `gating`: severity -> number of new findings of stable rules.
     `gone_by_severity`: severity -> number of the base's findings of stable rules that the newer audit did not judge or cannot decide.
     `causes`: what else differs -> standing -> number of findings.
@@ -108,6 +110,8 @@ class AuditDifference:
     base: Audit
     new: Audit
     counts: dict[str, int]
+    event_counts: dict[str, int]
+    has_profiles: bool
     worse: int
     of_new_drives: int
     fixed: tuple[int, int]
@@ -132,7 +136,11 @@ class AuditDifference:
         if self.is_disjoint:
             return f"{NOTHING_IN_COMMON}; compare rates"
         added = f" ({self.of_new_drives} in drives that the base does not contain)" if self.of_new_drives else ""
-        return f"{self.counts['new']} new{added}, {counts_sentence(self.counts, self.worse, self.fixed)}"
+        return f"{self.event_counts['new']} new{added}, {counts_sentence(self.event_counts, self.worse, self.fixed)}"
+
+    def rows_of(self, standing: str) -> str:
+        """Return a sentence that explains why a standing has more rows than findings; '' if it does not."""
+        return rows_sentence(self.counts[standing], self.event_counts[standing], is_of_profiles=self.has_profiles)
 
     @property
     def is_disjoint(self) -> bool:
@@ -191,7 +199,8 @@ def difference(con: duckdb.DuckDBPyConnection, new: Audit, base: Audit, max_entr
     """Return the difference of the audits from `open_audits`, with at most `max_entries` findings per standing."""
     sides = {"base": create_counted_views(con, BASE), "new": create_counted_views(con)}
     comparison = compare(con, base=sides["base"], new=sides["new"], tools=(base.version, new.version))
-    (gating,) = rows(con, "gating", None, **sides)
+    counted = {f"{side}_counted": counted_ids(of) for side, of in sides.items()}
+    (gating,) = rows(con, "gating", None, **sides, **counted)
     only = [rows(con, "lone_drives", {"most": max_entries}, of=sides[side], side=side) for side in sides]
     causes: dict[tuple[str, ...], Counter[str]] = {}
     not_known: Counter[str] = Counter()
@@ -204,6 +213,8 @@ def difference(con: duckdb.DuckDBPyConnection, new: Audit, base: Audit, max_entr
         base=base,
         new=new,
         counts={standing: standing_counts[standing] for standing in DIFF_STATUSES},
+        event_counts={standing: gating[standing] for standing in DIFF_STATUSES},
+        has_profiles=gating["of_profiles"],
         worse=gating["worse"],
         of_new_drives=gating["of_new_drives"],
         fixed=(gating["passes"], gating["not_applicable"]),

@@ -106,17 +106,25 @@ def _rates_sentence(difference: AuditDifference) -> str:
 
 def since(difference: AuditDifference) -> str:
     """Return one sentence about the changes since the base, for a headline."""
+    significant = [each for each in difference.tested if each[1].is_significant]
+    rate_texts = [f"{rate_name(change)} per {test.per} {times(test)}" for change, test in significant]
+    if len(rate_texts) > _MOST_RISEN_RATES:  # then the nearest test of each rule
+        nearest = {
+            rate_name(change): text for (change, _), text in reversed(list(zip(significant, rate_texts, strict=True)))
+        }
+        rate_texts = sorted(nearest.values(), key=rate_texts.index)
+    more = (
+        f" and {plural(len(rate_texts) - _MOST_RISEN_RATES, 'more rule')}"
+        if len(rate_texts) > _MOST_RISEN_RATES
+        else ""
+    )
+    differ = f"rates that differ by more than chance explains: {', '.join(rate_texts[:_MOST_RISEN_RATES])}{more}"
     if not difference.is_disjoint:
-        return difference.headline
-    rate_texts = [
-        f"{rate_name(change)} per {test.per} {times(test)}" for change, test in difference.tested if test.is_significant
-    ]
-    if not rate_texts:
-        return "the audits have no drive in common, and no rate differs by more than chance explains"
-    more = f" and {len(rate_texts) - _MOST_RISEN_RATES} more" if len(rate_texts) > _MOST_RISEN_RATES else ""
+        return f"{differ}; {difference.headline}" if rate_texts else difference.headline
     return (
-        "the audits have no drive in common; rates that differ by more than chance explains: "
-        f"{', '.join(rate_texts[:_MOST_RISEN_RATES])}{more}"
+        f"the audits have no drive in common; {differ}"
+        if rate_texts
+        else "the audits have no drive in common, and no rate differs by more than chance explains"
     )
 
 

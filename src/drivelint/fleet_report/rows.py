@@ -32,6 +32,11 @@ def one_per_event(of: str) -> str:
     return statement("fleet/event", of=of, least_share=str(LEAST_KEEPING_SHARE))
 
 
+def counted_ids(of: str) -> str:
+    """Return the SELECT of the id of the finding that is counted for the event of each finding."""
+    return statement("fleet_report/counted_id", of=of, least_share=str(LEAST_KEEPING_SHARE))
+
+
 def gravest_first() -> str:
     """Return the ORDER BY expressions that sort the findings `f` of the rules `r` from most to least severe."""
     return statement("fleet_report/gravest_first", least_share=str(LEAST_KEEPING_SHARE))

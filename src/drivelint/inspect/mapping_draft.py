@@ -17,8 +17,8 @@ _WORD: Final = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+")
 _FACTS: Final = toml_beside(__file__, "mapping_words.toml")
 _FUSED: Final[dict[str, str]] = _FACTS["fused"]
 _UNIT_WORDS: Final[dict[str, str]] = _FACTS["units"]
-_TIME, _ID, _SPEED, _ACCELERATION, _FILLERS, _OTHERS = (
-    frozenset[str](_FACTS[name]) for name in ("time", "id", "speed", "acceleration", "fillers", "others")
+_TIME, _FRAMES, _ID, _SPEED, _ACCELERATION, _FILLERS, _OTHERS = (
+    frozenset[str](_FACTS[name]) for name in ("time", "frames", "id", "speed", "acceleration", "fillers", "others")
 )
 _NAMES: Final[dict[str, Collection[str]]] = _FACTS["fields"] | {"speed": _SPEED}
 REQUIRED_FIELDS: Final = ("time", "actor_id", "x", "y")
@@ -44,12 +44,16 @@ def draft_mapping(columns: Sequence[str], texts_of: Callable[[str], Sequence[str
         found.pop("speed", None)
     if len(columns) < len(REQUIRED_FIELDS):
         return None
+    frames = next((column for column in columns if "frame" in (words := _split(column)) and words <= _FRAMES), None)
+    time_unit = "time" in found and _unit(found["time"], dict(TIME_UNITS))
+    if frames is not None and "time" not in found:
+        found["time"], time_unit = frames, "frames"
     classes = {text: _class_of(text) for text in texts_of(found["class"])} if "class" in found else {}
     of_fields = {name: UNITS.get(FIELD_QUANTITIES.get(name, ""), {}) for name in found}
     draft = text_template(__file__, "mapping_draft.toml.j2", text=_text).render(
         column_by_field=found,
         others=[column for column in columns if column not in found.values()],
-        time_unit=("time" in found and _unit(found["time"], dict(TIME_UNITS))) or "s",
+        time_unit=time_unit or "s",
         units={name: (_unit(found[name], units), next(iter(units), None)) for name, units in of_fields.items()},
         order=_ORDER,
         classes={text: word for text, word in classes.items() if word is not None},

@@ -69,11 +69,21 @@ def _map(drives: Sequence[Row]) -> InputNote:
         words += f", but not {off_egos} of {egos} egos"
     aside = [check["message"] for drive in on_map for check in drive["quality"] if check["check_id"] == ASIDE_OF_LANE]
     if aside:
-        far = f"{len(aside)} egos drive far from the middle of their lanes: the map may be shifted: correct it with --map-offset"
-        words += f"{'; ' if off_egos else ', but '}{aside[0] if len(aside) == 1 else far}"
+        words += f"{'; ' if off_egos else ', but '}{_far_aside(aside, egos)}"
     if bare := len(drives) - len(on_map):
         words += f"; {plural(bare, 'drive')} without a map"
     return InputNote("map", words, is_warning=bool(off_egos or reasons or aside or bare))
+
+
+def _far_aside(messages: Sequence[str], egos: int) -> str:
+    """Return words about the egos that drive far from the middle of their lanes.
+
+    A shifted map would be wrong for most egos, not for a few.
+    """
+    if 2 * len(messages) < egos:
+        return f"{len(messages)} of {egos} egos drive far from the middle of their lanes"
+    far = f"{len(messages)} egos drive far from the middle of their lanes: the map may be shifted: correct it with --map-offset"
+    return messages[0] if len(messages) == 1 else far
 
 
 def _egos_off_the_map(drive: Row) -> int:

@@ -172,7 +172,7 @@ class _Body:
         columns = mappings.needed_columns(self.mapping)
         names = dict.fromkeys(column.replace(GROUP_PLACEHOLDER, k) for k in self.groups for column in columns)
         n = self.sheet.load(names)
-        t_ns, bad_time = self.sheet.time(self.mapping.time.column, self.mapping.time.unit)
+        t_ns, bad_time = self.sheet.time(self.mapping.time.column, self.mapping.time.unit_ns)
         blank = np.ones(n, np.bool_)  # the rows whose mapped columns are all empty
         for name in names:
             blank &= ~self.sheet.filled(name)

@@ -7,6 +7,7 @@ the table is wide, with one group per actor.
 
 from __future__ import annotations
 
+import math
 import os
 import re
 import tomllib
@@ -60,10 +61,16 @@ class TextLayout(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class TimeColumn(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """The time column and its unit."""
+    """The time column and its unit. If it counts frames, `rate_hz` is the number of frames per second."""
 
     column: str
-    unit: Literal["s", "ms", "us", "ns", "min"] = "s"
+    unit: Literal["s", "ms", "us", "ns", "min", "frames"] = "s"
+    rate_hz: float | None = None
+
+    @property
+    def unit_ns(self) -> float:
+        """The nanoseconds of one unit; of a frame, they may be no whole number."""
+        return TIME_UNITS[self.unit] if self.rate_hz is None else 1e9 / self.rate_hz
 
 
 class Frame(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
@@ -283,7 +290,11 @@ def _contradictions(mapping: Mapping, names: AbstractSet[str]) -> list[tuple[boo
     point = mapping.reference.point
     heading = "speed" in names or mapping.frame.velocity == "vehicle" or point != "centre"
     has_groups = any(GROUP_PLACEHOLDER in name for name in needed_columns(mapping))
+    rate = mapping.time.rate_hz
     return [
+        ((mapping.time.unit == "frames") != (rate is not None),
+          "time.unit = 'frames' needs time.rate_hz, the frames per second, and no other unit takes it"),
+        (rate is not None and not 0.0 < rate < math.inf, "time.rate_hz must be more than 0"),
         (("vx" in names) != ("vy" in names) or ("ax" in names) != ("ay" in names), "vx and vy need each other, and so do ax and ay"),
         ("vx" in names and "speed" in names, "give vx and vy or speed, not both"),
         (heading and "yaw" not in names,

@@ -152,12 +152,12 @@ class CsvSheet:
         values = column.cast(pl.Float64, strict=False)
         return values.fill_null(float("nan")).to_numpy(), (column.is_not_null() & values.is_null()).to_numpy()
 
-    def time(self, name: str, unit: str) -> tuple[Times, Mask]:
-        """Return nanoseconds (exact for integers), and for each cell whether it is empty or not a time."""
+    def time(self, name: str, unit_ns: float) -> tuple[Times, Mask]:
+        """Return nanoseconds (exact for integers), and for each cell whether it is empty or not a time. `unit_ns`: those of 1."""
         import polars as pl
 
-        t_ns, bad = _nanoseconds(*self.number(name), factor=TIME_UNITS[unit])
-        if TIME_UNITS[unit] > 1:
+        t_ns, bad = _nanoseconds(*self.number(name), factor=unit_ns)
+        if unit_ns > 1:
             return t_ns, bad
         exact = self._columns[name].cast(pl.Int64, strict=False)  # beyond 2^53 a double is not exact to the nanosecond
         return np.where(exact.is_not_null().to_numpy(), exact.fill_null(0).to_numpy(), t_ns), bad
@@ -223,15 +223,15 @@ class ParquetSheet:
             ) from error
         return pc.fill_null(values, float("nan")).to_numpy(zero_copy_only=False), np.zeros(len(column), np.bool_)
 
-    def time(self, name: str, unit: str) -> tuple[Times, Mask]:
-        """Return nanoseconds, and for each cell whether it is NULL or out of range. Time stamps and durations ignore `unit`."""
+    def time(self, name: str, unit_ns: float) -> tuple[Times, Mask]:
+        """Return nanoseconds, and for each cell whether it is NULL or out of range. Time stamps and durations ignore `unit_ns`."""
         column = self._column(name)
         if pa.types.is_timestamp(column.type) or pa.types.is_duration(column.type):
-            column, unit = column.cast(pa.int64()), column.type.unit
-        if not pa.types.is_integer(column.type):
-            return _nanoseconds(*self.number(name), factor=TIME_UNITS[unit])
+            column, unit_ns = column.cast(pa.int64()), TIME_UNITS[column.type.unit]
+        if not pa.types.is_integer(column.type) or unit_ns != int(unit_ns):
+            return _nanoseconds(*self.number(name), factor=unit_ns)
         whole = pc.fill_null(column.cast(pa.int64(), safe=False), 0).to_numpy(zero_copy_only=False)
-        factor = TIME_UNITS[unit]
+        factor = int(unit_ns)
         most = int(MAX_NS) // factor
         beyond = (whole > most) | (whole < -most)  # the least integer has no absolute value
         return np.where(beyond, 0, whole) * factor, beyond | column.is_null().to_numpy(zero_copy_only=False)
@@ -260,9 +260,9 @@ def _trimmed(column: pa.Array | pa.ChunkedArray, null_texts: list[str]) -> pl.Se
     return series.set(series.is_in(["", *null_texts]) if null_texts else series == "", None)
 
 
-def _nanoseconds(values: Floats, bad: Mask, *, factor: int) -> tuple[Times, Mask]:
+def _nanoseconds(values: Floats, bad: Mask, *, factor: float) -> tuple[Times, Mask]:
     """Return values scaled to nanoseconds and rounded (8.3 s is 8,300,000,000 ns), and for each cell whether it is bad or too large."""
     with np.errstate(invalid="ignore", over="ignore"):
-        scaled = np.rint(values * float(factor))
+        scaled = np.rint(values * factor)
         lost = bad | ~(np.abs(scaled) < MAX_NS)
     return np.where(lost, 0.0, scaled).astype(np.int64), lost
