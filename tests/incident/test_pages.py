@@ -17,6 +17,7 @@ from drivelint.incident import IncidentRequest, open_case, pdf, render
 from drivelint.incident.sheet import content
 from drivelint.report.outputs import write
 from drivelint.report.progress import Silent
+from drivelint.road.geo_reference import tangent_plane
 from drivelint.run import CheckOptions, check
 from tests.report.browser import CHROMIUM, Page
 from tests.shared_data import shared
@@ -133,8 +134,6 @@ def crowded_first_page(case: Case) -> Case:
         steps = steps.set_column(steps.column_names.index(name), name, column)
     row = {
         **finding.row,
-        "lat": 52.946849,
-        "lon": 2.907433,
         "n_copies": 100,
         "n_stays": 53,
         "t_start_ns": finding.row["t_start_ns"] - 2 * S,
@@ -150,7 +149,7 @@ def crowded_first_page(case: Case) -> Case:
     again = replace(case.again, steps=steps)
     said = QualityFinding(ASSUMED_SIZE, "info", f"size by the option {'of the user ' * 5}, not recorded")
     trace = with_quality_finding(case.drive.trace, said)
-    again_drive = replace(case.drive, trace=trace)
+    again_drive = replace(case.drive, trace=trace, geo=tangent_plane(52.946849, 2.907433))
     return replace(case, result=result, again=again, drive=again_drive, finding=replace(finding, row=row, drive=drive))
 
 
@@ -165,6 +164,7 @@ def test_a_crowded_first_page_fits(case_of: CaseOf, tmp_path: Path) -> None:
         b"more contacts",
         b"this finding is <b>possible",
         b"UTC",
+        b"geo reference, doubtful: in the sea",
     ):
         assert said in page_bytes
     html.write_bytes(page_bytes)

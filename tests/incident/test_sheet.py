@@ -12,6 +12,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pyarrow as pa
 import pyarrow.compute as pc
 import pytest
 from markupsafe import escape
@@ -275,6 +276,19 @@ def test_the_worst_contact_needs_no_name(folder: Path) -> None:
     assert other_drives(IncidentRequest("contact", folder)) == []
     with pytest.raises(UsageError, match="no finding is a contact in safe"):
         named_finding(result, "contact@safe")
+
+
+@pytest.mark.ci
+def test_a_result_without_a_contact_names_its_nearest_miss(folder: Path) -> None:
+    result = load_result(folder)
+    nothing = result.findings.slice(0, 0)
+    calm = replace(result, findings=nothing, verdicts=result.verdicts.filter(pc.invert(result.verdicts["near_miss"])))
+    with pytest.raises(UsageError, match=r"nothing was found there that a sheet could be about$"):
+        named_finding(calm, "contact")
+    row = next(row for row in result.verdicts.to_pylist() if row["rule_id"] == "ukhc.no-collision")
+    just_kept = pa.Table.from_pylist([{**row, "near_miss": True, "margin": 0.46}], schema=result.verdicts.schema)
+    with pytest.raises(UsageError, match=rf"drivelint explain ukhc.no-collision@{row['drive_id']}` tell of it$"):
+        named_finding(replace(result, findings=nothing, verdicts=just_kept), "contact")
 
 
 @pytest.mark.ci

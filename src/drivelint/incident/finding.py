@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
+import pyarrow.compute as pc
+
 from drivelint.catalogue.header import CONTACT
 from drivelint.errors import UsageError
 from drivelint.explain.target import VerdictFilter, find_verdict
@@ -58,9 +60,7 @@ def named_finding(result: Result, name: str) -> NamedFinding:
     if word == CONTACT:
         found = [row for row in contacts(result) if row["drive_id"].startswith(drive_id)]
         if not found:
-            raise UsageError(
-                f"--incident {name}: no finding is a contact{f' in {drive_id}' if drive_id else ''}: name another finding"
-            )
+            raise UsageError(f"--incident {name}: {_without_contact(result, drive_id)}")
         row = found[0]
     else:
         target = find_verdict(result, name, VerdictFilter())
@@ -73,6 +73,20 @@ def contacts(result: Result) -> list[Row]:
     rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
     found: list[Row] = worst_first(result.findings, rules).to_pylist()
     return [row for row in found if is_contact(row, rules)]
+
+
+def _without_contact(result: Result, drive_id: str) -> str:
+    """Return what to do if no finding is a contact. `drive_id`: the beginning of the drive's id; '' for all drives."""
+    begins = pc.starts_with(result.verdicts["drive_id"], drive_id)
+    near = result.verdicts.filter(pc.and_(begins, pc.fill_null(result.verdicts["near_miss"], False))).to_pylist()
+    found = any(row["drive_id"].startswith(drive_id) for row in result.findings.to_pylist())
+    told = [f"no finding is a contact{f' in {drive_id}' if drive_id else ''}"]
+    told += ["name another finding"] if found else ["nothing was found there that a sheet could be about"]
+    if near:
+        nearest = min(near, key=lambda row: (row["margin"] is None, row["margin"], row["rule_id"]))
+        named = f"{nearest['rule_id']}@{nearest['drive_id']}"
+        told.append(f"of a near miss there is no sheet, but report.html and `drivelint explain {named}` tell of it")
+    return ": ".join(told[:2]) + "".join(f"; {each}" for each in told[2:])
 
 
 def _worst_of(verdict: Row, result: Result) -> dict[str, Any]:

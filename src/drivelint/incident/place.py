@@ -9,6 +9,7 @@ import numpy as np
 from drivelint.convert import CLIP
 from drivelint.drive.trace import TURNED_FRAME
 from drivelint.engine.earth import frame_of_map
+from drivelint.incident.land import is_at_sea
 from drivelint.incident.words import minus
 
 if TYPE_CHECKING:
@@ -50,6 +51,13 @@ def place(case: Case) -> Place:
         ((lon, lat),) = case.drive.geo.degrees(np.array([[at["x_m"], at["y_m"]]])).tolist()
     known = lat is not None and np.isfinite([lat, lon]).all()
     return Place(moment_ns, lat if known else None, lon if known else None, at["x_m"], at["y_m"], at["lanelet_id"])
+
+
+def sea_note(where: Place, source: str) -> str:
+    """Return in words why the coordinates are doubted, if they are far out at sea; else ''. `source`: that of `geo_source`."""
+    if where.lat is None or where.lon is None or not is_at_sea(where.lat, where.lon):
+        return ""
+    return f"by the {source}'s geo reference, doubtful: in the sea"
 
 
 def geo_source(case: Case) -> str:

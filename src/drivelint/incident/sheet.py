@@ -29,7 +29,7 @@ from drivelint.incident.fitting import (
 from drivelint.incident.judge import same_finding
 from drivelint.incident.motion import BEFORE_S, MOST_ROWS, Motion, second_by_second, slowings
 from drivelint.incident.parties import against_each_other, kinds, others_drawn, overtaking, party, title
-from drivelint.incident.place import coordinates, geo_source, inferred_side, place, road_of, surroundings
+from drivelint.incident.place import coordinates, geo_source, inferred_side, place, road_of, sea_note, surroundings
 from drivelint.incident.record import held_elements
 from drivelint.incident.scene import scene_at
 from drivelint.incident.sizes import size_source
@@ -107,7 +107,8 @@ def content(case: Case) -> dict[str, Any]:
         "placed": seconds(where.t_ns, finding.start_ns),
         "road_id": road_of(case, where.lanelet_id),
         "coordinates": coordinates(case),
-        "geo_source": geo_source(case),
+        "geo_source": (source := geo_source(case)),
+        "at_sea": sea_note(where, source),
         "surroundings": surroundings(finding.drive),
         "hand": inferred_side(finding.drive),
         "contact": finding.is_contact,
