@@ -55,6 +55,7 @@ def test_a_rarer_object_has_a_state_at_every_step_of_the_ego(tmp_path: Path) -> 
     found = quality(trace)["aligned"]
     assert (found["severity"], found["actor_id"], found["n"]) == ("info", "b", 1)
     assert "samples no more than 0.25 s apart" in found["message"]
+    assert "track_gap" not in quality(trace)
 
 
 def test_in_a_hole_it_has_none(tmp_path: Path) -> None:
@@ -63,6 +64,8 @@ def test_in_a_hole_it_has_none(tmp_path: Path) -> None:
     found = times(trace, "b")
     assert [t for t in found if 900 < t < 1_600][:3] == [920, 1_540, 1_560]
     assert found[-1] == 3_980
+    hole = quality(trace)["track_gap"]
+    assert (hole["actor_id"], hole["n"], hole["t_first_ns"]) == ("b", 1, 933 * MS)
     short = load(tmp_path, {"a": np.arange(0, 4_000, 20), "b": b[(b < 1_000) | (b > 1_100)]})
     assert times(short, "b") == list(range(0, 4_000, 20))  # one sample is missing: 0.2 s
 
