@@ -10,20 +10,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from drivelint.arrays import wrapped
-from drivelint.drive.align import LONGEST_PERIOD_NS
-from drivelint.drive.order import (
-    MAX_GAP_PERIODS,
-    displacements,
-    integral_per_step,
-    known_motion,
-    sums_over,
-    track_starts,
-)
+from drivelint.drive.order import MAX_GAP_PERIODS, displacements, integral_per_step, known_motion, sums_over
 from drivelint.drive.trace import MOTOR_VEHICLES, QualityFinding
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
-    from drivelint.arrays import Floats, Mask, Times
+    from drivelint.arrays import Floats, Mask
     from drivelint.drive.actors import Actors
     from drivelint.drive.order import Steps
     from drivelint.drive.trace import States
@@ -113,26 +105,13 @@ def _gaps(states: States, step: Steps) -> list[QualityFinding]:
             f"the longest {dt.max() / 1e9:g} s, the first from {first / 1e9:g} s: nothing is judged across them"
         )
         findings.append(QualityFinding("gap", "warning", message, n, first))
-    hole, dt_rows = np.zeros(len(states), np.bool_), np.diff(states.t_ns)
-    hole[:-1] = step.same & ~step.continuous & (dt_rows > MAX_GAP_PERIODS * _own_periods_ns(states, step)[1:])
+    hole = np.zeros(len(states), np.bool_)
+    hole[:-1] = step.same & ~step.continuous
     if findings:  # a hole that is a gap of the whole log is reported once
         inside = np.searchsorted(times, states.t_ns[:-1][hole[:-1]])
         hole[np.flatnonzero(hole)[wide[inside]]] = False
     text = "interruptions of single tracks: {n} ({ids}): those actors are unknown in between"
     return findings + states.findings(hole, "track_gap", "info", text)
-
-
-def _own_periods_ns(states: States, step: Steps) -> Times:
-    """Return for each state the sampling period of its track, or that of the log if `align` does not interpolate such a track.
-
-    The period is the lower quartile of the track's steps, so holes do not lengthen it.
-    """
-    starts = track_starts(states.actor)
-    periods = np.full(len(starts), step.period_ns, np.int64)
-    for i, times in enumerate(np.split(states.t_ns, starts[1:])):
-        if len(times) > 1 and (own := int(np.quantile(np.diff(times), 0.25, method="lower"))) <= LONGEST_PERIOD_NS:
-            periods[i] = max(own, step.period_ns)
-    return np.repeat(periods, np.diff(np.r_[starts, len(states)]))
 
 
 def _jumps(states: States, step: Steps) -> Mask:
