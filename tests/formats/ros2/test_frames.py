@@ -321,7 +321,10 @@ def test_order_of_messages_and_objects_changes_nothing(
 
 
 def test_nothing_to_read(tmp_path: Path) -> None:
-    said = "no nav_msgs/Odometry and no road users: it has tf2_msgs/TFMessage on /tf, .* on /tf_static; see drivelint docs traces"
+    said = (
+        "no nav_msgs/Odometry and no road users: it has tf2_msgs/TFMessage on /tf, .* on /tf_static; "
+        "drivelint docs mapping shows how messages of other types become a table"
+    )
     with pytest.raises(TraceError, match=said):
         seen(tmp_path, chain())
     folder = tmp_path / "bag"
