@@ -48,7 +48,9 @@ def mcap_files(path: Path) -> list[Path]:
     if storage not in {None, "mcap"}:
         raise not_mcap(path, str(storage))
     if str(information.get("compression_mode")).lower() == "message":
-        raise TraceError(f"{path}: a bag whose messages are each compressed: convert it with {conversion(path)}, and give that")
+        raise TraceError(
+            f"{path}: a bag whose messages are each compressed: convert it with {conversion(path)}, and give that"
+        )
     files = []
     for name in names:
         file = _part(path, name.removesuffix(PACKED_SUFFIX)) or _part(path, name)

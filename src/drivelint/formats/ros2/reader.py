@@ -129,13 +129,18 @@ def read(path: Path, options: IngestOptions) -> Recording:
     recording.embedded_map, trouble = single_map(_maps(log))
     recording.findings += trouble
     recording.frame_times, recording.utc_start_ns = message_times(list(parts.values()))
-    if not odometry and not log.topics.keys().isdisjoint(SAME_BODIES):
-        recording.notes.append(
-            f"no {ODOMETRY}: the vehicle that recorded the bag is not among the actors, even if its frame is in the transforms: "
-            f"record {MESSAGES[ODOMETRY].topic} too"
-        )
-    recording.notes += [*log.notes, f"positions are in the frame {fixed!r}"]
+    recording.notes += [*log.notes, *_own_vehicle_missing(log, odometry), f"positions are in the frame {fixed!r}"]
     return recording
+
+
+def _own_vehicle_missing(log: Log, odometry: Topics) -> list[str]:
+    """Return a note if a bag of Autoware's road users has no odometry."""
+    if odometry or log.topics.keys().isdisjoint(SAME_BODIES):
+        return []
+    return [
+        f"no {ODOMETRY}: the vehicle that recorded the bag is not among the actors, even if its frame is in the transforms: "
+        f"record {MESSAGES[ODOMETRY].topic} too"
+    ]
 
 
 def _maps(log: Log) -> dict[bytes, str]:
@@ -188,7 +193,9 @@ def _no_road_users(log: Log) -> QualityFinding:
             f"record {' or '.join(SAME_BODIES)} too"
         )
     else:
-        cause += ", of the types that are read (drivelint docs mapping shows how messages of other types become a table)"
+        cause += (
+            ", of the types that are read (drivelint docs mapping shows how messages of other types become a table)"
+        )
     message = f"{cause}: rules about other actors are unknown"
     return QualityFinding("no_road_users", "warning", message, max(n, 1))
 
