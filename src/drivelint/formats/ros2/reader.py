@@ -137,10 +137,11 @@ def _own_vehicle_missing(log: Log, odometry: Topics) -> list[str]:
     """Return a note if a bag of Autoware's road users has no odometry."""
     if odometry or log.topics.keys().isdisjoint(SAME_BODIES):
         return []
-    return [
+    note = (
         f"no {ODOMETRY}: the vehicle that recorded the bag is not among the actors, even if its frame is in the transforms: "
         f"record {MESSAGES[ODOMETRY].topic} too"
-    ]
+    )
+    return [note]
 
 
 def _maps(log: Log) -> dict[bytes, str]:
