@@ -55,6 +55,27 @@ def test_a_rarer_object_has_a_state_at_every_step_of_the_ego(tmp_path: Path) -> 
     found = quality(trace)["aligned"]
     assert (found["severity"], found["actor_id"], found["n"]) == ("info", "b", 1)
     assert "samples no more than 0.25 s apart" in found["message"]
+    assert "track_gap" not in quality(trace)
+
+
+@pytest.mark.parametrize("period_ms", [60, 100, 250])
+def test_the_velocity_of_a_rarer_object_is_derived_from_its_own_samples(tmp_path: Path, period_ms: int) -> None:
+    lines = ["t,id,x,y,yaw"]
+    for name, step_ms, speed in (("a", 20, 10.0), ("b", period_ms, 8.0)):
+        lines += [f"{t},{name},{speed * t / 1000:.4f},0,0" for t in range(0, 10_000, step_ms)]
+    text = LONG.replace('column = "t"', 'column = "t"\nunit = "ms"').replace('vx = "vx"\nvy = "vy"\n', "")
+    trace = read_trace(table(tmp_path / "d.csv", lines), IngestOptions(mapping=mapping(tmp_path, text), ego="a"))
+    assert [row["vx_mps"] for row in states(trace, "b")] == pytest.approx([8.0] * len(states(trace, "b")))
+    assert len(states(trace, "b")) > 480
+
+
+def test_a_jump_of_a_rarer_object_is_found(tmp_path: Path) -> None:
+    lines = ["t,id,x,y,yaw,vx,vy", *(f"{t},a,{10 * t / 1000:.4f},0,0,10,0" for t in range(0, 6_000, 20))]
+    lines += [f"{t},b,{10 * t / 1000:.4f},{3.5 if t < 3_000 else 15.5},0,10,0" for t in range(0, 6_000, 100)]
+    text = LONG.replace('column = "t"', 'column = "t"\nunit = "ms"')
+    trace = read_trace(table(tmp_path / "d.csv", lines), IngestOptions(mapping=mapping(tmp_path, text), ego="a"))
+    assert quality(trace)["teleport"]["t_first_ns"] == 2_900 * MS
+    assert quality(trace)["track_parted"]["message"].endswith("(b#2)")
 
 
 def test_in_a_hole_it_has_none(tmp_path: Path) -> None:
@@ -63,6 +84,8 @@ def test_in_a_hole_it_has_none(tmp_path: Path) -> None:
     found = times(trace, "b")
     assert [t for t in found if 900 < t < 1_600][:3] == [920, 1_540, 1_560]
     assert found[-1] == 3_980
+    hole = quality(trace)["track_gap"]
+    assert (hole["actor_id"], hole["n"], hole["t_first_ns"]) == ("b", 1, 933 * MS)
     short = load(tmp_path, {"a": np.arange(0, 4_000, 20), "b": b[(b < 1_000) | (b > 1_100)]})
     assert times(short, "b") == list(range(0, 4_000, 20))  # one sample is missing: 0.2 s
 

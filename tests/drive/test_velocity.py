@@ -14,7 +14,7 @@ def of(t: np.ndarray, x: np.ndarray, y: np.ndarray | None = None) -> DerivedVelo
     dt = np.diff(t_ns)
     period = int(np.median(dt))
     same = np.ones(len(dt), np.bool_)
-    step = Steps(same, dt * 1e-9, same & (dt <= 2.5 * period), period)
+    step = Steps(same, dt * 1e-9, same & (dt <= 2.5 * period), period, np.full(len(t_ns), period))
     return derive_velocities(
         t_ns, np.zeros(len(t), np.int32), np.stack([x, np.zeros_like(x) if y is None else y]), step
     )

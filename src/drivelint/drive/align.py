@@ -12,15 +12,13 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from drivelint.arrays import wrapped
-from drivelint.drive.order import MAX_GAP_PERIODS, sorted_states
+from drivelint.drive.order import LONGEST_PERIOD_NS, MAX_GAP_PERIODS, sorted_states
 from drivelint.drive.trace import STATE_COLUMNS, QualityFinding, States
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
     from drivelint.arrays import Times
 
-LONGEST_PERIOD_NS: Final = 250_000_000
-"""Objects with a longer sampling period are not aligned: at 250 ms, interpolating a braking car is already 8 cm off."""
 DIFFERENT_RATE_FACTOR: Final = 1.5
 """Above this ratio of a track's sampling period to the ego's, the track has another rate; below it, only single samples are missing."""
 COVERED_SHARE: Final = 0.75

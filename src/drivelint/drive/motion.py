@@ -98,7 +98,7 @@ def _velocity(states: States, step: Steps, starts: Indices, most_replaced_share:
             continue
         rows = np.repeat(tracks, np.diff(np.r_[starts, len(states)]))
         lacking = states.take(rows)
-        of_lacking = steps_between(lacking.t_ns, lacking.actor, step.period_ns)
+        of_lacking = steps_between(lacking.t_ns, lacking.actor, step.period_ns, step.own_ns[rows])
         motion = derive_velocities(lacking.t_ns, lacking.actor, lacking.place, of_lacking)
         velocity, filtered = states.velocity, rows.copy()
         velocity[:, rows], filtered[rows] = motion

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
 
 MAX_GAP_PERIODS = 2.5
 """Samples further apart than this many periods are not continuous."""
+LONGEST_PERIOD_NS: Final = 250_000_000
+"""Objects with a longer sampling period are not interpolated: at 250 ms, interpolating a braking car is already 8 cm off."""
 UNKNOWN_CODE = np.int8(-1)
 
 
@@ -90,27 +93,46 @@ class Steps:
     """The steps from each row of the states to the next row: arrays of n - 1 values for n rows.
 
     `same`: both rows are of one actor. `dt_s`: the seconds between them. `continuous`: `same`, and no further apart than
-    `MAX_GAP_PERIODS` periods. `period_ns`: the median step of all actors (0: no actor has two states).
+    `MAX_GAP_PERIODS` periods of the track. `period_ns`: the median step of all actors (0: no actor has two states).
+    `own_ns` (n): for each row the period of its track, such as that of objects at 10 Hz beside an ego at 50 Hz.
     """
 
     same: Mask
     dt_s: Floats
     continuous: Mask
     period_ns: int
+    own_ns: Times
 
 
 def steps(states: States) -> Steps:
     """Measure the steps between neighbouring states (in order, no duplicates)."""
     same = states.actor[1:] == states.actor[:-1]
     dt = np.diff(states.t_ns)
-    return steps_between(states.t_ns, states.actor, int(np.median(dt[same])) if same.any() else 0)
+    period = int(np.median(dt[same])) if same.any() else 0
+    return steps_between(states.t_ns, states.actor, period, _own_periods(states.t_ns, states.actor, period))
 
 
-def steps_between(t_ns: Times, actor: NDArray[np.int32], period_ns: int) -> Steps:
-    """Measure the steps between these samples (n, in order), given the sampling period."""
+def steps_between(t_ns: Times, actor: NDArray[np.int32], period_ns: int, own_ns: Times) -> Steps:
+    """Measure the steps between these samples (n, in order), given the log's sampling period, and that of each sample's track."""
     same = actor[1:] == actor[:-1]
     dt = np.diff(t_ns)
-    return Steps(same, dt * 1e-9, same & (dt <= MAX_GAP_PERIODS * period_ns), period_ns)
+    return Steps(same, dt * 1e-9, same & (dt <= MAX_GAP_PERIODS * own_ns[1:]), period_ns, own_ns)
+
+
+def _own_periods(t_ns: Times, actor: NDArray[np.int32], period_ns: int) -> Times:
+    """Return for each sample the sampling period of its track, but not less than that of the log.
+
+    A track's period is the lower quartile of its steps, so holes do not lengthen it. If it is longer than `LONGEST_PERIOD_NS`, the
+    track is not interpolated either, and the log's period counts.
+    """
+    starts = track_starts(actor)
+    periods = np.full(len(starts), period_ns, np.int64)
+    for i, (first, end) in enumerate(pairwise([*starts.tolist(), len(t_ns)])):
+        dt = np.diff(t_ns[first:end])
+        if len(dt) and dt.max() > MAX_GAP_PERIODS * period_ns:
+            own = int(np.partition(dt, (len(dt) - 1) // 4)[(len(dt) - 1) // 4])
+            periods[i] = max(own, period_ns) if own <= LONGEST_PERIOD_NS else period_ns
+    return np.repeat(periods, np.diff(np.r_[starts, len(t_ns)]))
 
 
 def time_derivative(values: Floats, step: Steps) -> Floats:

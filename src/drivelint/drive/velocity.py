@@ -50,7 +50,7 @@ def derive_velocities(t_ns: Times, actor: NDArray[np.int32], place: Floats, step
     if not 0 < step.period_ns <= LONGEST_PERIOD_NS or not len(placed):
         return DerivedVelocity(v, filtered)
     # a filter does not need a sample at every step: it continues over a single sample without a position
-    of = steps_between(t_ns[placed], actor[placed], step.period_ns)
+    of = steps_between(t_ns[placed], actor[placed], step.period_ns, step.own_ns[placed])
     v[:, placed], filtered[placed] = _filtered(t_ns[placed], actor[placed], place[:, placed], of, v[:, placed])
     return DerivedVelocity(v, filtered)
 
@@ -59,7 +59,7 @@ def _filtered(t_ns: Times, actor: NDArray[np.int32], place: Floats, step: Steps,
     """Return the velocities (2, n) of samples that all have a position; `central`: the velocities by central differences."""
     runs = Tracklets.from_samples(t_ns, place, step)
     sigma = sample_noise(place, runs, actor, unknown=0.0)
-    has_velocity = 3.0 * sigma * np.sqrt(2.0) / (2.0 * step.period_ns * 1e-9) <= LARGEST_ERROR_MPS
+    has_velocity = 3.0 * sigma * np.sqrt(2.0) / (2.0 * step.own_ns * 1e-9) <= LARGEST_ERROR_MPS
     v, filtered = np.where(has_velocity, central, np.nan), np.zeros(len(t_ns), np.bool_)
     for width in HALF_WIDTHS_S:
         if has_velocity.all():

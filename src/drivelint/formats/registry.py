@@ -11,6 +11,7 @@ from drivelint.errors import ChangedLogError, TraceError, UsageError
 from drivelint.formats.files import file_states, identify
 from drivelint.formats.folders import is_drive_folder
 from drivelint.formats.limits import bounded
+from drivelint.formats.mcap.bag_folder import METADATA_FILE, is_bag
 from drivelint.formats.osi.trace_file import is_osi_trace
 from drivelint.formats.probe import HEAD_BYTES, Probe, Reader, wrapping
 from drivelint.formats.search import why_not_followed, why_not_here
@@ -96,6 +97,10 @@ def _read(probe: Probe, before: list[tuple[str, int, int]]) -> Trace:
         from drivelint.formats.mcap.bag import not_mcap
 
         raise not_mcap(path, "sqlite3")
+    if probe.head.startswith(b"#ROSBAG V"):
+        from drivelint.formats.mcap.bag import conversion
+
+        raise TraceError(f"{path}: a ROS 1 bag: convert it with {conversion(path)}, and give that")
     raise TraceError(
         f"{path}: no reader for this file, which begins with {probe.head[:16]!r}: give MCAP, OSI, Parquet, CSV, "
         "SUMO's floating car data, a CommonRoad scenario, a ScenarioNet pickle, or the folder of a log of Argoverse 2 or 123D"
@@ -131,6 +136,8 @@ def _probe(path: Path, options: IngestOptions) -> Probe:
         raise TraceError(f"{path}: cannot be read: {error.strerror or error}") from error
     if not head:
         raise TraceError(f"{path}: the file is empty (0 bytes): record or copy it again")
+    if path.name == METADATA_FILE and is_bag(path.parent):
+        raise TraceError(f"{path}: it describes a bag: give the bag's folder, {path.parent}")
     if (told := wrapping(head)) is not None:
         raise TraceError(f"{path}: {told}")
     suffix = path.suffix.lower()

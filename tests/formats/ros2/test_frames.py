@@ -12,14 +12,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+import zstandard
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mcap.reader import make_reader
-from rosbags import rosbag2
+from rosbags import rosbag1, rosbag2
 from rosbags.typesys import Stores, get_typestore
 
 from drivelint.errors import TraceError
 from drivelint.formats import expand_traces
+from drivelint.formats.mcap.bag import mcap_files
 from drivelint.inspect.content import content, size_bytes
 from tests.formats.logs import at, log, quality, read, states
 from tests.formats.ros2 import ros_log as ros
@@ -258,6 +260,46 @@ def test_the_error_about_a_bag_in_sqlite_has_the_command_that_converts_it(tmp_pa
     assert list(Path(command[command.index("--dst") + 1]).glob("*.mcap"))
 
 
+def written(folder: Path, mode: rosbag2.CompressionMode) -> Path:
+    """Return the folder of a compressed bag with one odometry message."""
+    store, odometry = get_typestore(Stores.ROS2_HUMBLE), "nav_msgs/msg/Odometry"
+    writer = rosbag2.Writer(folder, version=9, storage_plugin=rosbag2.StoragePlugin.MCAP)
+    writer.set_compression(mode, rosbag2.CompressionFormat.ZSTD)
+    with writer:
+        writer.write(writer.add_connection("/odometry", odometry, typestore=store), 10, b"\0\1\0\0" + bytes(700))
+    return folder
+
+
+def test_a_bag_of_compressed_files_is_read_when_they_are_unpacked(tmp_path: Path) -> None:
+    folder = written(tmp_path / "my bag", rosbag2.CompressionMode.FILE)
+    (packed,) = folder.glob("*.zstd")
+    with pytest.raises(TraceError, match="a bag whose files are compressed: unpack them in its folder with ") as error:
+        read(folder)
+    assert shlex.split(str(error.value).split(" with ")[-1]) == ["zstd", "-d", str(packed)]
+    with packed.open("rb") as source, packed.with_suffix("").open("wb") as target:
+        zstandard.ZstdDecompressor().copy_stream(source, target)
+    assert [file.name for file in mcap_files(folder)] == ["my bag.mcap"]
+
+
+def test_a_bag_of_compressed_messages_and_a_bag_of_ros_1_name_the_command_that_converts_them(tmp_path: Path) -> None:
+    folder = written(tmp_path / "bag", rosbag2.CompressionMode.MESSAGE)
+    old = tmp_path / "old.bag"
+    with rosbag1.Writer(old) as writer:
+        writer.add_connection("/odometry", "nav_msgs/msg/Odometry", typestore=get_typestore(Stores.ROS1_NOETIC))
+    for path, why in ((folder, "a bag whose messages are each compressed"), (old, "a ROS 1 bag")):
+        with pytest.raises(TraceError, match=f"{why}: convert it with rosbags-convert ") as error:
+            read(path)
+        command = shlex.split(re.search(r"rosbags-convert.*-dst-storage mcap", str(error.value))[0])  # type: ignore[index]
+        subprocess.run([Path(sys.executable).with_name(command[0]), *command[1:]], check=True)
+        assert mcap_files(Path(command[command.index("--dst") + 1]))
+
+
+def test_the_description_of_a_bag_is_not_a_log(tmp_path: Path) -> None:
+    folder, _ = parts(tmp_path)
+    with pytest.raises(TraceError, match=f"describes a bag: give the bag's folder, {re.escape(str(folder))}"):
+        read(folder / "metadata.yaml")
+
+
 @pytest.mark.parametrize("order", ["<", ">"])
 def test_byte_orders(tmp_path: Path, order: str) -> None:
     messages = [*ego(), *others(), *chain()]
@@ -279,7 +321,10 @@ def test_order_of_messages_and_objects_changes_nothing(
 
 
 def test_nothing_to_read(tmp_path: Path) -> None:
-    said = "no nav_msgs/Odometry and no road users: the log has tf2_msgs/TFMessage on /tf, .* on /tf_static; see drivelint docs traces"
+    said = (
+        "no nav_msgs/Odometry and no road users: the log has tf2_msgs/TFMessage on /tf, .* on /tf_static; "
+        "drivelint docs mapping shows how messages of other types become a table"
+    )
     with pytest.raises(TraceError, match=said):
         seen(tmp_path, chain())
     folder = tmp_path / "bag"

@@ -19,6 +19,8 @@ from drivelint.receipts.events import looked_for
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
+PACKED_SUFFIX: Final = ".zstd"
+"""The end of the names of a bag's files that `ros2 bag record --compression-mode file` has compressed."""
 OSI_SCHEMAS: Final = frozenset({"osi3.GroundTruth", "osi3.SensorView"})
 ROS_ROLES: Final = {name: message.role for name, message in MESSAGES.items()}
 FOXGLOVE_ROLES: Final = {
@@ -45,14 +47,19 @@ def mcap_files(path: Path) -> list[Path]:
         raise TraceError(f"{path}: its {METADATA_FILE} lists no files: reindex the bag")
     if storage not in {None, "mcap"}:
         raise not_mcap(path, str(storage))
+    if str(information.get("compression_mode")).lower() == "message":
+        raise TraceError(
+            f"{path}: a bag whose messages are each compressed: convert it with {conversion(path)}, and give that"
+        )
     files = []
     for name in names:
-        # older recorders list only a file's name, or prefix it with the folder's name
-        file = next(
-            (each for each in (path / name, path / name.rsplit("/", 1)[-1]) if looked_for(each).is_file()), None
-        )
+        file = _part(path, name.removesuffix(PACKED_SUFFIX)) or _part(path, name)
         if file is None:
             raise TraceError(f"{path}: {name}, a part of this bag, is missing: copy the whole folder")
+        if file.suffix == PACKED_SUFFIX:
+            raise TraceError(
+                f"{path}: a bag whose files are compressed: unpack them in its folder with zstd -d {quote(str(file))}"
+            )
         if not file.stat().st_size:
             raise TraceError(
                 f"{path}: {name}, a part of this bag, is empty (0 bytes): copy it again, or reindex the bag"
@@ -65,19 +72,32 @@ def mcap_files(path: Path) -> list[Path]:
     return files
 
 
+def _part(folder: Path, name: str) -> Path | None:
+    """Return the file of a bag, or None if it is missing."""
+    # older recorders list only a file's name, or prefix it with the folder's name
+    return next(
+        (each for each in (folder / name, folder / name.rsplit("/", 1)[-1]) if looked_for(each).is_file()), None
+    )
+
+
 def not_mcap(path: Path, storage: str) -> TraceError:
     """Return the error for a bag in a storage other than MCAP, with the command that converts it.
 
     `path`: the bag's folder, or one of its files.
     """
+    return TraceError(
+        f"{path}: a bag in {storage}: convert it to MCAP with {conversion(path)}, "
+        "or with ros2 bag convert and storage_id: mcap, and give the converted bag"
+    )
+
+
+def conversion(path: Path) -> str:
+    """Return the command that converts a bag, given as its folder or as one of its files, to MCAP without compression."""
     whole = path if path.is_dir() or not is_bag(path.parent) else path.parent
     name = (whole.name if whole.is_dir() else whole.stem) or "bag"
     converted = whole.with_name(f"{name}-mcap") if whole.name else Path(f"{name}-mcap")
     command = f"rosbags-convert --src {quote(str(whole))} --dst {quote(str(converted))} --dst-storage mcap"
-    return TraceError(
-        f"{path}: a bag in {storage}: convert it to MCAP with {command} (of PyPI's package rosbags), "
-        "or with ros2 bag convert and storage_id: mcap, and give the converted bag"
-    )
+    return f"{command} (of PyPI's package rosbags)"
 
 
 def _information(path: Path) -> Any:

@@ -61,5 +61,6 @@ def _refuse_other_messages(path: Path) -> None:
     if path.is_dir() or any("/" in kind or kind.startswith("foxglove.") for kind in kinds.values()):
         has = listed([f"{kind} on {topic}" for topic, kind in sorted(kinds.items())], _MAX_TOPICS) or "no topic"
         raise TraceError(
-            f"{path}: no nav_msgs/Odometry and no road users: the log has {has}; see drivelint docs traces"
+            f"{path}: no nav_msgs/Odometry and no road users: the log has {has}; "
+            "drivelint docs mapping shows how messages of other types become a table"
         )

@@ -30,6 +30,7 @@ from drivelint.formats.ros2.messages import (
     EGO_INFO,
     ENGAGE,
     HAZARD_LIGHTS,
+    MESSAGES,
     ODOMETRY,
     PARAMETERS,
     TRANSFORMS,
@@ -128,8 +129,19 @@ def read(path: Path, options: IngestOptions) -> Recording:
     recording.embedded_map, trouble = single_map(_maps(log))
     recording.findings += trouble
     recording.frame_times, recording.utc_start_ns = message_times(list(parts.values()))
-    recording.notes += [*log.notes, f"positions are in the frame {fixed!r}"]
+    recording.notes += [*log.notes, *_own_vehicle_missing(log, odometry), f"positions are in the frame {fixed!r}"]
     return recording
+
+
+def _own_vehicle_missing(log: Log, odometry: Topics) -> list[str]:
+    """Return a note if a bag of Autoware's road users has no odometry."""
+    if odometry or log.topics.keys().isdisjoint(SAME_BODIES):
+        return []
+    note = (
+        f"no {ODOMETRY}: the vehicle that recorded the bag is not among the actors, even if its frame is in the transforms: "
+        f"record {MESSAGES[ODOMETRY].topic} too"
+    )
+    return [note]
 
 
 def _maps(log: Log) -> dict[bytes, str]:
@@ -183,6 +195,10 @@ def _no_road_users(log: Log) -> QualityFinding:
         cause = (
             f"the only road users of this log, on {listed(sorted(log.detections))}, are detections without ids, which form no tracks: "
             f"record {' or '.join(SAME_BODIES)} too"
+        )
+    else:
+        cause += (
+            ", of the types that are read (drivelint docs mapping shows how messages of other types become a table)"
         )
     message = f"{cause}: rules about other actors are unknown"
     return QualityFinding("no_road_users", "warning", message, max(n, 1))

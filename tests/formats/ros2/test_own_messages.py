@@ -1,0 +1,78 @@
+"""Messages of types that are not read: the guide's script makes a table of them, for which `inspect` drafts the mapping."""
+
+from __future__ import annotations
+
+import math
+import subprocess
+import sys
+from typing import TYPE_CHECKING
+
+import pytest
+from rosbags import rosbag2
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+from drivelint.drive.trace import IngestOptions
+from drivelint.errors import TraceError
+from drivelint.formats import read_trace
+from drivelint.guide import FOLDER
+from drivelint.inspect import InspectRequest, inspect
+from tests.formats.logs import actors, put, read, states
+from tests.guide.blocks import blocks
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+EGO, TRACKS = "acme_msgs/msg/EgoState", "acme_msgs/msg/FusedTrackArray"
+DEFINITIONS = {
+    EGO: "std_msgs/Header header\nfloat64 x\nfloat64 y\nfloat64 yaw\nfloat64 v",
+    "acme_msgs/msg/FusedTrack": (
+        "uint32 track_id\nuint8 kind\ngeometry_msgs/Point position\nfloat64 heading_deg\nfloat64 speed_kmh\n"
+        "geometry_msgs/Vector3 size"
+    ),
+    TRACKS: "std_msgs/Header header\nacme_msgs/FusedTrack[] tracks",
+}
+
+
+def bag(folder: Path) -> Path:
+    """Return a bag of two seconds: the ego at 50 Hz and 10 m/s to the north, and a car 30 m ahead at 10 Hz and 8 m/s."""
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    for name, text in DEFINITIONS.items():
+        store.register(get_types_from_msg(text, name))
+    types = store.types
+    point, vector = types["geometry_msgs/msg/Point"], types["geometry_msgs/msg/Vector3"]
+    with rosbag2.Writer(folder, version=9, storage_plugin=rosbag2.StoragePlugin.MCAP) as writer:
+        to = {
+            kind: writer.add_connection(topic, kind, typestore=store)
+            for kind, topic in ((EGO, "/acme/ego"), (TRACKS, "/acme/fused_tracks"))
+        }
+        for i in range(101):
+            t_ns = 1_700_000_000_000_000_000 + i * 20_000_000
+            stamp = types["builtin_interfaces/msg/Time"](*divmod(t_ns, 10**9))
+            header = types["std_msgs/msg/Header"](stamp, "map")
+            messages = {EGO: types[EGO](header, 5.0, 0.2 * i, math.pi / 2, 10.0)}
+            if i % 5 == 0:
+                place, size = point(5.0, 30.0 + 0.16 * i, 0.0), vector(4.5, 1.8, 1.5)
+                track = types["acme_msgs/msg/FusedTrack"](7, 1, place, 90.0, 28.8, size)
+                messages[TRACKS] = types[TRACKS](header, [track])
+            for kind, message in messages.items():
+                writer.write(to[kind], t_ns, store.serialize_cdr(message, kind))
+    return folder
+
+
+def test_the_guides_script_makes_a_table_of_messages_of_other_types(tmp_path: Path) -> None:
+    with pytest.raises(TraceError, match="drivelint docs mapping shows how messages of other types become a table"):
+        read(bag(tmp_path / "bag"))
+    (script,) = (block.body for block in blocks(FOLDER / "mapping.md") if block.language == "python")
+    subprocess.run([sys.executable, put(tmp_path / "table.py", script)], cwd=tmp_path, check=True)
+    draft = inspect(InspectRequest(trace=str(tmp_path / "drive.csv"))).content.draft_mapping
+    assert draft is not None
+    assert 'speed = { column = "speed_kmh", unit = "km/h" }' in draft
+    full = draft.replace('values = { "car" = "car" }', 'values = { "car" = "car", "1" = "car" }')
+    full = full.replace("ids = []", 'ids = ["ego"]')
+    trace = read_trace(tmp_path / "drive.csv", IngestOptions(mapping=str(put(tmp_path / "my.toml", full))))
+    assert {name: (row["actor_class"], row["is_ego"]) for name, row in actors(trace).items()} == {
+        "7": ("car", False),
+        "ego": ("car", True),
+    }
+    row = states(trace, "7")[50]
+    assert (row["x_m"], row["y_m"], row["vy_mps"]) == pytest.approx((5.0, 38.0, 8.0))
