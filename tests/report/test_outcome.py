@@ -161,6 +161,10 @@ def test_of_many_drives_most_must_be_decided() -> None:
     words = "no findings, but 3 of the 4 rules that may apply could not be judged, counted for each drive and ego"
     assert (told.label, told.sentence) == ("MOSTLY UNKNOWN", words)
     assert headline(result(rows[:2], drives=drives)).label == "PASS"
+    few = replace(result(rows[:2], drives=drives), min_judged=0.9)
+    assert exit_status(few).code == ExitCode.NOT_JUDGED
+    assert headline(few).label == "TOO LITTLE JUDGED", "as many rules were decided as not"
+    assert "1 of the 2 rules that may apply could not be judged" in headline(few).sentence
 
 
 @pytest.mark.parametrize(

@@ -33,6 +33,8 @@ LABELS: Final = {
     ExitCode.INTERRUPTED: "PARTIAL",
 }
 _MOSTLY: Final = "MOSTLY UNKNOWN"
+_TOO_LITTLE: Final = "TOO LITTLE JUDGED"
+"""The label of a run that decided most rules, but fewer than `--min-judged` requires."""
 _NOT_APPLICABLE: Final = "NOT APPLICABLE"
 _FINDINGS: Final = "FINDINGS"
 _KINDS: Final = {LABELS[ExitCode.OK]: "pass", _NOT_APPLICABLE: "not_applicable", _FINDINGS: "near"}
@@ -183,7 +185,9 @@ def _label(result: Result, has_findings: bool) -> str:
     if not told["pass"] + told["fail"]:
         lacking = counts.unrecorded(result.verdicts).num_rows
         return "UNKNOWN" if told["unknown"] + told["error"] + lacking or not told["not_applicable"] else _NOT_APPLICABLE
-    return _MOSTLY if _open_rules(result).are_most or code != ExitCode.OK else LABELS[code]
+    if _open_rules(result).are_most:
+        return _MOSTLY
+    return LABELS[code] if code == ExitCode.OK else _TOO_LITTLE
 
 
 def _open_rules(result: Result) -> _OpenRules:
@@ -207,7 +211,7 @@ def _without_findings(result: Result, verdict_counts: Mapping[str, int], label: 
         return "no findings, because nothing could be decided"
     if not verdict_counts["pass"] + verdict_counts["fail"]:
         return "no findings, because no rule applied: the situations of the rules did not occur"
-    if label == _MOSTLY:
+    if label in {_MOSTLY, _TOO_LITTLE}:
         open_rules = _open_rules(result)
         return f"no findings, but {open_rules.words if open_rules.n else 'fewer rules were decided than --min-judged requires'}"
     return "no findings" if whole else "no findings, but not everything could be judged"
