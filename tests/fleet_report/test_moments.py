@@ -14,7 +14,9 @@ import drivelint
 from drivelint import demo
 from drivelint.audit import AuditRequest, JudgeSettings, audit
 from drivelint.fleet_report import moment_pages
+from drivelint.report import html as report
 from drivelint.report.progress import Silent
+from drivelint.result.load import load_result
 from tests.audit.here import InThisProcess
 from tests.fleet_report.command import ran
 
@@ -67,10 +69,10 @@ def test_each_finding_leads_to_its_picture(audited: Path) -> None:
     assert not moments.xpath("//code[contains(., '--in .')]"), "the page does not lie in the folder of a check"
 
 
-def test_the_page_is_that_of_a_check(audited: Path) -> None:
-    checked = drivelint.check(
-        audited / "demo" / "near-miss.mcap", map=audited / "demo" / "road.xodr", robustness=False
-    ).report()
+def test_the_page_is_that_of_a_check_without_commands_for_its_folder(audited: Path, tmp_path: Path) -> None:
+    log, road = audited / "demo" / "near-miss.mcap", audited / "demo" / "road.xodr"
+    drivelint.check(log, map=road, robustness=False, out=tmp_path / "out")
+    checked = report.render(load_result(tmp_path / "out"), in_result_folder=False).decode()
     href = page_of(audited / "audit", "near-miss").xpath("//p[@class='gate-line']/a/@href")[0]
     assert (audited / "audit" / "drives" / href).read_text() == checked
 

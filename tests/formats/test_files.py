@@ -259,7 +259,7 @@ def test_a_drive_is_called_by_stem_and_content(tmp_path: Path) -> None:
         ("a.parquet", b"PAR1 and nothing", "not readable as Parquet"),
         ("a.osi", b"\x10\0\0\0", "not an OSI trace"),
         ("a.csv", b"<html></html>", "no reader for this file"),
-        ("a.bag", b"#ROSBAG V2.0\n\0\0", "no reader for this file, which begins with b'#ROSBAG"),
+        ("a.bag", b"#ROSBAG V2.0\n\0\0", "a ROS 1 bag: convert it with rosbags-convert --src"),
     ],
 )
 def test_files_that_are_no_trace(tmp_path: Path, name: str, content: bytes, message: str) -> None:

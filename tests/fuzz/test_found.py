@@ -131,7 +131,7 @@ def test_an_error_of_a_long_text_is_shown_without_its_middle() -> None:
 def test_a_column_that_stands_twice_is_refused(tmp_path: Path) -> None:
     rows = pa.table([[0], ["a"], [0.0], [0.0], [0.0], [1.0]], ["t_ns", "actor_id", "x_m", "y_m", "yaw_rad", "x_m"])
     pq.write_table(rows, tmp_path / "a.parquet")
-    with pytest.raises(TraceError, match="the column 'x_m' stands twice"):
+    with pytest.raises(TraceError, match="the column 'x_m' occurs twice"):
         read(tmp_path / "a.parquet")
 
 

@@ -122,11 +122,11 @@ def test_cells_of_wide_tables_name_their_column(pages: Path) -> None:
     (row, *_) = page.xpath("//h2[@id='ukhc']/following::table[1]//tr[td]")
     assert [cell.get("data-column") for cell in row.xpath("td")] == [
         None,
-        "asserts",
+        "question",
         "kind",
-        "needs",
+        "required signals",
         "numbers",
-        "from",
+        "source",
     ]
 
 

@@ -72,7 +72,7 @@ def _moments(drive: Row, audit: Audit) -> Moments:
         if reason := _difference(result, drive):
             reason = f"{reason}: audit the drives again, or check this one alone"
         else:
-            content = html.render(result)
+            content = html.render(result, in_result_folder=False)
     except (DriveLintError, OSError, msgspec.MsgspecError) as error:
         reason = str(error)
     return Moments(drive["key"], moments_name(drive["key"]), content, reason)

@@ -9,6 +9,6 @@ if TYPE_CHECKING:
 
 
 def turn_off(con: duckdb.DuckDBPyConnection) -> None:
-    """Turn the bar off if it is on. In a notebook without ipywidgets it is off, and DuckDB 1.5.5 would refuse the statement."""
+    """Turn the bar off if it is on. In a notebook without ipywidgets it is off, and DuckDB would refuse the statement."""
     if con.execute("SELECT current_setting('enable_progress_bar')").fetchall()[0][0]:
         con.execute("SET enable_progress_bar=false")

@@ -118,7 +118,7 @@ def test_labels_of_data_sets(tmp_path: Path, enumeration: str, number: int, word
 @pytest.mark.parametrize(
     ("labels", "number", "what"),
     [
-        (LABELS, 30, "labels that AV2SensorBoxDetectionLabel does not define (30) of 3 boxes"),
+        (LABELS, 30, "labels that AV2SensorBoxDetectionLabel does not define (30) at 3 boxes"),
         ("my.own.Labels", 1, "their labels are numbers of my.own.Labels"),
         ("my.own.AV2SensorBoxDetectionLabel", 1, "their labels are numbers of my.own.AV2SensorBoxDetectionLabel"),
         ("", 1, "their labels are numbers of an enumeration without a name"),
@@ -260,7 +260,7 @@ def test_a_folder_without_the_table_of_frames_is_no_log(tmp_path: Path) -> None:
 def test_a_version_that_is_not_known_is_refused(tmp_path: Path, version: str | None) -> None:
     folder = plain(tmp_path / "log", version=version)
     with pytest.raises(
-        TraceError, match=rf"version {version} wrote the file, but only the versions 0\.2 to 0\.7 are read"
+        TraceError, match=rf"py123d {version} wrote the file, but only the versions 0\.2 to 0\.7 are supported"
     ):
         read(folder)
 

@@ -57,7 +57,7 @@ def test_a_map_that_cannot_be_used(tmp_path: Path) -> None:
     (folder / "map.arrow").write_bytes(b"ARROW1 and no more")
     assert "not readable" in quality(read(folder))["own_map_unusable"]["message"]
     write_map(folder / "map.arrow", LANE, version="3.0.0")
-    assert "version 3.0.0" in quality(read(folder))["own_map_unusable"]["message"]
+    assert "py123d 3.0.0 wrote the file" in quality(read(folder))["own_map_unusable"]["message"]
     write_map(folder / "map.arrow", [crosswalk(1, 0, 0, 1, 1)])
     trace = read(folder)
     assert trace.embedded_map is None

@@ -19,9 +19,15 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
 
 
-def render(result: Result) -> bytes:
-    """Return the page, encoded in UTF-8; the same result gives the same bytes."""
-    text = _environment().get_template("report.html.j2").render(page.content(result))
+def render(result: Result, *, in_result_folder: bool = True) -> bytes:
+    """Return the page, encoded in UTF-8; the same result gives the same bytes.
+
+    `in_result_folder`: the page is for the folder of a result, so it shows the commands that read this folder.
+    """
+    content = page.content(result)
+    if content["worst"] is not None and not in_result_folder:
+        content["worst"]["commands"] = []
+    text = _environment().get_template("report.html.j2").render(content)
     return text.encode("utf-8", "replace")  # the name of a file may contain bytes that are not UTF-8
 
 

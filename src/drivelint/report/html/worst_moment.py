@@ -67,7 +67,7 @@ def worst_moment(
             (how, list(dict.fromkeys(title(each.rule) for each in along if each.kind == kind))[:_ALSO])
             for kind, how, title in (("fail", "also", went_wrong), ("near", "also only just kept", itemgetter("title")))
         ],
-        "commands": _commands(row, folder),
+        "commands": _commands(row),
         "files": _files(row, folder),
     }
 
@@ -83,10 +83,8 @@ def _name(row: Row) -> str:
     return row.get("finding_id") or f"{row['rule_id']}@{row['drive_id']}"
 
 
-def _commands(row: Row, folder: Path | None) -> list[list[str]]:
-    """Return the commands that explain a finding, each in parts; none for a page that does not lie in the folder of a result."""
-    if folder is None:
-        return []
+def _commands(row: Row) -> list[list[str]]:
+    """Return the commands that explain a finding, each in parts, for the folder of a result."""
     explain = ["drivelint explain", shlex.quote(_name(row)), "--in ."]
     return [explain, ["drivelint report .", f"--incident {row['finding_id']}"]] if "finding_id" in row else [explain]
 
