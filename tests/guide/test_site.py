@@ -125,7 +125,7 @@ def test_cells_of_wide_tables_name_their_column(pages: Path) -> None:
         "question",
         "kind",
         "required signals",
-        "numbers",
+        "parameters",
         "source",
     ]
 

@@ -74,8 +74,7 @@ def content(case: Case) -> dict[str, Any]:
     before = motion.last_apart_before(0.0) if finding.is_contact else None
     at = motion.at(0.0) if before is None else before
     before_s = None if before is None else float(motion.t[before])
-    until_s = 0.0 if before_s is None else before_s
-    slowed = [slowings(motion, no, until_s) for no in range(len(finding.parties))]
+    slowed = [slowings(motion, no, before_s or 0.0) for no in range(len(finding.parties))]
     offset_s = (finding.moment_ns - finding.start_ns) / 1e9
     rows = second_by_second(motion, before_s)
     span, where = _span(finding), place(case)
@@ -95,7 +94,7 @@ def content(case: Case) -> dict[str, Any]:
         ),
         "clip_of": _clip_of(finding.drive["file_name"]),
         "cut_from": _cut_from(case),
-        "recorded": f"{_signed(max(float(motion.t[0]), -BEFORE_S))} s to {_signed(until_s)} s",
+        "recorded": f"{_signed(max(float(motion.t[0]), -BEFORE_S))} s to {_signed(before_s or 0.0)} s",
         "profile": profile(row["profile"]),
         "when": seconds(finding.moment_ns, finding.start_ns),
         "worst": seconds(row["t_worst_ns"], finding.start_ns),
