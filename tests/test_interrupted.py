@@ -163,7 +163,7 @@ def test_ctrl_c_leaves_a_partial_result_that_says_so(sign: signal.Signals, pack:
         finally:
             process.kill()
     assert process.returncode == 130, err
-    assert "drivelint: interrupted: stops" in err
+    assert "drivelint: interrupted: finishing what is begun" in err
     assert f"drivelint: kept 1 of 3 drives in {out}" in err.splitlines()
     sentence = "partial: 1 of 3 drives judged, interrupted"
     assert said.splitlines()[2].startswith("PARTIAL")
@@ -294,7 +294,7 @@ def test_a_signal_whose_interrupt_is_lost_ends_a_watch_all_the_same(tmp_path: Pa
         finally:
             process.kill()
     assert "Exception ignored" in err
-    assert "drivelint: interrupted: stops" in err
+    assert "drivelint: interrupted: finishing what is begun" in err
     assert process.returncode == 4, err
 
 

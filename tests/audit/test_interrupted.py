@@ -84,8 +84,9 @@ def test_the_rows_are_those_that_a_merge_packs_and_then_it_says_how_many_are_mis
         before = tables_digest(con)
     merged = merge(str(out), Silent())
     assert merged.digest == before
-    assert f"INCOMPLETE: these parts have not ended: all: {n} of {N_DRIVES} drives have a result: give" in summary_text(
-        merged, "out", ExitCode.NOT_JUDGED
+    assert (
+        f"INCOMPLETE: these parts have not ended: all: {n} of {N_DRIVES} drives have a result: run the same"
+        in summary_text(merged, "out", ExitCode.NOT_JUDGED)
     )
     with open_audits(str(out)) as (_, audit, _):
         assert f"{n} of {N_DRIVES} drives have a result; give the same audit again" in audit.warning

@@ -160,7 +160,7 @@ def test_rates_are_tested_per_occasion_too(disjoint: AuditDifference) -> None:
     assert tests["occasion"].corrected == pytest.approx(2 * expected), "two tests of the one rule that has findings"
     assert tests["occasion"].ratio == pytest.approx(17 / 24 / (2 / 22))
     text = difference_text.to_text(disjoint, None)
-    assert "Rates of 1 rule differ, by 2 tests" in text
+    assert "Rates of 1 rule differ significantly (2 exact tests" in text
     assert "  differs: overtake per occasion: 2 of 22, 9.09 %" in text
     assert f"7.79 times, p {figure(expected)}, corrected {figure(2 * expected)}" in text
 

@@ -34,8 +34,9 @@ def pages(nasty: Nasty) -> list[Path]:
             done = ran(*words)
             assert done.code == 0, done.err
     (sheet,) = (nasty.result / "incidents").iterdir()
-    (drive,) = (nasty.audit / "drives").glob("*.html")
-    return [nasty.result / "report.html", sheet, nasty.audit / "fleet.html", drive]
+    of_the_drive = sorted((nasty.audit / "drives").glob("*.html"))
+    assert len(of_the_drive) == 2, "its page, and its moments"
+    return [nasty.result / "report.html", sheet, nasty.audit / "fleet.html", *of_the_drive]
 
 
 @pytest.mark.slow
