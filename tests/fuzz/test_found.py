@@ -135,6 +135,16 @@ def test_a_column_that_stands_twice_is_refused(tmp_path: Path) -> None:
         read(tmp_path / "a.parquet")
 
 
+@pytest.mark.parametrize("name", ["data_log", "quality"])
+def test_a_date_that_python_does_not_have_is_refused(tmp_path: Path, name: str) -> None:
+    folder = sources.parquet(tmp_path)[0].written(tmp_path / "drive")
+    texts = {each: ["a"] for each in ("check_id", "severity", "message")} if name == "quality" else {}
+    late = pa.array([2**30], pa.int32()).cast(pa.date32())
+    pq.write_table(pa.table({**texts, "n": late}), folder / f"{name}.parquet")
+    with pytest.raises(TraceError, match=rf"{name}\.parquet: a value cannot be read"):
+        read(folder)
+
+
 def test_an_ego_without_an_id_is_none(tmp_path: Path) -> None:
     folder = sources.parquet(tmp_path)[0].written(tmp_path / "drive")
     actors = pq.read_table(folder / "actor.parquet", partitioning=None)

@@ -5,7 +5,7 @@ Positions are box centres, as in the tables.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import msgspec
 import numpy as np
@@ -74,7 +74,9 @@ def read(probe: Probe) -> Recording:
     recording.actors = _extra(path / "actor.parquet", ("actor_id",), (*SIZE_COLUMNS, "actor_class", "is_ego"))
     if recording.actors is not None:
         recording.ego_ids += [
-            row["actor_id"] for row in recording.actors.to_pylist() if row.get("is_ego") and row["actor_id"]
+            row["actor_id"]
+            for row in _rows(path / "actor.parquet", recording.actors)
+            if row.get("is_ego") and row["actor_id"]
         ]
     recording.signals = _every_cell(path / "signal_state.parquet", ("signal_id", "t_ns"), "state")
     recording.events = _every_cell(path / "declared_event.parquet", ("actor_id", "t_ns", "event"), "value")
@@ -82,7 +84,7 @@ def read(probe: Probe) -> Recording:
     if condition_rows := _extra(conditions, ("condition", "value")):
         recording.conditions = parse_conditions(conditions, zip(*condition_rows.to_pydict().values(), strict=True))
     if (path / "data_log.parquet").is_file():
-        log = (parquet.table(path / "data_log.parquet").to_pylist() or [{}])[0]
+        log = (_rows(path / "data_log.parquet", parquet.table(path / "data_log.parquet")) or [{}])[0]
         counted, found = log.get("n_states"), len(states) + sum(f.n for f in findings if f.check_id == "dropped_row")
         if counted is not None and counted != found:  # it is unknown which states are missing
             raise TraceError(
@@ -95,7 +97,7 @@ def read(probe: Probe) -> Recording:
             dx, dy = recording.map_offset = _offset(path, offset)
             recording.notes.append(f"the log moves the map by ({dx:+g}, {dy:+g}) m")
         if geo := _extra(path / "data_log.parquet", (), ("geo_reference", "geo_x_m", "geo_y_m", "geo_yaw_rad")):
-            (geo_row, *_) = geo.to_pylist()
+            (geo_row, *_) = _rows(path / "data_log.parquet", geo)
             x, y, yaw = (geo_row.get(name) or 0.0 for name in ("geo_x_m", "geo_y_m", "geo_yaw_rad"))
             recording.geo_reference, recording.geo_offset = geo_row.get("geo_reference"), (x, y, yaw)
     if (path / "map.xodr").is_file():
@@ -119,7 +121,7 @@ def _quality(path: Path) -> list[QualityFinding]:
     _need(path, rows, ("check_id", "severity", "message"))
     again = FOUND_ANEW if AS_RECORDED.encode() in (rows.schema.metadata or {}) else ()
     try:
-        found = [msgspec.convert(row, QualityFinding) for row in rows.to_pylist()]
+        found = [msgspec.convert(row, QualityFinding) for row in _rows(path, rows)]
         return known_findings(path, [finding for finding in found if finding.check_id not in again])
     except msgspec.ValidationError as error:
         raise TraceError(f"{path}: not rows of the table quality: {error}") from error
@@ -215,6 +217,15 @@ def _codes(path: Path, column: pa.Array, name: str) -> Codes:
         return words.index(word.casefold())
 
     return coded(column, code_of)
+
+
+def _rows(path: Path, table: pa.Table) -> list[dict[str, Any]]:
+    """Return the rows of a table. Errors: `TraceError` for a value that Python does not have, such as a date after the year 9999."""
+    try:
+        rows: list[dict[str, Any]] = table.to_pylist()
+    except (OverflowError, ValueError, pa.ArrowException) as error:
+        raise TraceError(f"{path}: a value cannot be read ({error}): write the table again") from error
+    return rows
 
 
 def _extra(path: Path, required: tuple[str, ...], optional: tuple[str, ...] = ()) -> pa.Table | None:
