@@ -93,7 +93,7 @@ def convert(request: ConvertRequest) -> ConvertedTrace:
     _refuse_to_overwrite(path, request.out, target)
     # conditions that the user states and assumptions about unrecorded actors belong to a check, not to the log
     options = replace(request.ingest_options(need_ego=False), in_sight=False, conditions=())
-    # a clip has too few states to derive values anew: it stores the values with which the whole log was judged
+    # values that need a whole log cannot be derived from a clip, so it stores the values of the log's judgement
     options = replace(options, as_recorded=request.clip is None)
     trace = read_trace(path, options)
     if request.clip is not None:

@@ -12,7 +12,6 @@ import pytest
 from drivelint.audit import merge
 from drivelint.audit.ask import ask
 from drivelint.audit.compact import create_views, database, tables_digest
-from drivelint.audit.executors import Outcome
 from drivelint.audit.store import LocalFolder
 from drivelint.audit.text import summary_text
 from drivelint.audit.unpacked import n_results, views_of_all
@@ -22,20 +21,11 @@ from drivelint.fleet_report.audit_views import open_audits, opened_both
 from drivelint.fleet_report.difference import difference
 from drivelint.report.progress import Silent
 from tests.audit import fleet
-from tests.audit.here import InThisProcess, judged
+from tests.audit.here import Stopped, judged
 
 pytestmark = pytest.mark.ci
 
 N_DRIVES = 20
-
-
-class Stopped(InThisProcess):
-    """Is interrupted before its last two tasks."""
-
-    def wait(self) -> list[Outcome]:
-        if len(self.tasks) < 2:
-            raise KeyboardInterrupt
-        return super().wait()
 
 
 @pytest.fixture(scope="module")

@@ -10,29 +10,19 @@ import pytest
 from drivelint.audit import AuditRequest, JudgeSettings, audit
 from drivelint.report.progress import Silent
 from tests.audit import fleet
-from tests.audit.here import InThisProcess
+from tests.audit.here import Stopped
 from tests.fleet_report import lake
 from tests.fleet_report.command import ran
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from drivelint.audit.executors import Outcome
 
 pytestmark = pytest.mark.ci
 
 SIZES = {"may": 120, "june": 60, "july": 30}
 PLANTED = "ukhc.contact-signature"
 """The first rule: one drive of each audit has 40 findings of it more than the others, so a smaller audit has a higher rate."""
-
-
-class Stopped(InThisProcess):
-    """Interrupts the audit before its last batch."""
-
-    def wait(self) -> list[Outcome]:
-        if len(self.tasks) < 2:
-            raise KeyboardInterrupt
-        return super().wait()
 
 
 @pytest.fixture(scope="module")
