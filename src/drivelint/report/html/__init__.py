@@ -22,11 +22,12 @@ if TYPE_CHECKING:
 def render(result: Result, *, in_result_folder: bool = True) -> bytes:
     """Return the page, encoded in UTF-8; the same result gives the same bytes.
 
-    `in_result_folder`: the page is for the folder of a result, so it shows the commands that read this folder.
+    `in_result_folder`: the page is for the folder of a result, so it shows the commands that read this folder, and
+    links to its files.
     """
     content = page.content(result)
     if content["worst"] is not None and not in_result_folder:
-        content["worst"]["commands"] = []
+        content["worst"].update(commands=[], files=[])
     text = _environment().get_template("report.html.j2").render(content)
     return text.encode("utf-8", "replace")  # the name of a file may contain bytes that are not UTF-8
 
