@@ -152,7 +152,7 @@ def _is_manifest(path: Path, *, with_mapping: bool) -> bool:
             with path.open(encoding="utf-8-sig", errors="replace") as file:
                 names, cells = (re.split(r"[,\r\n]", file.readline(65536).replace('"', "")) for _ in range(2))
     except (OSError, ValueError) as error:
-        raise TraceError(f"{path}: cannot be read: {error}") from error
+        raise TraceError(f"{path}: cannot be read: {error}: copy it again, or check its permissions") from error
     if "log" in names:
         return True
     first = _first_row(path) if path.suffix.lower() == ".parquet" else dict(zip(names, cells, strict=False))

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 DIFFERENT_RATE_FACTOR: Final = 1.5
 """Above this ratio of a track's sampling period to the ego's, the track has another rate; below it, only single samples are missing."""
 COVERED_SHARE: Final = 0.75
-"""A track that has samples at this share of the ego's steps is not interpolated."""
+"""A track with samples at this share of the ego's steps between its first and its last sample is not interpolated."""
 _PLACE_AND_VELOCITY: Final = (("x_m", "vx_mps"), ("y_m", "vy_mps"))
 
 

@@ -43,7 +43,10 @@ class _BeyondError(BaseException):
 
 
 class _Watch:
-    """Measures, in a thread of its own, time and memory of the thread that created it, and interrupts that thread at a limit."""
+    """Measures the CPU time of the thread that created it and the growth of the process's memory; interrupts that thread at a limit.
+
+    The measuring runs in a thread of its own.
+    """
 
     def __init__(self, n_bytes: int) -> None:
         self.seconds, self.bytes = BASE_CPU_S + n_bytes * CPU_S_PER_FILE_BYTE, memory_limit_bytes(n_bytes)

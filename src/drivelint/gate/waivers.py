@@ -79,7 +79,8 @@ def read(file: Path, *, only_waivers: bool = True) -> list[Waiver]:
 
 
 def apply(waivers: Sequence[Waiver], result: Result, today: date) -> tuple[tuple[Waiver, ...], dict[str, int]]:
-    """Return the waivers with their state on the day `today`, and finding_id -> index of the waiver that covers the finding."""
+    """Return the waivers with their state on the day `today`, and finding_id -> index of the first waiver that matches
+    the finding and has not expired."""
     drives = {row["drive_id"]: row for row in result.drives.to_pylist()}
     found: Counter[int] = Counter()
     waived: dict[str, int] = {}

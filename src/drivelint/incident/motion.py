@@ -160,7 +160,7 @@ def slowing_known(motion: Motion, party: int, until_s: float) -> bool:
 class Slowing(NamedTuple):
     """A period in which a party slows: start, end, the speeds at both, and the hardest deceleration (mean of half a second).
 
-    `sudden`: the party loses speed faster than tyres can brake, as in an impact.
+    `sudden`: the party loses speed faster than tyres can brake, as in an impact; then `hardest_mps2` is NaN.
     """
 
     start_s: float

@@ -109,7 +109,10 @@ def _brake_lights(case: Case, actor_id: str) -> str:
 
 
 def _lane(case: Case, number: int, at: int | None) -> str:
-    """Return in words in which lane a party is at step `at` of the first party."""
+    """Return in words whether a party is in a lane of its direction or in the oncoming lane at step `at` of the first party.
+
+    `at`: None, if that moment was not examined. The words also say when the party left its lane.
+    """
     judged = (case.again, case.other_party)[number]
     if at is None or not isinstance(judged, EgoRows) or not judged.steps.num_rows:
         return "not examined"

@@ -92,7 +92,7 @@ def _egos_off_the_map(drive: Row) -> int:
 
 
 def _log(drives: Sequence[Row]) -> InputNote:
-    """Return the note on whether the logs are complete: losses, assumptions, the number of warnings, and copies."""
+    """Return the note on whether the logs are complete: losses, assumptions, the number of warnings, and logs with the same bytes."""
     lossy = [drive["drive_id"] for drive in drives if drive["lossy"]]
     checks = [check for drive in drives for check in drive["quality"] if check["check_id"] != ASIDE_OF_LANE]
     assumed = sorted({check["message"].partition(";")[0] for check in checks if check["check_id"] == ASSUMED_MOTION})

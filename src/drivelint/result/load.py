@@ -73,7 +73,9 @@ def _summary(folder: Path) -> dict[str, Any]:
             "its findings have the same ids"
         )
     if not isinstance(found, dict) or not {"fail_on", "strict"} <= found.keys():
-        raise UsageError(f"{folder}: no result of drivelint check: summary.json is of another program")
+        raise UsageError(
+            f"{folder}: no result of drivelint check: summary.json lacks fail_on or strict: name a folder of check --out"
+        )
     return found
 
 

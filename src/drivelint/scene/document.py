@@ -42,7 +42,8 @@ class LaneText(_Part, frozen=True):
     kind: str = "driving"
     width: float = 3.5
     mark: str | list[tuple[float, str]] | None = None
-    """The mark of the outer border, or [station, mark] pairs; None: solid at the edge of the drivable lanes, broken between them."""
+    """The mark of the outer border, or [station, mark] pairs; None: solid at the edge of the drivable lanes, broken between
+    them, and no mark at other lanes."""
     from_: float = 0.0
     to: float | None = None
     """The lane exists from station `from_` to station `to`; None: to the end of the road."""

@@ -55,7 +55,7 @@ def roads_of(layout: Layout) -> dict[str, Road]:
         roads[name] = _road(name, texts[name], roads)
     for name in ("crossing", "roundabout"):
         if name in roads:
-            raise UsageError(f"road {name}: choose another name")
+            raise UsageError(f"road {name}: this name is reserved: choose another name")
     pairs = _all_turns(roads) if turns == "all" else [_turn(text, roads) for text in turns]
     return roads | _junction_roads(roads, [*pairs, *ring])
 

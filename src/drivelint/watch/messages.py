@@ -1,4 +1,7 @@
-"""The messages of a watch: JSON objects, one per line, each with its `type` first. Times in seconds count from the log's first step."""
+"""The messages of a watch: JSON objects, one per line, each with its `type` first.
+
+Fields `t_…_s` are seconds since the log's first step; fields `t_…_ns` are on the log's own clock.
+"""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ class Question:
     finding: dict[str, Any]
     rule: Rule
     size: int = 0
-    """The size of the current window (see `window.SIZES`)."""
+    """The judged window: 0, some seconds around the worst step; 1 and 2, larger ones; `SIZES`: none is left, so there is no count."""
     ends_early: bool = True
     """Stop judging copies as soon as the finding is only possible. False: the user gave a confidence, which needs all copies."""
     n_copies: int = 0

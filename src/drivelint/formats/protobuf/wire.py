@@ -61,7 +61,7 @@ def points(number: int, xyz: NDArray[np.float64]) -> bytes:
 
 
 def indices(number: int, values: NDArray[np.uint32]) -> bytes:
-    """Return a packed repeated field of 32-bit indices."""
+    """Return a packed repeated field of indices of four bytes (fixed32)."""
     return nested(number, np.ascontiguousarray(values, "<u4").tobytes())
 
 

@@ -62,7 +62,9 @@ def read_parquet(path: Path) -> Rows:
     try:
         table.validate(full=True)  # finds invalid texts
     except pa.ArrowInvalid as error:
-        raise TraceError(f"{path}: not readable as Parquet: {' '.join(str(error).split())}: copy it again") from error
+        raise TraceError(
+            f"{path}: not readable as Parquet: {' '.join(str(error).split())}: copy it again, or write it again"
+        ) from error
     return _rows(path, table, groups)
 
 

@@ -26,7 +26,7 @@ _STORY_PARTIES: Final = 6
 
 
 def page_headline(result: Result) -> tuple[str, str, str]:
-    """Return the outcome (fail, unknown, not_applicable or pass), the word for it, and the sentence at the top of the page."""
+    """Return the outcome (fail, near, unknown, not_applicable or pass), the word for it, and the sentence at the top of the page."""
     told = headline(result)
     return told.kind, told.label, told.sentence[:1].upper() + told.sentence[1:]
 
