@@ -34,7 +34,7 @@ def checked(tmp_path_factory: pytest.TempPathFactory) -> Checked:
         if (key := tuple(command)) not in made:
             out = tmp_path_factory.mktemp("audit") / "results"
             done = ran(*command, "--out", out)
-            assert done.code == 0, done.err
+            assert done.code in {0, 4}, done.err  # 4: rules of which nothing can be decided
             made[key] = out
         return made[key]
 
