@@ -94,3 +94,21 @@ def test_published_logs_are_judged_on_their_maps(name: str) -> None:
     assert drive_row["map_name"] == "embedded"
     assert drive_row["lat"] is not None
     assert {row["verdict"] for row in result.verdicts.to_pylist()} <= {"pass", "fail", "unknown", "not_applicable"}
+
+
+@pytest.mark.ci
+def test_a_log_has_the_same_verdicts_as_its_twin_in_123d() -> None:
+    twins = ("av2/adcf7d18", "d123/av2-sensor_val/adcf7d18-0510-35b0-a2fa-b4cea13a6d76")
+    rows = []
+    for name in twins:
+        path = str(shared(f"perception/{name}"))
+        result = check(CheckOptions((path,), rules=("*",), robustness=False), Silent())
+        rows.append(
+            {
+                (row["rule_id"], row["profile"]): (row["verdict"], row["reason_code"], row["n_judged"])
+                for row in result.verdicts.to_pylist()
+            }
+        )
+    published, through_123d = rows
+    assert len(published) > 100
+    assert published == through_123d
