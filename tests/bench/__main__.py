@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 import duckdb
 
-from tests.bench import before, copying, formats, growth, pictures, profiling, stages
+from tests.bench import before, copying, formats, growth, perception, pictures, profiling, stages
 from tests.bench.commit import UnknownCommitError
 from tests.bench.place import TINY, Place, Sizes
 from tests.bench.rivals import boxes, postgis, reading, temporal
@@ -31,6 +31,7 @@ SECTIONS: dict[str, Callable[[Place], list[Row]]] = {
     "reference": stages.reference,
     "short": stages.short,
     "formats": formats.formats,
+    "perception": perception.perception,
     "growth": growth.growth,
     "copy": copying.copying,
     "pictures": pictures.pictures,
