@@ -16,7 +16,7 @@ from drivelint import demo, errors, parallel, run
 from drivelint.cli.receipts import Outputs
 from drivelint.engine.interruption import Interruption, NothingJudgedError
 from drivelint.errors import DriveLintError, MemoryShortError, TraceError
-from drivelint.receipts.recorder import recording
+from drivelint.receipts.recorder import record_inputs
 from drivelint.report.log_notes import LogNote
 from drivelint.report.outputs import working_folder, write
 from drivelint.report.progress import Progress
@@ -92,7 +92,7 @@ def test_several_processes_write_the_bytes_of_one(asked: CheckOptions, alone: Al
     expected, out, by_one, one = alone
     two = Counter()
     shutil.rmtree(out)  # paths in the result are relative to its folder
-    with recording(Outputs(out), []) as recorder:
+    with record_inputs(Outputs(out), []) as recorder:
         found = written(asked, out, 2, two)
     assert files(out) == by_one
     assert sum(name.endswith(".mcap") for name in by_one) == 4

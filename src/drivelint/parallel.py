@@ -122,7 +122,7 @@ def _judged_by_workers(
     """Judge each part in a process of its own."""
     memory = None if settings.memory is None else max(LEAST_MEMORY_BYTES, settings.memory // len(parts))
     own = replace(settings, memory=memory, threads=max(1, cores() // len(parts)))
-    recording = recorder.active()
+    recording = recorder.current_recorder()
     is_output = None if recording is None else recording.is_output
     progress.stage(run.CHECKING, len(paths))
     listener = _Listener(progress, len(paths))
@@ -354,7 +354,7 @@ def _work(part: _Part, pipe: Connection, parent: int) -> None:
 
 def _judge_part(part: _Part, sender: _ProgressSender, interruption: Interruption) -> _Ended:
     notes, deaf = _SentNotes(sender, part.n_logs), _DeafRulesOfWorker(part.limits_of_deaf_rules, sender)
-    with nullcontext() if part.is_output is None else recorder.recording(part.is_output, []) as recording:
+    with nullcontext() if part.is_output is None else recorder.record_inputs(part.is_output, []) as recording:
         judged_by = run.RunRules.of(part.settings)
         judged = run.judge_logs(
             part.settings,

@@ -27,7 +27,7 @@ from drivelint.engine.session import JudgingSession
 from drivelint.errors import TraceError, UsageError
 from drivelint.evaluate.limits import RuleLimits
 from drivelint.formats import expand_traces
-from drivelint.pictures import Camerawork, chosen_rows, planned_shots
+from drivelint.pictures import PictureTaker, planned_shots, rows_of_planned_shots
 from drivelint.report.log_notes import LogNote, LogNotes, same_log, told_once
 from drivelint.report.rule_progress import ToldLimits
 from drivelint.result import collect, evidence
@@ -172,7 +172,7 @@ def judge_logs(
         observers: list[BatchObserver] = []
         if settings.out or settings.evidence:
             observers.append(lambda con, _drives, **_part: evidence.gather(con))
-        cameras = Camerawork() if settings.pictures and (settings.out or settings.evidence) else None
+        cameras = PictureTaker() if settings.pictures and (settings.out or settings.evidence) else None
         if cameras is not None:
             observers.append(cameras)
         if settings.out and settings.annotate:
@@ -242,13 +242,13 @@ def judge_logs(
                 {name: settings.manifest_options[path] for name, path in judged if path in settings.manifest_options},
             ),
         )
-        if cameras is not None and cameras.topics:
+        if cameras is not None and cameras.topics_by_drive:
             progress.doing("taking pictures from cameras")
-            pictures, troubles = cameras.take(result)
+            pictures, troubles = cameras.take_pictures(result)
             result = replace(result, pictures=pictures)
             for trouble in troubles:
                 notes.add(LogNote(trouble.path, trouble.text, once=True))
-        return JudgedLogs(result, tuple(notes.notes), tuple(refused_logs), {} if cameras is None else cameras.topics)
+        return JudgedLogs(result, tuple(notes.notes), tuple(refused_logs), {} if cameras is None else cameras.topics_by_drive)
 
 
 def conclude(
@@ -262,7 +262,7 @@ def conclude(
     if len(parts) > 1:
         result = join([part.result for part in parts])
         cameras = {drive: topics for part in parts for drive, topics in part.cameras.items()}
-        result = replace(result, pictures=chosen_rows(result.pictures, planned_shots(result, cameras)))
+        result = replace(result, pictures=rows_of_planned_shots(result.pictures, planned_shots(result, cameras)))
     place = {path: n for n, path in enumerate(paths)}
     notes = sorted((note for part in parts for note in part.notes), key=lambda note: place.get(note.path, -1))
     result = replace(result, notes=tuple(note.full_text for note in told_once(notes)))

@@ -19,7 +19,7 @@ from drivelint.fleet_report import figures
 from drivelint.fleet_report.drive_command import check_command
 from drivelint.fleet_report.rows import gravest_first, one_per_event, options_column, ranked, rows
 from drivelint.phrases import plural
-from drivelint.reasons.signals import WHAT_IS_NULL, remedy
+from drivelint.reasons.signals import DEFAULT_REMEDY, remedy
 from drivelint.report.html.anchors import anchor
 from drivelint.report.html.environment import page_environment
 from drivelint.result.certainty import doubt
@@ -181,5 +181,5 @@ def _environment() -> Environment:
         ("tables.js",), _HERE / "templates", ("fleet.css", "drive.css"), base=("report.css", "narrow.css", "first.css")
     )
     environment.filters |= {"ego_name": ego_name, "figure": figures.figure, "plural": plural}
-    environment.globals |= {"what_is_null": WHAT_IS_NULL, "anchor": anchor}
+    environment.globals |= {"what_is_null": DEFAULT_REMEDY, "anchor": anchor}
     return environment

@@ -16,7 +16,7 @@ from drivelint.fleet_report.difference_text import rate_line, rate_name, rate_si
 from drivelint.fleet_report.drive_pages import MOST_DRIVES
 from drivelint.gate.descriptions import DIFF_STATUS_TITLES, finding_line
 from drivelint.phrases import plural
-from drivelint.reasons.signals import WHAT_IS_NULL, how_to_provide, remedy
+from drivelint.reasons.signals import DEFAULT_REMEDY, how_to_provide, remedy
 from drivelint.report.html.environment import page_environment
 from drivelint.report.markdown import code, escaped
 from drivelint.report.progress import Silent
@@ -147,7 +147,7 @@ def _mend(undecided: Undecided) -> str:
     """Return the remedy for a reason of unknown verdicts, with the text of one verdict as an example."""
     advice = remedy(undecided.reason_code, None, "mapped")
     example = f"{undecided.rule_id}: {undecided.reason}"
-    return example if advice == WHAT_IS_NULL else f"{advice} ({example})"
+    return example if advice == DEFAULT_REMEDY else f"{advice} ({example})"
 
 
 _FILTERS: Final[dict[str, Any]] = {

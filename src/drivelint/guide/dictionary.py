@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 from drivelint.catalogue import load_rules
 from drivelint.errors import UsageError
 from drivelint.phrases import hint
-from drivelint.reasons.reason_text import shared_texts
+from drivelint.reasons.reason_text import texts_of_shared_codes
 from drivelint.report import catalogue_page
 from drivelint.resources import folder
 from drivelint.result import geometry
@@ -195,7 +195,9 @@ def _links(names: Iterable[str]) -> str:
 
 def reasons_page() -> str:
     """Return every reason code as Markdown: first the codes that rules share, then the codes of single rules."""
-    return text_template(__file__, "reasons.md.j2").render(shared=shared_texts(), rules=sorted(load_rules(()).items()))
+    return text_template(__file__, "reasons.md.j2").render(
+        shared=texts_of_shared_codes(), rules=sorted(load_rules(()).items())
+    )
 
 
 def macros_page() -> str:
