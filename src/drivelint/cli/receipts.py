@@ -19,7 +19,7 @@ from drivelint.receipts.program import receipt_key
 from drivelint.receipts.recorder import InputRecorder, record_inputs
 from drivelint.report.progress import NotePrinter
 from drivelint.result import folder
-from drivelint.result.names import MARK, REPORT_FILES, RESULT_FILES
+from drivelint.result.names import MARK_FILE, REPORT_FILES, RESULT_FILE_GLOBS
 from drivelint.settings import SETTINGS_FILE
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ _WITHOUT_EFFECT: Final = frozenset({"cache", "jobs", "quiet", "today"})
 """Options that do not affect a stored result. With waivers, the receipt stores the day separately."""
 _UNNAMED: Final = (SETTINGS_FILE, "proj.ini")
 """Files of the working folder that are read although no option names them: settings, and PROJ's configuration, if it exists."""
-_SUBFOLDERS: Final = frozenset({"annotated", folder.EARLIER, f"{folder.EARLIER}/annotated"})
+_SUBFOLDERS: Final = frozenset({"annotated", folder.EARLIER_FOLDER, f"{folder.EARLIER_FOLDER}/annotated"})
 _AGAIN: Final = "nothing has changed since an earlier run: these are its verdicts (--no-cache judges again)"
 
 
@@ -53,8 +53,8 @@ class Outputs:
         if name in _SUBFOLDERS:
             with suppress(OSError):
                 return all(self(os.path.join(path, each)) for each in os.listdir(path))  # noqa: PTH118, PTH208
-        name = name.removeprefix(f"{folder.EARLIER}/")
-        return name.startswith(".drivelint.") or any(fnmatchcase(name, pattern) for pattern in RESULT_FILES)
+        name = name.removeprefix(f"{folder.EARLIER_FOLDER}/")
+        return name.startswith(".drivelint.") or any(fnmatchcase(name, pattern) for pattern in RESULT_FILE_GLOBS)
 
 
 class CheckReceipts:
@@ -110,9 +110,9 @@ class CheckReceipts:
 
     def _write(self, receipt: store.OpenedReceipt, out: Path) -> None:
         overwrite, reports = self._overwrite, list(REPORT_FILES.values())
-        with folder.working_folder(out, RESULT_FILES, reports, MARK, overwrite=overwrite) as work:
+        with folder.working_folder(out, RESULT_FILE_GLOBS, reports, MARK_FILE, overwrite=overwrite) as work:
             contents, finished_files = receipt.unpack(work)
-            folder.replace(out, contents, finished_files, MARK, RESULT_FILES, overwrite=overwrite)
+            folder.replace_result(out, contents, finished_files, MARK_FILE, RESULT_FILE_GLOBS, overwrite=overwrite)
 
     @contextmanager
     def recording(self) -> Iterator[None]:
@@ -143,7 +143,11 @@ class CheckReceipts:
             return
         day = self._day if gate is not None and gate.waivers else None
         with suppress(OSError):
-            names = [] if self._out is None else sorted(written_files(self._out), key=lambda name: (name == MARK, name))
+            names = (
+                []
+                if self._out is None
+                else sorted(written_files(self._out), key=lambda name: (name == MARK_FILE, name))
+            )
             sizes = {name: (self._out / name).stat().st_size for name in names} if self._out else {}
             receipt = store.Receipt(inputs, stdout, result.notes, exit_code, day, sizes, grown_files)
             store.store_receipt(self._key, receipt, self._out)
