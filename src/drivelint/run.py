@@ -355,7 +355,7 @@ def _judge(
                 notes.add(LogNote(item.trace.path, text, once=True))
             for text in _without_map(item):
                 notes.add(LogNote(item.trace.path, text))
-    limits.begin(len(drives))
+    limits.begin_batch(len(drives))
     n_unread = len(refused_logs) - n_before
     try:
         judge_apart(session, drives, refused_logs)

@@ -71,7 +71,8 @@ def test_each_finding_says_how_it_stands(gated: Result) -> None:
     assert gate is not None
     rows = gated.findings.to_pylist()
     n_events = {
-        kind: len(one_finding_per_event(r for r in rows if gate.standing(r["finding_id"]) == kind)) for kind in told
+        kind: len(one_finding_per_event(r for r in rows if gate.status_at_gate(r["finding_id"]) == kind))
+        for kind in told
     }
     assert n_events["new"] < told["new"], "one overtake under several profiles"
     assert f"{n_events['new']} new, {n_events['known']} known, {n_events['waived']} waived." in parsed.text

@@ -50,7 +50,7 @@ def test_the_bar_moves_within_a_batch() -> None:
     bar = ProgressBar(drawn)
     limits = ReportingRuleLimits(bar, 3, None)
     bar.stage("checking", 5)
-    limits.begin(2)
+    limits.begin_batch(2)
     moved = []
     for rule_id in ("a", "b", "b", "c"):
         with limits.hold(None, rule_id, alone=True):  # type: ignore[arg-type]

@@ -245,7 +245,7 @@ def excuse(result: Result, row: Row, rule: Row | None) -> str:
     """Return why a finding or a failed verdict does not gate; '' if it gates. `rule`: its row of the table `rule`."""
     if "finding_id" in row and (reason := reason_not_gating(result.gate, row["finding_id"])):
         return reason
-    is_new = "finding_id" in row and result.gate is not None and result.gate.standing(row["finding_id"]) == "new"
+    is_new = "finding_id" in row and result.gate is not None and result.gate.status_at_gate(row["finding_id"]) == "new"
     new = "new, " if is_new else ""
     if rule is None or rule["status"] != "stable":
         return new + ("draft" if rule is None else str(rule["status"]))

@@ -92,7 +92,7 @@ class D123FrameSource:
             if file.name == name:
                 return number, file
         try:
-            self._files.append(_open_camera(self._folder, name))
+            self._files.append(_open_camera_file(self._folder, name))
         except (
             pa.ArrowException,
             KeyError,
@@ -103,7 +103,7 @@ class D123FrameSource:
         return len(self._files) - 1, self._files[-1]
 
 
-def _open_camera(folder: Path, name: str) -> _CameraFile:
+def _open_camera_file(folder: Path, name: str) -> _CameraFile:
     """Open a camera's file and read the times of its frames, without the frames."""
     # opened by Python, so that a receipt of the run knows the file
     with path_of(folder, name).open("rb") as file:

@@ -36,10 +36,14 @@ _MOSTLY_UNKNOWN: Final = "MOSTLY UNKNOWN"
 _TOO_LITTLE_JUDGED: Final = "TOO LITTLE JUDGED"
 """The label of a run that decided most rules, but fewer than `--min-judged` requires."""
 _NOT_APPLICABLE: Final = "NOT APPLICABLE"
-_FINDINGS: Final = "FINDINGS"
-_KIND_OF_LABEL: Final = {LABEL_OF_EXIT_CODE[ExitCode.OK]: "pass", _NOT_APPLICABLE: "not_applicable", _FINDINGS: "near"}
+_FINDINGS_LABEL: Final = "FINDINGS"
+_KIND_OF_LABEL: Final = {
+    LABEL_OF_EXIT_CODE[ExitCode.OK]: "pass",
+    _NOT_APPLICABLE: "not_applicable",
+    _FINDINGS_LABEL: "near",
+}
 LET_THROUGH_WORDS: Final = {"known": "known", "waived": "waived", "possible": "only possible"}
-"""The standings (`Gate.standing`) of findings that a gate lets through, in words."""
+"""The standings (`Gate.status_at_gate`) of findings that a gate lets through, in words."""
 _NO_MAP_WORDS: Final = {
     OWN_MAP_UNUSABLE: "the log's own map cannot be used",
     NOT_IN_FOLDER: "no map in the folder covers the place",
@@ -113,8 +117,8 @@ class RuleCounts(NamedTuple):
 def headline(result: Result) -> Headline:
     """Return the outcome of a run. Each finding is counted once: as new, or by the reason why it does not gate."""
     rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
-    rows = one_per_event_and_standing(result.gate, result.findings.to_pylist())
-    left = [row for row in rows if standing(result.gate, row["finding_id"]) not in LET_THROUGH_WORDS]
+    rows = one_per_event_and_status(result.gate, result.findings.to_pylist())
+    left = [row for row in rows if status_at_gate(result.gate, row["finding_id"]) not in LET_THROUGH_WORDS]
     label = _outcome_label(result, bool(rows))
     told = counts.verdict_counts(result.verdicts)
     lacking = counts.verdicts_lacking_signal(result.verdicts).num_rows
@@ -148,16 +152,16 @@ def headline(result: Result) -> Headline:
     return Headline(label, "fail" if left else kind, tuple(parts))
 
 
-def one_per_event_and_standing(gate: Gate | None, rows: Sequence[Row]) -> list[Row]:
+def one_per_event_and_status(gate: Gate | None, rows: Sequence[Row]) -> list[Row]:
     """Return one finding of each event; if the findings of an event differ in standing (new, known), one of each standing."""
-    of_standing = counts.group_rows(rows, lambda row: standing(gate, row["finding_id"]))
+    of_standing = counts.group_rows(rows, lambda row: status_at_gate(gate, row["finding_id"]))
     kept = {id(row) for mine in of_standing.values() for row in counts.one_finding_per_event(mine)}
     return [row for row in rows if id(row) in kept]
 
 
-def standing(gate: Gate | None, finding_id: str) -> str:
-    """Return the standing of a finding, see `Gate.standing`; '' without a gate."""
-    return "" if gate is None else gate.standing(finding_id)
+def status_at_gate(gate: Gate | None, finding_id: str) -> str:
+    """Return the standing of a finding, see `Gate.status_at_gate`; '' without a gate."""
+    return "" if gate is None else gate.status_at_gate(finding_id)
 
 
 def rule_counts(result: Result) -> RuleCounts:
@@ -185,7 +189,7 @@ def _outcome_label(result: Result, has_findings: bool) -> str:
     if code != ExitCode.OK and not (code == ExitCode.NOT_JUDGED and is_too_little_decided(result)):
         return LABEL_OF_EXIT_CODE.get(code, "?")
     if has_findings:
-        return _FINDINGS
+        return _FINDINGS_LABEL
     if not told["pass"] + told["fail"]:
         lacking = counts.verdicts_lacking_signal(result.verdicts).num_rows
         return "UNKNOWN" if told["unknown"] + told["error"] + lacking or not told["not_applicable"] else _NOT_APPLICABLE
@@ -229,7 +233,7 @@ def _findings_words(result: Result, rows: Sequence[Row]) -> str:
     gate = result.gate
     if gate is None:
         return f"{counts.severity_counts_text(rows)} {'finding' if len(rows) == 1 else 'findings'}{where}"
-    groups = counts.group_rows(rows, lambda row: gate.standing(row["finding_id"]))
+    groups = counts.group_rows(rows, lambda row: gate.status_at_gate(row["finding_id"]))
     said = []
     for name, mine in groups.items():
         if name not in LET_THROUGH_WORDS:
@@ -250,7 +254,7 @@ def _findings_words(result: Result, rows: Sequence[Row]) -> str:
 def _worse_findings_parts(gate: Gate | None) -> list[HeadlinePart]:
     """Return the sentence's part about known findings with a worse margin than in the baseline; [] if there are none."""
     entries = gate.baseline.entries if gate is not None and gate.baseline is not None else ()
-    n = n_findings(e for e in entries if gate and e.worse and gate.standing(e.finding_id) == "known")
+    n = n_findings(e for e in entries if gate and e.worse and gate.status_at_gate(e.finding_id) == "known")
     return (
         [HeadlinePart("1 known finding is worse" if n == 1 else f"{n} known findings are worse", "warning")]
         if n
@@ -276,9 +280,9 @@ def _contacts_at_gate_words(gate: Gate | None, contacts: Sequence[Row]) -> str:
     """Return in brackets how many drives have a new contact, or, if none, why the gate lets them through; '' if all drives have one."""
     if gate is None:
         return ""
-    new = {row["drive_id"] for row in contacts if gate.standing(row["finding_id"]) not in LET_THROUGH_WORDS}
+    new = {row["drive_id"] for row in contacts if gate.status_at_gate(row["finding_id"]) not in LET_THROUGH_WORDS}
     if new:
         label = "new" if gate.baseline is not None else "not waived" if gate.waivers else _COUNTED_LABEL
         return "" if len(new) == len({row["drive_id"] for row in contacts}) else f" ({len(new)} {label})"
-    why = {gate.standing(row["finding_id"]) for row in contacts}
+    why = {gate.status_at_gate(row["finding_id"]) for row in contacts}
     return f" ({' or '.join(words for name, words in LET_THROUGH_WORDS.items() if name in why)})"

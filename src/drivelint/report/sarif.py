@@ -13,7 +13,7 @@ from urllib.parse import quote
 
 from drivelint import __version__
 from drivelint.gate import descriptions
-from drivelint.report.outcome import LET_THROUGH_WORDS, standing
+from drivelint.report.outcome import LET_THROUGH_WORDS, status_at_gate
 from drivelint.report.worst_first import moment_ns, when
 from drivelint.result import counts, request
 from drivelint.result.certainty import certainty, doubt_words
@@ -122,7 +122,7 @@ class _SarifRun:
             "ruleIndex": rule_index,
             "kind": "fail",
             "level": "note"
-            if standing(gate, row["finding_id"]) in LET_THROUGH_WORDS
+            if status_at_gate(gate, row["finding_id"]) in LET_THROUGH_WORDS
             else _level(row["severity"], rule["status"]),
             "message": {"text": " ".join(part for part in said if part)},
             "locations": [self._location(drive, row)],

@@ -14,7 +14,7 @@ from rich.text import Text
 
 from drivelint.phrases import listed
 from drivelint.report import NARROW_WIDTH, terminal_summary
-from drivelint.report.outcome import one_per_event_and_standing
+from drivelint.report.outcome import one_per_event_and_status
 from drivelint.report.worst_first import moment_ns
 from drivelint.result import counts
 from drivelint.result.certainty import doubt_words
@@ -137,7 +137,7 @@ def _measurement_table(result: Result, title: str, rows: pa.Table, style: str, *
     if not rows.num_rows:
         return None
     is_of_findings = "finding_id" in rows.column_names
-    counted = one_per_event_and_standing(result.gate, rows.to_pylist()) if is_of_findings else []
+    counted = one_per_event_and_status(result.gate, rows.to_pylist()) if is_of_findings else []
     more = counts.extra_rows_sentence(rows.to_pylist(), counted) if is_of_findings else ""
     cut = f"; the first {MAX_ROWS} rows" if rows.num_rows > MAX_ROWS else ""
     table = _empty_table(

@@ -22,9 +22,9 @@ from drivelint.report.outcome import (
     LABEL_OF_EXIT_CODE,
     LET_THROUGH_WORDS,
     headline,
-    one_per_event_and_standing,
+    one_per_event_and_status,
     rule_counts,
-    standing,
+    status_at_gate,
 )
 from drivelint.report.worst_first import is_contact, moment_ns, worst_first, worst_time_words
 from drivelint.result import counts
@@ -68,8 +68,8 @@ def render(result: Result, out: str | None, width: int = 120) -> Group:
     Findings that a gate lets through are only counted, but if a drive has no other findings, the worst is shown.
     """
     rules = _rules_by_id(result)
-    every = one_per_event_and_standing(result.gate, worst_first(result.findings, rules).to_pylist())
-    found = [row for row in every if standing(result.gate, row["finding_id"]) not in LET_THROUGH_WORDS]
+    every = one_per_event_and_status(result.gate, worst_first(result.findings, rules).to_pylist())
+    found = [row for row in every if status_at_gate(result.gate, row["finding_id"]) not in LET_THROUGH_WORDS]
     drives = _drives_table(result, found, every, rules, width)
     parts: list[RenderableType] = [_extent_line(result), Text(), _outcome_text(result), Text(), drives, Text()]
     if found:
@@ -190,7 +190,7 @@ def _let_through_text(
     result: Result, row: Row, rules: dict[str, Any], start_ns: int | None, *, several_egos: bool
 ) -> Text:
     """Return a finding that a gate lets through, and the reason."""
-    how = standing(result.gate, row["finding_id"])
+    how = status_at_gate(result.gate, row["finding_id"])
     text = _finding_text(row, rules, start_ns, several_egos=several_egos)
     # the text of a possible finding contains that word already
     return (
@@ -237,7 +237,7 @@ def _finding_text(row: Row, rules: dict[str, Any], start_ns: int | None, *, seve
 
 def _let_through_words(result: Result, every: list[Row]) -> str:
     """Return in words how many findings a gate lets through, by the reason; '' for none."""
-    counted = Counter(standing(result.gate, row["finding_id"]) for row in every)
+    counted = Counter(status_at_gate(result.gate, row["finding_id"]) for row in every)
     return ", ".join(f"{counted[name]} {words}" for name, words in LET_THROUGH_WORDS.items() if counted[name])
 
 

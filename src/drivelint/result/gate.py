@@ -195,9 +195,9 @@ class Gate:
 
     def is_gating(self, finding_id: str) -> bool:
         """Return whether a finding may fail a run: it is not waived, not in the baseline, and not only possible."""
-        return self.standing(finding_id) in {"new", "open"}
+        return self.status_at_gate(finding_id) in {"new", "open"}
 
-    def standing(self, finding_id: str) -> str:
+    def status_at_gate(self, finding_id: str) -> str:
         """Return the status of a finding at the gate: waived, known (in the baseline), possible; else new, or open without a baseline."""
         if finding_id in self.waived:
             return "waived"

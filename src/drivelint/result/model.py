@@ -325,7 +325,8 @@ def _let_through_words(result: Result) -> str:
     if (gate := result.gate) is None:
         return ""
     of_standing = group_rows(
-        _severe_rows_of_stable_rules(result, result.findings).to_pylist(), lambda row: gate.standing(row["finding_id"])
+        _severe_rows_of_stable_rules(result, result.findings).to_pylist(),
+        lambda row: gate.status_at_gate(row["finding_id"]),
     )
     asked = {"known": gate.baseline is not None, "waived": bool(gate.waivers), "possible": gate.confidence is not None}
     words = {"known": "known", "waived": "waived", "possible": "only possible"}

@@ -47,7 +47,7 @@ def finding_status(gate: Gate | None, finding_id: str) -> BaselineStatus | None:
     """Return the status of a finding against the gate; None without a gate. A waiver takes precedence over the baseline."""
     if gate is None:
         return None
-    kind = gate.standing(finding_id)
+    kind = gate.status_at_gate(finding_id)
     waiver, entry = gate.waiver(finding_id), gate.compared(finding_id)
     why = ""
     if waiver is not None:

@@ -40,7 +40,7 @@ _TIME_COLUMNS: Final = ("t0_ns", "t1_ns", "t2_ns", "t3_ns")
 MOST_SHOWN_SDA_M: Final = 2000.0
 """A longer safe distance ahead only shows that the ego was hardly faster than the vehicle being passed."""
 _BARS_W, _BARS_H = 560, 230
-_BINS: Final = 12
+_HISTOGRAM_BINS: Final = 12
 _PREFERRED_PROFILE: Final = "nominal"
 
 
@@ -241,7 +241,7 @@ def _histogram_bars_and_ticks(
     opportunities: Sequence[Row],
 ) -> tuple[list[dict[str, str]], list[tuple[str, str]], list[tuple[str, str]]]:
     far = max(row["da_m"] for row in opportunities)
-    width = round_step(max(far, 10.0) / _BINS)
+    width = round_step(max(far, 10.0) / _HISTOGRAM_BINS)
     n = int(far // width) + 1
     counts = [[0, 0] for _ in range(n)]
     for row in opportunities:

@@ -28,7 +28,7 @@ from drivelint.report.html.road import DrawnMaps
 from drivelint.report.html.timeline import empty_timeline, separate_shared_rules, timelines
 from drivelint.report.html.worst_moment import MomentEvidence, finding_key, worst_moment
 from drivelint.report.inputs import input_notes
-from drivelint.report.outcome import one_per_event_and_standing, rule_counts
+from drivelint.report.outcome import one_per_event_and_status, rule_counts
 from drivelint.report.same_contact import findings_of_same_contact
 from drivelint.report.worst_first import worst_first
 from drivelint.result import counts
@@ -74,7 +74,7 @@ def content(result: Result) -> dict[str, Any]:
     drives = result.drives.to_pylist()
     starts = {row["drive_id"]: row["t_start_ns"] or 0 for row in drives}
     told = counts.verdict_counts_by(result.verdicts, "drive_id")
-    counted = one_per_event_and_standing(result.gate, result.findings.to_pylist())
+    counted = one_per_event_and_status(result.gate, result.findings.to_pylist())
     by_drive = counts.group_rows(counted, lambda row: row["drive_id"])
     rows = _worst_rows(result, rules)
     shown = _drives_with_section(drives, [row["drive_id"] for _, row in rows], told)
