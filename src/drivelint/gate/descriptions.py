@@ -233,7 +233,7 @@ def reason_not_gating(gate: Gate | None, finding_id: str) -> str:
     waiver = gate.waiver(finding_id) if gate else None
     if waiver is not None:
         return waiver_reason(waiver)
-    entry = gate.compared(finding_id) if gate else None
+    entry = gate.compared_finding(finding_id) if gate else None
     if entry is not None and entry.standing != "new":
         return "known: the baseline contains it" + (f"; worse now: {entry.why}" if entry.worse else "")
     if gate and gate.is_possible(finding_id):

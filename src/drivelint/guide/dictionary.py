@@ -176,7 +176,7 @@ def _columns(name: str, *, in_file: bool = False) -> str:
     lines = ["| column | type | meaning |", "|---|---|---|"]
     for column, comment in column_comments()[name].items():
         lines.append(f"| `{column}` | {cell(escaped(_types()[name, column]))} | {cell(escaped(comment))} |")
-    for column, shape in geometry.GEOMETRY_COLUMNS.get(name, {}).items() if in_file else ():
+    for column, shape in geometry.GEOMETRIES_OF_TABLE.get(name, {}).items() if in_file else ():
         lines.append(f"| `{column}` | GEOMETRY | {cell(escaped(f'{shape.kind}: {shape.comment}'))} |")
     return "\n".join(lines) + "\n"
 

@@ -151,7 +151,7 @@ class ProgressBar(Progress):
         """Print a line above the bar."""
         self._progress.console.print(inert_line(text), markup=False, highlight=False)
 
-    def leave(self) -> None:
+    def release_terminal(self) -> None:
         """Remove the bar."""
         self._progress.stop()
 

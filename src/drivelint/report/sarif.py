@@ -142,7 +142,7 @@ class _SarifRun:
             },
         }
         if gate is not None:
-            entry, waiver = gate.compared(row["finding_id"]), gate.waiver(row["finding_id"])
+            entry, waiver = gate.compared_finding(row["finding_id"]), gate.waiver(row["finding_id"])
             if gate.baseline is not None:
                 found["baselineState"] = _BASELINE_STATES[entry.standing] if entry else "new"
             if waiver is not None:

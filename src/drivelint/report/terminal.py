@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from drivelint.result.model import Result
 
-MAX_RULES: Final = 10
+MAX_RULES_PER_REASON: Final = 10
 """A reason shows this many rules."""
 MAX_ROWS: Final = 20
 """A section shows this many rows; the files contain all."""
@@ -197,9 +197,9 @@ def _unjudged_table(result: Result) -> Table | None:
 
 def _first_rule_lines(rules: list[tuple[str, int]]) -> list[str]:
     """Return the first rules with their counts, and a line with the number and packs of the other rules."""
-    packs = sorted({rule_id.partition(".")[0] for rule_id, _ in rules[MAX_RULES:]})
-    more = [f"and {len(rules) - MAX_RULES} more of {', '.join(packs)}"] if packs else []
-    return [with_count(*rule) for rule in rules[:MAX_RULES]] + more
+    packs = sorted({rule_id.partition(".")[0] for rule_id, _ in rules[MAX_RULES_PER_REASON:]})
+    more = [f"and {len(rules) - MAX_RULES_PER_REASON} more of {', '.join(packs)}"] if packs else []
+    return [with_count(*rule) for rule in rules[:MAX_RULES_PER_REASON]] + more
 
 
 def _quality_table(result: Result) -> Table | None:

@@ -179,7 +179,7 @@ class Gate:
         # if several entries have the same id, the first one wins
         return {e.finding_id: e for e in reversed(entries) if e.standing in {"new", "changed", "unchanged"}}
 
-    def compared(self, finding_id: str) -> ComparedFinding | None:
+    def compared_finding(self, finding_id: str) -> ComparedFinding | None:
         """Return the finding as compared with the baseline; None without a baseline."""
         return self._compared_by_id.get(finding_id)
 
@@ -190,7 +190,7 @@ class Gate:
 
     def is_in_baseline(self, finding_id: str) -> bool:
         """Return whether the baseline had this finding."""
-        entry = self.compared(finding_id)
+        entry = self.compared_finding(finding_id)
         return entry is not None and entry.standing != "new"
 
     def is_gating(self, finding_id: str) -> bool:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     Geometries = NDArray[np.object_]
 
-GEOMETRY_COLUMN: Final = "geom"
+MAP_GEOMETRY_COLUMN: Final = "geom"
 EARTH_GEOMETRY_COLUMN: Final = "geom_lonlat"
 _LEAST_RING_POINTS: Final = 4  # the least number: a triangle with its first point repeated
 
@@ -43,7 +43,7 @@ def with_geometry(rows: pa.Table, table: str) -> pa.Table:
 
     Tables without geometries are returned unchanged.
     """
-    if not (shapes := GEOMETRY_COLUMNS.get(table)):
+    if not (shapes := GEOMETRIES_OF_TABLE.get(table)):
         return rows
     about: dict[str, dict[str, Any]] = {}
     metadata = rows.schema.metadata or {}
@@ -60,7 +60,9 @@ def with_geometry(rows: pa.Table, table: str) -> pa.Table:
 
 def without_geometry(rows: pa.Table) -> pa.Table:
     """Return the rows without the columns that `with_geometry` added."""
-    return rows.drop_columns([name for name in (GEOMETRY_COLUMN, EARTH_GEOMETRY_COLUMN) if name in rows.column_names])
+    return rows.drop_columns(
+        [name for name in (MAP_GEOMETRY_COLUMN, EARTH_GEOMETRY_COLUMN) if name in rows.column_names]
+    )
 
 
 def _points_on_map(rows: pa.Table) -> Geometries:
@@ -176,22 +178,22 @@ def _row_of_points(offsets: NDArray[np.int64]) -> NDArray[np.int64]:
     return np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))
 
 
-GEOMETRY_COLUMNS: Final[Mapping[str, Mapping[str, GeometryColumn]]] = {
+GEOMETRIES_OF_TABLE: Final[Mapping[str, Mapping[str, GeometryColumn]]] = {
     "finding": {
-        GEOMETRY_COLUMN: GeometryColumn("Point", "the ego at the worst step", _points_on_map),
+        MAP_GEOMETRY_COLUMN: GeometryColumn("Point", "the ego at the worst step", _points_on_map),
         EARTH_GEOMETRY_COLUMN: GeometryColumn(
             "Point", "the same, in degrees of longitude and latitude (WGS 84)", _points_on_earth
         ),
     },
     "drive": {EARTH_GEOMETRY_COLUMN: GeometryColumn("Point", "lon and lat", _points_on_earth)},
     "scene": {
-        GEOMETRY_COLUMN: GeometryColumn(
+        MAP_GEOMETRY_COLUMN: GeometryColumn(
             "MultiPolygon", "the ground under the boxes of the actors at the moment", _actor_box_areas
         )
     },
-    "lane_shape": {GEOMETRY_COLUMN: GeometryColumn("Polygon", "the lane between its bounds", _lane_polygons)},
-    "danger_space": {GEOMETRY_COLUMN: GeometryColumn("Polygon", "the danger space", _danger_space_polygons)},
-    "track": {GEOMETRY_COLUMN: GeometryColumn("LineString", "the way", _track_lines)},
-    "course": {GEOMETRY_COLUMN: GeometryColumn("MultiPoint", "the ego at the judged steps", _judged_points)},
+    "lane_shape": {MAP_GEOMETRY_COLUMN: GeometryColumn("Polygon", "the lane between its bounds", _lane_polygons)},
+    "danger_space": {MAP_GEOMETRY_COLUMN: GeometryColumn("Polygon", "the danger space", _danger_space_polygons)},
+    "track": {MAP_GEOMETRY_COLUMN: GeometryColumn("LineString", "the way", _track_lines)},
+    "course": {MAP_GEOMETRY_COLUMN: GeometryColumn("MultiPoint", "the ego at the judged steps", _judged_points)},
 }
 """Table of the schema -> column in the file -> its geometry. Viewers show the first column."""

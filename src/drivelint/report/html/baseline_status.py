@@ -48,7 +48,7 @@ def finding_status(gate: Gate | None, finding_id: str) -> BaselineStatus | None:
     if gate is None:
         return None
     kind = gate.status_at_gate(finding_id)
-    waiver, entry = gate.waiver(finding_id), gate.compared(finding_id)
+    waiver, entry = gate.waiver(finding_id), gate.compared_finding(finding_id)
     why = ""
     if waiver is not None:
         why = f"{descriptions.waiver_reason(waiver)} ({waiver.where})"

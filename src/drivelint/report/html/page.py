@@ -51,7 +51,7 @@ MAX_NEAR_MISSES: Final = 150
 MAX_PLAN_VIEWS: Final = 150
 MAX_CHARTS: Final = 150
 """The page shows the measured values over time of this many of the worst findings and near misses."""
-MAX_DRIVES: Final = 60
+MAX_DRIVE_SECTIONS: Final = 60
 """This many drives get a section: drives with findings first, then drives with near misses, then drives with unknown verdicts."""
 MAX_UNFOLDED_DRIVES: Final = 3
 """If the result has at most this many drives, their sections are unfolded."""
@@ -211,7 +211,7 @@ def _finding_lines(
 def _drives_with_section(
     drives: Sequence[Row], worst_drives: Iterable[str], verdict_counts: Mapping[str, Mapping[str, int]]
 ) -> set[str]:
-    """Return the ids of at most `MAX_DRIVES` drives that get a section.
+    """Return the ids of at most `MAX_DRIVE_SECTIONS` drives that get a section.
 
     Drives in `worst_drives` are preferred, in that order, then drives with unknown verdicts or errors.
     """
@@ -224,7 +224,7 @@ def _drives_with_section(
         return (1, 0) if verdicts["unknown"] or verdicts["error"] else (2, 0)
 
     judged = [row for row in drives if row["status"] == "judged"]
-    return {row["drive_id"] for row in sorted(judged, key=sort_key)[:MAX_DRIVES]}
+    return {row["drive_id"] for row in sorted(judged, key=sort_key)[:MAX_DRIVE_SECTIONS]}
 
 
 def _rows_by_drive(rows: pa.Table, drive_ids: set[str]) -> dict[str, list[Row]]:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     Key = tuple[str, str, int]
 
-MAX_POINTS: Final = 60_000
+MAX_REPLAY_POINTS: Final = 60_000
 """Positions of actors in the page; further drives are shown without a replay."""
 _NS_PER_CENTISECOND: Final = 10_000_000
 _CM_PER_M: Final = 100
@@ -34,7 +34,7 @@ def centiseconds(t_ns: int, start_ns: int) -> int:
 def replays(
     scenes: Iterable[Row], spaces: Mapping[Key, Sequence[Row]], starts: Mapping[str, int], road: DrawnMaps
 ) -> dict[str, Markup]:
-    """Return the replay of each drive as JSON for the page's script, up to `MAX_POINTS` points in total.
+    """Return the replay of each drive as JSON for the page's script, up to `MAX_REPLAY_POINTS` points in total.
 
     `a`: actor -> times, x, y (cm from the map's origin) and heading (centirad), each as its first value and then differences;
     `s`: ego -> time -> actor -> SVG path of its danger space in the drawn units of `road`.
@@ -46,7 +46,7 @@ def replays(
         lanes = road.lanes_of(rows[0]["environment_id"])
         tracks = _positions_by_actor(rows)
         n += sum(len(track) for track in tracks.values())
-        if n > MAX_POINTS:
+        if n > MAX_REPLAY_POINTS:
             break
         actors = {
             actor: _columns_of_differences(sorted(track.items()), start, lanes.origin)
