@@ -309,9 +309,9 @@ class Watcher(Silent):
         if "copies" in name:
             self.told += [name, f"of {total}"]
 
-    def doing(self, activity: str, part: float = 0.0) -> None:
+    def doing(self, activity: str, units_since_advance: float = 0.0) -> None:
         """Note what is done."""
-        self.told += [activity, f"{part:g}"] if part else [activity]
+        self.told += [activity, f"{units_since_advance:g}"] if units_since_advance else [activity]
 
     def advance(self, n: int = 1) -> None:
         """Note the units done."""

@@ -16,11 +16,11 @@ from drivelint import demo, errors, parallel, run
 from drivelint.cli.receipts import Outputs
 from drivelint.engine.interruption import Interruption, NothingJudgedError
 from drivelint.errors import DriveLintError, MemoryShortError, TraceError
-from drivelint.receipts.recorder import recording
+from drivelint.receipts.recorder import record_inputs
 from drivelint.report.log_notes import LogNote
 from drivelint.report.outputs import working_folder, write
 from drivelint.report.progress import Progress
-from drivelint.result.joining import join
+from drivelint.result.joining import join_results
 from drivelint.result.names import TABLE_OF_FILE
 from tests.report.synthetic import result
 
@@ -92,7 +92,7 @@ def test_several_processes_write_the_bytes_of_one(asked: CheckOptions, alone: Al
     expected, out, by_one, one = alone
     two = Counter()
     shutil.rmtree(out)  # paths in the result are relative to its folder
-    with recording(Outputs(out), []) as recorder:
+    with record_inputs(Outputs(out), []) as recorder:
         found = written(asked, out, 2, two)
     assert files(out) == by_one
     assert sum(name.endswith(".mcap") for name in by_one) == 4
@@ -152,10 +152,10 @@ def test_joined_results_are_those_of_one_run(alone: Alone) -> None:
     drives = judged.drives["drive_id"].to_pylist()
     assert judged.lanes.num_rows
     for mine in (drives[::2], drives[:1], drives[1:]):
-        joined = join([replace(judged, **_of(judged, mine, inside=inside)) for inside in (True, False)])
+        joined = join_results([replace(judged, **_of(judged, mine, inside=inside)) for inside in (True, False)])
         for name in TABLE_OF_FILE:
             assert getattr(joined, name).equals(getattr(judged, name)), name
-    assert join([judged, result([], drives=[], interrupted=True)]).interrupted
+    assert join_results([judged, result([], drives=[], interrupted=True)]).interrupted
 
 
 def _of(whole: Result, drives: list[str], *, inside: bool) -> dict[str, pa.Table]:

@@ -1,4 +1,4 @@
--- Part of the statements of this folder and of others: one finding of each event, with `is_possible`, as `one_per_event` of a check's result.
+-- Part of the statements of this folder and of others: one finding per event, with `is_possible`, as `one_finding_per_event` of a check.
 -- A touch of two egos is a finding of each: of findings of one rule in which each of two egos is the object of the other at the same time, the
 -- surest stands for both. So it does of findings of one rule, ego and object under several profiles at the same time.
 SELECT f.*

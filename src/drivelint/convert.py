@@ -21,7 +21,7 @@ from drivelint.formats.osi import writer as osi_log
 from drivelint.formats.osi.metadata import LIBRARY, ego_independent_quality
 from drivelint.formats.tables import canonical, parquet
 from drivelint.phrases import listed, one_line
-from drivelint.result.files import described_parquet
+from drivelint.result.files import parquet_bytes_with_metadata
 from drivelint.result.publishing import OutputError, prepare_folder, publish
 from drivelint.road.map_reader import MapSource
 
@@ -238,7 +238,9 @@ def _parquet(target: Path, trace: Trace, road: MapSource | None, *, as_recorded:
     tables["actor_state"] = canonical.with_frames_of_nobody(tables["actor_state"], trace)
     names = [*TABLES, *(["drive_condition"] if tables["drive_condition"].num_rows else [])]
     about = {canonical.AS_RECORDED: "yes"} if as_recorded else {}
-    contents = {f"{name}.parquet": described_parquet(tables[name], name, {_MARK: name, **about}) for name in names}
+    contents = {
+        f"{name}.parquet": parquet_bytes_with_metadata(tables[name], name, {_MARK: name, **about}) for name in names
+    }
     if road is not None:
         contents[MAP_FILE] = road.content
     publish(target, contents, {name: None for name in CANONICAL_FILES if name not in contents})

@@ -28,9 +28,9 @@ from drivelint.errors import DriveLintError, ExitCode, InternalError
 from drivelint.formats.files import file_states
 from drivelint.phrases import plural
 from drivelint.receipts import recorder
-from drivelint.report.log_notes import LogNotes, same_log
+from drivelint.report.log_notes import LogNotes, same_log_note
 from drivelint.report.progress import Progress
-from drivelint.result.names import PICTURES, TABLE_OF_FILE
+from drivelint.result.names import TABLE_OF_FILE, TABLE_OF_PICTURE_FILE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -122,7 +122,7 @@ def _judged_by_workers(
     """Judge each part in a process of its own."""
     memory = None if settings.memory is None else max(LEAST_MEMORY_BYTES, settings.memory // len(parts))
     own = replace(settings, memory=memory, threads=max(1, cores() // len(parts)))
-    recording = recorder.active()
+    recording = recorder.current_recorder()
     is_output = None if recording is None else recording.is_output
     progress.stage(run.CHECKING, len(paths))
     listener = _Listener(progress, len(paths))
@@ -179,13 +179,13 @@ def _without_copies(parts: Sequence[JudgedLogs]) -> list[JudgedLogs]:
 def _without(part: JudgedLogs, drives: Sequence[str]) -> JudgedLogs:
     """Return a part without these drives; the only note on each of their logs is that it is a duplicate."""
     result, paths = part.result, {} if part.result.run_options is None else part.result.run_options.traces
-    tables = {name: getattr(result, name) for name in (*TABLE_OF_FILE, *PICTURES)}
+    tables = {name: getattr(result, name) for name in (*TABLE_OF_FILE, *TABLE_OF_PICTURE_FILE)}
     others = {
         name: table.filter(pc.invert(pc.is_in(table["drive_id"], value_set=pa.array(drives, pa.string()))))
         for name, table in tables.items()
         if "drive_id" in table.column_names
     }
-    told = [same_log(Path(paths[drive]), drive) for drive in drives if drive in paths]
+    told = [same_log_note(Path(paths[drive]), drive) for drive in drives if drive in paths]
     kept = [note for note in part.notes if note.path not in {each.path for each in told}]
     return replace(part, result=replace(result, **others), notes=(*kept, *told))
 
@@ -298,7 +298,7 @@ class _ProgressSender(Progress):
         if self._counts:
             self.send(_ProgressCall("advance", (n,)))
 
-    def doing(self, activity: str, part: float = 0.0) -> None:  # noqa: ARG002 - parts of several workers cannot be combined
+    def doing(self, activity: str, units_since_advance: float = 0.0) -> None:  # noqa: ARG002 - parts of several workers cannot be combined
         """See `Progress`."""
         self.send(_ProgressCall("doing", (activity,)))
 
@@ -354,7 +354,7 @@ def _work(part: _Part, pipe: Connection, parent: int) -> None:
 
 def _judge_part(part: _Part, sender: _ProgressSender, interruption: Interruption) -> _Ended:
     notes, deaf = _SentNotes(sender, part.n_logs), _DeafRulesOfWorker(part.limits_of_deaf_rules, sender)
-    with nullcontext() if part.is_output is None else recorder.recording(part.is_output, []) as recording:
+    with nullcontext() if part.is_output is None else recorder.record_inputs(part.is_output, []) as recording:
         judged_by = run.RunRules.of(part.settings)
         judged = run.judge_logs(
             part.settings,

@@ -27,12 +27,12 @@ from drivelint.engine.session import JudgingSession
 from drivelint.errors import TraceError, UsageError
 from drivelint.evaluate.limits import RuleLimits
 from drivelint.formats import expand_traces
-from drivelint.pictures import Camerawork, chosen_rows, planned_shots
-from drivelint.report.log_notes import LogNote, LogNotes, same_log, told_once
-from drivelint.report.rule_progress import ToldLimits
+from drivelint.pictures import PictureTaker, planned_shots, rows_of_planned_shots
+from drivelint.report.log_notes import LogNote, LogNotes, notes_without_repeats, same_log_note
+from drivelint.report.rule_progress import ReportingRuleLimits
 from drivelint.result import collect, evidence
-from drivelint.result.counts import by_severity, group_rows, one_per_event
-from drivelint.result.joining import join
+from drivelint.result.counts import group_rows, one_finding_per_event, severity_counts_text
+from drivelint.result.joining import join_results
 from drivelint.result.model import Result
 from drivelint.result.request import RunRequest
 from drivelint.sql import store
@@ -172,7 +172,7 @@ def judge_logs(
         observers: list[BatchObserver] = []
         if settings.out or settings.evidence:
             observers.append(lambda con, _drives, **_part: evidence.gather(con))
-        cameras = Camerawork() if settings.pictures and (settings.out or settings.evidence) else None
+        cameras = PictureTaker() if settings.pictures and (settings.out or settings.evidence) else None
         if cameras is not None:
             observers.append(cameras)
         if settings.out and settings.annotate:
@@ -190,7 +190,7 @@ def judge_logs(
                     release=memory.release,
                 )
             )
-        limits = ToldLimits(progress, len(rules), settings.rule_timeout, task="drives", deaf_rules=deaf_rules)
+        limits = ReportingRuleLimits(progress, len(rules), settings.rule_timeout, task="drives", deaf_rules=deaf_rules)
         session = JudgingSession(
             con,
             rules,
@@ -229,7 +229,7 @@ def judge_logs(
             findings=memory.run_job(collect.findings),
             drives=drives.sort_by([("drive_id", "ascending"), ("file_name", "ascending")]),
             rules=table,
-            **memory.run_job(evidence.tables),
+            **memory.run_job(evidence.evidence_tables),
             margins_file=session.margins_file,
             fail_on=settings.fail_on,
             strict=settings.strict,
@@ -242,13 +242,15 @@ def judge_logs(
                 {name: settings.manifest_options[path] for name, path in judged if path in settings.manifest_options},
             ),
         )
-        if cameras is not None and cameras.topics:
+        if cameras is not None and cameras.topics_by_drive:
             progress.doing("taking pictures from cameras")
-            pictures, troubles = cameras.take(result)
+            pictures, troubles = cameras.take_pictures(result)
             result = replace(result, pictures=pictures)
             for trouble in troubles:
                 notes.add(LogNote(trouble.path, trouble.text, once=True))
-        return JudgedLogs(result, tuple(notes.notes), tuple(refused_logs), {} if cameras is None else cameras.topics)
+        return JudgedLogs(
+            result, tuple(notes.notes), tuple(refused_logs), {} if cameras is None else cameras.topics_by_drive
+        )
 
 
 def conclude(
@@ -260,12 +262,12 @@ def conclude(
     """
     result = parts[0].result
     if len(parts) > 1:
-        result = join([part.result for part in parts])
+        result = join_results([part.result for part in parts])
         cameras = {drive: topics for part in parts for drive, topics in part.cameras.items()}
-        result = replace(result, pictures=chosen_rows(result.pictures, planned_shots(result, cameras)))
+        result = replace(result, pictures=rows_of_planned_shots(result.pictures, planned_shots(result, cameras)))
     place = {path: n for n, path in enumerate(paths)}
     notes = sorted((note for part in parts for note in part.notes), key=lambda note: place.get(note.path, -1))
-    result = replace(result, notes=tuple(note.full_text for note in told_once(notes)))
+    result = replace(result, notes=tuple(note.full_text for note in notes_without_repeats(notes)))
     statuses = result.drives["status"].to_pylist()
     if result.interrupted and "judged" not in statuses:
         raise NothingJudgedError
@@ -323,10 +325,10 @@ def _without_map(drive: Drive) -> list[str]:
 def _judge_copies(session: JudgingSession, progress: Progress, memory: Memory) -> None:
     """Judge the copies that are not judged yet, even after an interruption."""
     if session.n_waiting:
-        findings = one_per_event(memory.run_job(collect.findings).to_pylist())
+        findings = one_finding_per_event(memory.run_job(collect.findings).to_pylist())
         # the number of findings is shown before the copies are judged
         word = "finding" if len(findings) == 1 else "findings"
-        progress.stage(f"{by_severity(findings)} {word}; judging copies", session.n_to_copy())
+        progress.stage(f"{severity_counts_text(findings)} {word}; judging copies", session.n_to_copy())
         session.judge_copies(progress.advance)
 
 
@@ -337,7 +339,7 @@ def _judge(
     *,
     progress: Progress,
     notes: LogNotes,
-    limits: ToldLimits,
+    limits: ReportingRuleLimits,
 ) -> None:
     """Judge a batch; if this fails, drive by drive, so that a bad drive affects no other. Add refused drives to `refused_logs`."""
     n_before = len(refused_logs)
@@ -346,17 +348,17 @@ def _judge(
         if isinstance(item, RefusedLog):
             refused_logs.append(item)
         elif session.has_judged(item) or any(item.trace.drive_id == d.trace.drive_id for d in drives):
-            notes.add(same_log(item.trace.path, item.trace.drive_id))
+            notes.add(same_log_note(item.trace.path, item.trace.drive_id))
         else:
             drives.append(item)
             for text in item.trace.notes:
                 notes.add(LogNote(item.trace.path, text, once=True))
             for text in _without_map(item):
                 notes.add(LogNote(item.trace.path, text))
-    limits.begin(len(drives))
+    limits.begin_batch(len(drives))
     n_unread = len(refused_logs) - n_before
     try:
         judge_apart(session, drives, refused_logs)
     finally:
-        notes.add_refused(refused_logs[n_before:])
+        notes.add_refused_logs(refused_logs[n_before:])
     progress.advance(len(drives) + n_unread)

@@ -19,7 +19,7 @@ from drivelint.audit.unpacked import Standing
 from drivelint.fleet_report import content as content_
 from drivelint.fleet_report import drive_pages, moment_pages
 from drivelint.fleet_report.audit_views import Audit, open_audits
-from drivelint.result.counts import one_per_event
+from drivelint.result.counts import one_finding_per_event
 from tests.fleet import audits
 from tests.fleet.audits import ego_drive, found, said
 from tests.fleet_report import lake
@@ -104,7 +104,7 @@ def test_a_page_says_what_the_tables_say(ten: Path) -> None:
         (drive,) = [row for row in table(ten, "drives") if row["key"] == key]
         findings = [row for row in table(ten, "findings") if row["key"] == key]
         verdicts = Counter(row["verdict"] for row in table(ten, "verdicts") if row["key"] == key)
-        n = Counter(row["severity"] for row in one_per_event(findings))
+        n = Counter(row["severity"] for row in one_finding_per_event(findings))
         said = ", ".join(f"{n[name]} {name}" for name in SEVERITIES if n[name])
         assert words(page.xpath("//h1")[0]) == f"{said} findings in {drive['drive_id']}"
         for word in ("pass", "fail", "unknown", "not_applicable", "error"):

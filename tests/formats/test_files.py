@@ -11,8 +11,8 @@ from drivelint.convert import ConvertRequest, convert
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats import expand_traces
 from drivelint.own_files import RESULT_LOGS, OwnFiles
-from drivelint.result.folder import manifest
-from drivelint.result.names import PICTURES, RESULT_FILES, TABLE_OF_FILE
+from drivelint.result.folder import manifest_bytes
+from drivelint.result.names import RESULT_FILE_GLOBS, TABLE_OF_FILE, TABLE_OF_PICTURE_FILE
 from tests.formats.logs import cars, mapping, read, table
 
 
@@ -61,7 +61,7 @@ def test_a_folder_of_commonroad_has_its_scenarios_and_not_its_maps(tmp_path: Pat
 
 def test_what_an_earlier_check_wrote_is_not_searched(tmp_path: Path) -> None:
     """Whoever keeps results beside the logs and checks the folder again must not judge the results."""
-    tables = [*TABLE_OF_FILE, *PICTURES, "margins"]
+    tables = [*TABLE_OF_FILE, *TABLE_OF_PICTURE_FILE, "margins"]
     written = [f"{name}.parquet" for name in tables] + ["summary.json", "annotated/a.mcap"]
     for out in (tmp_path, tmp_path / "out"):
         for name in [*written, "a.mcap"]:
@@ -78,7 +78,7 @@ def test_what_an_earlier_check_wrote_is_not_searched(tmp_path: Path) -> None:
 
 
 def test_every_file_of_a_result_that_has_the_suffix_of_a_log_is_known() -> None:
-    assert {name for name in RESULT_FILES if Path(name).suffix in {".parquet", ".mcap"}} == set(RESULT_LOGS)
+    assert {name for name in RESULT_FILE_GLOBS if Path(name).suffix in {".parquet", ".mcap"}} == set(RESULT_LOGS)
 
 
 def test_what_the_list_of_an_audit_names_is_not_searched(tmp_path: Path) -> None:
@@ -86,7 +86,7 @@ def test_what_the_list_of_an_audit_names_is_not_searched(tmp_path: Path) -> None
     for name in ("tables/verdicts/1f.parquet", "tables/verdicts/log.parquet", "1f.parquet"):
         (tmp_path / "fleet" / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / "fleet" / name).write_text("x")
-    (tmp_path / "fleet" / "files.json").write_bytes(manifest({"tables/verdicts/1f.parquet"}))
+    (tmp_path / "fleet" / "files.json").write_bytes(manifest_bytes({"tables/verdicts/1f.parquet"}))
     assert names(expand_traces([str(tmp_path)])) == ["1f.parquet", "log.parquet"]
     assert names(expand_traces([str(tmp_path / "fleet" / "tables")])) == ["1f.parquet", "log.parquet"]
 
@@ -99,7 +99,7 @@ def test_the_tables_of_an_audit_that_has_not_ended_are_no_logs(tmp_path: Path) -
         (fleet / name).parent.mkdir(parents=True, exist_ok=True)
         (fleet / name).write_text("x")
     assert names(expand_traces([str(tmp_path)])) == ["log.parquet", "log.parquet"]
-    (fleet / "files.json").write_bytes(manifest({"tables/receipts/00000000.parquet"}))
+    (fleet / "files.json").write_bytes(manifest_bytes({"tables/receipts/00000000.parquet"}))
     assert names(expand_traces([str(tmp_path)])) == ["1f.parquet", "log.parquet", "rules.parquet", "log.parquet"]
 
 

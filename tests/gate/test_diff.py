@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from drivelint.gate import GateInputs, compare_results, descriptions, diff
 from drivelint.result import gate as store
 from drivelint.result import model
-from drivelint.result.gate import DIFF_STATUSES, NOT_FIXED, ComparedFinding, Gate, Waiver
+from drivelint.result.gate import DIFF_STATUSES, NOT_FIXED_WORDS, ComparedFinding, Gate, Waiver
 from drivelint.result.model import Result
 from tests.report.synthetic import SECOND, drive, finding, recorded, result, rule, verdict
 
@@ -93,7 +93,7 @@ def test_in_another_log_of_the_same_name_the_place_must_agree_too(moved: dict[st
     new = run([at(8, **(again | moved))], said("fail", **again_only(again)), drives=[again_drive()])
     counted = diff.compare(base, new).counts()
     assert counted["new"] == (0 if same else 1)
-    assert sum(counted[gone] for gone in ("fixed", *NOT_FIXED)) == (0 if same else 1)
+    assert sum(counted[gone] for gone in ("fixed", *NOT_FIXED_WORDS)) == (0 if same else 1)
 
 
 def again_only(row: dict[str, Any]) -> dict[str, Any]:
@@ -345,7 +345,7 @@ def test_a_gate_survives_its_file() -> None:
     found = diff.compare(run([at(8)]), run([at(8), at(15, finding_id="n", margin=float("-inf"))]))
     waiver = Waiver("w:1", "*", "because", "jo", "2027-01-01", from_s=1.0)
     gate = Gate("2026-11-20", found, (waiver,), {"n": 0})
-    assert gate.in_baseline(f"d1-{SPEED}-None-0")  # fills what is remembered, which must not reach the file
+    assert gate.is_in_baseline(f"d1-{SPEED}-None-0")  # fills what is remembered, which must not reach the file
     content = store.render(gate)
     assert b"_standing" not in content
     assert json.loads(content)["gate_schema"] == store.GATE_VERSION

@@ -20,7 +20,7 @@ from drivelint.formats.osi.metadata import Event
 from drivelint.formats.ros2.messages import MESSAGES
 from drivelint.guide import dictionary
 from drivelint.reasons.signals import REMEDIES, SIGNALS
-from drivelint.result.geometry import SHAPES
+from drivelint.result.geometry import GEOMETRIES_OF_TABLE
 from drivelint.result.names import TABLE_OF_FILE
 from drivelint.sql.store import column_comments
 from drivelint.sql.words import vocabularies
@@ -138,7 +138,7 @@ def test_the_guide_of_columns_has_every_column_of_every_file() -> None:
     text = guide.text("columns")
     for stem, table in {**TABLE_OF_FILE, "margins": "margin"}.items():
         section = text.partition(f"### {stem}.parquet\n")[2].partition("\n### ")[0]
-        columns = [*column_comments()[table], *SHAPES.get(table, ())]
+        columns = [*column_comments()[table], *GEOMETRIES_OF_TABLE.get(table, ())]
         assert re.findall(r"^\| `(\w+)` \|", section, re.MULTILINE) == columns, stem
         assert f"`{stem}.parquet`" in text.partition("## The columns")[0]
 

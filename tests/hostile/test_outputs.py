@@ -88,10 +88,10 @@ def test_markdown(nasty: Nasty) -> None:
 
 def test_a_command_in_markdown_is_the_command() -> None:
     """A backtick that became an apostrophe ended the quotes of a name, and ran what stood behind it."""
-    from drivelint.report.markdown import code
+    from drivelint.report.markdown import markdown_code
 
     command = "drivelint check 'a`;touch pwned;`.csv'"
-    (inline,) = [token for token in MarkdownIt().parse(code(command)) if token.type == "inline"]
+    (inline,) = [token for token in MarkdownIt().parse(markdown_code(command)) if token.type == "inline"]
     assert [(child.type, child.content) for child in inline.children or []] == [("code_inline", command)]
 
 

@@ -12,7 +12,7 @@ from drivelint.catalogue.header import EXCUSES
 from drivelint.incident.breaches import ADVICE, without_advice
 from drivelint.incident.conduct import conduct
 from drivelint.incident.fitting import Reason, first_fitting, fit, shared_reasons
-from drivelint.reasons.reason_text import shared_texts
+from drivelint.reasons.reason_text import texts_of_shared_codes
 
 S = 1_000_000_000
 SPAN = (0, 20 * S)
@@ -163,7 +163,10 @@ def test_texts_that_do_not_fit_are_counted() -> None:
 
 def test_advice_begins_with_a_known_word() -> None:
     """Else it stays in the reason, which is only longer."""
-    texts = [*shared_texts().values(), *(text for rule in load_rules().values() for text in rule.reasons.values())]
+    texts = [
+        *texts_of_shared_codes().values(),
+        *(text for rule in load_rules().values() for text in rule.reasons.values()),
+    ]
     plain = [text.advice for text in texts if text.advice]
     assert len(plain) > 50
     assert sum(advice.split()[0] in ADVICE for advice in plain) > 0.9 * len(plain)

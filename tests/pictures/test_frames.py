@@ -14,9 +14,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mcap.records import Channel, Schema
 
-from drivelint.pictures.frames import EncodedImage, FrameError, RawImage, VideoFrame, ahead_first, is_camera, read_frame
+from drivelint.pictures.frames import (
+    EncodedImage,
+    FrameError,
+    RawImage,
+    VideoFrame,
+    camera_sort_key,
+    is_camera,
+    read_frame,
+)
 from drivelint.pictures.images import MOST_PICTURE_BYTES, small_jpeg
-from drivelint.pictures.video import is_key_frame
+from drivelint.pictures.video import is_known_key_frame
 from tests.formats.ros2 import ros_log as ros
 from tests.pictures.camera_bag import bars, jpeg, number_in
 
@@ -171,11 +179,11 @@ def test_what_shows_no_picture_is_no_camera() -> None:
     assert not is_camera(channel("cdr", "/carla/hero/depth_front/image"), schema)
     assert not is_camera(channel("cdr"), Schema(1, b"", "ros2msg", "sensor_msgs/msg/PointCloud2"))
     topics = ["/cam/back", "/cam/front_left", "/cam/front", "/cam/main"]
-    assert sorted(topics, key=ahead_first) == ["/cam/front", "/cam/main", "/cam/back", "/cam/front_left"]
+    assert sorted(topics, key=camera_sort_key) == ["/cam/front", "/cam/main", "/cam/back", "/cam/front_left"]
 
 
 def test_frames_of_a_video_that_need_no_other() -> None:
-    assert is_key_frame(VideoFrame("h264", b"\0\0\0\1\x67abc\0\0\0\1\x65abc"))
-    assert not is_key_frame(VideoFrame("h264", b"\0\0\0\1\x41abc"))
-    assert is_key_frame(VideoFrame("h265", b"\0\0\0\1\x40\1a\0\0\1\x26\1abc"))
-    assert not is_key_frame(VideoFrame("h265", b"\0\0\0\1\x02\1abc"))
+    assert is_known_key_frame(VideoFrame("h264", b"\0\0\0\1\x67abc\0\0\0\1\x65abc"))
+    assert not is_known_key_frame(VideoFrame("h264", b"\0\0\0\1\x41abc"))
+    assert is_known_key_frame(VideoFrame("h265", b"\0\0\0\1\x40\1a\0\0\1\x26\1abc"))
+    assert not is_known_key_frame(VideoFrame("h265", b"\0\0\0\1\x02\1abc"))

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from drivelint.pictures.frames import Frame, FrameError, Place, VideoFrame
+from drivelint.pictures.frames import Frame, FrameError, FramePlace, VideoFrame
 from drivelint.pictures.images import small_jpeg
 from drivelint.pictures.video import video_image
 from tests.pictures.camera_bag import bars, number_in
@@ -21,11 +21,11 @@ class Log:
     def __init__(self, frames: list[VideoFrame]) -> None:
         self.frames = frames
 
-    def places(self, _topic: str, since_ns: int, until_ns: int) -> list[Place]:
+    def places(self, _topic: str, since_ns: int, until_ns: int) -> list[FramePlace]:
         times = [n * EVERY_NS for n in range(len(self.frames))]
-        return [Place(t_ns, 0, 1, 0, n) for n, t_ns in enumerate(times) if since_ns <= t_ns <= until_ns]
+        return [FramePlace(t_ns, 0, 1, 0, n) for n, t_ns in enumerate(times) if since_ns <= t_ns <= until_ns]
 
-    def frame(self, place: Place) -> Frame:
+    def frame(self, place: FramePlace) -> Frame:
         return Frame(place.log_ns, self.frames[place.at])
 
 
@@ -51,18 +51,18 @@ def video(codec: str, encoder: str) -> list[VideoFrame]:
 def test_each_frame_is_that_frame(codec: str, encoder: str) -> None:
     log: Any = Log(video(codec, encoder))
     for n in (0, 5, 8, 15, 23):
-        place = log.places("", 0, n * EVERY_NS)[-1]
+        place = log.frame_places("", 0, n * EVERY_NS)[-1]
         assert number_in(small_jpeg(video_image(log, "", place)).data) == n
 
 
 def test_without_a_frame_that_needs_no_other_there_is_no_picture() -> None:
     log: Any = Log(video("h264", "libx264")[1:6])
     with pytest.raises(FrameError):
-        video_image(log, "", log.places("", 0, 4 * EVERY_NS)[-1])
+        video_image(log, "", log.frame_places("", 0, 4 * EVERY_NS)[-1])
 
 
 def test_other_codecs_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("av", reason="PyAV is not installed: pip install av")
     log: Any = Log([VideoFrame("mjpeg2000", b"x")])
     with pytest.raises(FrameError, match="mjpeg2000"):
-        video_image(log, "", log.places("", 0, 0)[-1])
+        video_image(log, "", log.frame_places("", 0, 0)[-1])

@@ -54,14 +54,14 @@ def test_a_reason_may_be_an_argument(con: duckdb.DuckDBPyConnection) -> None:
         == "o came by with 1.00 m between: record it until 0.000 s, and it stood until then"
     )
     code, arguments = reason_text.parse_reason(reason)
-    assert reason_text.advice_sentence(code, arguments, 0, OWN) == reason_text.sentence(reason, 0, OWN)
-    assert reason_text.advice_sentence("stood", {"braked": "it"}, 0, OWN) is None
+    assert reason_text.sentence_with_advice(code, arguments, 0, OWN) == reason_text.sentence(reason, 0, OWN)
+    assert reason_text.sentence_with_advice("stood", {"braked": "it"}, 0, OWN) is None
     assert reason_text.codes_in(code, arguments) == {"stood", "came_by"}
 
 
 @pytest.mark.parametrize("text", ["plain words", '{"code":', '{"code":1, "args": 2}', "{}", ""])
 def test_plain_text_is_its_own_words(text: str) -> None:
-    assert reason_text.parse_reason(text).code == reason_text.PLAIN_TEXT
+    assert reason_text.parse_reason(text).code == reason_text.PLAIN_TEXT_CODE
     assert reason_text.sentence(text) == text
 
 
@@ -82,8 +82,8 @@ def test_every_shared_code_is_given_somewhere() -> None:
         for part in ("macros", "derive", "judging")
         for file in (folder("queries") / part).glob("*.sql")
     ]
-    named = set(re.findall(r"'(\w+)'", "\n".join(texts))) | {reason_text.PLAIN_TEXT}
-    assert sorted(reason_text.shared_texts().keys() - given - named) == []
+    named = set(re.findall(r"'(\w+)'", "\n".join(texts))) | {reason_text.PLAIN_TEXT_CODE}
+    assert sorted(reason_text.texts_of_shared_codes().keys() - given - named) == []
 
 
 def test_no_code_of_a_rule_hides_a_shared_one() -> None:
@@ -91,7 +91,7 @@ def test_no_code_of_a_rule_hides_a_shared_one() -> None:
         f"{rule.id}: {code}"
         for rule in catalogue.load_rules().values()
         for code in rule.reasons
-        if code in reason_text.shared_texts()
+        if code in reason_text.texts_of_shared_codes()
     ] == []
 
 

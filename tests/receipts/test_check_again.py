@@ -19,7 +19,7 @@ from drivelint.cli import main
 from drivelint.errors import ExitCode
 from drivelint.formats import expand_traces
 from drivelint.receipts import program, store
-from drivelint.receipts.events import machine_bound
+from drivelint.receipts.events import report_not_repeatable
 from drivelint.report.outputs import write
 from drivelint.resources import folder
 from drivelint.result.request import RunRequest
@@ -142,7 +142,7 @@ def first(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Ran]:
 @pytest.fixture
 def receipt(first: Ran) -> Iterator[Path]:
     """Return the file of the receipt, which is afterwards as it was."""
-    folder_ = store._folder()
+    folder_ = store._receipts_folder()
     assert folder_ is not None
     (file,) = folder_.iterdir()
     whole = file.read_bytes()
@@ -290,7 +290,7 @@ def test_every_variable_of_the_environment_counts_that_a_run_looks_at(first: Ran
     of_folders = {"TMPDIR", "TEMP", "TMP", "HOME", "XDG_CACHE_HOME", "DRIVELINT_CACHE_DIR"}
     answered = {"DRIVELINT_CHECK_CACHE", "DRIVELINT_DEAF_RULES"}
     others = {name for name in looked_at if name.startswith(("DRIVELINT_TEST_", "PYTEST_")) or "_COMPLETE" in name}
-    assert looked_at - of_folders - answered - others <= set(program.ENVIRONMENT)
+    assert looked_at - of_folders - answered - others <= set(program.ENVIRONMENT_VARIABLES)
 
 
 def test_the_day_counts_only_where_there_are_waivers(first: Ran, receipt: Path) -> None:
@@ -339,7 +339,7 @@ def test_only_a_run_is_kept_that_its_inputs_tell(tmp_path: Path, monkeypatch: py
         if what == "only its copies were interrupted":
             interruption.requested = True
         if what == "a rule took too long for a copy":
-            machine_bound("it took too long")
+            report_not_repeatable("it took too long")
         return judged
 
     monkeypatch.setattr(run, "check", judges)

@@ -13,8 +13,8 @@ import pytest
 from drivelint.cli.receipts import Outputs
 from drivelint.drive.trace import IngestOptions
 from drivelint.formats import expand_traces, read_trace
-from drivelint.receipts.events import looked_for, machine_bound
-from drivelint.receipts.recorder import recording
+from drivelint.receipts.events import report_not_repeatable, report_searched_path
+from drivelint.receipts.recorder import record_inputs
 from tests.formats.argoverse2 import argoverse_log as av2
 from tests.formats.d123 import files as d123
 from tests.formats.sumo import fcd_text
@@ -29,7 +29,7 @@ NO_OUTPUTS = Outputs(None)
 
 
 def read_by(job: Callable[[], object], *named: Path) -> Inputs:
-    with recording(NO_OUTPUTS, named) as recorder:
+    with record_inputs(NO_OUTPUTS, named) as recorder:
         job()
     inputs = recorder.inputs()
     assert inputs is not None, recorder.trouble
@@ -94,7 +94,7 @@ def _try_to_open(path: Path) -> None:
 
 
 def test_a_file_that_is_missing_counts(tree: Path) -> None:
-    for job in (lambda: looked_for(tree / "b/map"), lambda: _try_to_open(tree / "b/map")):
+    for job in (lambda: report_searched_path(tree / "b/map"), lambda: _try_to_open(tree / "b/map")):
         inputs = read_by(job)
         (tree / "b/map").write_text("")
         assert not inputs.are_unchanged(NO_OUTPUTS)
@@ -119,7 +119,7 @@ def test_what_changed_while_it_was_read_is_no_input(tree: Path) -> None:
         (tree / "a/one.txt").read_text()
         (tree / "a/one.txt").write_text("new")
 
-    with recording(NO_OUTPUTS, []) as recorder:
+    with record_inputs(NO_OUTPUTS, []) as recorder:
         reads_and_changes()
     assert recorder.inputs() is None
 
@@ -127,7 +127,7 @@ def test_what_changed_while_it_was_read_is_no_input(tree: Path) -> None:
 def test_a_pipe_cannot_be_looked_at_again(tree: Path) -> None:
     reads, writes = os.pipe()
     try:
-        with recording(NO_OUTPUTS, []) as recorder:
+        with record_inputs(NO_OUTPUTS, []) as recorder:
             os.close(os.open(f"/dev/fd/{reads}", os.O_RDONLY))
         assert recorder.inputs() is None
     finally:
@@ -136,8 +136,8 @@ def test_a_pipe_cannot_be_looked_at_again(tree: Path) -> None:
 
 
 def test_what_depends_on_the_machine_is_not_of_its_inputs(tree: Path) -> None:
-    with recording(NO_OUTPUTS, []) as recorder:
-        machine_bound("a rule took too long")
+    with record_inputs(NO_OUTPUTS, []) as recorder:
+        report_not_repeatable("a rule took too long")
     assert (recorder.inputs(), recorder.trouble) == (None, "a rule took too long")
 
 
@@ -154,7 +154,7 @@ def test_what_a_run_writes_is_no_input(tree: Path) -> None:
 
 
 def test_nothing_is_recorded_afterwards(tree: Path) -> None:
-    with recording(NO_OUTPUTS, []) as recorder:
+    with record_inputs(NO_OUTPUTS, []) as recorder:
         pass
     (tree / "a/one.txt").read_text()
     inputs = recorder.inputs()

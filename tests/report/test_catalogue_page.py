@@ -10,7 +10,14 @@ from drivelint.catalogue import load_rules
 from drivelint.drive.conditions import CONDITION_TEXTS, DRIVE_CONDITION_VALUES
 from drivelint.drive.declared_events import EVENTS, ON_OFF_EVENTS
 from drivelint.errors import RuleError
-from drivelint.report.catalogue_page import Clause, cited_clauses, clause_coverage, map_features, page, read_clauses
+from drivelint.report.catalogue_page import (
+    Clause,
+    cited_clauses,
+    clause_coverage,
+    map_features,
+    read_clauses,
+    render_markdown,
+)
 from drivelint.resources import folder
 from drivelint.road.signcodes import kind_of
 
@@ -19,12 +26,14 @@ PACKS = folder("queries") / "assertions"
 
 def test_the_page_in_the_repository_is_the_one_that_the_rules_make() -> None:
     written = (folder("queries") / "README.md").read_text(encoding="utf-8")
-    assert written == page(load_rules().values(), PACKS), "write it anew: drivelint rules page --out queries/README.md"
+    assert written == render_markdown(load_rules().values(), PACKS), (
+        "write it anew: drivelint rules page --out queries/README.md"
+    )
 
 
 def test_every_rule_stands_on_the_page_and_every_number_with_it() -> None:
     rules = load_rules().values()
-    text = page(rules, PACKS)
+    text = render_markdown(rules, PACKS)
     for rule in rules:
         assert f"| `{rule.id.removeprefix(rule.pack + '.')}` | {rule.hypothesis} |" in text
         assert all(f"`{name}` " in text for name in rule.params)
@@ -32,7 +41,9 @@ def test_every_rule_stands_on_the_page_and_every_number_with_it() -> None:
 
 def test_the_nation_of_a_law_stands_beside_the_conditions() -> None:
     rows = {
-        line.split("`")[1]: line for line in page(load_rules().values(), PACKS).splitlines() if line.startswith("| `")
+        line.split("`")[1]: line
+        for line in render_markdown(load_rules().values(), PACKS).splitlines()
+        if line.startswith("| `")
     }
     assert "[law de, road_type motorway]" in rows["rg1"]
     assert "[law gb]" in rows["r124.speed-limit"]
@@ -40,7 +51,7 @@ def test_the_nation_of_a_law_stands_beside_the_conditions() -> None:
 
 
 def test_every_clause_from_89_to_307_has_one_entry() -> None:
-    names = [name for clause in read_clauses(PACKS / "ukhc") for name in sorted(clause.names)]
+    names = [name for clause in read_clauses(PACKS / "ukhc") for name in sorted(clause.cited_names)]
     assert sorted(names) == sorted([*(f"R{n}" for n in range(89, 308)), "H1", "H2", "H3"])
 
 
@@ -62,7 +73,7 @@ def test_a_rule_that_cites_a_clause_without_entry_is_refused() -> None:
 
 def test_what_is_no_clause_is_refused() -> None:
     with pytest.raises(RuleError, match="write H1, 103 or 89-94"):
-        Clause("R103", "signals").names  # noqa: B018 - the property refuses
+        Clause("R103", "signals").cited_names  # noqa: B018 - the property refuses
 
 
 def compared(sql: str, column: str) -> set[str]:
@@ -97,7 +108,7 @@ def test_a_signal_is_recognised_by_the_name_that_the_page_gives() -> None:
 
 
 def map_feature_rows() -> list[list[str]]:
-    _, _, text = page(load_rules().values(), PACKS).partition("## What a map must have")
+    _, _, text = render_markdown(load_rules().values(), PACKS).partition("## What a map must have")
     return [line.strip("| ").split(" | ") for line in text.splitlines() if line.startswith("| ")]
 
 

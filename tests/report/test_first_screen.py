@@ -18,9 +18,9 @@ from rich.console import Console
 from drivelint.gate import GateInputs
 from drivelint.report import terminal
 from drivelint.report.html import render
-from drivelint.report.html.contact import before_contact
+from drivelint.report.html.contact import speeds_before_contact
 from drivelint.report.html.strips import LEFT, RIGHT, strips
-from drivelint.report.html.svg import axis_that_decides
+from drivelint.report.html.svg import axis_for_deciding_values
 from drivelint.report.outputs import working_folder, write
 from drivelint.result.model import Result
 from tests.report.pages import Parsed, page
@@ -164,10 +164,10 @@ def test_the_worst_moment_is_the_contact_with_the_speeds_before_it(overtakes: Re
 def test_long_after_the_contact_began_nothing_is_said_of_the_speeds_before_it() -> None:
     path = [{"t_ns": (100 + k) * SECOND, "x_m": float(k), "y_m": 0.0, "speed_mps": 1.0} for k in range(6)]
     scene = {"actors": [{"actor_id": "1", "path": path}, {"actor_id": "3", "path": path}]}
-    assert before_contact(scene, finding(t_start_ns=104 * SECOND, closing_mps=None), 100 * SECOND) is not None
-    assert before_contact(scene, finding(t_start_ns=110 * SECOND), 100 * SECOND) is None
-    assert before_contact(scene, finding(t_start_ns=99 * SECOND), 100 * SECOND) is None
-    assert before_contact(scene, finding(object_id=None), 100 * SECOND) is None
+    assert speeds_before_contact(scene, finding(t_start_ns=104 * SECOND, closing_mps=None), 100 * SECOND) is not None
+    assert speeds_before_contact(scene, finding(t_start_ns=110 * SECOND), 100 * SECOND) is None
+    assert speeds_before_contact(scene, finding(t_start_ns=99 * SECOND), 100 * SECOND) is None
+    assert speeds_before_contact(scene, finding(object_id=None), 100 * SECOND) is None
 
 
 def test_the_strips_draw_what_the_scene_and_the_course_have(overtakes: Result) -> None:
@@ -190,13 +190,13 @@ def test_the_strips_draw_what_the_scene_and_the_course_have(overtakes: Result) -
 
 
 def test_a_chart_shows_the_margin_that_decides() -> None:
-    axis, cut = axis_that_decides([-47.0, -20.0, 0.58, 0.3], [0.58, 0.0], 100.0, 0.0)
+    axis, cut = axis_for_deciding_values([-47.0, -20.0, 0.58, 0.3], [0.58, 0.0], 100.0, 0.0)
     assert abs(axis.at(0.58) - axis.at(0.0)) > 20
     assert cut == [-47.0]
-    whole, none = axis_that_decides([-1.0, 0.58], [0.58, 0.0], 100.0, 0.0)
+    whole, none = axis_for_deciding_values([-1.0, 0.58], [0.58, 0.0], 100.0, 0.0)
     assert none == []
     assert whole.low < -1 < 0.58 < whole.high
-    assert axis_that_decides([1.0, 2.0], [], 100.0, 0.0)[1] == []
+    assert axis_for_deciding_values([1.0, 2.0], [], 100.0, 0.0)[1] == []
 
 
 def test_a_finding_that_few_copies_keep_is_only_possible() -> None:

@@ -144,7 +144,7 @@ def test_a_crowd_is_cut_to_the_worst_and_says_so(monkeypatch: pytest.MonkeyPatch
     from drivelint.report.html import page as module
 
     monkeypatch.setattr(module, "MAX_FINDINGS", 3)
-    monkeypatch.setattr(module, "MAX_DRIVES", 1)
+    monkeypatch.setattr(module, "MAX_DRIVE_SECTIONS", 1)
     rows: list[dict[str, Any]] = [
         finding(drive_id=f"d{k}", severity="critical" if k == 7 else "minor", t_worst_ns=(108 + k) * SECOND)
         for k in range(9)
@@ -330,7 +330,7 @@ def test_a_crowd_stays_small() -> None:
     rows = [verdict("fail" if k % 3 == 0 else "pass", drive_id=d) for k, d in enumerate(names)]
     found = [finding(drive_id=d) for k, d in enumerate(names) if k % 3 == 0]
     shown = page(result(rows, found, drives=[drive(d) for d in names]))
-    assert shown.count('<details class="drive ') <= module.MAX_DRIVES
+    assert shown.count('<details class="drive ') <= module.MAX_DRIVE_SECTIONS
     assert len(shown) < 1_000_000
 
 

@@ -13,7 +13,7 @@ import pytest
 
 from drivelint.gate import GateInputs, Waiver
 from drivelint.report.outputs import write
-from drivelint.result.counts import one_per_event
+from drivelint.result.counts import one_finding_per_event
 from drivelint.result.load import load_result
 from drivelint.result.model import Result
 from tests.report.browser import CHROMIUM, Page
@@ -52,7 +52,7 @@ def kinds(run: Result) -> Counter[str]:
     assert run.gate is not None
     ids = run.findings["finding_id"].to_pylist()
     return Counter(
-        "waived" if run.gate.waiver(name) else "known" if run.gate.in_baseline(name) else "new" for name in ids
+        "waived" if run.gate.waiver(name) else "known" if run.gate.is_in_baseline(name) else "new" for name in ids
     )
 
 
@@ -70,7 +70,10 @@ def test_each_finding_says_how_it_stands(gated: Result) -> None:
     gate = gated.gate
     assert gate is not None
     rows = gated.findings.to_pylist()
-    n_events = {kind: len(one_per_event(r for r in rows if gate.standing(r["finding_id"]) == kind)) for kind in told}
+    n_events = {
+        kind: len(one_finding_per_event(r for r in rows if gate.status_at_gate(r["finding_id"]) == kind))
+        for kind in told
+    }
     assert n_events["new"] < told["new"], "one overtake under several profiles"
     assert f"{n_events['new']} new, {n_events['known']} known, {n_events['waived']} waived." in parsed.text
     assert f": {n_events['new']} new (" in parsed.text.partition("Skip to")[2]

@@ -85,7 +85,7 @@ def test_the_link_is_an_anchor_of_the_report() -> None:
 def test_without_a_base_url_nothing_is_linked() -> None:
     """A relative link in a comment on a pull request would lead into the repository."""
     run = result(MIXED, [finding()])
-    for text in (told(run), markdown.difference(*compare_results(run, run, ("a", "b"), "critical"), "critical")):
+    for text in (told(run), markdown.render_difference(*compare_results(run, run, ("a", "b"), "critical"), "critical")):
         assert not [c for t in PARSER.parse(text) for c in t.children or [] if c.type == "link_open"]
     assert tables(told(run))[1][1][3] == f"{SDA} [nominal]"
 
@@ -142,9 +142,13 @@ def test_words_of_a_log_are_shown_as_they_are(where: str) -> None:
 
 @pytest.mark.parametrize("words", ["- x", "+ x", "# x", "> x", "1 * 2", "x\n\ny", "-1.50 s"])
 def test_words_begin_no_list_and_no_heading(words: str) -> None:
-    (token,) = [t for t in PARSER.parse(markdown.escaped(words)) if t.type == "inline"]
+    (token,) = [t for t in PARSER.parse(markdown.escape_markdown(words)) if t.type == "inline"]
     assert "".join(c.content for c in token.children or []) == " ".join(words.split())
-    assert [t.type for t in PARSER.parse(markdown.escaped(words))] == ["paragraph_open", "inline", "paragraph_close"]
+    assert [t.type for t in PARSER.parse(markdown.escape_markdown(words))] == [
+        "paragraph_open",
+        "inline",
+        "paragraph_close",
+    ]
 
 
 def gated(base: list[dict[str, Any]], new: list[dict[str, Any]]) -> Result:
@@ -208,7 +212,7 @@ def test_a_difference_as_markdown() -> None:
     base = result([verdict("fail")], [finding(object_id="6")])
     new = result([verdict("fail"), verdict("unknown", object_id="6")], [late])
     found, failing = compare_results(base, new, ("main", "pull|request"), "critical")
-    text = markdown.difference(found, failing, "critical", None)
+    text = markdown.render_difference(found, failing, "critical", None)
     assert text.startswith("## drivelint diff: 1 new, gone but not fixed: 1 unknown now")
     assert "exit 1: 1 new finding at or above severity critical." in text
     assert tables(text)[0][1:] == [["main", "0", "1", "0", "0", "0"], ["pull|request", "0", "1", "1", "0", "0"]]

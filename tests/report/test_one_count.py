@@ -13,7 +13,7 @@ from rich.console import Console
 
 from drivelint.gate import GateInputs, compare_results, descriptions
 from drivelint.report import markdown, terminal
-from drivelint.result.counts import one_per_event, rows_of_findings
+from drivelint.result.counts import extra_rows_sentence, one_finding_per_event
 from drivelint.result.model import Result, exit_status
 from tests.report.pages import page
 from tests.report.synthetic import SECOND, finding, result, rule, verdict
@@ -135,4 +135,4 @@ def test_gone_findings_are_counted_once_in_the_gate() -> None:
 )
 def test_a_table_says_why_it_has_more_rows(rows: list[dict[str, object]], why: str) -> None:
     filled = run(*rows).findings.to_pylist()
-    assert rows_of_findings(filled, one_per_event(filled)) == why
+    assert extra_rows_sentence(filled, one_finding_per_event(filled)) == why

@@ -18,7 +18,7 @@ from drivelint.errors import ExitCode
 from drivelint.gate import GateInputs, Waiver
 from drivelint.report import junit, markdown, terminal
 from drivelint.report.outcome import headline
-from drivelint.report.terminal_summary import verdict_line
+from drivelint.report.terminal_summary import outcome_line
 from drivelint.result.model import Result, exit_status
 from tests.report.pages import page
 from tests.report.synthetic import SDA, drive, finding, result, rule, verdict
@@ -56,7 +56,7 @@ def heads(of: Result) -> list[str]:
     title, sentence = markdown.render(of).decode().split("\n\n")[:2]
     label = title.removeprefix("## drivelint: ").partition(", exit")[0]
     said = [
-        verdict_line(of),
+        outcome_line(of),
         re.sub(r"<[^>]+>", " ", html.unescape(h1)),
         f"{label} {sentence.replace('*', '').removesuffix('.')}",
     ]
@@ -178,7 +178,7 @@ def test_what_is_gone_but_not_fixed_is_no_pass(now: list[dict[str, Any]], why: s
     of = against(result([verdict("fail")], [finding()]), result(now, rules=[rule(), LATER]))
     sentence = f"1 finding of the baseline at or above severity critical is gone but not fixed: {why}"
     assert exit_status(of) == (ExitCode.NOT_JUDGED, sentence)
-    assert sentence in verdict_line(of)
+    assert sentence in outcome_line(of)
     assert sentence in markdown.render(of).decode()
     suites = etree.fromstring(junit.render(of))
     (case,) = suites.findall("testsuite[@name='baseline']/testcase")

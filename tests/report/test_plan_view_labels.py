@@ -17,12 +17,12 @@ def actors(*names: str) -> list[Row]:
 
 def test_short_names_are_all_shown() -> None:
     rows = actors("ego", *(f"car {n}" for n in range(20)))
-    assert plan_view._labelled(rows, rows[0], rows[3:4]) == rows
+    assert plan_view._actors_with_label(rows, rows[0], rows[3:4]) == rows
     assert brief_id("truck 12") == "truck 12"
 
 
 def test_of_long_ids_those_concerned_and_the_nearest() -> None:
     rows = actors("ego", *(f"a34b697e-b881-471a-8da0-{n:012}" for n in range(20)))
-    shown = plan_view._labelled(rows, rows[0], rows[15:16])
+    shown = plan_view._actors_with_label(rows, rows[0], rows[15:16])
     assert shown == [rows[0], rows[15], *rows[1:6]]
     assert brief_id(rows[1]["actor_id"]) == "a34b697e…"

@@ -7,8 +7,8 @@ import time
 import pytest
 import rich.progress
 
-from drivelint.report.progress import Bar, NotePrinter, notes
-from drivelint.report.rule_progress import ToldLimits
+from drivelint.report.progress import NotePrinter, ProgressBar, note_printer
+from drivelint.report.rule_progress import ReportingRuleLimits
 
 
 def test_it_is_told_once_a_minute_how_far_a_stage_is(
@@ -34,8 +34,8 @@ def test_a_step_that_takes_long_is_told_and_what_was_done_before_says_nothing_of
 ) -> None:
     now_s = 0.0
     monkeypatch.setattr("drivelint.report.progress.time.monotonic", lambda: now_s)
-    monkeypatch.setattr("drivelint.report.progress._LOOK_S", 0.001)
-    with notes() as listener:
+    monkeypatch.setattr("drivelint.report.progress._CHECK_EVERY_S", 0.001)
+    with note_printer() as listener:
         listener.stage("checking", 10)
         listener.advance(8)
         listener.doing("judging 2 drives: rule 26 of 51", 1.0)
@@ -47,10 +47,10 @@ def test_a_step_that_takes_long_is_told_and_what_was_done_before_says_nothing_of
 
 def test_the_bar_moves_within_a_batch() -> None:
     drawn = rich.progress.Progress(disable=True)
-    bar = Bar(drawn)
-    limits = ToldLimits(bar, 3, None)
+    bar = ProgressBar(drawn)
+    limits = ReportingRuleLimits(bar, 3, None)
     bar.stage("checking", 5)
-    limits.begin(2)
+    limits.begin_batch(2)
     moved = []
     for rule_id in ("a", "b", "b", "c"):
         with limits.hold(None, rule_id, alone=True):  # type: ignore[arg-type]

@@ -289,7 +289,7 @@ def test_eighty_columns_tear_no_id_and_no_number_apart() -> None:
     assert "observed 58.00 m, required 64.00 m, margin -6.00 m" in narrow
     rules = list(load_rules().values())
     console = Console(file=io.StringIO(), width=80)
-    console.print(rules_text.listing(rules, 80))
+    console.print(rules_text.rules_table(rules, 80))
     listed = console.file.getvalue()  # type: ignore[attr-defined]
     assert all(rule.id in listed for rule in rules)
     assert all(word in listed.split() for rule in rules for word in rule.title.split())

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from drivelint.result.certainty import LEAST_KEEPING_SHARE
-from drivelint.result.counts import one_per_event
+from drivelint.result.counts import one_finding_per_event
 from drivelint.sql.statements import statement
 from tests.report.synthetic import SECOND, finding
 
@@ -43,12 +43,12 @@ def a_finding(name: str, **over: Any) -> dict[str, Any]:
 def test_one_overtake_under_two_profiles_is_one_and_so_is_a_touch_of_two_egos(
     other: dict[str, Any], counted: list[str]
 ) -> None:
-    assert ids(one_per_event([a_finding("a"), a_finding("b", **other)])) == counted
+    assert ids(one_finding_per_event([a_finding("a"), a_finding("b", **other)])) == counted
 
 
 def test_a_sure_finding_stands_for_one_that_is_only_possible() -> None:
     rows = [a_finding("a", n_copies=100, n_stays=50), a_finding("b", profile="observed", n_copies=100, n_stays=99)]
-    assert ids(one_per_event(rows)) == ["b"]
+    assert ids(one_finding_per_event(rows)) == ["b"]
 
 
 one = st.fixed_dictionaries(
@@ -79,4 +79,4 @@ def test_an_audit_counts_as_a_check_does(some: list[dict[str, Any]]) -> None:
         con.register("findings", pa.Table.from_pylist(rows))
         event = statement("fleet/event", of="", least_share=str(LEAST_KEEPING_SHARE))
         counted = {name for (name,) in con.execute(f"SELECT finding_id FROM ({event})").fetchall()}
-    assert counted == set(ids(one_per_event(rows)))
+    assert counted == set(ids(one_finding_per_event(rows)))

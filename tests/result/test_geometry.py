@@ -18,7 +18,7 @@ from drivelint.audit.worker import TABLES
 from drivelint.report.outputs import write
 from drivelint.resources import folder as folder_of
 from drivelint.result.files import parquet_bytes
-from drivelint.result.geometry import SHAPES, with_geometry
+from drivelint.result.geometry import GEOMETRIES_OF_TABLE, with_geometry
 from drivelint.result.load import load_result
 from drivelint.result.names import TABLE_OF_FILE
 from drivelint.result.schemas import empty_table
@@ -30,7 +30,11 @@ if TYPE_CHECKING:
 
     from drivelint.result.model import Result
 
-FILES = {stem: SHAPES[table]["geom"] for stem, table in TABLE_OF_FILE.items() if "geom" in SHAPES.get(table, ())}
+FILES = {
+    stem: GEOMETRIES_OF_TABLE[table]["geom"]
+    for stem, table in TABLE_OF_FILE.items()
+    if "geom" in GEOMETRIES_OF_TABLE.get(table, ())
+}
 
 
 @pytest.fixture(scope="module")
@@ -173,7 +177,7 @@ def blank(kind: pa.DataType, *, lists: int) -> object:
 
 
 @pytest.mark.parametrize("lists", [0, 1, 4])
-@pytest.mark.parametrize("table", SHAPES)
+@pytest.mark.parametrize("table", GEOMETRIES_OF_TABLE)
 def test_rows_without_a_known_coordinate_stay_and_have_no_geometry(table: str, lists: int) -> None:
     """Of nothing known at all, shapely makes no geometries rather than one for each row that has none."""
     schema = empty_table(table).schema
@@ -181,9 +185,9 @@ def test_rows_without_a_known_coordinate_stay_and_have_no_geometry(table: str, l
     rows = pa.table({field.name: pa.array([row[field.name]] * 3, field.type) for field in schema})
     made = with_geometry(rows, table)
     assert made.num_rows == 3
-    for column in SHAPES[table]:
+    for column in GEOMETRIES_OF_TABLE[table]:
         assert all(shapely.from_wkb(wkb).is_empty for wkb in made[column].to_pylist() if wkb is not None)
-    assert made.drop_columns(list(SHAPES[table])).to_pylist() == rows.to_pylist()
+    assert made.drop_columns(list(GEOMETRIES_OF_TABLE[table])).to_pylist() == rows.to_pylist()
 
 
 @pytest.mark.parametrize(("stem", "primary"), [("findings", "geom"), ("drives", "geom_lonlat")])

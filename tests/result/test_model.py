@@ -133,7 +133,7 @@ def test_an_error_of_a_draft_is_still_an_error() -> None:
 
 def test_a_lossy_drive_that_was_not_judged_is_no_lossy_verdict() -> None:
     run = result([verdict("pass")], drives=[drive(), drive("d2", lossy=True, status="not_judged", status_reason="cut")])
-    assert not run.lossy
+    assert not run.is_lossy
 
 
 def test_a_table_without_its_columns_is_refused() -> None:

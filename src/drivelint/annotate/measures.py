@@ -11,7 +11,7 @@ import numpy as np
 
 from drivelint.annotate.result_messages import Message
 from drivelint.result.counts import SEVERITIES
-from drivelint.result.text import finite
+from drivelint.result.text import replace_non_finite
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -68,5 +68,5 @@ def series_of(rows: pa.Table, rules: Iterable[Mapping[str, Any]]) -> set[Series]
 
 def _messages(rows: list[dict[str, Any]], clock: LogClock) -> list[Message]:
     times = clock.log_time(np.array([row["t_ns"] for row in rows], np.int64)).tolist()
-    known = ({key: value for key, value in row.items() if finite(value) is not None} for row in rows)
+    known = ({key: value for key, value in row.items() if replace_non_finite(value) is not None} for row in rows)
     return [Message(time, msgspec.json.encode(row)) for time, row in zip(times, known, strict=True)]

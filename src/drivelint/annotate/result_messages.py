@@ -12,7 +12,7 @@ from drivelint.formats.foxglove import messages as foxglove
 from drivelint.formats.protobuf import wire
 from drivelint.resources import folder
 from drivelint.result.certainty import POSSIBLE, certainty
-from drivelint.result.text import finite
+from drivelint.result.text import replace_non_finite
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -118,7 +118,7 @@ def _subject(row: dict[str, Any]) -> str:
 
 def _json(row: dict[str, Any], log_time: int) -> Message:
     # viewers refuse a schema that allows null, so a message leaves out fields with unknown values
-    known = {key: value for key, value in row.items() if finite(value) is not None}
+    known = {key: value for key, value in row.items() if replace_non_finite(value) is not None}
     return Message(log_time, msgspec.json.encode(known))
 
 

@@ -26,7 +26,7 @@ from drivelint.formats import registry
 from drivelint.gate import GateInputs
 from drivelint.report import outputs
 from drivelint.result import request
-from drivelint.result.evidence import lanes_of_map
+from drivelint.result.evidence import lane_shapes_of_map
 from drivelint.result.load import load_result
 from drivelint.result.names import RUN_FILE
 
@@ -244,4 +244,4 @@ def read_trace(
         )
         trace = registry.read_trace(Path(path), asked.ingest_options(need_ego=False))
         environment, trace = MapLibrary(asked).find(trace)
-        return TraceTables(trace, None if environment is None else lanes_of_map(environment))
+        return TraceTables(trace, None if environment is None else lane_shapes_of_map(environment))

@@ -18,7 +18,7 @@ from drivelint.fleet_report.audit_views import destination, is_audit, open_audit
 from drivelint.phrases import listed
 from drivelint.report.outcome import headline
 from drivelint.report.outputs import REPORT_FORMATS
-from drivelint.result.counts import one_per_event
+from drivelint.result.counts import one_finding_per_event
 from drivelint.result.model import exit_status
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ class AuditResult(TableSet):
         self._result = gated.audit_result(self._dest)
         findings = self._result.findings
         tables = {name: getattr(self._result, name) for name in ("verdicts", "findings", "drives", "rules")}
-        tables["events"] = pa.Table.from_pylist(one_per_event(findings.to_pylist()), schema=findings.schema)
+        tables["events"] = pa.Table.from_pylist(one_finding_per_event(findings.to_pylist()), schema=findings.schema)
         with open_audits(self._dest) as (con, audit, _):
             counted = create_counted_views(con)
             tables["logs"] = con.execute(

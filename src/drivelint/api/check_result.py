@@ -19,7 +19,7 @@ from drivelint.errors import UsageError
 from drivelint.explain import ExplainRequest, VerdictFilter, explain
 from drivelint.report import outputs
 from drivelint.result.model import exit_status
-from drivelint.result.names import PICTURES, TABLE_OF_FILE
+from drivelint.result.names import TABLE_OF_FILE, TABLE_OF_PICTURE_FILE
 from drivelint.result.publishing import publish
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ class CheckResult(TableSet):
         notes: tuple[str, ...] = (),
         scratch: TemporaryDirectory[str] | None = None,
     ) -> None:
-        kinds = {**TABLE_OF_FILE, **PICTURES}
+        kinds = {**TABLE_OF_FILE, **TABLE_OF_PICTURE_FILE}
         super().__init__({name: getattr(result, name) for name in kinds}, schema_tables=kinds)
         for name, table in self.tables.items():
             setattr(self, name, table)

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Final
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from drivelint.api.keywords import in_keywords
-from drivelint.report.html.environment import visible
+from drivelint.report.html.environment import escape_for_page
 from drivelint.report.inputs import input_notes
-from drivelint.report.terminal_summary import verdict_line, worst_gating
+from drivelint.report.terminal_summary import gating_findings_worst_first, outcome_line
 from drivelint.report.worst_first import when
 from drivelint.result import counts
 from drivelint.result.certainty import certainty
 from drivelint.result.model import exit_status
-from drivelint.result.text import comparison, measure, rule_name, subject
+from drivelint.result.text import measure, measured_values_text, rule_name, subject
 
 if TYPE_CHECKING:
     from jinja2 import Template
@@ -30,7 +30,7 @@ MOST_UNJUDGED_DRIVES: Final = 10
 
 def one_line(result: Result) -> str:
     """Return on one line: the outcome, whether the map fits, whether the logs are complete, and what was not judged."""
-    return f"{in_keywords(verdict_line(result))}; {_inputs(result)}"
+    return f"{in_keywords(outcome_line(result))}; {_inputs(result)}"
 
 
 def _inputs(result: Result) -> str:
@@ -44,7 +44,7 @@ def block_html(text: str) -> str:
 
 def summary_html(result: Result) -> str:
     """Return the summary of a result as HTML, with all text from logs escaped."""
-    found = worst_gating(result)
+    found = gating_findings_worst_first(result)
     rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
     starts = result.start_times
     end = exit_status(result)
@@ -57,18 +57,18 @@ def summary_html(result: Result) -> str:
             "rule": rule_name(row),
             "title": rules[row["rule_id"]]["title"],
             "who": subject(row),
-            "measured": comparison(row),
+            "measured": measured_values_text(row),
             "closing": "" if row["closing_mps"] is None else measure(row["closing_mps"], "m/s"),
         }
         for row in found[:MOST_FINDINGS]
     ]
     return _template().render(
-        verdict=in_keywords(verdict_line(result)),
+        verdict=in_keywords(outcome_line(result)),
         exit_code=int(end.code),
         why=in_keywords(end.why),
         inputs=_inputs(result),
         refused=[drive for drive in result.drives.to_pylist() if drive["status"] != "judged"][:MOST_UNJUDGED_DRIVES],
-        verdicts={word.replace("_", " "): n for word, n in counts.total(result.verdicts).items() if n},
+        verdicts={word.replace("_", " "): n for word, n in counts.verdict_counts(result.verdicts).items() if n},
         rows=rows,
         has_certainty=any(row["certainty"] for row in rows),
         left_out=len(found) - len(rows),
@@ -78,7 +78,7 @@ def summary_html(result: Result) -> str:
 @cache
 def _template() -> Template:
     environment = Environment(
-        finalize=visible,
+        finalize=escape_for_page,
         loader=FileSystemLoader(Path(__file__).parent),
         autoescape=True,
         undefined=StrictUndefined,

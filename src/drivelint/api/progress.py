@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from drivelint.report.progress import Progress, Silent, bar
+from drivelint.report.progress import Progress, Silent, progress_bar
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -26,9 +26,9 @@ class NoteKeeper(Progress):
         """Report `n` finished units."""
         self._display.advance(n)
 
-    def doing(self, activity: str, part: float = 0.0) -> None:
+    def doing(self, activity: str, units_since_advance: float = 0.0) -> None:
         """Report the current activity."""
-        self._display.doing(activity, part)
+        self._display.doing(activity, units_since_advance)
 
     def note(self, text: str) -> None:
         """Store a note."""
@@ -42,5 +42,5 @@ def kept_notes(show: bool) -> Iterator[NoteKeeper]:
     if not show:
         yield NoteKeeper(Silent())
         return
-    with bar() as shown:
+    with progress_bar() as shown:
         yield NoteKeeper(shown)

@@ -9,7 +9,7 @@ import duckdb
 
 from drivelint.errors import DriveLintError, UsageError
 from drivelint.phrases import hint
-from drivelint.result.geometry import EARTH_COLUMN, SHAPES, with_geometry
+from drivelint.result.geometry import EARTH_GEOMETRY_COLUMN, GEOMETRIES_OF_TABLE, with_geometry
 from drivelint.sql import store
 
 if TYPE_CHECKING:
@@ -91,7 +91,7 @@ class Table:
 
         Errors: `DriveLintError` if geopandas is not installed, or the table has no geometry.
         """
-        if self._schema_table not in SHAPES:
+        if self._schema_table not in GEOMETRIES_OF_TABLE:
             raise UsageError(
                 "geo(): this table has no geometry; findings, drives, scenes, lanes, spaces, courses and tracks have"
             )
@@ -99,10 +99,10 @@ class Table:
             import geopandas as gpd
         except ImportError as error:
             raise DriveLintError("geo() needs geopandas, which is not installed: pip install geopandas") from error
-        shown, shapes = with_geometry(self._rows, self._schema_table), SHAPES[self._schema_table]
+        shown, shapes = with_geometry(self._rows, self._schema_table), GEOMETRIES_OF_TABLE[self._schema_table]
         series = {
             column: gpd.GeoSeries.from_wkb(
-                shown[column].to_pylist(), crs="OGC:CRS84" if column == EARTH_COLUMN else None
+                shown[column].to_pylist(), crs="OGC:CRS84" if column == EARTH_GEOMETRY_COLUMN else None
             )
             for column in shapes
         }
@@ -140,7 +140,7 @@ class TableSet:
     def __init__(self, tables: Mapping[str, pa.Table], schema_tables: Mapping[str, str]) -> None:
         """Store the tables. `schema_tables`: name -> table of the schema that describes its columns and geometry."""
         self.tables = {name: Table(rows, schema_tables.get(name)) for name, rows in tables.items()}
-        self._shapes = {name: table for name, table in schema_tables.items() if table in SHAPES}
+        self._shapes = {name: table for name, table in schema_tables.items() if table in GEOMETRIES_OF_TABLE}
 
     def sql(self, query: str, params: object = None) -> Table:
         """Return the rows of a DuckDB query over the tables, by their names. `params`: values for `?` or `$name`.
@@ -155,7 +155,9 @@ class TableSet:
             for name, rows in self._queried().items():
                 if has_geometry and name in self._shapes:
                     con.register("_wkb", with_geometry(rows, self._shapes[name]))
-                    made = ", ".join(f"ST_GeomFromWKB({each}) AS {each}" for each in SHAPES[self._shapes[name]])
+                    made = ", ".join(
+                        f"ST_GeomFromWKB({each}) AS {each}" for each in GEOMETRIES_OF_TABLE[self._shapes[name]]
+                    )
                     con.execute(f"CREATE TABLE {name} AS SELECT * REPLACE ({made}) FROM _wkb")
                     con.unregister("_wkb")
                 else:

@@ -12,7 +12,7 @@ import pyarrow.compute as pc
 from drivelint.api.tables import Table
 from drivelint.incident.finding import named_finding
 from drivelint.report.html.environment import page_environment
-from drivelint.report.html.strips import gap_series, strips
+from drivelint.report.html.strips import box_distance_line, strips
 from drivelint.report.html.worst_moment import finding_key
 
 if TYPE_CHECKING:
@@ -112,6 +112,6 @@ def _add_motion(values: dict[int, dict[str, float | None]], scene: Row, object_i
         for point in (actor and actor["path"]) or ():
             told = {f"{who}_speed_mps": point["speed_mps"], f"{who}_accel_mps2": point["accel_mps2"]}
             values.setdefault(point["t_ns"], {}).update(told)
-    gap = gap_series(ego, met) if met is not None and ego["path"] and met["path"] else None
+    gap = box_distance_line(ego, met) if met is not None and ego["path"] and met["path"] else None
     for t_ns, distance in zip(gap.t_ns, gap.values, strict=True) if gap is not None else ():
         values[t_ns]["gap_m"] = distance

@@ -22,7 +22,7 @@ from drivelint.audit.driver import empty_rows
 from drivelint.audit.unpacked import AT_WORK, SUMMARY_FILE
 from drivelint.audit.worker import TABLES, batch_name, rows_sha256
 from drivelint.errors import UsageError
-from drivelint.result.folder import hashes_in, manifest
+from drivelint.result.folder import hashes_in, manifest_bytes
 from drivelint.result.names import MANIFEST
 
 if TYPE_CHECKING:
@@ -40,7 +40,7 @@ def seal(results: ResultStore, names: Iterable[str], summary: bytes) -> None:
     hashes = {name: sha256(results.read(name) or b"").hexdigest() for name in {*names, *results.names(_TABLES)}}
     hashes[SUMMARY_FILE] = sha256(summary).hexdigest()
     results.write(SUMMARY_FILE, summary)  # before the list: an audit with a summary must have one
-    results.write(MANIFEST, manifest(set(hashes), dict(sorted(hashes.items()))))
+    results.write(MANIFEST, manifest_bytes(set(hashes), dict(sorted(hashes.items()))))
 
 
 def unseal(results: ResultStore) -> None:

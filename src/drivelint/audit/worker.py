@@ -31,7 +31,7 @@ from drivelint.errors import DriveLintError, MapError, TraceError
 from drivelint.formats import read_trace
 from drivelint.formats.files import identify
 from drivelint.result import collect
-from drivelint.result.model import BEYOND_LIMITS, off_map_reason
+from drivelint.result.model import LIMIT_ERROR_CODES, off_map_reason
 from drivelint.sql import store
 
 if TYPE_CHECKING:
@@ -234,7 +234,7 @@ def said_of_rows(rows: Mapping[str, pa.Table], stable: pa.Array) -> dict[str, An
     (about,) = rows["drives"].to_pylist()
     verdicts = rows["verdicts"]
     gating = verdicts.filter(pc.is_in(verdicts["rule_id"], value_set=stable))
-    limited = pc.is_in(verdicts["reason_code"], value_set=pa.array(BEYOND_LIMITS, pa.string()))
+    limited = pc.is_in(verdicts["reason_code"], value_set=pa.array(LIMIT_ERROR_CODES, pa.string()))
     return {
         "status": "judged" if about["status"] == "judged" else "refused",
         "drive_id": about["drive_id"],

@@ -226,7 +226,7 @@ def _word_problems(h: Header) -> Iterator[tuple[str, str]]:
         if not _NAME.fullmatch(name):
             yield f"params.{name}", f"parameter {name!r}: use lower-case letters, digits and _, a letter first"
     for key, words in (("requires", h.requires), ("pass_requires", h.pass_requires)):
-        yield from ((key, f"{key}: {wrong}") for word in words if (wrong := signals.problem(word)))
+        yield from ((key, f"{key}: {wrong}") for word in words if (wrong := signals.unknown_signal_message(word)))
     known = vocabularies()["rule_tag"]
     yield from (("tags", f"tags: {wrong}") for word in h.tags if (wrong := known.problem(word)))
     yield from (("law", f"law: {wrong}") for word in h.law if (wrong := conditions.value_problem("nation", word)))

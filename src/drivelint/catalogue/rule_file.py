@@ -14,7 +14,7 @@ from drivelint.catalogue.rule import Rule
 from drivelint.catalogue.rule_words import check_words
 from drivelint.errors import RuleError
 from drivelint.phrases import hint, nearest_word
-from drivelint.reasons.reason_text import shared_texts
+from drivelint.reasons.reason_text import texts_of_shared_codes
 from drivelint.sql import store
 
 if TYPE_CHECKING:
@@ -263,7 +263,7 @@ def _check_words(header: Header, sections: dict[str, Section], file: Path, toml:
 
 def _check_reasons(header: Header, queries: dict[str, Query], file: Path, toml: str) -> Iterator[str]:
     """Yield the problems of reason codes: codes without a text, texts without their arguments, and unused codes."""
-    known = {**shared_texts(), **header.reasons}
+    known = {**texts_of_shared_codes(), **header.reasons}
     given = [reason for query in queries.values() for reason in query.reasons]
     for code, arguments, place in given:
         if code not in known:

@@ -282,9 +282,9 @@ def _judge(
 def _stdout(result: Result, format_: options.Format, out: Path | None, *, verbose: bool) -> str:
     """Return the text of a result for stdout."""
     from drivelint.report import summary, terminal
-    from drivelint.result.one_line import on_one_line
+    from drivelint.result.one_line import result_on_one_line
 
     if format_ == "json":
         return inert_json(summary.render(result).decode())
-    told = on_one_line(result)
+    told = result_on_one_line(result)
     return rich_text(lambda width: terminal.render(told, None if out is None else str(out), width, verbose=verbose))

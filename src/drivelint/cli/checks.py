@@ -21,7 +21,7 @@ def report_check(folder: Path, to: str, base_url: str | None) -> None:
     """Write a report of a check into its folder, and print its name."""
     from drivelint.report import markdown
     from drivelint.report.outputs import REPORT_FORMATS
-    from drivelint.result.folder import add
+    from drivelint.result.folder import add_file
     from drivelint.result.load import load_result
 
     if base_url is not None and to != "markdown":
@@ -29,7 +29,7 @@ def report_check(folder: Path, to: str, base_url: str | None) -> None:
     name, render = REPORT_FORMATS[to]
     result = load_result(folder)
     warn_of_partial(folder, result)
-    add(folder, name, render(result) if base_url is None else markdown.render(result, base_url))
+    add_file(folder, name, render(result) if base_url is None else markdown.render(result, base_url))
     typer.echo(inert_line(str(folder / name)))
 
 
@@ -52,11 +52,11 @@ def diff_checks(base: Path, new: Path, format_: str, fail_on: str | None) -> Non
     """Print the difference of two checks, and exit with its exit code."""
     from drivelint.gate import compare_results, descriptions
     from drivelint.result.load import load_result
-    from drivelint.result.one_line import on_one_line
+    from drivelint.result.one_line import result_on_one_line
 
     earlier, later = load_result(base), load_result(new)
     if format_ == "text":
-        earlier, later = on_one_line(earlier), on_one_line(later)
+        earlier, later = result_on_one_line(earlier), result_on_one_line(later)
     warn_of_partial(base, earlier)
     warn_of_partial(new, later)
     least = later.fail_on if fail_on is None else fail_on
@@ -66,7 +66,7 @@ def diff_checks(base: Path, new: Path, format_: str, fail_on: str | None) -> Non
     elif format_ == "markdown":
         from drivelint.report import markdown
 
-        typer.echo(markdown.difference(difference, failing, least, later.gate))
+        typer.echo(markdown.render_difference(difference, failing, least, later.gate))
     else:
         typer.echo(inert(descriptions.difference_text(difference, failing, least, later.gate)))
     raise typer.Exit(int(descriptions.exit_code(difference, failing, least)))
@@ -75,6 +75,6 @@ def diff_checks(base: Path, new: Path, format_: str, fail_on: str | None) -> Non
 def warn_of_partial(folder: Path, result: Result) -> None:
     """Print a warning on stderr if a result is from an interrupted run."""
     if result.interrupted:
-        from drivelint.result.model import partial_sentence
+        from drivelint.result.model import interruption_sentence
 
-        typer.echo(f"drivelint: {inert_line(str(folder))}: {partial_sentence(result.drives)}", err=True)
+        typer.echo(f"drivelint: {inert_line(str(folder))}: {interruption_sentence(result.drives)}", err=True)

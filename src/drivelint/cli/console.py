@@ -60,13 +60,19 @@ def say_nothing_kept(out: Path | None, *, judged_none: bool) -> None:
 @contextmanager
 def tells_of_earlier(out: Path | None) -> Iterator[None]:
     """Print where the earlier result is, if the run inside the block ends without a result."""
-    from drivelint.result.folder import EARLIER
+    from drivelint.result.folder import EARLIER_FOLDER
 
     try:
         yield
     except (DriveLintError, KeyboardInterrupt):
-        if out is not None and (out / EARLIER / "summary.json").is_file() and not (out / "summary.json").is_file():
-            typer.echo(f"drivelint: the result of an earlier run is now in {inert_line(str(out / EARLIER))}", err=True)
+        if (
+            out is not None
+            and (out / EARLIER_FOLDER / "summary.json").is_file()
+            and not (out / "summary.json").is_file()
+        ):
+            typer.echo(
+                f"drivelint: the result of an earlier run is now in {inert_line(str(out / EARLIER_FOLDER))}", err=True
+            )
         raise
 
 
@@ -79,11 +85,11 @@ def say_kept(statuses: Sequence[str], out: Path | None) -> None:
 
 def progress(quiet: bool) -> AbstractContextManager[Progress]:
     """Return a progress bar if stderr is a terminal; else an object that prints only the pipeline's notes, as lines."""
-    from drivelint.report.progress import Silent, bar, notes
+    from drivelint.report.progress import Silent, note_printer, progress_bar
 
     if quiet:
         return nullcontext(Silent())
-    return bar() if sys.stderr.isatty() else notes()
+    return progress_bar() if sys.stderr.isatty() else note_printer()
 
 
 def _inert_console() -> type[Console]:

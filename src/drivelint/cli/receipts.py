@@ -15,11 +15,11 @@ from drivelint.cli.restart import DEAF_RULES_VARIABLE
 from drivelint.memo import cache_folder
 from drivelint.own_files import written_files
 from drivelint.receipts import store
-from drivelint.receipts.program import question_sha256
-from drivelint.receipts.recorder import Recorder, recording
+from drivelint.receipts.program import receipt_key
+from drivelint.receipts.recorder import InputRecorder, record_inputs
 from drivelint.report.progress import NotePrinter
 from drivelint.result import folder
-from drivelint.result.names import MARK, REPORT_FILES, RESULT_FILES
+from drivelint.result.names import MARK_FILE, REPORT_FILES, RESULT_FILE_GLOBS
 from drivelint.settings import SETTINGS_FILE
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ _WITHOUT_EFFECT: Final = frozenset({"cache", "jobs", "quiet", "today"})
 """Options that do not affect a stored result. With waivers, the receipt stores the day separately."""
 _UNNAMED: Final = (SETTINGS_FILE, "proj.ini")
 """Files of the working folder that are read although no option names them: settings, and PROJ's configuration, if it exists."""
-_SUBFOLDERS: Final = frozenset({"annotated", folder.EARLIER, f"{folder.EARLIER}/annotated"})
+_SUBFOLDERS: Final = frozenset({"annotated", folder.EARLIER_FOLDER, f"{folder.EARLIER_FOLDER}/annotated"})
 _AGAIN: Final = "nothing has changed since an earlier run: these are its verdicts (--no-cache judges again)"
 
 
@@ -53,8 +53,8 @@ class Outputs:
         if name in _SUBFOLDERS:
             with suppress(OSError):
                 return all(self(os.path.join(path, each)) for each in os.listdir(path))  # noqa: PTH118, PTH208
-        name = name.removeprefix(f"{folder.EARLIER}/")
-        return name.startswith(".drivelint.") or any(fnmatchcase(name, pattern) for pattern in RESULT_FILES)
+        name = name.removeprefix(f"{folder.EARLIER_FOLDER}/")
+        return name.startswith(".drivelint.") or any(fnmatchcase(name, pattern) for pattern in RESULT_FILE_GLOBS)
 
 
 class CheckReceipts:
@@ -77,7 +77,7 @@ class CheckReceipts:
         ]
         self._named = [*options["traces"], *(options["rules_dir"] or ()), *(path for path in paths if path is not None)]
         self._is_output = Outputs(self._out)
-        self._recorder: Recorder | None = None
+        self._recorder: InputRecorder | None = None
         self._key: str | None = None
         elsewhere = options["keep_db"] or options["evidence"] is not None or DEAF_RULES_VARIABLE in os.environ
         if options["cache"] and not elsewhere and cache_folder() is not None and not self._has_outputs(self._named):
@@ -86,7 +86,7 @@ class CheckReceipts:
                 name: os.path.realpath(options[name]) for name in ("out", "baseline") if options[name] is not None
             }
             places |= {} if settings is None else {"settings": os.path.realpath(settings)}
-            self._key = question_sha256({**counted, "places": places})
+            self._key = receipt_key({**counted, "places": places})
 
     def earlier(self) -> store.Receipt | None:
         """Write the files of an earlier run with the same inputs, and return its receipt; None without such a run.
@@ -110,9 +110,9 @@ class CheckReceipts:
 
     def _write(self, receipt: store.OpenedReceipt, out: Path) -> None:
         overwrite, reports = self._overwrite, list(REPORT_FILES.values())
-        with folder.working_folder(out, RESULT_FILES, reports, MARK, overwrite=overwrite) as work:
+        with folder.working_folder(out, RESULT_FILE_GLOBS, reports, MARK_FILE, overwrite=overwrite) as work:
             contents, finished_files = receipt.unpack(work)
-            folder.replace(out, contents, finished_files, MARK, RESULT_FILES, overwrite=overwrite)
+            folder.replace_result(out, contents, finished_files, MARK_FILE, RESULT_FILE_GLOBS, overwrite=overwrite)
 
     @contextmanager
     def recording(self) -> Iterator[None]:
@@ -120,7 +120,7 @@ class CheckReceipts:
         if self._key is None:
             yield
             return
-        with recording(self._is_output, [*_UNNAMED, *self._named]) as self._recorder:
+        with record_inputs(self._is_output, [*_UNNAMED, *self._named]) as self._recorder:
             yield
 
     def keep(
@@ -143,10 +143,14 @@ class CheckReceipts:
             return
         day = self._day if gate is not None and gate.waivers else None
         with suppress(OSError):
-            names = [] if self._out is None else sorted(written_files(self._out), key=lambda name: (name == MARK, name))
+            names = (
+                []
+                if self._out is None
+                else sorted(written_files(self._out), key=lambda name: (name == MARK_FILE, name))
+            )
             sizes = {name: (self._out / name).stat().st_size for name in names} if self._out else {}
             receipt = store.Receipt(inputs, stdout, result.notes, exit_code, day, sizes, grown_files)
-            store.keep(self._key, receipt, self._out)
+            store.store_receipt(self._key, receipt, self._out)
 
     def _has_outputs(self, paths: Iterator[str] | Any) -> bool:
         return any(self._is_output(os.path.realpath(path)) for path in paths)

@@ -34,9 +34,9 @@ def list_(
     known = load_rules(tuple(rules_dir or ()))
     rules = select_rules(known, selectors, ()) if selectors else list(known.values())
     if format_ == "json":
-        typer.echo(inert_json(rules_text.listing_json(rules)))
+        typer.echo(inert_json(rules_text.rules_as_json(rules)))
     else:
-        print_rich(lambda width: rules_text.listing(rules, width))
+        print_rich(lambda width: rules_text.rules_table(rules, width))
 
 
 @app.command("show")
@@ -59,7 +59,7 @@ def show(
     begun = [rule for rule in rules.values() if rule.id.startswith((rule_id, f"{rule.pack}.{rule_id}"))]
     for rule in [rules[rule_id]] if rule_id in rules else begun or select_rules(rules, [rule_id], []):
         print_rich(rules_text.rule_details(rule))
-        print_rich(rules_text.source(rule), soft_wrap=True)
+        print_rich(rules_text.path_and_sql(rule), soft_wrap=True)
 
 
 @app.command("new")
@@ -93,12 +93,12 @@ def page_(
     and where logs and maps contain the signals that rules require.
     """
     from drivelint.catalogue import load_rules
-    from drivelint.report.catalogue_page import page
+    from drivelint.report.catalogue_page import render_markdown
     from drivelint.resources import folder as shipped
 
     rules = load_rules((folder,) if folder else ()).values()
     packs = folder or shipped("queries") / "assertions"
-    text = inert(page([rule for rule in rules if rule.path.is_relative_to(packs)], packs))
+    text = inert(render_markdown([rule for rule in rules if rule.path.is_relative_to(packs)], packs))
     if out is None:
         typer.echo(text, nl=False)
     else:

@@ -14,7 +14,7 @@ from threading import Event, Lock, Thread
 from typing import TYPE_CHECKING, Final, Literal, NoReturn, Protocol
 
 from drivelint.computing import Work, resident_bytes
-from drivelint.receipts.events import machine_bound
+from drivelint.receipts.events import report_not_repeatable
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -146,7 +146,7 @@ class RuleLimits:
                 if rule_run.over.is_set():
                     return
                 rule_run.excess = excess
-                machine_bound(f"rule {rule_id} exceeded its limits")
+                report_not_repeatable(f"rule {rule_id} exceeded its limits")
                 con.interrupt()
                 if now >= patience and self._deaf is not None:
                     self._deaf.restart_without(self._task, rule_id, excess)

@@ -26,7 +26,7 @@ from drivelint.explain.source import open_drive
 from drivelint.explain.target import VerdictFilter, find_verdict
 from drivelint.explain.verdict_context import VerdictContext, lacks_signal, sufficient_part
 from drivelint.reasons import reason_text
-from drivelint.reasons.signals import condition_of
+from drivelint.reasons.signals import unknown_condition_column
 from drivelint.result import request as run_request
 from drivelint.result.load import load_result
 
@@ -93,7 +93,9 @@ def explain(request: ExplainRequest) -> Explanation:
         decides = _decides(target, series, now)
         parts = evidence.requirement_parts(case.rule, target, sandbox, case.params, decides)
         missing_signal = row["reason_code"].removeprefix("missing_") if lacks_signal(row) else None
-        condition = condition_of(row["reason_code"]) if row["verdict"] == "unknown" and not target.finding else None
+        condition = (
+            unknown_condition_column(row["reason_code"]) if row["verdict"] == "unknown" and not target.finding else None
+        )
         rows = evidence.rows_read(
             case.rule, target, sandbox, decides, missing_signal=missing_signal, condition=condition
         )
@@ -171,7 +173,7 @@ def _case(run_options: RunRequest, target: Target, rules: pa.Table, memory: int 
 def _advice(rule: Rule, row: Mapping[str, Any], start_ns: int) -> str | None:
     """Return in words what the user can record or provide to decide an unknown verdict; None: nothing helps."""
     if row["cause_code"] is not None:
-        return reason_text.advice_sentence(
+        return reason_text.sentence_with_advice(
             row["cause_code"], json.loads(row["cause_args"] or "{}"), start_ns, rule.reasons
         )
     return {"reference_time_unknown": rule.without_time, "anchor_unknown": rule.without_anchor}.get(row["reason_code"])

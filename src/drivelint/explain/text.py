@@ -16,8 +16,8 @@ from drivelint.drive.declared_events import EVENTS
 from drivelint.explain.plot import plot
 from drivelint.explain.verdict_context import lacks_signal
 from drivelint.phrases import one_line
-from drivelint.reasons.signals import UNRECORDED_PREFIX, condition_of, remedy
-from drivelint.result.text import ego_name, finite, seconds
+from drivelint.reasons.signals import UNRECORDED_PREFIX, remedy, unknown_condition_column
+from drivelint.result.text import ego_name, replace_non_finite, seconds
 from drivelint.result.text_templates import text_template
 from drivelint.sql import store
 
@@ -60,7 +60,7 @@ def to_json(explanation: Explanation) -> str:
     plain["rows"] = [rows._asdict() for rows in explanation.rows]
     plain["parts"] = [_json_names(part._asdict()) for part in explanation.parts]
     plain["changes"] = [_json_names(change._asdict()) for change in explanation.changes]
-    return json.dumps(finite(plain), indent=2, ensure_ascii=False, allow_nan=False)
+    return json.dumps(replace_non_finite(plain), indent=2, ensure_ascii=False, allow_nan=False)
 
 
 def _json_names(fields: dict[str, Any]) -> dict[str, Any]:
@@ -152,7 +152,9 @@ def _sql(explanation: Explanation) -> list[str]:
 
 def _cells(explanation: Explanation, table: str, row: Row) -> list[str]:
     """Return the columns of a row that the rule's SQL or the verdict's condition names, each with value and meaning."""
-    condition = None if "finding_id" in explanation.verdict else condition_of(explanation.verdict["reason_code"])
+    condition = (
+        None if "finding_id" in explanation.verdict else unknown_condition_column(explanation.verdict["reason_code"])
+    )
     asked = {"ego_condition": condition, "ego_state": "lanelet_id"}.get(table) if condition else None
     sql = "\n".join(explanation.sql.values())
     named = [

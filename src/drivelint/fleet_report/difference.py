@@ -15,7 +15,7 @@ from drivelint.fleet.rate_change import RateChange, RateTest, compare_rates
 from drivelint.fleet_report.audit_views import BASE
 from drivelint.fleet_report.rows import counted_ids, rows
 from drivelint.gate.descriptions import DIFF_STATUS_TITLES, counts_sentence
-from drivelint.result.counts import SEVERITIES, VERDICTS, rows_sentence
+from drivelint.result.counts import SEVERITIES, VERDICTS, rows_and_findings_sentence
 from drivelint.result.gate import DIFF_STATUSES, ComparedFinding
 from drivelint.result.text import number
 from drivelint.sql.statements import statement
@@ -140,7 +140,9 @@ class AuditDifference:
 
     def rows_of(self, standing: str) -> str:
         """Return a sentence that explains why a standing has more rows than findings; '' if it does not."""
-        return rows_sentence(self.counts[standing], self.event_counts[standing], is_of_profiles=self.has_profiles)
+        return rows_and_findings_sentence(
+            self.counts[standing], self.event_counts[standing], has_profile_repeats=self.has_profiles
+        )
 
     @property
     def is_disjoint(self) -> bool:

@@ -12,10 +12,10 @@ from drivelint.fleet_report.difference import NOTHING_IN_COMMON
 from drivelint.fleet_report.figures import figure, interval, share
 from drivelint.gate.descriptions import DIFF_STATUS_TITLES, MAX_LINES, exit_sentence, finding_line
 from drivelint.phrases import one_line, plural
-from drivelint.report.markdown import code, escaped
+from drivelint.report.markdown import escape_markdown, markdown_code
 from drivelint.result.counts import VERDICTS
-from drivelint.result.gate import NOT_FIXED
-from drivelint.result.text import finite
+from drivelint.result.gate import NOT_FIXED_WORDS
+from drivelint.result.text import replace_non_finite
 from drivelint.result.text_templates import text_template
 
 if TYPE_CHECKING:
@@ -154,15 +154,15 @@ def to_text(difference: AuditDifference, fail_on: str | None, *, markdown: bool 
     filters: dict[str, Any] = {
         "finding_line": finding_line,
         "rate_line": rate_line,
-        "escaped": escaped,
-        "code": code,
+        "escaped": escape_markdown,
+        "code": markdown_code,
     }
     name = f"templates/difference.{'md' if markdown else 'txt'}.j2"
     text = text_template(__file__, name, None if markdown else _one_line, **filters).render(
         diff=difference,
         verdicts=VERDICTS,
         titles=DIFF_STATUS_TITLES,
-        words={standing: NOT_FIXED.get(standing, standing) for standing in DIFF_STATUS_TITLES},
+        words={standing: NOT_FIXED_WORDS.get(standing, standing) for standing in DIFF_STATUS_TITLES},
         most=MAX_LINES,
         exit=_exit(difference, fail_on),
     )
@@ -211,7 +211,7 @@ def to_json(difference: AuditDifference, fail_on: str | None) -> str:
             if each.p_value is not None or each.occasion_p_value is not None
         ],
     }
-    return msgspec.json.format(msgspec.json.encode(finite(msgspec.to_builtins(content))), indent=2).decode()
+    return msgspec.json.format(msgspec.json.encode(replace_non_finite(msgspec.to_builtins(content))), indent=2).decode()
 
 
 def _rate_change(change: RateChange) -> dict[str, Any]:

@@ -19,11 +19,11 @@ from drivelint.fleet_report import figures
 from drivelint.fleet_report.drive_command import check_command
 from drivelint.fleet_report.rows import gravest_first, one_per_event, options_column, ranked, rows
 from drivelint.phrases import plural
-from drivelint.reasons.signals import WHAT_IS_NULL, remedy
+from drivelint.reasons.signals import DEFAULT_REMEDY, remedy
 from drivelint.report.html.anchors import anchor
 from drivelint.report.html.environment import page_environment
-from drivelint.result.certainty import doubt
-from drivelint.result.counts import SEVERITIES, VERDICTS, group_rows, rows_sentence
+from drivelint.result.certainty import doubt_words
+from drivelint.result.counts import SEVERITIES, VERDICTS, group_rows, rows_and_findings_sentence
 from drivelint.result.text import ego_name, utc_at
 from drivelint.sql.statements import statement
 
@@ -135,7 +135,7 @@ def _page_content(
     audit: Audit, drive: Row, findings: list[Row], verdict_counts: list[Row], undecided: list[Row]
 ) -> Row:
     for row in findings:
-        row |= {"doubt": doubt(row), "utc": utc_at(row["t_worst_ns"], drive)}
+        row |= {"doubt": doubt_words(row), "utc": utc_at(row["t_worst_ns"], drive)}
     for row in undecided:
         row["mend"] = remedy(row["reason_code"], None, drive["format"] or "mapped")
     counts = dict.fromkeys(VERDICTS, 0) | {row["verdict"]: row["n"] for row in verdict_counts}
@@ -149,8 +149,8 @@ def _page_content(
         "findings": findings,
         "n_findings": n_findings,
         "n_rows": n_rows,
-        "rows_sentence": rows_sentence(
-            n_rows, n_findings, is_of_profiles=bool(findings and findings[0]["is_of_profiles"])
+        "rows_sentence": rows_and_findings_sentence(
+            n_rows, n_findings, has_profile_repeats=bool(findings and findings[0]["is_of_profiles"])
         ),
         "counts": counts,
         "undecided": undecided,
@@ -178,8 +178,11 @@ def _headline(drive: Row, by_severity: Mapping[str, int], counts: Mapping[str, i
 @cache
 def _environment() -> Environment:
     environment = page_environment(
-        ("tables.js",), _HERE / "templates", ("fleet.css", "drive.css"), base=("report.css", "narrow.css", "first.css")
+        ("tables.js",),
+        _HERE / "templates",
+        ("fleet.css", "drive.css"),
+        base_styles=("report.css", "narrow.css", "first.css"),
     )
     environment.filters |= {"ego_name": ego_name, "figure": figures.figure, "plural": plural}
-    environment.globals |= {"what_is_null": WHAT_IS_NULL, "anchor": anchor}
+    environment.globals |= {"what_is_null": DEFAULT_REMEDY, "anchor": anchor}
     return environment

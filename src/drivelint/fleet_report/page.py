@@ -16,9 +16,9 @@ from drivelint.fleet_report.difference_text import rate_line, rate_name, rate_si
 from drivelint.fleet_report.drive_pages import MOST_DRIVES
 from drivelint.gate.descriptions import DIFF_STATUS_TITLES, finding_line
 from drivelint.phrases import plural
-from drivelint.reasons.signals import WHAT_IS_NULL, how_to_provide, remedy
+from drivelint.reasons.signals import DEFAULT_REMEDY, how_to_provide, remedy
 from drivelint.report.html.environment import page_environment
-from drivelint.report.markdown import code, escaped
+from drivelint.report.markdown import escape_markdown, markdown_code
 from drivelint.report.progress import Silent
 from drivelint.result.counts import SEVERITIES, VERDICTS
 from drivelint.result.text_templates import text_template
@@ -105,9 +105,9 @@ def html(fleet: FleetContent, links: Mapping[str, str] = NO_LINKS) -> bytes:
 
 def markdown(fleet: FleetContent) -> bytes:
     """Return the page as Markdown in UTF-8, without pictures."""
-    text = text_template(__file__, "templates/fleet.md.j2", **_FILTERS, escaped=escaped, code=code).render(
-        _words(fleet)
-    )
+    text = text_template(
+        __file__, "templates/fleet.md.j2", **_FILTERS, escaped=escape_markdown, code=markdown_code
+    ).render(_words(fleet))
     return text.encode("utf-8", "replace")
 
 
@@ -147,7 +147,7 @@ def _mend(undecided: Undecided) -> str:
     """Return the remedy for a reason of unknown verdicts, with the text of one verdict as an example."""
     advice = remedy(undecided.reason_code, None, "mapped")
     example = f"{undecided.rule_id}: {undecided.reason}"
-    return example if advice == WHAT_IS_NULL else f"{advice} ({example})"
+    return example if advice == DEFAULT_REMEDY else f"{advice} ({example})"
 
 
 _FILTERS: Final[dict[str, Any]] = {

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.report.html.svg import num, round_step
+from drivelint.report.html.svg import round_step, svg_number
 from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ def finding_map(con: duckdb.DuckDBPyConnection) -> FindingMap | None:
         width=_WIDTH_PX,
         height=math.ceil(down * px) + 4 * _CELL_PX,
         marks=[_mark(row) for row in found],
-        bar_px=num(bar_m / _M_PER_DEGREE * px),
+        bar_px=svg_number(bar_m / _M_PER_DEGREE * px),
         bar_words=f"{bar_m / 1000:g} km" if bar_m >= 1000 else f"{bar_m:g} m",
         middle=f"{(about['south'] + about['north']) / 2:.4f}, {(about['west'] + about['east']) / 2:.4f}",
         places=con.execute(statement("fleet_report/places"), {"most": MAX_PLACES}).to_arrow_table().to_pylist(),
@@ -74,8 +74,8 @@ def _mark(row: dict[str, Any]) -> dict[str, Any]:
     radius = min(_CELL_PX * 2.0, 2.2 + 1.3 * math.log10(row["n"]))  # legible for one finding and for ten thousand
     return {
         "kind": ("critical", "major", "minor")[row["rank"] - 1],
-        "x": num(x),
-        "y": num(y),
-        "r": num(radius),
+        "x": svg_number(x),
+        "y": svg_number(y),
+        "r": svg_number(radius),
         "n": row["n"],
     }

@@ -16,9 +16,9 @@ from drivelint.fleet_report.difference_text import rate_name
 from drivelint.fleet_report.figures import figure
 from drivelint.fleet_report.rows import one_per_event, rows
 from drivelint.phrases import one_line, plural
-from drivelint.report.markdown import code, escaped
+from drivelint.report.markdown import escape_markdown, markdown_code
 from drivelint.result.counts import SEVERITIES
-from drivelint.result.text import NO_VALUE, finite
+from drivelint.result.text import NO_VALUE, replace_non_finite
 from drivelint.result.text_templates import text_template
 from drivelint.sql.statements import statement
 
@@ -151,8 +151,8 @@ def to_text(trend: AuditTrend, *, markdown: bool = False) -> str:
         "rate_name": rate_name,
         "rate_text": rate_text,
         "trend_text": trend_text,
-        "escaped": escaped,
-        "code": code,
+        "escaped": escape_markdown,
+        "code": markdown_code,
     }
     name = f"templates/trend.{'md' if markdown else 'txt'}.j2"
     table = None if markdown else _text_table(trend)
@@ -221,4 +221,4 @@ def to_json(trend: AuditTrend) -> str:
         ],
         "rules_without_findings": trend.n_rules_without_findings,
     }
-    return msgspec.json.format(msgspec.json.encode(finite(msgspec.to_builtins(content))), indent=2).decode()
+    return msgspec.json.format(msgspec.json.encode(replace_non_finite(msgspec.to_builtins(content))), indent=2).decode()

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final, TypeVar
 
 from drivelint.computing import Work, resident_bytes
-from drivelint.receipts.events import machine_bound
+from drivelint.receipts.events import report_not_repeatable
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -77,7 +77,7 @@ class _Watch:
             with self._lock:
                 if not self._over.is_set():
                     self.excess = excess
-                    machine_bound(f"reading took {excess}")
+                    report_not_repeatable(f"reading took {excess}")
                     ctypes.pythonapi.PyThreadState_SetAsyncExc(
                         ctypes.c_ulong(self._reader), ctypes.py_object(_BeyondError)
                     )

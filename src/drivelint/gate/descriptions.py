@@ -11,7 +11,7 @@ import msgspec
 from drivelint.errors import ExitCode
 from drivelint.phrases import plural
 from drivelint.result import counts
-from drivelint.result.gate import NOT_FIXED, n_findings
+from drivelint.result.gate import NOT_FIXED_WORDS, n_findings
 from drivelint.result.text import ego_name, number
 from drivelint.result.text_templates import text_template
 
@@ -75,7 +75,7 @@ def counts_sentence(n: Mapping[str, int], worse: int, fixed: tuple[int, int]) ->
     said = [f"{n['changed']} changed{f' ({worse} worse)' if worse else ''}"] if n["changed"] else []
     said += [f"{n['unchanged']} unchanged"] if n["unchanged"] else []
     said += [f"{n['fixed']} fixed ({', '.join(filter(None, (passes, idle)))})"] if n["fixed"] else []
-    gone = [f"{n[status]} {words}" for status, words in NOT_FIXED.items() if n[status]]
+    gone = [f"{n[status]} {words}" for status, words in NOT_FIXED_WORDS.items() if n[status]]
     parts = [", ".join(said)] if said else []
     parts += [f"gone but not fixed: {', '.join(gone)}"] if gone else []
     return "; ".join(parts) or "no earlier finding"
@@ -135,7 +135,7 @@ def not_looked_at(difference: Difference, fail_on: str) -> str:
     if fail_on == "never":
         return ""
     severe = counts.SEVERITIES[: counts.SEVERITIES.index(fail_on) + 1]
-    n = n_findings(entry for entry in difference.not_fixed() if entry.stable and entry.severity in severe)
+    n = n_findings(entry for entry in difference.unfixed_findings() if entry.stable and entry.severity in severe)
     said = [f"{plural(n, 'earlier finding')} gone but not fixed"] if n else []
     said += ["the newer run was interrupted"] if difference.is_partial else []
     return " and ".join(said)
@@ -181,9 +181,9 @@ def finding_line(entry: ComparedFinding) -> str:
 
 def rows_of_entries(entries: Sequence[ComparedFinding]) -> str:
     """Return a sentence that explains why there are more rows than findings; '' if there are not."""
-    left_out = [entry for entry in entries if entry.counted_id != entry.finding_id]
+    left_out = [entry for entry in entries if entry.event_id != entry.finding_id]
     is_of_profiles = any(entry.profile is not None for entry in left_out)
-    return counts.rows_sentence(len(entries), n_findings(entries), is_of_profiles=is_of_profiles)
+    return counts.rows_and_findings_sentence(len(entries), n_findings(entries), has_profile_repeats=is_of_profiles)
 
 
 def _there(entry: ComparedFinding) -> str:
@@ -233,7 +233,7 @@ def reason_not_gating(gate: Gate | None, finding_id: str) -> str:
     waiver = gate.waiver(finding_id) if gate else None
     if waiver is not None:
         return waiver_reason(waiver)
-    entry = gate.compared(finding_id) if gate else None
+    entry = gate.compared_finding(finding_id) if gate else None
     if entry is not None and entry.standing != "new":
         return "known: the baseline contains it" + (f"; worse now: {entry.why}" if entry.worse else "")
     if gate and gate.is_possible(finding_id):
@@ -245,7 +245,7 @@ def excuse(result: Result, row: Row, rule: Row | None) -> str:
     """Return why a finding or a failed verdict does not gate; '' if it gates. `rule`: its row of the table `rule`."""
     if "finding_id" in row and (reason := reason_not_gating(result.gate, row["finding_id"])):
         return reason
-    is_new = "finding_id" in row and result.gate is not None and result.gate.standing(row["finding_id"]) == "new"
+    is_new = "finding_id" in row and result.gate is not None and result.gate.status_at_gate(row["finding_id"]) == "new"
     new = "new, " if is_new else ""
     if rule is None or rule["status"] != "stable":
         return new + ("draft" if rule is None else str(rule["status"]))

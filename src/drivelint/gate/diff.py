@@ -59,8 +59,8 @@ def compare(base: Result, new: Result, base_name: str = "base", name: str = "new
     return Difference(
         entries=(*entries, *gone),
         new_unknowns=tuple(_new_unknowns(base, new, same, has)),
-        base_verdicts=counts.total(base.verdicts),
-        verdicts=counts.total(new.verdicts),
+        base_verdicts=counts.verdict_counts(base.verdicts),
+        verdicts=counts.verdict_counts(new.verdicts),
         base_only=tuple(sorted(drive for drive in had.drives if drive not in known)),
         new_only=tuple(sorted(drive for drive in has.drives if drive not in same)),
         base_name=base_name,
@@ -189,7 +189,9 @@ def _new_unknowns(base: Result, new: Result, same: Mapping[str, str], has: Resul
 
 def _unknown(result: Result) -> dict[Any, tuple[int, str]]:
     """Return (drive, ego, rule, profile) -> number of rows that are unknown or in error, and their most frequent reason."""
-    open_rows = pa.concat_tables([counts.undecided(result.verdicts), counts.unrecorded(result.verdicts)])
+    open_rows = pa.concat_tables(
+        [counts.undecided_verdicts(result.verdicts), counts.verdicts_lacking_signal(result.verdicts)]
+    )
     rows = counts.distinct_rows(open_rows, [*_WHERE, "reason"])
     return {
         at: (sum(row["count_all"] for row in told), min((-row["count_all"], row["reason"]) for row in told)[1])
@@ -254,7 +256,7 @@ class ResultLookup:
         rows = result.findings.to_pylist()
         self.counted_ids = {
             row["finding_id"]: rows[place]["finding_id"]
-            for row, place in zip(rows, counts.counted_places(rows), strict=True)
+            for row, place in zip(rows, counts.representative_indices(rows), strict=True)
         }
         for row in rows:
             drive, ends = self.drives[row["drive_id"]], ("t_start_ns", "t_end_ns", "t_worst_ns")

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any, Final
 from drivelint.catalogue import load_rules
 from drivelint.errors import UsageError
 from drivelint.phrases import hint
-from drivelint.reasons.reason_text import shared_texts
+from drivelint.reasons.reason_text import texts_of_shared_codes
 from drivelint.report import catalogue_page
 from drivelint.resources import folder
 from drivelint.result import geometry
-from drivelint.result.names import PICTURES, TABLE_OF_FILE
+from drivelint.result.names import TABLE_OF_FILE, TABLE_OF_PICTURE_FILE
 from drivelint.result.text_templates import cell, text_template
 from drivelint.sql import store, syntax
 from drivelint.sql.derivations import derivations
@@ -118,7 +118,7 @@ def escaped(text: str) -> str:
 
 def output_tables() -> str:
     """Return a section per result file with the columns of its table."""
-    files = {**TABLE_OF_FILE, **PICTURES, "margins": "margin"}
+    files = {**TABLE_OF_FILE, **TABLE_OF_PICTURE_FILE, "margins": "margin"}
     return "\n".join(f"### {stem}.parquet\n\n{_columns(name, in_file=True)}" for stem, name in files.items())
 
 
@@ -147,7 +147,7 @@ def _facts(
     `listed`: a function that joins names; `quote`: the mark around the file name.
     """
     sentences = [f"Kept {_LIVES[lifetimes()[name]]}."]
-    if files := [stem for stem, of in {**TABLE_OF_FILE, **PICTURES}.items() if of == name]:
+    if files := [stem for stem, of in {**TABLE_OF_FILE, **TABLE_OF_PICTURE_FILE}.items() if of == name]:
         sentences.append(f"Written to {quote}{files[0]}.parquet{quote}.")
     if name in tables_read:
         sentences.append(f"Reads {listed(tables_read[name])}." if tables_read[name] else "Reads no table.")
@@ -176,7 +176,7 @@ def _columns(name: str, *, in_file: bool = False) -> str:
     lines = ["| column | type | meaning |", "|---|---|---|"]
     for column, comment in column_comments()[name].items():
         lines.append(f"| `{column}` | {cell(escaped(_types()[name, column]))} | {cell(escaped(comment))} |")
-    for column, shape in geometry.SHAPES.get(name, {}).items() if in_file else ():
+    for column, shape in geometry.GEOMETRIES_OF_TABLE.get(name, {}).items() if in_file else ():
         lines.append(f"| `{column}` | GEOMETRY | {cell(escaped(f'{shape.kind}: {shape.comment}'))} |")
     return "\n".join(lines) + "\n"
 
@@ -195,7 +195,9 @@ def _links(names: Iterable[str]) -> str:
 
 def reasons_page() -> str:
     """Return every reason code as Markdown: first the codes that rules share, then the codes of single rules."""
-    return text_template(__file__, "reasons.md.j2").render(shared=shared_texts(), rules=sorted(load_rules(()).items()))
+    return text_template(__file__, "reasons.md.j2").render(
+        shared=texts_of_shared_codes(), rules=sorted(load_rules(()).items())
+    )
 
 
 def macros_page() -> str:
@@ -214,7 +216,7 @@ def macros_page() -> str:
 
 REFERENCE: Final[dict[str, Callable[[], str]]] = {
     "dictionary": text,
-    "catalogue": lambda: catalogue_page.page(load_rules(()).values(), folder("queries") / "assertions"),
+    "catalogue": lambda: catalogue_page.render_markdown(load_rules(()).values(), folder("queries") / "assertions"),
     "reasons": reasons_page,
     "macros": macros_page,
 }

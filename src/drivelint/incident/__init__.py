@@ -24,7 +24,7 @@ from drivelint.incident.finding import contacts, named_finding
 from drivelint.incident.judge import EgoRows, Judge
 from drivelint.report import html as report_page
 from drivelint.report.html.anchors import anchor
-from drivelint.report.html.environment import PICTURE_STYLE, visible
+from drivelint.report.html.environment import PICTURE_STYLE_FILE, escape_for_page
 from drivelint.result import request as run_request
 from drivelint.result.compiled_templates import CompiledTemplates
 from drivelint.result.load import load_result
@@ -152,7 +152,7 @@ def _log(request: IncidentRequest, run_options: RunRequest, finding: NamedFindin
 @cache
 def _environment() -> Environment:
     environment = Environment(
-        finalize=visible,
+        finalize=escape_for_page,
         bytecode_cache=CompiledTemplates("incident"),
         loader=FileSystemLoader([_HERE, _REPORT_TEMPLATES]),
         autoescape=True,
@@ -163,7 +163,7 @@ def _environment() -> Environment:
     # the plan view has the same style as in the report
     files = (_REPORT_TEMPLATES / "charts.css", _HERE / "sheet.css")
     style = "\n".join(file.read_text(encoding="utf-8").strip() for file in files)
-    pictures = (_REPORT_TEMPLATES / PICTURE_STYLE).read_text(encoding="utf-8").strip()
+    pictures = (_REPORT_TEMPLATES / PICTURE_STYLE_FILE).read_text(encoding="utf-8").strip()
     digest, of_pictures = (
         base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() for text in (style, pictures)
     )

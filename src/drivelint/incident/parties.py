@@ -14,8 +14,8 @@ from drivelint.incident.judge import EgoRows
 from drivelint.incident.motion import BEFORE_S, slowing_known
 from drivelint.incident.sizes import size_source
 from drivelint.incident.words import collision_title, nearly_same, speed
-from drivelint.report.html.plan_view import corners
-from drivelint.result.text import seconds, went_wrong
+from drivelint.report.html.plan_view import box_corners_m
+from drivelint.result.text import breach_title, seconds
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -150,7 +150,7 @@ def title(case: Case, motion: Motion, at: int | None, *, possible: bool) -> str:
     finding, row = case.finding, case.finding.row
     when = seconds(finding.moment_ns, finding.start_ns)
     if not finding.is_contact or len(finding.parties) < 2:
-        return f"{went_wrong(finding.rule)}{', possibly' if possible else ''}, at {when}"
+        return f"{breach_title(finding.rule)}{', possibly' if possible else ''}, at {when}"
     oncoming = at is not None and case.again.steps["with_traffic"][at].as_py() is False
     return collision_title(motion, at, when=when, closing_mps=row["closing_mps"], oncoming=oncoming, possible=possible)
 
@@ -158,14 +158,14 @@ def title(case: Case, motion: Motion, at: int | None, *, possible: bool) -> str:
 def others_drawn(plan: Mapping[str, Any], scene: Row) -> list[str]:
     """Return in words the other actors in the plan view: kind, size, speed, and distance from A."""
     actors = {actor["actor_id"]: actor for actor in scene["actors"]}
-    ego = shapely.polygons(corners(plan["ego"]))
+    ego = shapely.polygons(box_corners_m(plan["ego"]))
     told = []
     for who in [text["actor"] for text in plan["texts"] if text["kind"] == "other"]:
         about = actors[who]
         size = " x ".join("?" if about[side] is None else f"{about[side]:.2f}" for side in ("length_m", "width_m"))
         mps = about["speed_mps"]
         moves = "speed not known" if mps is None else "standing" if mps < _STANDING_MPS else f"at {mps:.1f} m/s"
-        apart = float(shapely.distance(ego, shapely.polygons(corners(about))))
+        apart = float(shapely.distance(ego, shapely.polygons(box_corners_m(about))))
         kind = (about["actor_class"] or "kind not recorded").replace("_", " ")
         told.append(f"{who}: {kind}, {size} m, {moves}, {apart:.1f} m from A")
     more = [f"{len(told) - _MOST_OTHER_ACTORS} more"] if len(told) > _MOST_OTHER_ACTORS else []

@@ -35,9 +35,9 @@ from drivelint.incident.scene import scene_at
 from drivelint.incident.sizes import size_source
 from drivelint.incident.strips import strips
 from drivelint.incident.words import amount, closing, contact, how_sure, measured_text, minus, profile, story, told_unit
-from drivelint.report.html.pictures import pictures_by_moment
+from drivelint.report.html.pictures import cameras_by_moment
 from drivelint.report.html.plan_view import actor_shapes, plan_view
-from drivelint.report.html.road import Road
+from drivelint.report.html.road import DrawnMaps
 from drivelint.result.certainty import LEAST_KEEPING_SHARE, POSSIBLE, SURE, certainty
 from drivelint.result.text import seconds, utc_at
 
@@ -122,7 +122,7 @@ def content(case: Case) -> dict[str, Any]:
         "contacts": Fitting((hits := _told_contacts(case))[:_MOST_CONTACTS], max(len(hits) - _MOST_CONTACTS, 0)),
         "overlap": contact(row, finding.rule),
         **_plan(case),
-        "cameras": pictures_by_moment(case.result.pictures).get((row["drive_id"], row["t_worst_ns"]), []),
+        "cameras": cameras_by_moment(case.result.pictures).get((row["drive_id"], row["t_worst_ns"]), []),
         "pictured_at": seconds(row["t_worst_ns"], finding.start_ns),
         "strips": strips(motion, _names(finding), *_courses(case), finding.moment_ns),
         "seconds": [{**each, "drive_s": offset_s + float(motion.t[each["i"]])} for each in rows],
@@ -357,7 +357,7 @@ def _plan(case: Case) -> dict[str, Any]:
     if scene is None:
         return {"plan": None, "tiles": [], "shapes": [], "drawn": [], "drawn_at": drawn_at}
     drawn_scene = scene_at(scene, case.drive.trace.tables["actor_state"], finding.moment_ns)
-    road = Road(case.result.lanes)
+    road = DrawnMaps(case.result.lanes)
     spaces = _at(case.result.spaces, at) if _SPACES in finding.rule["tags"] else []
     plan = plan_view(drawn_scene, road, set(finding.parties[1:]), spaces)
     tiles = [tile for tile in road.tiles() if tile["name"] in plan["tiles"]]

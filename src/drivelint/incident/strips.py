@@ -6,7 +6,7 @@ import math
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-from drivelint.report.html.svg import Axis, axis_around, num
+from drivelint.report.html.svg import Axis, axis_around, svg_number
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -100,13 +100,17 @@ def _chart(title: str, lines: Sequence[_Line], x: Axis, *, from_zero: bool = Fal
         "lines": drawn,
         "x_ticks": x.ticks(12),
         "y_ticks": y.ticks(4),
-        "zero": num(x.at(0.0)),
+        "zero": svg_number(x.at(0.0)),
     }
 
 
 def _dots(line: _Line, x: Axis, y: Axis) -> list[tuple[str, str]]:
     """Return the points of a line that has too few steps to be visible; [] for other lines."""
-    points = [(num(x.at(at)), num(y.at(v))) for at, v in zip(line.t, line.values, strict=True) if math.isfinite(v)]
+    points = [
+        (svg_number(x.at(at)), svg_number(y.at(v)))
+        for at, v in zip(line.t, line.values, strict=True)
+        if math.isfinite(v)
+    ]
     return points if len(points) < _HOLE_STEPS else []
 
 
@@ -114,7 +118,7 @@ def _labels(line: _Line, x: Axis, y: Axis, i: int) -> list[tuple[str, str, bool]
     """Return the positions of a line's label, beside its last point: left of it for odd `i`, because lines may be close together."""
     points = [(at, v) for at, v in zip(line.t, line.values, strict=True) if math.isfinite(v)][-1:] if line.label else []
     left = bool(i % 2)
-    return [(num(x.at(at) + (-6 if left else 6)), num(y.at(v)), left) for at, v in points]
+    return [(svg_number(x.at(at) + (-6 if left else 6)), svg_number(y.at(v)), left) for at, v in points]
 
 
 def _path(line: _Line, x: Axis, y: Axis) -> str:
@@ -126,6 +130,6 @@ def _path(line: _Line, x: Axis, y: Axis) -> str:
         if not math.isfinite(v):
             last = None
             continue
-        parts.append(f"{'M' if last is None or at - last > hole else 'L'}{num(x.at(at))},{num(y.at(v))}")
+        parts.append(f"{'M' if last is None or at - last > hole else 'L'}{svg_number(x.at(at))},{svg_number(y.at(v))}")
         last = at
     return "".join(parts)

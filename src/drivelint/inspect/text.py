@@ -15,7 +15,7 @@ from drivelint.formats.registry import format_words
 from drivelint.formats.tables.mapping import GROUP_PLACEHOLDER
 from drivelint.phrases import listed, plural
 from drivelint.result.counts import group_rows
-from drivelint.result.one_line import flat
+from drivelint.result.one_line import nested_texts_on_one_line
 from drivelint.result.text import ego_name
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ Line = tuple[str, Text]
 def render(inspection: model.Inspection, trace: str) -> Group:
     """Return the whole inspection as a renderable. `trace`: the log as the user named it."""
     draft = inspection.content.draft_mapping
-    inspection = msgspec.convert(flat(msgspec.to_builtins(inspection)), type(inspection))
+    inspection = msgspec.convert(nested_texts_on_one_line(msgspec.to_builtins(inspection)), type(inspection))
     lines = [*_content(inspection.content)]
     if inspection.file.drive_id:
         lines.append(("drive", Text(inspection.file.drive_id)))

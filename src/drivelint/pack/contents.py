@@ -14,7 +14,7 @@ from drivelint.drive.trace import DriveInput
 from drivelint.pack.bag import sha256_of
 from drivelint.pack.inputs import judged_drives
 from drivelint.result import request as run_request
-from drivelint.result.names import MANIFEST, RESULT_FILES
+from drivelint.result.names import MANIFEST, RESULT_FILE_GLOBS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -29,7 +29,7 @@ RESULT: Final = "data/result"
 FINDINGS: Final = "data/findings"
 FORM: Final = 1
 """Version of the format, the value of `evidence` in `evidence.json`: raised when a key is removed or changes its meaning."""
-OUTPUTS: Final = frozenset(name for name in RESULT_FILES if not ("*" in name or "/" in name)) - {
+OUTPUTS: Final = frozenset(name for name in RESULT_FILE_GLOBS if not ("*" in name or "/" in name)) - {
     "drivelint.duckdb",
     MANIFEST,
 }

@@ -14,7 +14,15 @@ from drivelint.errors import TraceError
 from drivelint.formats.mcap.chunk import ChunkError, chunk_head, chunk_records
 from drivelint.formats.mcap.counts import MESSAGE_INDEX_HEAD
 from drivelint.formats.mcap.summary import Summary, read_index, read_summary
-from drivelint.pictures.frames import FrameError, Place, VideoFrame, ahead_first, camera_name, is_camera, read_frame
+from drivelint.pictures.frames import (
+    FrameError,
+    FramePlace,
+    VideoFrame,
+    camera_name,
+    camera_sort_key,
+    is_camera,
+    read_frame,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,9 +32,9 @@ if TYPE_CHECKING:
 
     from drivelint.pictures.frames import EncodedImage, Frame, RawImage
 
-_RECORD: Final = struct.Struct("<BQ")
-_MESSAGE: Final = struct.Struct("<HIQQ")
-_CHUNKS_KEPT: Final = 4
+_RECORD_HEAD: Final = struct.Struct("<BQ")
+_MESSAGE_HEAD: Final = struct.Struct("<HIQQ")
+_MOST_CACHED_CHUNKS: Final = 4
 """How many unpacked chunks are kept: frames of the same time are often in the same chunk."""
 
 
@@ -36,13 +44,15 @@ def camera_topics(files: Sequence[Path]) -> tuple[str, ...]:
     If a camera has several topics, the topic with compressed frames is used.
     """
     of_camera: dict[str, str] = {}
-    for summary in map(_index, files):
-        for topic in sorted(_cameras(summary), key=lambda topic: (topic.endswith("/compressed"), topic)):
+    for summary in map(_summary_or_empty, files):
+        for topic in sorted(
+            _topics_with_camera_frames(summary), key=lambda topic: (topic.endswith("/compressed"), topic)
+        ):
             of_camera[camera_name(topic)] = topic
-    return tuple(sorted(of_camera.values(), key=ahead_first))
+    return tuple(sorted(of_camera.values(), key=camera_sort_key))
 
 
-class CameraLog:
+class McapFrameSource:
     """The MCAP files of one drive, open for reading frames. Errors of all methods: `FrameError` for damaged data."""
 
     def __init__(self, files: Sequence[Path]) -> None:
@@ -53,7 +63,7 @@ class CameraLog:
             file = self._stack.enter_context(path.open("rb"))
             self._views.append(memoryview(mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)))
             self._summaries.append(read_summary(self._views[-1], unprotected=True))
-        self._chunk = lru_cache(maxsize=_CHUNKS_KEPT)(self._unpacked)
+        self._chunk = lru_cache(maxsize=_MOST_CACHED_CHUNKS)(self._unpacked_chunk)
         self._index = lru_cache(maxsize=4096)(self._message_index)
 
     def __enter__(self) -> Self:
@@ -63,9 +73,9 @@ class CameraLog:
         self._chunk.cache_clear()
         self._stack.close()
 
-    def places(self, topic: str, since_ns: int, until_ns: int) -> list[Place]:
+    def frame_places(self, topic: str, since_ns: int, until_ns: int) -> list[FramePlace]:
         """Return the places of a camera's frames with log times from `since_ns` to `until_ns`, in time order."""
-        frame_places: list[Place] = []
+        frame_places: list[FramePlace] = []
         for no, summary in enumerate(self._summaries):
             mine = [number for number, channel in summary.channels.items() if channel.topic == topic]
             for chunk, (_, first_ns, last_ns) in summary.chunks.items():
@@ -74,28 +84,28 @@ class CameraLog:
                 for number in mine:
                     for log_ns, at in self._index(no, chunk, number):
                         if since_ns <= log_ns <= until_ns:
-                            frame_places.append(Place(log_ns, no, number, chunk, at))
+                            frame_places.append(FramePlace(log_ns, no, number, chunk, at))
         return sorted(frame_places)
 
-    def frame(self, place: Place) -> Frame:
+    def frame(self, place: FramePlace) -> Frame:
         """Return the frame at a place."""
         records, summary = self._chunk(place.file, place.chunk), self._summaries[place.file]
         try:
-            _, length = _RECORD.unpack_from(records, place.at)
-            body = memoryview(records)[place.at + _RECORD.size : place.at + _RECORD.size + length]
-            number, *_ = _MESSAGE.unpack_from(body)
+            _, length = _RECORD_HEAD.unpack_from(records, place.at)
+            body = memoryview(records)[place.at + _RECORD_HEAD.size : place.at + _RECORD_HEAD.size + length]
+            number, *_ = _MESSAGE_HEAD.unpack_from(body)
         except struct.error as error:
             raise FrameError("an index that does not fit its messages") from error
         if number != place.channel or len(body) != length:
             raise FrameError("an index that does not fit its messages")
         channel = summary.channels[place.channel]
-        return read_frame(channel, summary.schemas[channel.schema_id], body[_MESSAGE.size :])
+        return read_frame(channel, summary.schemas[channel.schema_id], body[_MESSAGE_HEAD.size :])
 
-    def stamp_ns(self, place: Place) -> int | None:
+    def stamp_ns(self, place: FramePlace) -> int | None:
         """Return when the frame at a place was taken, by its message; None: the message has no time."""
         return self.frame(place).stamp_ns
 
-    def picture(self, topic: str, place: Place) -> EncodedImage | RawImage | Image:
+    def picture(self, topic: str, place: FramePlace) -> EncodedImage | RawImage | Image:
         """Return the image at a place; a frame of a video is decoded."""
         image = self.frame(place).image
         if not isinstance(image, VideoFrame):
@@ -110,11 +120,11 @@ class CameraLog:
         if at is None:
             return []
         try:
-            _, length = _RECORD.unpack_from(view, at)
-            number, n_bytes = MESSAGE_INDEX_HEAD.unpack_from(view, at + _RECORD.size)
+            _, length = _RECORD_HEAD.unpack_from(view, at)
+            number, n_bytes = MESSAGE_INDEX_HEAD.unpack_from(view, at + _RECORD_HEAD.size)
         except struct.error as error:
             raise FrameError("a damaged index of messages") from error
-        start = at + _RECORD.size + MESSAGE_INDEX_HEAD.size
+        start = at + _RECORD_HEAD.size + MESSAGE_INDEX_HEAD.size
         if (
             number != channel
             or n_bytes != length - MESSAGE_INDEX_HEAD.size
@@ -126,24 +136,24 @@ class CameraLog:
             (int(log_ns), int(at)) for log_ns, at in np.frombuffer(view[start : start + n_bytes], "<u8").reshape(-1, 2)
         ]
 
-    def _unpacked(self, file: int, chunk: int) -> bytes:
+    def _unpacked_chunk(self, file: int, chunk: int) -> bytes:
         view = self._views[file]
         try:
-            _, length = _RECORD.unpack_from(view, chunk)
-            body = view[chunk + _RECORD.size : chunk + _RECORD.size + length]
+            _, length = _RECORD_HEAD.unpack_from(view, chunk)
+            body = view[chunk + _RECORD_HEAD.size : chunk + _RECORD_HEAD.size + length]
             return chunk_records(chunk_head(body), f"byte {chunk}")
         except (struct.error, ChunkError, TraceError) as error:
             raise FrameError(str(error)) from error
 
 
-def _index(file: Path) -> Summary:
+def _summary_or_empty(file: Path) -> Summary:
     try:
         return read_index(file)
     except (OSError, ValueError):
         return Summary()  # the file is missing or empty: reading the log reports it
 
 
-def _cameras(summary: Summary) -> list[str]:
+def _topics_with_camera_frames(summary: Summary) -> list[str]:
     indexed = {number for of_chunk in summary.message_indexes.values() for number in of_chunk}
     return [
         channel.topic

@@ -10,13 +10,13 @@ from drivelint.pictures.frames import FrameError
 
 if TYPE_CHECKING:
     from drivelint.drive.trace import FrameTimes
-    from drivelint.pictures.frames import FrameSource, Place
+    from drivelint.pictures.frames import FramePlace, FrameSource
 
-SEARCHED_NS: Final = 2_000_000_000
+SEARCH_RADIUS_NS: Final = 2_000_000_000
 """Frames are searched up to this far from a time in the log: a frame may be recorded up to a second after it was taken."""
-NEAR_NS: Final = 500_000_000
+MOST_TIME_DIFFERENCE_NS: Final = 500_000_000
 """The greatest difference between the requested time and the time of a frame."""
-_SAME_CLOCK_NS: Final = 1_000_000_000
+_SAME_CLOCK_TOLERANCE_NS: Final = 1_000_000_000
 """A camera's stamp counts as a time of the drive's clock if it differs from the converted log time by at most this."""
 
 
@@ -30,7 +30,7 @@ class DriveClock:
             ahead = self._t_ns - times.log_ns[first].astype(np.int64)
         self._ahead_ns = ahead
 
-    def ahead_ns(self, t_ns: int) -> int:
+    def ahead_of_log_ns(self, t_ns: int) -> int:
         """Return by how much the drive's clock is ahead of the log's clock, at the frame nearest to a time of the drive."""
         at = int(np.clip(np.searchsorted(self._t_ns, t_ns), 1, max(len(self._t_ns) - 1, 1)))
         before, after = (min(i, len(self._t_ns) - 1) for i in (at - 1, at))
@@ -38,43 +38,43 @@ class DriveClock:
         return int(self._ahead_ns[after if is_after else before])
 
     @property
-    def is_of_log(self) -> bool:
+    def is_log_clock(self) -> bool:
         """Whether the times of the drive are log times."""
         return not self._ahead_ns.any()
 
 
-def nearest_frame(log: FrameSource, topic: str, clock: DriveClock, t_ns: int) -> tuple[Place, int] | None:
+def nearest_frame(log: FrameSource, topic: str, clock: DriveClock, t_ns: int) -> tuple[FramePlace, int] | None:
     """Return the frame of a camera nearest to a time of the drive, and the frame's time; None: no frame is near.
 
     The time of a frame is its message's stamp, if that is on the drive's clock, else its log time. Errors: `FrameError`.
     """
-    ahead_ns = clock.ahead_ns(t_ns)
+    ahead_ns = clock.ahead_of_log_ns(t_ns)
     wanted_ns = t_ns - ahead_ns
-    places = log.places(topic, wanted_ns - SEARCHED_NS, wanted_ns + SEARCHED_NS)
+    places = log.frame_places(topic, wanted_ns - SEARCH_RADIUS_NS, wanted_ns + SEARCH_RADIUS_NS)
     if not places:
         return None
     times_by_index: dict[int, int] = {}
 
-    def off_ns(i: int) -> int:
+    def time_difference_ns(i: int) -> int:
         """Return the difference between the time of a frame and the requested time."""
         if i not in times_by_index:
-            times_by_index[i] = _time_of(log, places[i], clock, ahead_ns)
+            times_by_index[i] = _frame_time_ns(log, places[i], clock, ahead_ns)
         return abs(times_by_index[i] - t_ns)
 
     best = min(range(len(places)), key=lambda i: abs(places[i].log_ns - wanted_ns))
     # messages are logged in the order in which frames are taken: only one direction leads to nearer frames
     for way in (-1, 1):
-        while 0 <= best + way < len(places) and off_ns(best + way) < off_ns(best):
+        while 0 <= best + way < len(places) and time_difference_ns(best + way) < time_difference_ns(best):
             best += way
-    return (places[best], times_by_index[best]) if off_ns(best) <= NEAR_NS else None
+    return (places[best], times_by_index[best]) if time_difference_ns(best) <= MOST_TIME_DIFFERENCE_NS else None
 
 
-def _time_of(log: FrameSource, place: Place, clock: DriveClock, ahead_ns: int) -> int:
-    logged_ns = place.log_ns + ahead_ns
-    if clock.is_of_log:
+def _frame_time_ns(log: FrameSource, place: FramePlace, clock: DriveClock, ahead_of_log_ns: int) -> int:
+    logged_ns = place.log_ns + ahead_of_log_ns
+    if clock.is_log_clock:
         return logged_ns
     try:
         stamp_ns = log.stamp_ns(place)
     except FrameError:
         return logged_ns  # decoding the frame reports the problem
-    return logged_ns if stamp_ns is None or abs(stamp_ns - logged_ns) > _SAME_CLOCK_NS else stamp_ns
+    return logged_ns if stamp_ns is None or abs(stamp_ns - logged_ns) > _SAME_CLOCK_TOLERANCE_NS else stamp_ns

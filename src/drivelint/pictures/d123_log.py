@@ -12,7 +12,7 @@ import numpy as np
 import pyarrow as pa
 
 from drivelint.formats.d123.arrow_files import path_of
-from drivelint.pictures.frames import EncodedImage, FrameError, Place
+from drivelint.pictures.frames import EncodedImage, FrameError, FramePlace
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
     from drivelint.arrays import Times
 
-_PREFIX: Final = "camera."
-_DIRECTIONS: Final = {"f": 0, "l": 2, "r": 2, "b": 3, "d": 3}
+_CAMERA_FILE_PREFIX: Final = "camera."
+_RANK_OF_DIRECTION: Final = {"f": 0, "l": 2, "r": 2, "b": 3, "d": 3}
 """First letter of the place of a camera (front, left, right, back, down) -> its rank; other cameras have rank 1."""
 
 
@@ -38,17 +38,17 @@ class _CameraFile(NamedTuple):
 
 def camera_names(folder: Path) -> tuple[str, ...]:
     """Return the names of the cameras of a log; cameras that look ahead come first. Depth and label images are no camera pictures."""
-    names = [path.name.removesuffix(".arrow") for path in folder.glob(f"{_PREFIX}*.arrow")]
-    return tuple(sorted(names, key=_ahead_first))
+    names = [path.name.removesuffix(".arrow") for path in folder.glob(f"{_CAMERA_FILE_PREFIX}*.arrow")]
+    return tuple(sorted(names, key=_camera_sort_key))
 
 
-def _ahead_first(name: str) -> tuple[int, str]:
+def _camera_sort_key(name: str) -> tuple[int, str]:
     _, _, place = name.rpartition("_")
-    return _DIRECTIONS.get(place[:1], 1) if place[1:].isdigit() else 1, name
+    return _RANK_OF_DIRECTION.get(place[:1], 1) if place[1:].isdigit() else 1, name
 
 
-class D123Log:
-    """The camera files of a 123D log, open for reading frames; its methods are those of `CameraLog`."""
+class D123FrameSource:
+    """The camera files of a 123D log, open for reading frames; its methods are those of `McapFrameSource`."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
@@ -60,19 +60,19 @@ class D123Log:
     def __exit__(self, *_error: object) -> None:
         self._files.clear()
 
-    def places(self, topic: str, since_ns: int, until_ns: int) -> list[Place]:
+    def frame_places(self, topic: str, since_ns: int, until_ns: int) -> list[FramePlace]:
         """Return the places of a camera's frames with times of the log from `since_ns` to `until_ns`, in time order."""
-        number, file = self._file(topic)
+        number, file = self._number_and_file(topic)
         first, last = np.searchsorted(file.t_us, [-(-since_ns // 1000), until_ns // 1000 + 1])
         return [
-            Place(int(file.t_us[n]) * 1000, number, 0, int(file.batches[n]), int(file.rows[n]))
+            FramePlace(int(file.t_us[n]) * 1000, number, 0, int(file.batches[n]), int(file.rows[n]))
             for n in range(first, last)
         ]
 
-    def stamp_ns(self, place: Place) -> int | None:
+    def stamp_ns(self, place: FramePlace) -> int | None:
         """Return None: the time of a frame is that of its row."""
 
-    def picture(self, topic: str, place: Place) -> EncodedImage | Image:
+    def picture(self, topic: str, place: FramePlace) -> EncodedImage | Image:
         """Return the image at a place; a frame of a video is decoded."""
         file = self._files[place.file]
         try:
@@ -82,17 +82,17 @@ class D123Log:
         if isinstance(data, bytes):
             return EncodedImage(data)
         if isinstance(data, int):
-            from drivelint.pictures.video import file_image
+            from drivelint.pictures.video import video_file_image
 
-            return file_image(self._folder / f"{topic}.mp4", data)
+            return video_file_image(self._folder / f"{topic}.mp4", data)
         raise FrameError("a path into the original data set: convert it with the frames as JPEG" if data else "nothing")
 
-    def _file(self, name: str) -> tuple[int, _CameraFile]:
+    def _number_and_file(self, name: str) -> tuple[int, _CameraFile]:
         for number, file in enumerate(self._files):
             if file.name == name:
                 return number, file
         try:
-            self._files.append(_open_camera(self._folder, name))
+            self._files.append(_open_camera_file(self._folder, name))
         except (
             pa.ArrowException,
             KeyError,
@@ -103,7 +103,7 @@ class D123Log:
         return len(self._files) - 1, self._files[-1]
 
 
-def _open_camera(folder: Path, name: str) -> _CameraFile:
+def _open_camera_file(folder: Path, name: str) -> _CameraFile:
     """Open a camera's file and read the times of its frames, without the frames."""
     # opened by Python, so that a receipt of the run knows the file
     with path_of(folder, name).open("rb") as file:

@@ -54,7 +54,7 @@ class Frame(NamedTuple):
     image: EncodedImage | RawImage | VideoFrame
 
 
-class Place(NamedTuple):
+class FramePlace(NamedTuple):
     """The place of a frame: its log time, file, channel, chunk, and offset in the unpacked chunk."""
 
     log_ns: int
@@ -73,27 +73,27 @@ class FrameSource(Protocol):
     def __exit__(self, *_error: object) -> None:
         """Close the log."""
 
-    def places(self, topic: str, since_ns: int, until_ns: int) -> list[Place]:
+    def frame_places(self, topic: str, since_ns: int, until_ns: int) -> list[FramePlace]:
         """Return the places of a camera's frames with log times from `since_ns` to `until_ns`, in time order."""
 
-    def stamp_ns(self, place: Place) -> int | None:
+    def stamp_ns(self, place: FramePlace) -> int | None:
         """Return when the frame at a place was taken, if the frame contains its time."""
 
-    def picture(self, topic: str, place: Place) -> EncodedImage | RawImage | Image:
+    def picture(self, topic: str, place: FramePlace) -> EncodedImage | RawImage | Image:
         """Return the image at a place."""
 
 
 class MessageSource(Protocol):
     """The messages of the cameras of one log, by time. Errors of all methods: `FrameError`."""
 
-    def places(self, topic: str, since_ns: int, until_ns: int) -> list[Place]:
+    def frame_places(self, topic: str, since_ns: int, until_ns: int) -> list[FramePlace]:
         """Return the places of a camera's frames with log times from `since_ns` to `until_ns`, in time order."""
 
-    def frame(self, place: Place) -> Frame:
+    def frame(self, place: FramePlace) -> Frame:
         """Return the content of the message at a place."""
 
 
-_KINDS: Final = {
+_KIND_OF_CAMERA_MESSAGE: Final = {
     ("cdr", "sensor_msgs/CompressedImage"): "ros image",
     ("cdr", "sensor_msgs/Image"): "ros raw",
     ("cdr", "foxglove_msgs/CompressedImage"): "cdr image",
@@ -106,9 +106,9 @@ _KINDS: Final = {
     ("json", "foxglove.RawImage"): "raw",
 }
 """Encoding and schema of a camera message -> the kind of its content, which decides how it is read."""
-_NO_PICTURES: Final = ("depth", "disparity", "segmentation", "instance", "optical_flow", "mask", "dvs")
+_WORDS_OF_OTHER_IMAGES: Final = ("depth", "disparity", "segmentation", "instance", "optical_flow", "mask", "dvs")
 """Words in the topics of images that are not camera pictures."""
-_SIDES: Final = ("left", "right", "rear", "back", "side")
+_WORDS_OF_SIDE_VIEWS: Final = ("left", "right", "rear", "back", "side")
 
 
 def is_camera(channel: Channel, schema: Schema) -> bool:
@@ -118,14 +118,14 @@ def is_camera(channel: Channel, schema: Schema) -> bool:
 
 def has_pictures(topic: str, schema: str, encoding: str) -> bool:
     """Return whether the messages of a topic are frames of a camera. `schema`: name of their schema; `encoding`: their encoding."""
-    is_known = (encoding, short_type_name(schema)) in _KINDS
-    return is_known and not any(word in topic.lower() for word in _NO_PICTURES)
+    is_known = (encoding, short_type_name(schema)) in _KIND_OF_CAMERA_MESSAGE
+    return is_known and not any(word in topic.lower() for word in _WORDS_OF_OTHER_IMAGES)
 
 
-def ahead_first(topic: str) -> tuple[int, str]:
+def camera_sort_key(topic: str) -> tuple[int, str]:
     """Return the sort key of a camera's topic: cameras that look ahead come first."""
     name = topic.lower()
-    is_aside = any(side in name for side in _SIDES)
+    is_aside = any(side in name for side in _WORDS_OF_SIDE_VIEWS)
     return (2 if is_aside else 0 if "front" in name else 1), topic
 
 
@@ -136,10 +136,10 @@ def camera_name(topic: str) -> str:
 
 def read_frame(channel: Channel, schema: Schema, data: bytes | memoryview) -> Frame:
     """Return the content of a camera message. Errors: `FrameError` if the message cannot be read."""
-    kind = _KINDS[channel.message_encoding, short_type_name(schema.name)]
+    kind = _KIND_OF_CAMERA_MESSAGE[channel.message_encoding, short_type_name(schema.name)]
     try:
         if channel.message_encoding == "cdr":
-            return _cdr_frame(kind, _Cdr(data))
+            return _cdr_frame(kind, _CdrReader(data))
         if channel.message_encoding == "json":
             return _foxglove_frame(kind, json.loads(bytes(data)))
         return _foxglove_frame(kind, _protobuf_fields(schema.name, schema.data, bytes(data)))
@@ -147,7 +147,7 @@ def read_frame(channel: Channel, schema: Schema, data: bytes | memoryview) -> Fr
         raise FrameError(f"a message that cannot be read ({error})") from error
 
 
-class _Cdr:
+class _CdrReader:
     """Reads the members of one CDR message (XCDR1), one after another."""
 
     def __init__(self, data: bytes | memoryview) -> None:
@@ -155,39 +155,39 @@ class _Cdr:
         self._at = HEADER_BYTES
         self._order = BYTE_ORDERS[data[1]]
 
-    def number(self, code: str) -> Any:
+    def read_number(self, code: str) -> Any:
         size = struct.calcsize(code)
         self._at += -(self._at - HEADER_BYTES) % size
         (value,) = struct.unpack_from(self._order + code, self._data, self._at)
         self._at += size
         return value
 
-    def block(self) -> bytes:
-        size = self.number("I")
+    def read_bytes(self) -> bytes:
+        size = self.read_number("I")
         if size > len(self._data) - self._at:
             raise ValueError("it ends within its data")
         self._at += size
         return bytes(self._data[self._at - size : self._at])
 
-    def text(self) -> str:
-        return self.block().rstrip(b"\0").decode("utf-8", "replace")
+    def read_text(self) -> str:
+        return self.read_bytes().rstrip(b"\0").decode("utf-8", "replace")
 
-    def stamp(self) -> int | None:
-        seconds, nanoseconds = self.number("i"), self.number("I")
+    def read_stamp_ns(self) -> int | None:
+        seconds, nanoseconds = self.read_number("i"), self.read_number("I")
         return seconds * 10**9 + nanoseconds or None
 
 
-def _cdr_frame(kind: str, message: _Cdr) -> Frame:
-    stamp_ns = message.stamp()
-    message.text()  # the coordinate frame
+def _cdr_frame(kind: str, message: _CdrReader) -> Frame:
+    stamp_ns = message.read_stamp_ns()
+    message.read_text()  # the coordinate frame
     if kind == "ros image":
-        message.text()  # the format, which the image file itself contains
-        return Frame(stamp_ns, EncodedImage(message.block()))
+        message.read_text()  # the format, which the image file itself contains
+        return Frame(stamp_ns, EncodedImage(message.read_bytes()))
     if kind == "ros raw":
-        height, width, encoding = message.number("I"), message.number("I"), message.text()
-        is_big_endian, step = bool(message.number("B")), message.number("I")
-        return Frame(stamp_ns, RawImage(width, height, encoding, step, is_big_endian, message.block()))
-    data, format_ = message.block(), message.text()
+        height, width, encoding = message.read_number("I"), message.read_number("I"), message.read_text()
+        is_big_endian, step = bool(message.read_number("B")), message.read_number("I")
+        return Frame(stamp_ns, RawImage(width, height, encoding, step, is_big_endian, message.read_bytes()))
+    data, format_ = message.read_bytes(), message.read_text()
     return Frame(stamp_ns, VideoFrame(format_, data) if kind == "cdr video" else EncodedImage(data))
 
 
@@ -205,9 +205,9 @@ def _foxglove_frame(kind: str, fields: dict[str, Any]) -> Frame:
     return Frame(stamp_ns, RawImage(width, height, fields["encoding"], int(fields["step"]), False, data))
 
 
-def _protobuf_fields(name: str, described: bytes, data: bytes) -> dict[str, Any]:
+def _protobuf_fields(type_name: str, schema_data: bytes, data: bytes) -> dict[str, Any]:
     """Return field name -> value of a message; its time stamp becomes a dictionary."""
-    message = _message_class(name, described).FromString(data)
+    message = _message_class(type_name, schema_data).FromString(data)
     fields = {field.name: getattr(message, field.name) for field in message.DESCRIPTOR.fields}
     if "timestamp" in fields:
         fields["timestamp"] = {"sec": fields["timestamp"].seconds, "nsec": fields["timestamp"].nanos}
@@ -215,14 +215,14 @@ def _protobuf_fields(name: str, described: bytes, data: bytes) -> dict[str, Any]
 
 
 @lru_cache(maxsize=16)
-def _message_class(name: str, described: bytes) -> Any:
+def _message_class(type_name: str, schema_data: bytes) -> Any:
     """Return the class of the messages that a schema record of the log describes. Errors: `FrameError`."""
     from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
 
     try:
         pool = descriptor_pool.DescriptorPool()
-        for file in descriptor_pb2.FileDescriptorSet.FromString(described).file:
+        for file in descriptor_pb2.FileDescriptorSet.FromString(schema_data).file:
             pool.Add(file)
-        return message_factory.GetMessageClass(pool.FindMessageTypeByName(name))
+        return message_factory.GetMessageClass(pool.FindMessageTypeByName(type_name))
     except Exception as error:
-        raise FrameError(f"the log has no valid schema for the message type {name}") from error
+        raise FrameError(f"the log has no valid schema for the message type {type_name}") from error

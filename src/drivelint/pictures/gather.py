@@ -10,10 +10,10 @@ import pyarrow as pa
 from drivelint.drive.trace import FrameTimes
 from drivelint.formats.mcap import trace as mcap
 from drivelint.formats.mcap.bag import mcap_files
-from drivelint.pictures.camera_log import CameraLog, camera_topics
+from drivelint.pictures.camera_log import McapFrameSource, camera_topics
 from drivelint.pictures.clock import DriveClock, nearest_frame
 from drivelint.pictures.frames import FrameError
-from drivelint.pictures.shots import SHOTS_NS, planned_shots
+from drivelint.pictures.shots import SHOT_OFFSET_NS, planned_shots
 from drivelint.result.counts import group_rows
 from drivelint.result.schemas import empty_table
 from drivelint.sql.store import arrow_schemas
@@ -26,12 +26,12 @@ if TYPE_CHECKING:
 
     from drivelint.drive.trace import Trace
     from drivelint.engine.batch import Drive
-    from drivelint.pictures.frames import FrameSource, Place
+    from drivelint.pictures.frames import FramePlace, FrameSource
     from drivelint.pictures.shots import Shot
     from drivelint.result.model import Result
 
 
-D123: Final = "123d"
+D123_FORMAT: Final = "123d"
 """The format of `drivelint.formats.d123`, whose modules are imported only for its logs."""
 
 
@@ -44,14 +44,14 @@ class DriveCameras(NamedTuple):
     topics: tuple[str, ...]
 
 
-class Trouble(NamedTuple):
+class PictureTrouble(NamedTuple):
     """Why pictures of a log are missing."""
 
     path: Path
     text: str
 
 
-class Camerawork:
+class PictureTaker:
     """Stores the drives with cameras of each judged batch, and takes the pictures when all batches are judged."""
 
     def __init__(self) -> None:
@@ -62,19 +62,19 @@ class Camerawork:
         for drive in drives:
             trace = drive.trace
             (format_,) = trace.tables["data_log"]["format"].to_pylist()
-            if trace.drive_id not in self._drives and (cameras := _cameras(trace, format_)) is not None:
+            if trace.drive_id not in self._drives and (cameras := _drive_cameras(trace, format_)) is not None:
                 self._drives[trace.drive_id] = cameras
 
     @property
-    def topics(self) -> dict[str, tuple[str, ...]]:
+    def topics_by_drive(self) -> dict[str, tuple[str, ...]]:
         """drive_id -> topics of its cameras; only drives with cameras."""
         return {drive_id: each.topics for drive_id, each in self._drives.items()}
 
-    def take(self, result: Result) -> tuple[pa.Table, list[Trouble]]:
+    def take_pictures(self, result: Result) -> tuple[pa.Table, list[PictureTrouble]]:
         """Return the table `picture` of a result, sorted, and why pictures are missing, each reason once per camera."""
         rows: list[dict[str, Any]] = []
-        troubles: dict[Trouble, None] = {}
-        of_drives = group_rows(planned_shots(result, self.topics), lambda shot: shot.drive_id)
+        troubles: dict[PictureTrouble, None] = {}
+        of_drives = group_rows(planned_shots(result, self.topics_by_drive), lambda shot: shot.drive_id)
         for drive_id, shots in sorted(of_drives.items()):
             drive = self._drives[drive_id]
             try:
@@ -83,48 +83,48 @@ class Camerawork:
                         asked = [shot for shot in shots if (shot.t_ns, shot.camera_no) == moment]
                         rows += _picture_rows(log, drive, asked, troubles)
             except (OSError, ValueError) as error:  # ValueError: an empty file cannot be mapped
-                troubles[Trouble(drive.path, f"no pictures: the log cannot be read any more ({error})")] = None
+                troubles[PictureTrouble(drive.path, f"no pictures: the log cannot be read any more ({error})")] = None
         if not rows:
             return empty_table("picture"), list(troubles)
         return pa.Table.from_pylist(rows, schema=arrow_schemas()["picture"]), list(troubles)
 
 
-def _cameras(trace: Trace, format_: str) -> DriveCameras | None:
+def _drive_cameras(trace: Trace, format_: str) -> DriveCameras | None:
     """Return the cameras of a log; None: it has none."""
     if format_ in mcap.formats:
         files = tuple(mcap_files(trace.path))
         if topics := camera_topics(files):
-            return DriveCameras(trace.path, lambda: CameraLog(files), DriveClock(trace.frame_times), topics)
-    elif format_ == D123:
+            return DriveCameras(trace.path, lambda: McapFrameSource(files), DriveClock(trace.frame_times), topics)
+    elif format_ == D123_FORMAT:
         from drivelint.formats.d123.reader import log_clock
-        from drivelint.pictures.d123_log import D123Log, camera_names
+        from drivelint.pictures.d123_log import D123FrameSource, camera_names
 
         if not (topics := camera_names(trace.path)):
             return None
         zero_ns = log_clock(trace.path).zero_us * 1000
         times = FrameTimes(np.array([0]), np.array([zero_ns], np.uint64))
-        return DriveCameras(trace.path, lambda: D123Log(trace.path), DriveClock(times), topics)
+        return DriveCameras(trace.path, lambda: D123FrameSource(trace.path), DriveClock(times), topics)
     return None
 
 
 def _picture_rows(
-    log: FrameSource, drive: DriveCameras, shots: Sequence[Shot], troubles: dict[Trouble, None]
+    log: FrameSource, drive: DriveCameras, shots: Sequence[Shot], troubles: dict[PictureTrouble, None]
 ) -> list[dict[str, Any]]:
     """Return the rows of the shots of one moment by one camera, in time order; no frame is used twice."""
     from drivelint.pictures.images import small_jpeg
 
     topic = drive.topics[shots[0].camera_no]
     rows: list[dict[str, Any]] = []
-    shown_places: set[Place] = set()
-    for shot in sorted(shots, key=lambda shot: (shot.shot != "at", SHOTS_NS[shot.shot])):
+    shown_places: set[FramePlace] = set()
+    for shot in sorted(shots, key=lambda shot: (shot.shot != "at", SHOT_OFFSET_NS[shot.shot])):
         try:
-            frame = nearest_frame(log, topic, drive.clock, shot.t_ns + SHOTS_NS[shot.shot])
+            frame = nearest_frame(log, topic, drive.clock, shot.t_ns + SHOT_OFFSET_NS[shot.shot])
             if frame is None or frame[0] in shown_places:
                 continue
             shown_places.add(frame[0])
             picture = small_jpeg(log.picture(topic, frame[0]))
         except FrameError as error:
-            troubles.setdefault(Trouble(drive.path, f"camera {topic}: no picture of {error}"))
+            troubles.setdefault(PictureTrouble(drive.path, f"camera {topic}: no picture of {error}"))
             continue
         rows.append(
             {

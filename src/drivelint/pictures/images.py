@@ -17,15 +17,15 @@ MOST_WIDTH_HEIGHT_PX: Final = (640, 480)
 """The greatest width and height of a picture."""
 MOST_PICTURE_BYTES: Final = 30_000
 """A larger picture is encoded with a lower quality; a noisy picture may still be a little larger then."""
-_QUALITY, _LESS, _LEAST = 70, 35, 10
+_QUALITY, _LOW_QUALITY, _LEAST_QUALITY = 70, 35, 10
 _FORMATS: Final = ("JPEG", "PNG", "WEBP")
 _MOST_PIXELS: Final = 100_000_000
-_PLAIN: Final = {
+_PILLOW_MODES: Final = {
     "rgb8": ("RGB", "RGB", 3), "bgr8": ("RGB", "BGR", 3), "8UC3": ("RGB", "BGR", 3), "rgba8": ("RGB", "RGBX", 4),
     "bgra8": ("RGB", "BGRX", 4), "mono8": ("L", "L", 1), "8UC1": ("L", "L", 1),
 }  # fmt: skip
 """Encoding of a raw image -> mode and raw mode of Pillow, bytes per pixel. In 8UC3, a name of OpenCV, blue is the first channel."""
-_LUMA: Final = {"yuv422": 1, "uyvy": 1, "yuv422_yuy2": 0, "yuyv": 0}
+_LUMA_INDEX: Final = {"yuv422": 1, "uyvy": 1, "yuv422_yuy2": 0, "yuyv": 0}
 """Encoding with two bytes per pixel -> which byte is the brightness."""
 _COLOUR_FILTERS: Final = {f"bayer_{order}8": order for order in ("rggb", "bggr", "gbrg", "grbg")}
 
@@ -44,30 +44,30 @@ def small_jpeg(image: EncodedImage | RawImage | Image.Image) -> Jpeg:
     Its sides are divided by a whole number, which takes a third of the time of any other scale.
     """
     try:
-        opened = _image(image)
+        opened = _pillow_image(image)
         whole = opened if opened.mode == "RGB" else opened.convert("RGB")
-        small = whole.reduce(times) if (times := _times_too_large(whole)) > 1 else whole
+        small = whole.reduce(times) if (times := _shrink_factor(whole)) > 1 else whole
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
         raise FrameError(f"an image that cannot be decoded ({error})") from error
-    data = _encoded(small, _QUALITY)
+    data = _jpeg_bytes(small, _QUALITY)
     if len(data) > MOST_PICTURE_BYTES:
-        data = _encoded(small, _LESS if len(data) < 2 * MOST_PICTURE_BYTES else _LEAST)
+        data = _jpeg_bytes(small, _LOW_QUALITY if len(data) < 2 * MOST_PICTURE_BYTES else _LEAST_QUALITY)
     return Jpeg(data, *small.size)
 
 
-def _encoded(image: Image.Image, quality: int) -> bytes:
+def _jpeg_bytes(image: Image.Image, quality: int) -> bytes:
     sink = io.BytesIO()
     image.save(sink, "JPEG", quality=quality, exif=b"", comment=b"")
     return sink.getvalue()
 
 
-def _image(image: EncodedImage | RawImage | Image.Image) -> Image.Image:
+def _pillow_image(image: EncodedImage | RawImage | Image.Image) -> Image.Image:
     if isinstance(image, RawImage):
-        return _of_pixels(image)
+        return _image_of_pixels(image)
     return _open_image(image) if isinstance(image, EncodedImage) else image
 
 
-def _times_too_large(image: Image.Image) -> int:
+def _shrink_factor(image: Image.Image) -> int:
     """Return the whole number by which the sides of an image are divided."""
     return max(1, *(-(-side // most) for side, most in zip(image.size, MOST_WIDTH_HEIGHT_PX, strict=True)))
 
@@ -77,7 +77,7 @@ def _open_image(image: EncodedImage) -> Image.Image:
         picture = Image.open(io.BytesIO(image.data), formats=_FORMATS)
         if picture.width * picture.height > _MOST_PIXELS:
             raise FrameError(f"an image of {picture.width} x {picture.height} pixels")
-        times = _times_too_large(picture)
+        times = _shrink_factor(picture)
         picture.draft(
             "RGB", (picture.width // times, picture.height // times)
         )  # a JPEG is decoded in the smallest size that is sufficient
@@ -88,10 +88,10 @@ def _open_image(image: EncodedImage) -> Image.Image:
     return picture
 
 
-def _of_pixels(image: RawImage) -> Image.Image:
+def _image_of_pixels(image: RawImage) -> Image.Image:
     """Return a raw image in Pillow's form; an image with a Bayer filter is returned at half its size."""
-    mode, raw_mode, size = _PLAIN.get(image.encoding, ("", "", 2 if image.encoding in _LUMA else 1))
-    if not mode and image.encoding not in _LUMA and image.encoding not in _COLOUR_FILTERS:
+    mode, raw_mode, size = _PILLOW_MODES.get(image.encoding, ("", "", 2 if image.encoding in _LUMA_INDEX else 1))
+    if not mode and image.encoding not in _LUMA_INDEX and image.encoding not in _COLOUR_FILTERS:
         raise FrameError(f"an image in {image.encoding!r}, which is not read")
     if image.width * size > image.step or image.height * image.step > len(image.data) or not image.width * image.height:
         raise FrameError(f"an image of {image.width} x {image.height} pixels in {len(image.data)} bytes")
@@ -100,23 +100,23 @@ def _of_pixels(image: RawImage) -> Image.Image:
     rows = np.frombuffer(image.data, np.uint8, image.height * image.step).reshape(image.height, image.step)
     pixels = rows[:, : image.width * size].reshape(image.height, image.width, size)
     if size == 2:
-        return Image.fromarray(_of_yuv(pixels, _LUMA[image.encoding]))
+        return Image.fromarray(_rgb_of_yuv(pixels, _LUMA_INDEX[image.encoding]))
     if min(pixels.shape[:2]) < 2:
         raise FrameError("an image smaller than its colour filter")
-    return Image.fromarray(_of_colour_filter(pixels[:, :, 0], _COLOUR_FILTERS[image.encoding]))
+    return Image.fromarray(_rgb_of_colour_filter(pixels[:, :, 0], _COLOUR_FILTERS[image.encoding]))
 
 
-def _of_colour_filter(pixels: NDArray[np.uint8], pattern: str) -> NDArray[np.uint8]:
+def _rgb_of_colour_filter(pixels: NDArray[np.uint8], pattern: str) -> NDArray[np.uint8]:
     even = pixels[: pixels.shape[0] // 2 * 2, : pixels.shape[1] // 2 * 2]
     quarters = {i: even[i // 2 :: 2, i % 2 :: 2].astype(np.uint16) for i in range(4)}
     of = {colour: [quarters[i] for i, each in enumerate(pattern) if each == colour] for colour in "rgb"}
     return np.stack([(sum(of[colour]) // len(of[colour])) for colour in "rgb"], axis=2).astype(np.uint8)
 
 
-def _of_yuv(pixels: NDArray[np.uint8], luma: int) -> NDArray[np.uint8]:
+def _rgb_of_yuv(pixels: NDArray[np.uint8], luma_index: int) -> NDArray[np.uint8]:
     """Return YUV 4:2:2 as RGB (ITU-R BT.601)."""
     even = pixels[:, : pixels.shape[1] // 2 * 2].astype(np.float32)
-    y, chroma = even[:, :, luma], even[:, :, 1 - luma] - 128
+    y, chroma = even[:, :, luma_index], even[:, :, 1 - luma_index] - 128
     u, v = (np.repeat(chroma[:, i::2], 2, axis=1) for i in (0, 1))
     red, green, blue = y + 1.402 * v, y - 0.344 * u - 0.714 * v, y + 1.772 * u
     return np.asarray(np.clip(np.stack([red, green, blue], axis=2), 0, 255), np.uint8)

@@ -14,9 +14,9 @@ if TYPE_CHECKING:
 
     from drivelint.result.model import Result
 
-SHOTS_NS: Final = {"before": -1_000_000_000, "at": 0, "after": 1_000_000_000}
+SHOT_OFFSET_NS: Final = {"before": -1_000_000_000, "at": 0, "after": 1_000_000_000}
 """Shot -> its time relative to the moment."""
-_IN_ORDER: Final = ("at", "before", "after")
+_SHOT_ORDER: Final = ("at", "before", "after")
 MOST_MOMENTS: Final = 30
 MOST_CAMERAS: Final = 3
 MOST_SHOTS: Final = 120
@@ -32,42 +32,42 @@ class Shot(NamedTuple):
     shot: str
 
 
-def planned_shots(result: Result, cameras: Mapping[str, Sequence[str]]) -> list[Shot]:
-    """Return the pictures to take for a result, the most important first. `cameras`: drive_id -> topics of its cameras.
+def planned_shots(result: Result, topics_by_drive: Mapping[str, Sequence[str]]) -> list[Shot]:
+    """Return the pictures to take for a result, the most important first. `topics_by_drive`: drive_id -> topics of its cameras.
 
     The first camera shows every moment, then the other cameras show the worst moments. So a picture that is not planned for a part of
     the drives is not planned for all drives either.
     """
-    return shots_of_moments(_moments(result, cameras), cameras)
+    return shots_of_moments(_moments_worst_first(result, topics_by_drive), topics_by_drive)
 
 
-def shots_of_moments(moments: Sequence[tuple[str, int]], cameras: Mapping[str, Sequence[str]]) -> list[Shot]:
+def shots_of_moments(moments: Sequence[tuple[str, int]], topics_by_drive: Mapping[str, Sequence[str]]) -> list[Shot]:
     """Return the pictures to take of moments (drive and time), which are sorted, the worst first. All drives must have cameras."""
     moments = moments[:MOST_MOMENTS]
-    first = [Shot(*moment, 0, shot) for shot in _IN_ORDER for moment in moments]
+    first = [Shot(*moment, 0, shot) for shot in _SHOT_ORDER for moment in moments]
     later_shots = [
         Shot(drive_id, t_ns, no, shot)
         for drive_id, t_ns in moments
-        for no in range(1, min(len(cameras[drive_id]), MOST_CAMERAS))
-        for shot in _IN_ORDER
+        for no in range(1, min(len(topics_by_drive[drive_id]), MOST_CAMERAS))
+        for shot in _SHOT_ORDER
     ]
     return [*first, *later_shots][:MOST_SHOTS]
 
 
-def chosen_rows(pictures: pa.Table, planned: Sequence[Shot]) -> pa.Table:
+def rows_of_planned_shots(pictures: pa.Table, shots: Sequence[Shot]) -> pa.Table:
     """Return the rows of the table `picture` whose shots are planned."""
-    wanted = set(planned)
+    wanted = set(shots)
     keys = zip(*(pictures[name].to_pylist() for name in Shot._fields), strict=True)
     return pictures.filter(pa.array([Shot(*key) in wanted for key in keys], pa.bool_()))
 
 
-def _moments(result: Result, cameras: Mapping[str, Sequence[str]]) -> list[tuple[str, int]]:
+def _moments_worst_first(result: Result, topics_by_drive: Mapping[str, Sequence[str]]) -> list[tuple[str, int]]:
     """Return drive and time of the findings, then of the near misses, each with the worst first; only drives with cameras."""
-    if not cameras:
+    if not topics_by_drive:
         return []
     rules = {row["rule_id"]: row for row in result.rules.to_pylist()}
     near = result.verdicts.filter(pc.equal(result.verdicts["near_miss"], True))
-    of_drives = pa.array(sorted(cameras), pa.string())
+    of_drives = pa.array(sorted(topics_by_drive), pa.string())
     found: dict[tuple[str, int], None] = {}
     for rows in (result.findings, near):
         mine = rows.filter(pc.and_(pc.is_in(rows["drive_id"], value_set=of_drives), pc.is_valid(rows["t_worst_ns"])))

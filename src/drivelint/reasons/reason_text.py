@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 _OPTIONAL = re.compile(r"\[([^\[\]]*)\]")
 _ARGUMENT = re.compile(r"\{(\w+)(?::(\.?\d?[fg]))?\}")
-_BEGINS = '{"code":'
-PLAIN_TEXT: Final = "text"
+_JSON_START = '{"code":'
+PLAIN_TEXT_CODE: Final = "text"
 """The code of a reason that is plain text; the text is its argument."""
 
 
@@ -50,13 +50,13 @@ class Reason(NamedTuple):
     arguments: dict[str, Any]
 
 
-def shared_texts() -> dict[str, ReasonText]:
+def texts_of_shared_codes() -> dict[str, ReasonText]:
     """Return reason code -> text, for the codes of `words.toml`, which do not belong to a single rule."""
-    return _read()[0]
+    return _read_words_file()[0]
 
 
 @cache
-def _read() -> tuple[dict[str, ReasonText], dict[str, dict[str, str]]]:
+def _read_words_file() -> tuple[dict[str, ReasonText], dict[str, dict[str, str]]]:
     raw = dict(toml_beside(__file__, "words.toml"))
     values = raw.pop("values")
     return msgspec.convert(raw, dict[str, ReasonText]), values
@@ -65,10 +65,10 @@ def _read() -> tuple[dict[str, ReasonText], dict[str, dict[str, str]]]:
 def parse_reason(reason: str) -> Reason:
     """Return the code and the arguments of a reason; `reason`: JSON from the SQL macro `why`, or plain text."""
     try:
-        raw = json.loads(reason) if reason.startswith(_BEGINS) else {}
+        raw = json.loads(reason) if reason.startswith(_JSON_START) else {}
         return Reason(str(raw["code"]), dict(raw.get("args") or {}))
     except (ValueError, TypeError, KeyError):
-        return Reason(PLAIN_TEXT, {PLAIN_TEXT: reason})
+        return Reason(PLAIN_TEXT_CODE, {PLAIN_TEXT_CODE: reason})
 
 
 def sentence(reason: str, start_ns: int = 0, rule_texts: Mapping[str, ReasonText] | None = None) -> str:
@@ -77,7 +77,7 @@ def sentence(reason: str, start_ns: int = 0, rule_texts: Mapping[str, ReasonText
     `start_ns`: the start of the log, from which times count; `rule_texts`: the texts of the rule's codes.
     """
     code, arguments = parse_reason(reason)
-    return reason if code == PLAIN_TEXT else _sentence(code, arguments, start_ns, rule_texts)
+    return reason if code == PLAIN_TEXT_CODE else _sentence(code, arguments, start_ns, rule_texts)
 
 
 def _sentence(
@@ -88,28 +88,28 @@ def _sentence(
     return f"{text}: {_sentence_from_template(words.advice, arguments, start_ns, rule_texts)}" if words.advice else text
 
 
-def advice_sentence(
+def sentence_with_advice(
     code: str, arguments: Mapping[str, Any], start_ns: int = 0, rule_texts: Mapping[str, ReasonText] | None = None
 ) -> str | None:
     """Return a reason as a sentence if it, or a reason in its arguments, has advice; else None."""
-    nested = (advice_sentence(*each, start_ns, rule_texts) for each in _nested(arguments))
+    nested = (sentence_with_advice(*each, start_ns, rule_texts) for each in _nested_reasons(arguments))
     return _sentence(code, arguments, start_ns, rule_texts) if text_of(code, rule_texts).advice or any(nested) else None
 
 
 def codes_in(code: str, arguments: Mapping[str, Any]) -> set[str]:
     """Return a code and the codes of the reasons among its arguments."""
-    return {code}.union(*(codes_in(*each) for each in _nested(arguments)))
+    return {code}.union(*(codes_in(*each) for each in _nested_reasons(arguments)))
 
 
-def _nested(arguments: Mapping[str, Any]) -> list[Reason]:
+def _nested_reasons(arguments: Mapping[str, Any]) -> list[Reason]:
     """Return those arguments of a reason that are reasons themselves."""
     found = [parse_reason(value) for value in arguments.values() if isinstance(value, str)]
-    return [reason for reason in found if reason.code != PLAIN_TEXT]
+    return [reason for reason in found if reason.code != PLAIN_TEXT_CODE]
 
 
 def text_of(code: str, rule_texts: Mapping[str, ReasonText] | None = None) -> ReasonText:
     """Return the text of a code: from the rule, else from `words.toml`, else the code itself with spaces."""
-    return (rule_texts or {}).get(code) or shared_texts().get(code) or ReasonText(code.replace("_", " "))
+    return (rule_texts or {}).get(code) or texts_of_shared_codes().get(code) or ReasonText(code.replace("_", " "))
 
 
 def _sentence_from_template(
@@ -119,10 +119,10 @@ def _sentence_from_template(
     for part in _OPTIONAL.findall(template):
         absent = any(argument_words.get(name) is None for name, _ in _ARGUMENT.findall(part))
         template = template.replace(f"[{part}]", "" if absent else part, 1)
-    return _ARGUMENT.sub(lambda found: _formatted(argument_words.get(found[1]), found[2] or ""), template)
+    return _ARGUMENT.sub(lambda found: _formatted_value(argument_words.get(found[1]), found[2] or ""), template)
 
 
-def _formatted(value: Any, spec: str) -> str:
+def _formatted_value(value: Any, spec: str) -> str:
     if value is None:
         return "?"  # a required argument is NULL
     return format(value, spec) if isinstance(value, int | float) else str(value)
@@ -136,5 +136,5 @@ def _argument_words(name: str, value: Any, start_ns: int, rule_texts: Mapping[st
     if name.endswith("_ns") and isinstance(value, int):
         return f"{(value - start_ns) / 1e9:.3f} s"
     if isinstance(value, str):
-        return _read()[1].get(name, {}).get(value) or sentence(value, start_ns, rule_texts)
+        return _read_words_file()[1].get(name, {}).get(value) or sentence(value, start_ns, rule_texts)
     return value

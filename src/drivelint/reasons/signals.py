@@ -35,7 +35,7 @@ SIGNALS_OF_FEW_LOGS: Final = {
 selected the rule by its id."""
 SIGNAL_OF_CONDITION: Final = {"road_type": "road_types", "limit": "speed_limits"}
 """Condition -> the signal of the map that provides it, if its name differs."""
-WHAT_IS_NULL: Final = "what is NULL, or has no row, in the rows that it was judged on"
+DEFAULT_REMEDY: Final = "what is NULL, or has no row, in the rows that it was judged on"
 """The remedy for a reason code without one; the text of the verdict is more specific."""
 _A_MAP_THAT_GOES_ON = "a map that goes on, or a longer --sensor-range of check"
 _AGAIN = "; run drivelint check with it: what else the rule needs is not looked at before"
@@ -49,7 +49,7 @@ def signal_name(reason_code: str) -> str:
     )
 
 
-def problem(signal: str) -> str | None:
+def unknown_signal_message(signal: str) -> str | None:
     """Return why this is not the name of a signal, with a hint; None: it is valid."""
     if signal in SIGNALS:
         return None
@@ -85,11 +85,11 @@ def remedy(code: str, object_id: str | None, log_format: str, advice: str | None
         )
     return REMEDIES.get(code, "{advice}").format(
         object="the object" if object_id is None else f"object {object_id}",
-        advice=advice or (_A_MAP_THAT_GOES_ON if code == "only_a_bound" else WHAT_IS_NULL),
+        advice=advice or (_A_MAP_THAT_GOES_ON if code == "only_a_bound" else DEFAULT_REMEDY),
     )
 
 
-def condition_of(code: str) -> str | None:
+def unknown_condition_column(code: str) -> str | None:
     """Return the column of `ego_condition` that is unknown according to this reason code; None: the code is not about a condition."""
     condition = code.removesuffix("_unknown")
     if condition == code:

@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING, Final
 if TYPE_CHECKING:
     from pathlib import Path
 
-LOOKED_FOR: Final = "drivelint.looked_for"
-MACHINE_BOUND: Final = "drivelint.machine_bound"
+SEARCHED_PATH_EVENT: Final = "drivelint.looked_for"
+NOT_REPEATABLE_EVENT: Final = "drivelint.machine_bound"
 
 
-def looked_for(path: Path) -> Path:
+def report_searched_path(path: Path) -> Path:
     """Report that the run depends on whether a file exists at a path outside the folders that it lists; return the path."""
-    sys.audit(LOOKED_FOR, os.fspath(path))
+    sys.audit(SEARCHED_PATH_EVENT, os.fspath(path))
     return path
 
 
-def machine_bound(why: str) -> None:
+def report_not_repeatable(why: str) -> None:
     """Report that the result depends on more than the inputs, such as the computing time of a rule."""
-    sys.audit(MACHINE_BOUND, why)
+    sys.audit(NOT_REPEATABLE_EVENT, why)

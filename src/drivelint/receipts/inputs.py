@@ -29,7 +29,7 @@ def file_sha256(path: Path | str) -> str:
         return file_digest(file, "sha256").hexdigest()
 
 
-def state(path: str, is_output: IsOutput) -> str | None:
+def path_state(path: str, is_output: IsOutput) -> str | None:
     """Return a state that stays the same while nothing changes at a path; None: the state cannot be known, as for a pipe.
 
     The state of a file is its content, the state of a folder the names in it; both include the targets of links.
@@ -39,14 +39,14 @@ def state(path: str, is_output: IsOutput) -> str | None:
         real = os.path.realpath(path)
         if S_ISREG(mode):
             return f"file {file_sha256(path)} {real}"
-        return f"folder {_listing(path, real, is_output)} {real}" if S_ISDIR(mode) else None
+        return f"folder {_hash_of_listing(path, real, is_output)} {real}" if S_ISDIR(mode) else None
     except (FileNotFoundError, NotADirectoryError):
         return ABSENT
     except (OSError, ValueError):
         return None
 
 
-def matches(pattern: str, is_output: IsOutput) -> str:
+def hash_of_matches(pattern: str, is_output: IsOutput) -> str:
     """Return the hash of the file names that a glob pattern matches."""
     found = glob(pattern, recursive=True)  # noqa: PTH207 - same function as the search for logs
     return _hash(sorted(name for name in found if not is_output(os.path.realpath(name))))
@@ -61,18 +61,18 @@ class Inputs:
 
     def are_unchanged(self, is_output: IsOutput) -> bool:
         """Return whether all inputs have the same state as before."""
-        names = all(matches(pattern, is_output) == said for pattern, said in self.globs.items())
-        return names and all(state(path, is_output) == said for path, said in self.states.items())
+        names = all(hash_of_matches(pattern, is_output) == said for pattern, said in self.globs.items())
+        return names and all(path_state(path, is_output) == said for path, said in self.states.items())
 
 
-def _listing(folder: str, real: str, is_output: IsOutput) -> str:
+def _hash_of_listing(folder: str, real_folder: str, is_output: IsOutput) -> str:
     with os.scandir(folder) as entries:
-        shown = [entry for entry in entries if not is_output(os.path.join(real, entry.name))]  # noqa: PTH118
-    told = [(entry.name, *_kind(entry)) for entry in sorted(shown, key=lambda entry: entry.name)]
+        shown = [entry for entry in entries if not is_output(os.path.join(real_folder, entry.name))]  # noqa: PTH118
+    told = [(entry.name, *_kind_and_link_target(entry)) for entry in sorted(shown, key=lambda entry: entry.name)]
     return _hash(told)
 
 
-def _kind(entry: os.DirEntry[str]) -> tuple[str, str]:
+def _kind_and_link_target(entry: os.DirEntry[str]) -> tuple[str, str]:
     """Return the kind of a folder's entry, and the target if it is a link."""
     kind = "folder" if entry.is_dir() else "file" if entry.is_file() else "other"
     return kind, os.readlink(entry.path) if entry.is_symlink() else ""  # noqa: PTH115

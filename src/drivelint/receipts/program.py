@@ -17,7 +17,7 @@ from drivelint.resources import folder
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-ENVIRONMENT: Final = (
+ENVIRONMENT_VARIABLES: Final = (
     *("COLUMNS", "LINES", "TERM", "COLORTERM", "NO_COLOR", "FORCE_COLOR", "TTY_COMPATIBLE", "TTY_INTERACTIVE"),
     *("JUPYTER_COLUMNS", "JUPYTER_LINES", "UNICODE_VERSION", "TZ", "LANG", "LC_ALL", "LC_CTYPE"),
     *("PROJ_DATA", "PROJ_LIB", "PROJ_NETWORK", "PYARROW_IGNORE_TIMEZONE", "PYDANTIC_DISABLE_PLUGINS"),
@@ -51,12 +51,12 @@ def program_sha256() -> str:
                     content = file.read()
                 whole.update(f"{os.path.relpath(path, root)} {len(content)}\0".encode("utf-8", "surrogateescape"))
                 whole.update(content)
-    machine = [sys.version, sys.platform, platform.machine(), sys.path, _installed()]
+    machine = [sys.version, sys.platform, platform.machine(), sys.path, _package_metadata_folders()]
     whole.update(json.dumps(machine).encode())
     return whole.hexdigest()
 
 
-def _installed() -> list[str]:
+def _package_metadata_folders() -> list[str]:
     """Return the names of the metadata folders of installed packages, which contain name and version."""
     found: list[str] = []
     for place in sys.path:
@@ -67,14 +67,14 @@ def _installed() -> list[str]:
     return sorted(found)
 
 
-def question_sha256(arguments: Mapping[str, object]) -> str:
+def receipt_key(arguments: Mapping[str, object]) -> str:
     """Return the hash of the program and of the request: the options, the working folder, the terminal, and the environment variables."""
     asked = {
         "arguments": arguments,
         "folder": os.getcwd(),  # noqa: PTH109 - relative paths start there
         "stdout": [sys.stdout.encoding, sys.stdout.isatty(), _terminal_size()],
         "names": sys.getfilesystemencoding(),
-        "environment": {name: os.environ.get(name) for name in ENVIRONMENT},
+        "environment": {name: os.environ.get(name) for name in ENVIRONMENT_VARIABLES},
     }
     return sha256(f"{program_sha256()} {json.dumps(asked, sort_keys=True, default=str)}".encode()).hexdigest()
 

@@ -13,8 +13,8 @@ from threading import Lock, local
 from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.memo import cache_folder
-from drivelint.receipts.events import LOOKED_FOR, MACHINE_BOUND
-from drivelint.receipts.inputs import Inputs, matches, state
+from drivelint.receipts.events import NOT_REPEATABLE_EVENT, SEARCHED_PATH_EVENT
+from drivelint.receipts.inputs import Inputs, hash_of_matches, path_state
 from drivelint.receipts.program import program_folders
 
 if TYPE_CHECKING:
@@ -22,13 +22,13 @@ if TYPE_CHECKING:
 
     from drivelint.receipts.inputs import IsOutput
 
-_WRITES: Final = frozenset("wax+")
+_WRITE_MODE_LETTERS: Final = frozenset("wax+")
 _WRITE_FLAGS: Final = os.O_WRONLY | os.O_RDWR
-_NO_INPUT: Final = frozenset({"/dev/null", "/dev/urandom", "/proc/self/statm", "/proc/meminfo"})
+_IGNORED_FILES: Final = frozenset({"/dev/null", "/dev/urandom", "/proc/self/statm", "/proc/meminfo"})
 """Files that affect no result: they are empty or random, or report memory. `schedstat`, which reports computing time, is also ignored."""
 
 
-class Recorder:
+class InputRecorder:
     """The inputs that one run has read so far. `is_output`: returns whether a path is an output of the run."""
 
     def __init__(self, is_output: IsOutput) -> None:
@@ -46,20 +46,20 @@ class Recorder:
             os.path.realpath(folder) for folder in (*program_folders(), *([] if cache is None else [cache]))
         )
 
-    def look(self, path: str | os.PathLike[str]) -> None:
+    def record_state(self, path: str | os.PathLike[str]) -> None:
         """Record the state of a path before it is read for the first time."""
         whole = os.path.abspath(path)  # noqa: PTH100 - a link may have another target later
         if (
             whole in self._states
             or whole in self._written
-            or whole in _NO_INPUT
+            or whole in _IGNORED_FILES
             or (whole.startswith("/proc/self/") and whole.endswith("/schedstat"))
-            or self._is_own(os.path.realpath(whole))
+            or self._is_own_or_output(os.path.realpath(whole))
         ):
             return
         with self._lock:
             self._states[whole] = None
-            self._states[whole] = state(whole, self.is_output)
+            self._states[whole] = path_state(whole, self.is_output)
             if self._states[whole] is None:
                 self.trouble = f"{whole} cannot be looked at again"
 
@@ -83,58 +83,60 @@ class Recorder:
         found = Inputs(read, dict(self._globs))
         return found if found.are_unchanged(self.is_output) else None
 
-    def hear(self, event: str, args: tuple[Any, ...], importer: bool) -> None:
+    def record_event(self, event: str, args: tuple[Any, ...], is_by_importer: bool) -> None:
         """Record an audit event. It never raises an error, because that would affect the audited code."""
         if getattr(self._inside, "busy", False):
             return
         self._inside.busy = True
         try:
-            self._hear(event, args, importer)
+            self._record_event(event, args, is_by_importer)
         except Exception as error:  # noqa: BLE001 - no error may end the run
             self.trouble = f"{event}: {error!r}"
         finally:
             self._inside.busy = False
 
-    def _hear(self, event: str, args: tuple[Any, ...], importer: bool) -> None:
-        if event == MACHINE_BOUND:
+    def _record_event(self, event: str, args: tuple[Any, ...], is_by_importer: bool) -> None:
+        if event == NOT_REPEATABLE_EVENT:
             self.trouble = args[0]
         elif event == "tempfile.mkdtemp":
             self._made.add(os.path.realpath(args[0]))
         elif event == "glob.glob":
-            self._globs.setdefault(pattern := os.fspath(args[0]), matches(pattern, self.is_output))
-        elif not importer and not isinstance(path := "." if args[0] is None else args[0], int):
+            self._globs.setdefault(pattern := os.fspath(args[0]), hash_of_matches(pattern, self.is_output))
+        elif not is_by_importer and not isinstance(path := "." if args[0] is None else args[0], int):
             path = os.fsdecode(path)
             if event == "open" and _is_writing(*args[1:]):
                 self._written.add(os.path.abspath(path))  # noqa: PTH100
             else:
-                self.look(path)
+                self.record_state(path)
 
-    def _is_own(self, real: str) -> bool:
-        return self.is_output(real) or any(is_below(real, folder) for folder in (*self._ours, *self._made))
+    def _is_own_or_output(self, real_path: str) -> bool:
+        return self.is_output(real_path) or any(
+            is_at_or_below(real_path, folder) for folder in (*self._ours, *self._made)
+        )
 
 
-def is_below(path: str, folder: str) -> bool:
+def is_at_or_below(path: str, folder: str) -> bool:
     """Return whether a path is a folder or below it. Both paths must be without links."""
     return path == folder or path.startswith(folder.rstrip(os.sep) + os.sep)
 
 
-_EVENTS: Final = frozenset(
-    {"open", "os.scandir", "os.listdir", "glob.glob", "tempfile.mkdtemp", LOOKED_FOR, MACHINE_BOUND}
+_AUDIT_EVENTS: Final = frozenset(
+    {"open", "os.scandir", "os.listdir", "glob.glob", "tempfile.mkdtemp", SEARCHED_PATH_EVENT, NOT_REPEATABLE_EVENT}
 )
-_recorders: Final[list[Recorder]] = []
+_recorders: Final[list[InputRecorder]] = []
 _installed_hooks: Final[list[Callable[[str, tuple[Any, ...]], None]]] = []
 """The audit hook of this process, once it is installed."""
 
 
 @contextmanager
-def recording(is_output: IsOutput, named_paths: Iterable[str | os.PathLike[str]]) -> Iterator[Recorder]:
+def record_inputs(is_output: IsOutput, named_paths: Iterable[str | os.PathLike[str]]) -> Iterator[InputRecorder]:
     """Record the inputs of this process inside the block. `named_paths`: paths in the request, whose states are recorded first."""
-    recorder = Recorder(is_output)
+    recorder = InputRecorder(is_output)
     for path in named_paths:
-        recorder.look(path)
+        recorder.record_state(path)
     if not _installed_hooks:
-        sys.addaudithook(_hook)  # a hook cannot be removed
-        _installed_hooks.append(_hook)
+        sys.addaudithook(_audit_hook)  # a hook cannot be removed
+        _installed_hooks.append(_audit_hook)
     _recorders.append(recorder)
     try:
         yield recorder
@@ -142,20 +144,20 @@ def recording(is_output: IsOutput, named_paths: Iterable[str | os.PathLike[str]]
         _recorders.remove(recorder)
 
 
-def active() -> Recorder | None:
+def current_recorder() -> InputRecorder | None:
     """Return the recorder of the current run in this process; None: nothing is recorded."""
     return _recorders[-1] if _recorders else None
 
 
-def _hook(event: str, args: tuple[Any, ...]) -> None:
-    if not _recorders or event not in _EVENTS:
+def _audit_hook(event: str, args: tuple[Any, ...]) -> None:
+    if not _recorders or event not in _AUDIT_EVENTS:
         return
-    importer = _caller().startswith(("importlib.", "_frozen_importlib", "zipimport"))
+    importer = _calling_module().startswith(("importlib.", "_frozen_importlib", "zipimport"))
     for recorder in tuple(_recorders):  # another thread may remove a recorder
-        recorder.hear(event, args, importer)
+        recorder.record_event(event, args, importer)
 
 
-def _caller() -> str:
+def _calling_module() -> str:
     """Return the module whose code raised the event; '' if there is none, as in a thread of a library."""
     try:
         return str(sys._getframe(2).f_globals.get("__name__", ""))  # noqa: SLF001 - the only way to recognise the importer
@@ -164,4 +166,4 @@ def _caller() -> str:
 
 
 def _is_writing(mode: str | None, flags: int) -> bool:
-    return bool(_WRITES.intersection(mode or "")) or bool(flags & _WRITE_FLAGS)
+    return bool(_WRITE_MODE_LETTERS.intersection(mode or "")) or bool(flags & _WRITE_FLAGS)

@@ -28,8 +28,8 @@ MOST_BYTES_OF_ALL_RECEIPTS: Final = 1_000_000_000
 MOST_BYTES_OF_ONE_RECEIPT: Final = 200_000_000
 """Limit of the output of one run in bytes. A larger run is judged again, because copying its output takes long, too."""
 _FORMAT: Final = "drivelint receipt 1"
-_SEAL_BYTES: Final = 32
-_PIECE: Final = 1 << 20
+_HASH_BYTES: Final = 32
+_PIECE_BYTES: Final = 1 << 20
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ class OpenedReceipt:
 @contextmanager
 def open_receipt(key: str) -> Iterator[OpenedReceipt | None]:
     """Open the receipt of a key; None: it does not exist or is damaged."""
-    home = _folder()
+    home = _receipts_folder()
     try:
         file = None if home is None else (home / key).open("rb")
     except OSError:
@@ -84,66 +84,66 @@ def open_receipt(key: str) -> Iterator[OpenedReceipt | None]:
         yield None
         return
     with file:
-        found = _read(file, key)
+        found = _read_receipt(file, key)
         if found is not None:
             with suppress(OSError):
                 os.utime(home / key)
         yield found
 
 
-def keep(key: str, receipt: Receipt, out: Path | None) -> None:
+def store_receipt(key: str, receipt: Receipt, out: Path | None) -> None:
     """Store a receipt with the files that the run wrote into `out`, unless they are too large or the cache folder is not writable."""
-    home = _folder()
+    home = _receipts_folder()
     if home is None or sum(receipt.files.values()) > MOST_BYTES_OF_ONE_RECEIPT:
         return
     with suppress(OSError):
         home.mkdir(parents=True, exist_ok=True)
         with NamedTemporaryFile(dir=home, prefix=".new-", delete=False) as part:
             try:
-                _write(part, key, receipt, [out / name for name in receipt.files] if out else [])
+                _write_receipt(part, key, receipt, [out / name for name in receipt.files] if out else [])
             except BaseException:
                 Path(part.name).unlink(missing_ok=True)
                 raise
         Path(part.name).replace(home / key)
-        _remove_oldest(home)
+        _remove_least_recently_used(home)
 
 
-def _folder() -> Path | None:
+def _receipts_folder() -> Path | None:
     home = cache_folder()
     return None if home is None else home / "receipts"
 
 
-def _write(part: IO[bytes], key: str, receipt: Receipt, files: Sequence[Path]) -> None:
+def _write_receipt(target: IO[bytes], key: str, receipt: Receipt, files: Sequence[Path]) -> None:
     """Write a receipt. Errors: `OSError`, also if a file does not have its stated size."""
     head = {"format": _FORMAT, "key": key, **asdict(receipt)}
-    part.write(json.dumps(head).encode() + b"\n")
+    target.write(json.dumps(head).encode() + b"\n")
     for file, size in zip(files, receipt.files.values(), strict=True):
-        before = part.tell()
+        before = target.tell()
         with file.open("rb") as content:
-            copyfileobj(content, part, _PIECE)
-        if part.tell() - before != size:
+            copyfileobj(content, target, _PIECE_BYTES)
+        if target.tell() - before != size:
             raise OSError(f"{file} changed")
-    part.flush()
-    with Path(part.name).open("rb") as written:
-        part.write(_hash_of(written, part.tell()))
+    target.flush()
+    with Path(target.name).open("rb") as written:
+        target.write(_hash_of(written, target.tell()))
 
 
-def _read(file: IO[bytes], key: str) -> OpenedReceipt | None:
-    size = file.seek(0, os.SEEK_END) - _SEAL_BYTES
+def _read_receipt(file: IO[bytes], key: str) -> OpenedReceipt | None:
+    size = file.seek(0, os.SEEK_END) - _HASH_BYTES
     file.seek(0)
-    if size <= 0 or _hash_of(file, size) != file.read(_SEAL_BYTES):
+    if size <= 0 or _hash_of(file, size) != file.read(_HASH_BYTES):
         return None
     file.seek(0)
     try:
         stored_fields: dict[str, Any] = json.loads(file.readline())
         if stored_fields.pop("format") != _FORMAT or stored_fields.pop("key") != key:
             return None
-        return OpenedReceipt(_receipt(stored_fields), file, file.tell())
+        return OpenedReceipt(_receipt_from_fields(stored_fields), file, file.tell())
     except (ValueError, KeyError, TypeError, RecursionError):
         return None
 
 
-def _receipt(stored_fields: Mapping[str, Any]) -> Receipt:
+def _receipt_from_fields(stored_fields: Mapping[str, Any]) -> Receipt:
     lists = {name: tuple(stored_fields[name]) for name in ("notes", "grown_files")}
     return Receipt(**{**stored_fields, **lists, "inputs": Inputs(**stored_fields["inputs"])})
 
@@ -151,13 +151,13 @@ def _receipt(stored_fields: Mapping[str, Any]) -> Receipt:
 def _hash_of(file: IO[bytes], size: int) -> bytes:
     """Return the hash of the next `size` bytes of a file."""
     whole = sha256()
-    while size > 0 and (piece := file.read(min(size, _PIECE))):
+    while size > 0 and (piece := file.read(min(size, _PIECE_BYTES))):
         whole.update(piece)
         size -= len(piece)
     return whole.digest()
 
 
-def _remove_oldest(home: Path) -> None:
+def _remove_least_recently_used(home: Path) -> None:
     """Remove the least recently used receipts until the limits are met, including incomplete files of killed processes."""
     known = sorted(((path.stat().st_mtime_ns, path) for path in home.iterdir()), reverse=True)
     size = 0

@@ -44,7 +44,7 @@ class Clause(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     why: str = ""
 
     @property
-    def names(self) -> set[str]:
+    def cited_names(self) -> set[str]:
         """The names by which rules cite the clauses, such as H1 or R103. Errors: `RuleError` if `of` is no clause or range."""
         match = _NUMBER.fullmatch(self.of)
         if match is None:
@@ -87,13 +87,13 @@ def clause_coverage(rules: Iterable[Rule], table: Sequence[Clause]) -> list[Clau
     for rule in rules:
         for name in cited_clauses(rule):
             citing.setdefault(name, []).append(rule)
-    known = {name for clause in table for name in clause.names}
+    known = {name for clause in table for name in clause.cited_names}
     strange = sorted(citing.keys() - known)
     if strange:
         raise RuleError(f"clauses.toml: {citing[strange[0]][0].id} cites {strange[0]}, which has no entry")
     rows = []
     for clause in table:
-        mine = {rule.id: rule for name in clause.names for rule in citing.get(name, ())}
+        mine = {rule.id: rule for name in clause.cited_names for rule in citing.get(name, ())}
         covered = tuple(sorted(i for i, rule in mine.items() if rule.status == "stable"))
         drafted = tuple(sorted(i for i, rule in mine.items() if rule.status == "draft"))
         if not mine and not clause.why:
@@ -102,7 +102,7 @@ def clause_coverage(rules: Iterable[Rule], table: Sequence[Clause]) -> list[Clau
     return rows
 
 
-def page(rules: Iterable[Rule], folder: Path) -> str:
+def render_markdown(rules: Iterable[Rule], folder: Path) -> str:
     """Return the page for these rules; `folder` contains their packs, with their `clauses.toml` files."""
     rules = sorted(rules, key=lambda rule: rule.id)
     packs = group_rows(rules, lambda rule: rule.pack)
@@ -111,8 +111,8 @@ def page(rules: Iterable[Rule], folder: Path) -> str:
         rules=rules,
         packs=packs,
         clauses={pack: clause_coverage(rules, table) if table else [] for pack, table in known.items()},
-        applies=_applies,
-        asking=lambda asked, reads: _asking(rules, asked, reads),
+        applies=_restrictions_text,
+        asking=lambda asked, reads: _rules_using_text(rules, asked, reads),
         column_values={
             "actor_class": ACTOR_CLASSES,
             "indicator": INDICATORS,
@@ -124,7 +124,7 @@ def page(rules: Iterable[Rule], folder: Path) -> str:
         events=EVENTS,
         on_off_events=ON_OFF_EVENTS,
         map_features=map_features()["feature"],
-        signs={kind: _sign(kind, part) for kind, part in map_features()["name_parts"].items()},
+        signs={kind: _signal_codes_text(kind, part) for kind, part in map_features()["name_parts"].items()},
     )
 
 
@@ -140,13 +140,13 @@ def map_features() -> dict[str, Any]:
     return toml_beside(__file__, "map_features.toml")
 
 
-def _sign(kind: str, name_part: str) -> str:
+def _signal_codes_text(kind: str, name_part: str) -> str:
     """Return in Markdown how a signal of this kind is recognised."""
     codes = "; ".join(f"{country} {', '.join(numbers)}" for country, numbers in codes_of(kind).items())
     return f"`signal` {codes}; or {name_part} in its name"
 
 
-def _asking(rules: Iterable[Rule], requirements: Sequence[str], reads: Sequence[str]) -> str:
+def _rules_using_text(rules: Iterable[Rule], requirements: Sequence[str], reads: Sequence[str]) -> str:
     """Return the ids of the rules that use one of `requirements`, or their number if there are many.
 
     A rule uses a requirement if it requires it, is restricted by it, or names it in its SQL. If `reads` is not empty, a name in the SQL
@@ -165,7 +165,7 @@ def _asking(rules: Iterable[Rule], requirements: Sequence[str], reads: Sequence[
     return f"{len(ids)} rules" if len(ids) > _MAX_LISTED_RULES else ", ".join(ids) or "no rule"
 
 
-def _applies(rule: Rule) -> str:
+def _restrictions_text(rule: Rule) -> str:
     conditions = {"law": rule.law, **msgspec.structs.asdict(rule.applies)}
     said = [
         f"{name} {' or '.join(map(str, value)) if isinstance(value, tuple) else value}"

@@ -12,7 +12,7 @@ from drivelint.phrases import listed, plural
 from drivelint.reasons.signals import MISSING_PREFIX, UNRECORDED_PREFIX, signal_name
 from drivelint.report.law import law_words
 from drivelint.result import counts
-from drivelint.result.model import MISFITS, ego_absences, gating_unrecorded, off_map_reason
+from drivelint.result.model import MAP_MISFIT_CODES, ego_absence_texts, gating_verdicts_lacking_signal, off_map_reason
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -21,15 +21,15 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
     from drivelint.result.text import Row
 
-LAW: Final = "law"
+LAW_LABEL: Final = "law"
 """The label of the note on the law, which the terminal prints in its first line instead."""
-_ASSUMED_INFO: Final = (ASSUMED_SIZE, TURNED_FRAME)
-_WITHOUT_END: Final = (".csv", ".osi", ".tsv", ".txt")
+_ASSUMPTION_CHECKS: Final = (ASSUMED_SIZE, TURNED_FRAME)
+_SUFFIXES_WITHOUT_END_MARKER: Final = (".csv", ".osi", ".tsv", ".txt")
 """Formats without an end marker: a file that was cut off between two messages or lines looks complete."""
-_MAX_NAMES: Final = 2
-_NEVER_MOVES: Final = "ego_never_moves"
-_NO_MAP: Final = "missing_map"
-_EGO: Final = ["drive_id", "ego_id"]
+_MAX_LISTED_NAMES: Final = 2
+_NEVER_MOVES_CODE: Final = "ego_never_moves"
+_NO_MAP_CODE: Final = "missing_map"
+_EGO_COLUMNS: Final = ["drive_id", "ego_id"]
 
 
 class InputNote(NamedTuple):
@@ -43,39 +43,39 @@ class InputNote(NamedTuple):
 def input_notes(result: Result) -> list[InputNote]:
     """Return the notes on the inputs: law (if a rule implements a nation's law), map, log, missing signals, parked egos, not judged."""
     drives = [drive for drive in result.drives.to_pylist() if drive["status"] == "judged"]
-    law = [InputNote(LAW, words, is_warning=False)] if (words := law_words(result)) else []
+    law = [InputNote(LAW_LABEL, words, is_warning=False)] if (words := law_words(result)) else []
     return [
         *law,
-        _map(drives),
-        _log(drives),
-        *_unrecorded(result),
-        *_parked(result),
-        _not_judged(result, result.drives.num_rows - len(drives)),
+        _map_note(drives),
+        _log_note(drives),
+        *_notes_on_unrecorded_signals(result),
+        *_notes_on_parked_egos(result),
+        _not_judged_note(result, result.drives.num_rows - len(drives)),
     ]
 
 
-def _map(drives: Sequence[Row]) -> InputNote:
+def _map_note(drives: Sequence[Row]) -> InputNote:
     """Return the note on the maps on which the drives were judged, and on how many drives and egos they fit."""
     on_map = [drive for drive in drives if drive["map_name"] is not None]
     if not on_map:
         return InputNote("map", "none", is_warning=bool(drives))
     reasons = [reason for drive in on_map if (reason := off_map_reason(drive)) is not None]
     n = plural(len(on_map), "drive")
-    words = f"{listed(sorted({drive['map_name'] for drive in on_map}), _MAX_NAMES)} fits {len(on_map) - len(reasons)} of {n}"
-    off_egos, egos = sum(map(_egos_off_the_map, on_map)), sum(len(drive["exposure"]) for drive in on_map)
+    words = f"{listed(sorted({drive['map_name'] for drive in on_map}), _MAX_LISTED_NAMES)} fits {len(on_map) - len(reasons)} of {n}"
+    off_egos, egos = sum(map(_n_egos_off_map, on_map)), sum(len(drive["exposure"]) for drive in on_map)
     if reasons:
         words += f" ({reasons[0]})"
     elif off_egos:
         words += f", but not {off_egos} of {egos} egos"
     aside = [check["message"] for drive in on_map for check in drive["quality"] if check["check_id"] == ASIDE_OF_LANE]
     if aside:
-        words += f"{'; ' if off_egos else ', but '}{_far_aside(aside, egos)}"
+        words += f"{'; ' if off_egos else ', but '}{_far_aside_words(aside, egos)}"
     if bare := len(drives) - len(on_map):
         words += f"; {plural(bare, 'drive')} without a map"
     return InputNote("map", words, is_warning=bool(off_egos or reasons or aside or bare))
 
 
-def _far_aside(messages: Sequence[str], egos: int) -> str:
+def _far_aside_words(messages: Sequence[str], egos: int) -> str:
     """Return words about the egos that drive far from the middle of their lanes.
 
     A shifted map would be wrong for most egos, not for a few.
@@ -86,89 +86,89 @@ def _far_aside(messages: Sequence[str], egos: int) -> str:
     return messages[0] if len(messages) == 1 else far
 
 
-def _egos_off_the_map(drive: Row) -> int:
+def _n_egos_off_map(drive: Row) -> int:
     egos = {ego["ego_id"] for ego in drive["exposure"]}
-    return len(egos & {gap["ego_id"] for gap in drive["not_judged"] if gap["reason_code"] in MISFITS})
+    return len(egos & {gap["ego_id"] for gap in drive["not_judged"] if gap["reason_code"] in MAP_MISFIT_CODES})
 
 
-def _log(drives: Sequence[Row]) -> InputNote:
+def _log_note(drives: Sequence[Row]) -> InputNote:
     """Return the note on whether the logs are complete: losses, assumptions, the number of warnings, and logs with the same bytes."""
     lossy = [drive["drive_id"] for drive in drives if drive["lossy"]]
     checks = [check for drive in drives for check in drive["quality"] if check["check_id"] != ASIDE_OF_LANE]
     assumed = sorted({check["message"].partition(";")[0] for check in checks if check["check_id"] == ASSUMED_MOTION})
-    given = sorted({check["message"] for check in checks if check["check_id"] in _ASSUMED_INFO})
+    given = sorted({check["message"] for check in checks if check["check_id"] in _ASSUMPTION_CHECKS})
     warned = {(check["check_id"], check["message"]) for check in checks if check["severity"] != "info"}
-    parts = [f"parts lost in {listed(lossy, _MAX_NAMES)}"] if lossy else []
-    absent = [(drive["drive_id"], words) for drive in drives for words in ego_absences(drive)]
+    parts = [f"parts lost in {listed(lossy, _MAX_LISTED_NAMES)}"] if lossy else []
+    absent = [(drive["drive_id"], words) for drive in drives for words in ego_absence_texts(drive)]
     parts += (
-        [listed([f"{name}: {words}" if len(drives) > 1 else words for name, words in absent], _MAX_NAMES)]
+        [listed([f"{name}: {words}" if len(drives) > 1 else words for name, words in absent], _MAX_LISTED_NAMES)]
         if absent
         else []
     )
     parts += assumed
     if not parts:
-        parts = [_whole(drives)] if drives else ["none"]
+        parts = [_completeness_words(drives)] if drives else ["none"]
     parts += given
     if warned:
         names = sorted({check.replace("_", " ") for check, _ in warned})
-        parts.append(f"{plural(len(warned), 'warning')} ({listed(names, _MAX_NAMES)})")
-    parts += (copied := _copies(drives))
+        parts.append(f"{plural(len(warned), 'warning')} ({listed(names, _MAX_LISTED_NAMES)})")
+    parts += (copied := _words_on_copies(drives))
     return InputNote("log", "; ".join(parts), is_warning=bool(lossy or assumed or warned or copied))
 
 
-def _whole(drives: Sequence[Row]) -> str:
+def _completeness_words(drives: Sequence[Row]) -> str:
     """Return in words that the logs are complete, as far as their formats show it."""
     names = [drive["file_name"].lower() for drive in drives]
-    without = [end for end in _WITHOUT_END if any(name.endswith(end) for name in names)]
+    without = [end for end in _SUFFIXES_WITHOUT_END_MARKER if any(name.endswith(end) for name in names)]
     return f"complete, as far as the format {listed(without)} shows it" if without else "complete"
 
 
-def _copies(drives: Sequence[Row]) -> list[str]:
+def _words_on_copies(drives: Sequence[Row]) -> list[str]:
     """Return in words which logs are copies of another log under another name; the findings of copies are counted too."""
     same = counts.group_rows(drives, lambda drive: drive["sha256"]).values()
     copied = [(name["drive_id"], first["drive_id"]) for first, *others in same for name in others]
     if not copied:
         return []
     told = [f"{copy} of {first}" for copy, first in sorted(copied)]
-    return [f"{'a copy' if len(told) == 1 else 'copies'}, counted again: {listed(told, _MAX_NAMES)}"]
+    return [f"{'a copy' if len(told) == 1 else 'copies'}, counted again: {listed(told, _MAX_LISTED_NAMES)}"]
 
 
-def _unrecorded(result: Result) -> list[InputNote]:
+def _notes_on_unrecorded_signals(result: Result) -> list[InputNote]:
     """Return the note on signals that few logs contain and these logs lack, with the number of rules that need them."""
-    rows = counts.unrecorded(result.verdicts).select(["reason_code", "rule_id", *_EGO]).to_pylist()
+    rows = counts.verdicts_lacking_signal(result.verdicts).select(["reason_code", "rule_id", *_EGO_COLUMNS]).to_pylist()
     needed = [
         f"{name} (needed by {plural(n, 'rule')}{', ' if where else ''}{where})"
-        for name, n, where in _by_signal(result, rows)
+        for name, n, where in _lacking_signals(result, rows)
     ]
     return [InputNote("not recorded", listed(needed), is_warning=True)] if rows else []
 
 
-def _parked(result: Result) -> list[InputNote]:
+def _notes_on_parked_egos(result: Result) -> list[InputNote]:
     """Return the note on egos that never move (two thirds in perception logs); only rules about standing apply to them."""
-    parked = result.verdicts.filter(pc.equal(result.verdicts["reason_code"], _NEVER_MOVES))
-    n, of = (len(counts.distinct_rows(verdicts, _EGO)) for verdicts in (parked, result.verdicts))
+    parked = result.verdicts.filter(pc.equal(result.verdicts["reason_code"], _NEVER_MOVES_CODE))
+    n, of = (len(counts.distinct_rows(verdicts, _EGO_COLUMNS)) for verdicts in (parked, result.verdicts))
     words = f"{n} of {plural(of, 'ego')} never move{'s' if n == 1 else ''}: only rules about standing vehicles apply"
     return [InputNote("parked", words, is_warning=False)] if n else []
 
 
-def _by_signal(result: Result, rows: Sequence[Row]) -> list[tuple[str, int, str]]:
+def _lacking_signals(result: Result, rows: Sequence[Row]) -> list[tuple[str, int, str]]:
     """Return the signals that verdicts lack, the signal that most rules need first: name, number of rules, and for which egos."""
     missing = counts.group_rows(rows, lambda row: signal_name(row["reason_code"]))
     order = sorted(missing.items(), key=lambda item: (-_n_rules(item[1]), -len(item[1]), item[0]))
-    egos = {(row["drive_id"], row["ego_id"]) for row in counts.distinct_rows(result.verdicts, _EGO)}
-    return [(name, _n_rules(verdicts), _for_egos(verdicts, egos)) for name, verdicts in order]
+    egos = {(row["drive_id"], row["ego_id"]) for row in counts.distinct_rows(result.verdicts, _EGO_COLUMNS)}
+    return [(name, _n_rules(verdicts), _for_egos_words(verdicts, egos)) for name, verdicts in order]
 
 
-def _not_judged(result: Result, drives: int) -> InputNote:
+def _not_judged_note(result: Result, n_drives: int) -> InputNote:
     """Return the note on what was not judged: drives, rules by the missing signal, and the number of other undecided verdicts."""
-    tables = [counts.undecided(result.verdicts), gating_unrecorded(result)]
-    rows = pa.concat_tables(tables).select(["reason_code", "rule_id", *_EGO]).to_pylist()
+    tables = [counts.undecided_verdicts(result.verdicts), gating_verdicts_lacking_signal(result)]
+    rows = pa.concat_tables(tables).select(["reason_code", "rule_id", *_EGO_COLUMNS]).to_pylist()
     signals = [row for row in rows if row["reason_code"].startswith((MISSING_PREFIX, UNRECORDED_PREFIX))]
-    parts = [plural(drives, "drive")] if drives else []
+    parts = [plural(n_drives, "drive")] if n_drives else []
     if signals:
         without = [
             f"{plural(n, 'rule')} without {name}{f' ({where})' if where else ''}"
-            for name, n, where in _by_signal(result, signals)
+            for name, n, where in _lacking_signals(result, signals)
         ]
         parts.append(listed(without))
     if others := len(rows) - len(signals):
@@ -176,20 +176,20 @@ def _not_judged(result: Result, drives: int) -> InputNote:
     return InputNote("not judged", "; ".join(parts) or "nothing", is_warning=bool(parts))
 
 
-def _for_egos(rows: Iterable[Row], egos: AbstractSet[tuple[str, str]]) -> str:
+def _for_egos_words(rows: Iterable[Row], egos: AbstractSet[tuple[str, str]]) -> str:
     """Return in words how many egos these verdicts are about, or how many drives if each has one ego; '' if they are about all."""
     n = len({(row["drive_id"], row["ego_id"]) for row in rows})
     noun = "ego" if len(egos) > len({drive_id for drive_id, _ in egos}) else "drive"
     return "" if n == len(egos) else f"for {n} of {plural(len(egos), noun)}"
 
 
-def rules_without_map(result: Result) -> int:
+def n_rules_without_map(result: Result) -> int:
     """Return the number of rules with an unknown verdict because no map was given; 0 if any drive has a map."""
     on_map = pc.is_valid(result.drives["map_name"])
     if pc.any(on_map).as_py():
         return 0
-    undecided = counts.undecided(result.verdicts)
-    return len(pc.unique(undecided.filter(pc.equal(undecided["reason_code"], _NO_MAP))["rule_id"]))
+    undecided = counts.undecided_verdicts(result.verdicts)
+    return len(pc.unique(undecided.filter(pc.equal(undecided["reason_code"], _NO_MAP_CODE))["rule_id"]))
 
 
 def _n_rules(rows: Iterable[Row]) -> int:

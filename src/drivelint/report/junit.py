@@ -11,17 +11,17 @@ from lxml import etree
 
 from drivelint.gate import descriptions
 from drivelint.report.worst_first import when
-from drivelint.report.xml import add, document, replace_non_xml
+from drivelint.report.xml import add_element, replace_non_xml, xml_bytes
 from drivelint.result import counts
 from drivelint.result.model import (
-    ego_absences,
+    ego_absence_texts,
     failures_without_finding,
-    gating_gone,
+    gating_gone_findings,
     gating_unknowns,
     off_map_reason,
-    too_little_decided,
+    why_too_little_decided,
 )
-from drivelint.result.text import line, rule_name, with_count
+from drivelint.result.text import line_of_row, rule_name, with_count
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -37,7 +37,7 @@ MAX_LINES: Final = 50
 
 CaseKey = tuple[str, str, str | None]
 """drive_id, rule_id, profile."""
-_key = itemgetter("drive_id", "rule_id", "profile")
+_case_key = itemgetter("drive_id", "rule_id", "profile")
 
 
 class Case(NamedTuple):
@@ -59,30 +59,30 @@ def render(result: Result) -> bytes:
     applicable, has other unknown verdicts, or has only findings that do not gate. Other cases list these in their system-out.
     """
     root = etree.Element("testsuites", name="drivelint")
-    cases = _cases(result)
+    cases = _cases_by_drive(result)
     totals = dict.fromkeys(("tests", "failures", "errors"), 0)
     suites = [
-        (drive["drive_id"], [*_of_drive(drive), *cases.get(drive["drive_id"], ())])
+        (drive["drive_id"], [*_cases_of_drive(drive), *cases.get(drive["drive_id"], ())])
         for drive in result.drives.to_pylist()
     ]
-    if too_little := too_little_decided(result):
+    if too_little := why_too_little_decided(result):
         suites.append(("judged", [Case("enough could be judged", "error", "undecided", [too_little])]))
-    if gone := gating_gone(result):
+    if gone := gating_gone_findings(result):
         suites.append(("baseline", list(map(_unfixed_case, gone))))
     for name, mine in suites:
-        counted = _suite(root, name, mine)
+        counted = _append_suite(root, name, mine)
         totals = {name: n + counted[name] for name, n in totals.items()}
     for name, n in totals.items():
         root.set(name, str(n))
-    return document(root)
+    return xml_bytes(root)
 
 
-def _of_drive(drive: Row) -> Iterator[Case]:
+def _cases_of_drive(drive: Row) -> Iterator[Case]:
     """Yield test cases for the problems of a drive as a whole."""
     if drive["status"] == "not_judged":
         yield Case("the drive can be judged", "error", "not_judged", [drive["status_reason"] or ""])
     elif drive["lossy"]:
-        yield Case("the log is complete", "error", "lossy", ["parts of the log were lost", *ego_absences(drive)])
+        yield Case("the log is complete", "error", "lossy", ["parts of the log were lost", *ego_absence_texts(drive)])
     if (reason := off_map_reason(drive)) is not None:
         yield Case("the map fits the drive", "error", "map", [reason])
 
@@ -98,7 +98,7 @@ def _unfixed_case(entry: ComparedFinding) -> Case:
     )
 
 
-class _Lines(NamedTuple):
+class _CaseLines(NamedTuple):
     """The lines of a test case, by kind."""
 
     erred: list[str]
@@ -109,14 +109,14 @@ class _Lines(NamedTuple):
     passed: list[str]
 
 
-def _cases(result: Result) -> dict[str, list[Case]]:
+def _cases_by_drive(result: Result) -> dict[str, list[Case]]:
     """Return the test cases of each drive by `drive_id`, in the order of the verdict table."""
-    told: dict[CaseKey, _Lines] = defaultdict(lambda: _Lines([], [], [], [], [], []))
+    told: dict[CaseKey, _CaseLines] = defaultdict(lambda: _CaseLines([], [], [], [], [], []))
     rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
 
-    def add_failed(row: Row, text: str) -> None:
+    def add_failure(row: Row, text: str) -> None:
         reason = descriptions.excuse(result, row, rules.get(row["rule_id"]))
-        lines = told[_key(row)]
+        lines = told[_case_key(row)]
         if reason:
             lines.not_gating.append(f"does not gate ({reason}): {text}")
         else:
@@ -124,34 +124,34 @@ def _cases(result: Result) -> dict[str, list[Case]]:
 
     starts = result.start_times
     of_verdict = {"error": "erred", "unknown": "unknown", "not_applicable": "not_applicable", "pass": "passed"}
-    for row in _reasons(result.verdicts):
-        lines = told[_key(row)]  # creates the case, in the order of the verdicts
+    for row in _distinct_reasons(result.verdicts):
+        lines = told[_case_key(row)]  # creates the case, in the order of the verdicts
         if row["verdict"] in of_verdict:
             getattr(lines, of_verdict[row["verdict"]]).append(with_count(row["reason"], row["count_all"]))
     for row in result.findings.to_pylist():
-        add_failed(row, line(row, when(row, rules, starts.get(row["drive_id"]))))
-    for row in _reasons(failures_without_finding(result)):
-        add_failed(row, with_count(row["reason"], row["count_all"]))
-    required = set(_keys(gating_unknowns(result)))
+        add_failure(row, line_of_row(row, when(row, rules, starts.get(row["drive_id"]))))
+    for row in _distinct_reasons(failures_without_finding(result)):
+        add_failure(row, with_count(row["reason"], row["count_all"]))
+    required = set(_case_keys(gating_unknowns(result)))
     cases: dict[str, list[Case]] = defaultdict(list)
     for key, lines in told.items():
-        cases[key[0]].append(_case(key, lines, required=key in required))
+        cases[key[0]].append(_case(key, lines, is_required=key in required))
     return cases
 
 
-def _reasons(verdicts: pa.Table) -> Sequence[Row]:
+def _distinct_reasons(verdicts: pa.Table) -> Sequence[Row]:
     """Return each distinct verdict and reason of a drive, rule and profile with its count; the reason of a pass is ''."""
     reason = pc.if_else(pc.equal(verdicts["verdict"], "pass"), "", verdicts["reason"])
     columns = ["drive_id", "rule_id", "profile", "severity", "verdict"]
     return counts.distinct_rows(verdicts.select(columns).append_column("reason", reason), [*columns, "reason"])
 
 
-def _keys(rows: pa.Table) -> Iterator[CaseKey]:
-    return map(_key, rows.select(["drive_id", "rule_id", "profile"]).to_pylist())
+def _case_keys(rows: pa.Table) -> Iterator[CaseKey]:
+    return map(_case_key, rows.select(["drive_id", "rule_id", "profile"]).to_pylist())
 
 
-def _case(key: CaseKey, lines: _Lines, *, required: bool) -> Case:
-    """Return the test case of a drive, rule and profile; `required`: an unknown verdict is an error."""
+def _case(key: CaseKey, lines: _CaseLines, *, is_required: bool) -> Case:
+    """Return the test case of a drive, rule and profile; `is_required`: an unknown verdict is an error."""
     _, rule_id, profile = key
     name = f"{rule_id} [{profile}]" if profile is not None else rule_id
     unknown = [f"unknown: {x}" for x in lines.unknown]
@@ -159,7 +159,7 @@ def _case(key: CaseKey, lines: _Lines, *, required: bool) -> Case:
         return Case(name, "error", "error", lines.erred, [*lines.stopping, *lines.not_gating, *unknown])
     if lines.stopping:
         return Case(name, "failure", "fail", lines.stopping, [*lines.not_gating, *unknown])
-    if unknown and required:
+    if unknown and is_required:
         return Case(name, "error", "unknown", unknown, lines.not_gating)
     if unknown or lines.not_gating:
         return Case(name, "skipped", "unknown" if unknown else "does_not_gate", [*unknown, *lines.not_gating])
@@ -168,24 +168,24 @@ def _case(key: CaseKey, lines: _Lines, *, required: bool) -> Case:
     return Case(name, "skipped", "not_applicable", [f"not applicable: {x}" for x in lines.not_applicable])
 
 
-def _suite(root: etree._Element, drive_id: str, cases: list[Case]) -> dict[str, int]:
+def _append_suite(root: etree._Element, drive_id: str, cases: list[Case]) -> dict[str, int]:
     """Append a drive's suite to the document and return its counts."""
     outcomes = Counter(case.outcome for case in cases)
     counted = {"tests": len(cases), "failures": outcomes["failure"], "errors": outcomes["error"]}
     counted["skipped"] = outcomes["skipped"]
-    suite = add(root, "testsuite", name=drive_id, **{name: str(n) for name, n in counted.items()})
+    suite = add_element(root, "testsuite", name=drive_id, **{name: str(n) for name, n in counted.items()})
     for case in cases:
-        element = add(suite, "testcase", name=case.name, classname=drive_id)
+        element = add_element(suite, "testcase", name=case.name, classname=drive_id)
         if case.outcome:
-            lines = _first(case.lines)
-            detail = add(element, case.outcome, type=case.kind, message=lines[0] if lines else case.kind)
+            lines = _shown_lines(case.lines)
+            detail = add_element(element, case.outcome, type=case.kind, message=lines[0] if lines else case.kind)
             detail.text = replace_non_xml("\n".join(lines))
         if case.notes:
-            add(element, "system-out").text = replace_non_xml("\n".join(_first(case.notes)))
+            add_element(element, "system-out").text = replace_non_xml("\n".join(_shown_lines(case.notes)))
     return counted
 
 
-def _first(lines: Sequence[str]) -> list[str]:
+def _shown_lines(lines: Sequence[str]) -> list[str]:
     """Return the lines that are shown, and a line with the number of further lines."""
     more = len(lines) - MAX_LINES
     return [

@@ -15,17 +15,21 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
     from drivelint.result.text import Row
 
-_SOURCES: Final = {"env": "--env", "trace": "the log", "map": "the map"}
+_SOURCE_WORDS: Final = {"env": "--env", "trace": "the log", "map": "the map"}
 
 
 def law_words(result: Result) -> str:
     """Return in words which nations' laws the rules implement, and whether these were applied; '' if no rule implements a law."""
     laws = sorted({tuple(rule["law"]) for rule in result.rules.select(["law"]).to_pylist() if rule["law"]})
     drives = [drive for drive in result.drives.to_pylist() if drive["status"] == "judged"]
-    return "; ".join([*(_law(law, drives) for law in laws), *_left_out(laws, drives)]) if drives and laws else ""
+    return (
+        "; ".join([*(_words_on_law(law, drives) for law in laws), *_words_on_unrequested_packs(laws, drives)])
+        if drives and laws
+        else ""
+    )
 
 
-def _left_out(laws: list[tuple[str, ...]], drives: list[Row]) -> Iterator[str]:
+def _words_on_unrequested_packs(laws: list[tuple[str, ...]], drives: list[Row]) -> Iterator[str]:
     """Yield in words the packs that implement the law of a drive's nation, if no rule of the run implements it."""
     nations = {said["value"] for drive in drives for said in drive["conditions"] if said["condition"] == "nation"}
     lacking = sorted(nation for nation in nations if not any(nation in all_values(law) for law in laws))
@@ -36,7 +40,7 @@ def _left_out(laws: list[tuple[str, ...]], drives: list[Row]) -> Iterator[str]:
             yield f"of {nation} not requested: --rules {' --rules '.join(sorted(packs))}"
 
 
-def _law(law: tuple[str, ...], drives: list[Row]) -> str:
+def _words_on_law(law: tuple[str, ...], drives: list[Row]) -> str:
     """Return in words whether this law was applied in the drives, and the source of each drive's nation."""
     applied = all_values(law)
     counted: Counter[str] = Counter()
@@ -46,6 +50,6 @@ def _law(law: tuple[str, ...], drives: list[Row]) -> str:
             counted["assumed, as the nation is not known"] += 1
         else:
             how = "applied" if given["value"] in applied else "not applied"
-            counted[f"{how}: nation {given['value']} by {_SOURCES[given['source']]}"] += 1
+            counted[f"{how}: nation {given['value']} by {_SOURCE_WORDS[given['source']]}"] += 1
     each = [words if n == len(drives) else f"{words} in {plural(n, 'drive')}" for words, n in sorted(counted.items())]
     return f"of {listed(list(law))} {'; '.join(each)}"

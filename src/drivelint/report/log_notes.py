@@ -42,18 +42,18 @@ class LogNotes:
         if note.once:
             self._said.add(note.text)
 
-    def add_refused(self, refused_logs: Iterable[RefusedLog]) -> None:
+    def add_refused_logs(self, refused_logs: Iterable[RefusedLog]) -> None:
         """Add a note on each refused log; if the run has a single log, its refusal is the error of the run instead."""
         for each in refused_logs if self._n_logs > 1 else ():
             self.add(LogNote(each.path, f"not judged: {each.error}"))
 
 
-def same_log(path: Path, drive_id: str) -> LogNote:
+def same_log_note(path: Path, drive_id: str) -> LogNote:
     """Return the note on a log with the same content as an earlier log."""
     return LogNote(path, f"{path}: the same content as the log of {drive_id}: judged once")
 
 
-def told_once(notes: Iterable[LogNote]) -> Iterator[LogNote]:
+def notes_without_repeats(notes: Iterable[LogNote]) -> Iterator[LogNote]:
     """Yield the notes, but of several notes with `once` and the same text only the first."""
     told: set[str] = set()
     for note in notes:

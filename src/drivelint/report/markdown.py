@@ -13,10 +13,10 @@ from drivelint.gate import descriptions
 from drivelint.phrases import escape_invisible, inert_line, plural
 from drivelint.report.html.anchors import anchor
 from drivelint.report.inputs import input_notes
-from drivelint.report.outcome import headline, one_per_event, standing
+from drivelint.report.outcome import headline, one_per_event_and_status, status_at_gate
 from drivelint.report.worst_first import moment_ns, when
 from drivelint.result import counts
-from drivelint.result.certainty import doubt
+from drivelint.result.certainty import doubt_words
 from drivelint.result.gate import n_findings
 from drivelint.result.model import exit_status
 from drivelint.result.text import utc_at
@@ -35,7 +35,7 @@ MAX_CHARS: Final = 60_000
 MAX_REASON_CHARS: Final = 160
 """The greatest number of characters of a reason."""
 
-_END_PART: Final = "\f"
+_PART_SEPARATOR: Final = "\f"
 
 
 def render(result: Result, base_url: str | None = None) -> bytes:
@@ -52,20 +52,22 @@ def render(result: Result, base_url: str | None = None) -> bytes:
     ]
     findings.sort(key=lambda item: counts.SEVERITIES.index(item[0]["severity"]))
     target = base_url and quote(f"{base_url.rstrip('/')}/report.html", safe="/:?&=%+,;@~.-_!$")  # encodes ( and )
-    parts = _parts(
+    parts = _render_parts(
         "report.md.j2",
         outcome=end,
         headline=headline(result),
         inputs=input_notes(result),
-        packs=counts.verdicts_by_pack(result.rules, result.verdicts),
+        packs=counts.verdict_counts_by_pack(result.rules, result.verdicts),
         gate=gate,
         stopping=[item for item in findings if not item[1]],
         excused=[item for item in findings if item[1]],
         n_new_excused=len(
-            one_per_event(gate, [row for row, why in findings if why and standing(gate, row["finding_id"]) == "new"])
+            one_per_event_and_status(
+                gate, [row for row, why in findings if why and status_at_gate(gate, row["finding_id"]) == "new"]
+            )
         ),
-        counted=lambda items: one_per_event(gate, [row for row, _ in items]),
-        rows_of_findings=lambda items, told: counts.rows_of_findings([row for row, _ in items], told),
+        counted=lambda items: one_per_event_and_status(gate, [row for row, _ in items]),
+        rows_of_findings=lambda items, told: counts.extra_rows_sentence([row for row, _ in items], told),
         rules=rules,
         starts=result.start_times,
         drives={row["drive_id"]: row for row in result.drives.to_pylist()},
@@ -73,7 +75,7 @@ def render(result: Result, base_url: str | None = None) -> bytes:
         titles={standing: title for standing, title in descriptions.DIFF_STATUS_TITLES.items() if standing != "new"},
         warnings=list(descriptions.waiver_warnings(gate)) if gate else [],
         lost=result.drives.filter(pc.equal(result.drives["status"], "not_judged")).to_pylist(),
-        open=_undecided(result),
+        open=_undecided_reasons(result),
     )
     room = list(accumulate(len(part) + 2 for part in parts))
     kept = [part for part, n in zip(parts, room, strict=True) if n <= MAX_CHARS]
@@ -87,64 +89,68 @@ def render(result: Result, base_url: str | None = None) -> bytes:
     return ("\n\n".join(kept) + "\n").encode("utf-8", "replace")
 
 
-def difference(diff: Difference, failing: Sequence[ComparedFinding], fail_on: str, gate: Gate | None = None) -> str:
+def render_difference(
+    diff: Difference, failing: Sequence[ComparedFinding], fail_on: str, gate: Gate | None = None
+) -> str:
     """Return the difference of two results as Markdown."""
     summary, titles = descriptions.exit_summary(diff, failing, fail_on), descriptions.DIFF_STATUS_TITLES
-    return "\n\n".join(_parts("difference.md.j2", diff=diff, summary=summary, titles=titles, gate=gate, target=None))
+    return "\n\n".join(
+        _render_parts("difference.md.j2", diff=diff, summary=summary, titles=titles, gate=gate, target=None)
+    )
 
 
-def _parts(template: str, **values: Any) -> list[str]:
+def _render_parts(template: str, **values: Any) -> list[str]:
     """Render a template and return its parts."""
     filters: dict[str, Any] = {
-        "code": code,
-        "doubt": doubt,
-        "escaped": escaped,
+        "code": markdown_code,
+        "doubt": doubt_words,
+        "escaped": escape_markdown,
         "finding_line": descriptions.finding_line,
         "group_by_reason": descriptions.group_by_reason,
         "difference_headline": descriptions.headline,
         "judged_otherwise": descriptions.judged_otherwise,
         "since_baseline": descriptions.since_baseline,
-        "short": _short,
+        "short": _short_reason,
         "utc_at": utc_at,
         "moment_ns": moment_ns,
         "when": when,
     }
     text = text_template(__file__, template, **filters).render(
         most=MAX_ROWS,
-        end_part=_END_PART,
+        end_part=_PART_SEPARATOR,
         anchor=anchor,
         n_findings=n_findings,
         rows_of_entries=descriptions.rows_of_entries,
         **values,
     )
-    return [part.strip("\n") for part in text.split(_END_PART)]
+    return [part.strip("\n") for part in text.split(_PART_SEPARATOR)]
 
 
-def escaped(words_: str) -> str:
+def escape_markdown(text: str) -> str:
     """Return a text escaped so that Markdown shows it unchanged, without markup, HTML, links or mentions.
 
     An invisible word joiner prevents GitHub from linking addresses, mentions and numbers of issues.
     """
-    line = escape_invisible(" ".join(words_.split()))
+    line = escape_invisible(" ".join(text.split()))
     apart = re.sub(r"(@|#)(?=\w)|:(?=//)|(?<=www)(?=\.)", "\\g<0>\u2060", line)
     escaped = re.sub(r"([\\`*_\[\]<>|~&!$])", r"\\\1", apart)
     return re.sub(r"^([-+#])", r"\\\1", escaped)
 
 
-def code(words_: str) -> str:
+def markdown_code(text: str) -> str:
     """Return an id or a command as Markdown code, also valid in a table.
 
     The enclosing run of backticks is longer than each run in the text.
     """
-    plain = inert_line(" ".join(words_.split())).replace("|", "\\|")
+    plain = inert_line(" ".join(text.split())).replace("|", "\\|")
     fence = "`" * (1 + max(map(len, re.findall("`+", plain)), default=0))
     space = " " if plain[:1] == "`" or plain[-1:] == "`" else ""
     return f"{fence}{space}{plain}{space}{fence}" if plain else ""
 
 
-def _undecided(result: Result) -> list[dict[str, Any]]:
+def _undecided_reasons(result: Result) -> list[dict[str, Any]]:
     """Return the reasons of unknown verdicts and errors, with their rules and numbers of verdicts, the most frequent first."""
-    rows = counts.distinct_rows(counts.undecided(result.verdicts), ["verdict", "reason", "rule_id"])
+    rows = counts.distinct_rows(counts.undecided_verdicts(result.verdicts), ["verdict", "reason", "rule_id"])
     found = [
         {
             "verdict": verdict,
@@ -157,5 +163,5 @@ def _undecided(result: Result) -> list[dict[str, Any]]:
     return sorted(found, key=lambda row: (row["verdict"], -row["n"], row["reason"]))
 
 
-def _short(words_: str) -> str:
-    return words_ if len(words_) <= MAX_REASON_CHARS else words_[: MAX_REASON_CHARS - 3] + "..."
+def _short_reason(text: str) -> str:
+    return text if len(text) <= MAX_REASON_CHARS else text[: MAX_REASON_CHARS - 3] + "..."

@@ -10,12 +10,12 @@ from drivelint.drive.trace import NOT_IN_FOLDER, OWN_MAP_UNUSABLE
 from drivelint.errors import ExitCode
 from drivelint.gate import descriptions
 from drivelint.phrases import plural
-from drivelint.report.inputs import rules_without_map
+from drivelint.report.inputs import n_rules_without_map
 from drivelint.report.worst_first import is_contact
 from drivelint.result import counts
-from drivelint.result.certainty import doubt
+from drivelint.result.certainty import doubt_words
 from drivelint.result.gate import n_findings
-from drivelint.result.model import exit_status, gating_findings, is_undecided
+from drivelint.result.model import exit_status, gating_findings, is_too_little_decided
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
     from drivelint.result.text import Row
 
-LABELS: Final = {
+LABEL_OF_EXIT_CODE: Final = {
     ExitCode.OK: "PASS",
     ExitCode.FAILED: "FAIL",
     ExitCode.USAGE: "ERROR",
@@ -32,15 +32,19 @@ LABELS: Final = {
     ExitCode.NOT_JUDGED: "NOT JUDGED",
     ExitCode.INTERRUPTED: "PARTIAL",
 }
-_MOSTLY: Final = "MOSTLY UNKNOWN"
-_TOO_LITTLE: Final = "TOO LITTLE JUDGED"
+_MOSTLY_UNKNOWN: Final = "MOSTLY UNKNOWN"
+_TOO_LITTLE_JUDGED: Final = "TOO LITTLE JUDGED"
 """The label of a run that decided most rules, but fewer than `--min-judged` requires."""
 _NOT_APPLICABLE: Final = "NOT APPLICABLE"
-_FINDINGS: Final = "FINDINGS"
-_KINDS: Final = {LABELS[ExitCode.OK]: "pass", _NOT_APPLICABLE: "not_applicable", _FINDINGS: "near"}
-LET_THROUGH: Final = {"known": "known", "waived": "waived", "possible": "only possible"}
-"""The standings (`Gate.standing`) of findings that a gate lets through, in words."""
-_NO_MAP: Final = {
+_FINDINGS_LABEL: Final = "FINDINGS"
+_KIND_OF_LABEL: Final = {
+    LABEL_OF_EXIT_CODE[ExitCode.OK]: "pass",
+    _NOT_APPLICABLE: "not_applicable",
+    _FINDINGS_LABEL: "near",
+}
+LET_THROUGH_WORDS: Final = {"known": "known", "waived": "waived", "possible": "only possible"}
+"""The standings (`Gate.status_at_gate`) of findings that a gate lets through, in words."""
+_NO_MAP_WORDS: Final = {
     OWN_MAP_UNUSABLE: "the log's own map cannot be used",
     NOT_IN_FOLDER: "no map in the folder covers the place",
 }
@@ -49,7 +53,7 @@ _COUNTED_LABEL: Final = "counted"
 """The word for gating findings if the gate has neither a baseline nor waivers, only a confidence."""
 
 
-class Part(NamedTuple):
+class HeadlinePart(NamedTuple):
     """A part of the outcome's sentence; `kind`: contact, possible contact, warning, or ''."""
 
     words: str
@@ -64,7 +68,7 @@ class Headline(NamedTuple):
 
     label: str
     kind: str
-    parts: tuple[Part, ...]
+    parts: tuple[HeadlinePart, ...]
 
     @property
     def sentence(self) -> str:
@@ -72,7 +76,7 @@ class Headline(NamedTuple):
         return "; ".join(part.words for part in self.parts)
 
 
-class _OpenRules(NamedTuple):
+class _UndecidedRules(NamedTuple):
     """The number of undecided rules (`n`) among the rules that may apply (`of`), counted per drive and ego.
 
     `several`: there is more than one ego.
@@ -113,127 +117,133 @@ class RuleCounts(NamedTuple):
 def headline(result: Result) -> Headline:
     """Return the outcome of a run. Each finding is counted once: as new, or by the reason why it does not gate."""
     rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
-    rows = one_per_event(result.gate, result.findings.to_pylist())
-    left = [row for row in rows if standing(result.gate, row["finding_id"]) not in LET_THROUGH]
-    label = _label(result, bool(rows))
-    told = counts.total(result.verdicts)
-    lacking = counts.unrecorded(result.verdicts).num_rows
+    rows = one_per_event_and_status(result.gate, result.findings.to_pylist())
+    left = [row for row in rows if status_at_gate(result.gate, row["finding_id"]) not in LET_THROUGH_WORDS]
+    label = _outcome_label(result, bool(rows))
+    told = counts.verdict_counts(result.verdicts)
+    lacking = counts.verdicts_lacking_signal(result.verdicts).num_rows
     whole = not told["unknown"] + told["error"] + lacking and not result.interrupted
     whole = whole and bool(pc.all(pc.equal(result.drives["status"], "judged")).as_py())
     before = None if result.gate is None else result.gate.baseline
     less = "" if before is None else descriptions.judged_otherwise(before)
     whole = whole and not less
-    kind = "unknown" if less else _KINDS.get(label, "unknown")
+    kind = "unknown" if less else _KIND_OF_LABEL.get(label, "unknown")
     if not rows:
-        parts = [Part(_without_findings(result, told, label, whole=whole))]
+        parts = [HeadlinePart(_no_findings_words(result, told, label, is_all_judged=whole))]
     else:
-        parts = [Part(_findings(result, rows)), *_worse(result.gate), *_contacts(result, rows, rules)]
-        doubtful = sum(bool(doubt(row)) for row in rows)
+        parts = [
+            HeadlinePart(_findings_words(result, rows)),
+            *_worse_findings_parts(result.gate),
+            *_contact_parts(result, rows, rules),
+        ]
+        doubtful = sum(bool(doubt_words(row)) for row in rows)
         if doubtful and (result.gate is None or result.gate.confidence is None):
             some = "" if doubtful == len(rows) else f"{doubtful} of {plural(len(rows), 'finding')} "
-            parts.append(Part(f"{some}only possible"))
-        if (open_rules := _open_rules(result)).are_most:
-            parts.append(Part(open_rules.words, "warning"))
+            parts.append(HeadlinePart(f"{some}only possible"))
+        if (open_rules := _count_undecided_rules(result)).are_most:
+            parts.append(HeadlinePart(open_rules.words, "warning"))
     if less:
-        parts.append(Part(less, "warning"))
-    if n := rules_without_map(result):
+        parts.append(HeadlinePart(less, "warning"))
+    if n := n_rules_without_map(result):
         need = "1 rule needs" if n == 1 else f"{n} rules need"
         checks = {check["check_id"] for drive in result.drives["quality"].to_pylist() for check in drive}
-        missing = next((words for check, words in _NO_MAP.items() if check in checks), "no map was given")
-        parts.append(Part(f"{missing}: {need} one (--map)", "warning"))
+        missing = next((words for check, words in _NO_MAP_WORDS.items() if check in checks), "no map was given")
+        parts.append(HeadlinePart(f"{missing}: {need} one (--map)", "warning"))
     return Headline(label, "fail" if left else kind, tuple(parts))
 
 
-def one_per_event(gate: Gate | None, rows: Sequence[Row]) -> list[Row]:
+def one_per_event_and_status(gate: Gate | None, rows: Sequence[Row]) -> list[Row]:
     """Return one finding of each event; if the findings of an event differ in standing (new, known), one of each standing."""
-    of_standing = counts.group_rows(rows, lambda row: standing(gate, row["finding_id"]))
-    kept = {id(row) for mine in of_standing.values() for row in counts.one_per_event(mine)}
+    of_standing = counts.group_rows(rows, lambda row: status_at_gate(gate, row["finding_id"]))
+    kept = {id(row) for mine in of_standing.values() for row in counts.one_finding_per_event(mine)}
     return [row for row in rows if id(row) in kept]
 
 
-def standing(gate: Gate | None, finding_id: str) -> str:
-    """Return the standing of a finding, see `Gate.standing`; '' without a gate."""
-    return "" if gate is None else gate.standing(finding_id)
+def status_at_gate(gate: Gate | None, finding_id: str) -> str:
+    """Return the standing of a finding, see `Gate.status_at_gate`; '' without a gate."""
+    return "" if gate is None else gate.status_at_gate(finding_id)
 
 
 def rule_counts(result: Result) -> RuleCounts:
     """Return the numbers of rules by how they were judged."""
-    by_rule = counts.verdicts_by(result.verdicts, "rule_id")
+    by_rule = counts.verdict_counts_by(result.verdicts, "rule_id")
     rules = [by_rule[rule_id] for rule_id in result.rules["rule_id"].to_pylist()]
     judged = [n for n in rules if n["pass"] + n["fail"]]
     others = [n for n in rules if not n["pass"] + n["fail"]]
     undecided = [n for n in others if n["unknown"] + n["error"]]
     never = sum(not n["not_applicable"] for n in undecided)
     partly = sum(bool(n["unknown"] + n["error"]) for n in judged)
-    lacking = set(counts.unrecorded(result.verdicts)["rule_id"].to_pylist())
+    lacking = set(counts.verdicts_lacking_signal(result.verdicts)["rule_id"].to_pylist())
     names = result.rules["rule_id"].to_pylist()
     idle = [name for name in names if not sum(by_rule[name][v] for v in ("pass", "fail", "unknown", "error"))]
     unrecorded = len(lacking.intersection(idle))
     return RuleCounts(len(judged), partly, never, len(idle) - unrecorded, len(undecided) - never, unrecorded)
 
 
-def _label(result: Result, has_findings: bool) -> str:
+def _outcome_label(result: Result, has_findings: bool) -> str:
     """Return the outcome of a run as a word.
 
     The word is not PASS if there are findings, even if none gates, nor if fewer rules were decided than left undecided.
     """
-    code, told = exit_status(result).code, counts.total(result.verdicts)
-    if code != ExitCode.OK and not (code == ExitCode.NOT_JUDGED and is_undecided(result)):
-        return LABELS.get(code, "?")
+    code, told = exit_status(result).code, counts.verdict_counts(result.verdicts)
+    if code != ExitCode.OK and not (code == ExitCode.NOT_JUDGED and is_too_little_decided(result)):
+        return LABEL_OF_EXIT_CODE.get(code, "?")
     if has_findings:
-        return _FINDINGS
+        return _FINDINGS_LABEL
     if not told["pass"] + told["fail"]:
-        lacking = counts.unrecorded(result.verdicts).num_rows
+        lacking = counts.verdicts_lacking_signal(result.verdicts).num_rows
         return "UNKNOWN" if told["unknown"] + told["error"] + lacking or not told["not_applicable"] else _NOT_APPLICABLE
-    if _open_rules(result).are_most:
-        return _MOSTLY
-    return LABELS[code] if code == ExitCode.OK else _TOO_LITTLE
+    if _count_undecided_rules(result).are_most:
+        return _MOSTLY_UNKNOWN
+    return LABEL_OF_EXIT_CODE[code] if code == ExitCode.OK else _TOO_LITTLE_JUDGED
 
 
-def _open_rules(result: Result) -> _OpenRules:
+def _count_undecided_rules(result: Result) -> _UndecidedRules:
     """Count the undecided rules, and the rules that may apply, per drive and ego."""
     rows = counts.distinct_rows(result.verdicts, ["drive_id", "ego_id", "rule_id", "verdict"])
     where = counts.group_rows(rows, lambda row: (row["drive_id"], row["ego_id"], row["rule_id"]))
     said = [{row["verdict"] for row in mine} for mine in where.values()]
     n_decided = sum(bool(each & {"pass", "fail"}) for each in said)
     n_open = sum(bool(each & {"unknown", "error"}) and not each & {"pass", "fail"} for each in said)
-    return _OpenRules(n_open, n_open + n_decided, len({key[:2] for key in where}) > 1)
+    return _UndecidedRules(n_open, n_open + n_decided, len({key[:2] for key in where}) > 1)
 
 
-def _without_findings(result: Result, verdict_counts: Mapping[str, int], label: str, *, whole: bool) -> str:
+def _no_findings_words(result: Result, verdict_counts: Mapping[str, int], label: str, *, is_all_judged: bool) -> str:
     judged = pc.any(pc.equal(result.drives["status"], "judged")).as_py()
     if not judged or not result.verdicts.num_rows:
         return "nothing was judged"
     if (
         not verdict_counts["pass"] + verdict_counts["fail"]
-        and verdict_counts["unknown"] + verdict_counts["error"] + counts.unrecorded(result.verdicts).num_rows
+        and verdict_counts["unknown"]
+        + verdict_counts["error"]
+        + counts.verdicts_lacking_signal(result.verdicts).num_rows
     ):
         return "no findings, because nothing could be decided"
     if not verdict_counts["pass"] + verdict_counts["fail"]:
         return "no findings, because no rule applied: the situations of the rules did not occur"
-    if label in {_MOSTLY, _TOO_LITTLE}:
-        open_rules = _open_rules(result)
+    if label in {_MOSTLY_UNKNOWN, _TOO_LITTLE_JUDGED}:
+        open_rules = _count_undecided_rules(result)
         return f"no findings, but {open_rules.words if open_rules.n else 'fewer rules were decided than --min-judged requires'}"
-    return "no findings" if whole else "no findings, but not everything could be judged"
+    return "no findings" if is_all_judged else "no findings, but not everything could be judged"
 
 
-def _findings(result: Result, rows: Sequence[Row]) -> str:
+def _findings_words(result: Result, rows: Sequence[Row]) -> str:
     """Return the number of findings in words; with a gate, by standing."""
     where = f" in {len({row['drive_id'] for row in rows})} of {plural(result.drives.num_rows, 'drive')}"
     gate = result.gate
     if gate is None:
-        return f"{counts.by_severity(rows)} {'finding' if len(rows) == 1 else 'findings'}{where}"
-    groups = counts.group_rows(rows, lambda row: gate.standing(row["finding_id"]))
+        return f"{counts.severity_counts_text(rows)} {'finding' if len(rows) == 1 else 'findings'}{where}"
+    groups = counts.group_rows(rows, lambda row: gate.status_at_gate(row["finding_id"]))
     said = []
     for name, mine in groups.items():
-        if name not in LET_THROUGH:
-            n, gating = len(mine), len(counts.one_per_event(gating_findings(result).to_pylist()))
+        if name not in LET_THROUGH_WORDS:
+            n, gating = len(mine), len(counts.one_finding_per_event(gating_findings(result).to_pylist()))
             some = "" if gating == n else f"; {gating or 'none'} {'gates' if gating < 2 else 'gate'}"
             label = {"new": "new", "open": "not waived" if gate.waivers else _COUNTED_LABEL}[name]
-            said.append(f"{n} {label} ({counts.by_severity(mine)}{some})")
+            said.append(f"{n} {label} ({counts.severity_counts_text(mine)}{some})")
     said += [
-        f"{len(groups[name])} {words} ({counts.by_severity(groups[name])})"
-        for name, words in LET_THROUGH.items()
+        f"{len(groups[name])} {words} ({counts.severity_counts_text(groups[name])})"
+        for name, words in LET_THROUGH_WORDS.items()
         if name in groups
     ]
     if gate.baseline is not None and "new" not in groups:
@@ -241,34 +251,38 @@ def _findings(result: Result, rows: Sequence[Row]) -> str:
     return f"{plural(len(rows), 'finding')}{where}: {', '.join(said)}"
 
 
-def _worse(gate: Gate | None) -> list[Part]:
+def _worse_findings_parts(gate: Gate | None) -> list[HeadlinePart]:
     """Return the sentence's part about known findings with a worse margin than in the baseline; [] if there are none."""
     entries = gate.baseline.entries if gate is not None and gate.baseline is not None else ()
-    n = n_findings(e for e in entries if gate and e.worse and gate.standing(e.finding_id) == "known")
-    return [Part("1 known finding is worse" if n == 1 else f"{n} known findings are worse", "warning")] if n else []
+    n = n_findings(e for e in entries if gate and e.worse and gate.status_at_gate(e.finding_id) == "known")
+    return (
+        [HeadlinePart("1 known finding is worse" if n == 1 else f"{n} known findings are worse", "warning")]
+        if n
+        else []
+    )
 
 
-def _contacts(result: Result, rows: Sequence[Row], rules: Mapping[str, Row]) -> list[Part]:
+def _contact_parts(result: Result, rows: Sequence[Row], rules: Mapping[str, Row]) -> list[HeadlinePart]:
     """Return the sentence's parts about drives with a contact or a possible contact; contacts known from the baseline count too."""
     contacts = [row for row in rows if is_contact(row, rules)]
-    touched = {row["drive_id"] for row in contacts if not doubt(row)}
+    touched = {row["drive_id"] for row in contacts if not doubt_words(row)}
     sure = [row for row in contacts if row["drive_id"] in touched]
     maybe = [row for row in contacts if row["drive_id"] not in touched]
     parts = []
     for words, mine in (("CONTACT", sure), ("possible contact", maybe)):
         if mine:
             n = plural(len({row["drive_id"] for row in mine}), "drive")
-            parts.append(Part(f"{words} in {n}{_let_through(result.gate, mine)}", words.lower()))
+            parts.append(HeadlinePart(f"{words} in {n}{_contacts_at_gate_words(result.gate, mine)}", words.lower()))
     return parts
 
 
-def _let_through(gate: Gate | None, contacts: Sequence[Row]) -> str:
+def _contacts_at_gate_words(gate: Gate | None, contacts: Sequence[Row]) -> str:
     """Return in brackets how many drives have a new contact, or, if none, why the gate lets them through; '' if all drives have one."""
     if gate is None:
         return ""
-    new = {row["drive_id"] for row in contacts if gate.standing(row["finding_id"]) not in LET_THROUGH}
+    new = {row["drive_id"] for row in contacts if gate.status_at_gate(row["finding_id"]) not in LET_THROUGH_WORDS}
     if new:
         label = "new" if gate.baseline is not None else "not waived" if gate.waivers else _COUNTED_LABEL
         return "" if len(new) == len({row["drive_id"] for row in contacts}) else f" ({len(new)} {label})"
-    why = {gate.standing(row["finding_id"]) for row in contacts}
-    return f" ({' or '.join(words for name, words in LET_THROUGH.items() if name in why)})"
+    why = {gate.status_at_gate(row["finding_id"]) for row in contacts}
+    return f" ({' or '.join(words for name, words in LET_THROUGH_WORDS.items() if name in why)})"

@@ -11,7 +11,15 @@ import pyarrow.compute as pc
 
 from drivelint.result import folder, gate, request
 from drivelint.result.files import parquet_bytes
-from drivelint.result.names import GATE_FILE, MARK, PICTURES, REPORT_FILES, RESULT_FILES, RUN_FILE, TABLE_OF_FILE
+from drivelint.result.names import (
+    GATE_FILE,
+    MARK_FILE,
+    REPORT_FILES,
+    RESULT_FILE_GLOBS,
+    RUN_FILE,
+    TABLE_OF_FILE,
+    TABLE_OF_PICTURE_FILE,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -49,7 +57,7 @@ def working_folder(out: Path | None, *, overwrite: bool = False) -> Iterator[Pat
         yield None
     else:
         reports = list(REPORT_FILES.values())
-        with folder.working_folder(out, RESULT_FILES, reports, MARK, overwrite=overwrite) as work:
+        with folder.working_folder(out, RESULT_FILE_GLOBS, reports, MARK_FILE, overwrite=overwrite) as work:
             yield work
 
 
@@ -63,7 +71,7 @@ def write(result: Result, out: Path, work: Path | None = None, *, overwrite: boo
     from drivelint.report import html, junit, summary
 
     contents = {f"{name}.parquet": parquet_bytes(getattr(result, name), table) for name, table in TABLE_OF_FILE.items()}
-    for name, table in PICTURES.items() if result.pictures.num_rows else ():
+    for name, table in TABLE_OF_PICTURE_FILE.items() if result.pictures.num_rows else ():
         contents[f"{name}.parquet"] = parquet_bytes(getattr(result, name), table)
     # the page links to files in the folder of this run, not to files of an earlier run
     contents[REPORT_FILES["html"]] = html.render(replace(result, folder=work or out))
@@ -72,15 +80,15 @@ def write(result: Result, out: Path, work: Path | None = None, *, overwrite: boo
         contents[GATE_FILE] = gate.render(result.gate)
     if result.run_options is not None:
         contents[RUN_FILE] = request.render(result.run_options, out)
-    contents[MARK] = summary.render(result)
+    contents[MARK_FILE] = summary.render(result)
     moved = {} if result.margins_file is None else {"margins.parquet": result.margins_file}
     if work is not None:
-        moved |= _grown(work, result)
-    folder.replace(out, contents, moved, MARK, RESULT_FILES, overwrite=overwrite)
+        moved |= _grown_files(work, result)
+    folder.replace_result(out, contents, moved, MARK_FILE, RESULT_FILE_GLOBS, overwrite=overwrite)
     return tuple(sorted(moved))
 
 
-def _grown(work: Path, result: Result) -> dict[str, Path]:
+def _grown_files(work: Path, result: Result) -> dict[str, Path]:
     """Return the files in `work` that belong to the result, by name."""
     judged = set(result.drives.filter(pc.equal(result.drives["status"], "judged"))["drive_id"].to_pylist())
     files = [path for path in sorted(work.rglob("*")) if path.is_file() and not path.name.startswith(".")]

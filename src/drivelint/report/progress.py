@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 
 
 TELL_EVERY_S: Final = 60.0
-_LOOK_S: Final = 1.0
+_CHECK_EVERY_S: Final = 1.0
 _LEAST_DONE_SHARE: Final = 0.1
 """The remaining time is estimated after this share of the work."""
-_AT_ONCE_S: Final = 0.5
+_RESUMED_WITHIN_S: Final = 0.5
 """Units that are reported within this time after the beginning of a stage were done by an earlier run."""
 
 
@@ -33,13 +33,13 @@ class Progress:
     def advance(self, n: int = 1) -> None:
         """Report `n` more units of the current stage done."""
 
-    def doing(self, activity: str, part: float = 0.0) -> None:
-        """Report the current activity within the stage. `part`: the units done since the last call of `advance`."""
+    def doing(self, activity: str, units_since_advance: float = 0.0) -> None:
+        """Report the current activity within the stage. `units_since_advance`: the units done since the last call of `advance`."""
 
     def note(self, text: str) -> None:
         """Print a line for the user."""
 
-    def leave(self) -> None:
+    def release_terminal(self) -> None:
         """Restore the terminal before another program uses it."""
 
 
@@ -64,15 +64,15 @@ class NotePrinter(Silent):
     def advance(self, n: int = 1) -> None:
         """Count the units, and print the progress if the last progress line is at least a minute old."""
         self._done, self._part = self._done + n, 0.0
-        if time.monotonic() - self._begun_s < _AT_ONCE_S:
+        if time.monotonic() - self._begun_s < _RESUMED_WITHIN_S:
             self._had = self._done  # done by an earlier run: not used to estimate the time left
-        self.tell_if_due()
+        self.print_progress_if_due()
 
-    def doing(self, activity: str, part: float = 0.0) -> None:
+    def doing(self, activity: str, units_since_advance: float = 0.0) -> None:
         """Keep the activity for the next line of progress."""
-        self._activity, self._part = activity, part
+        self._activity, self._part = activity, units_since_advance
 
-    def tell_if_due(self) -> None:
+    def print_progress_if_due(self) -> None:
         """Print the progress and an estimate of the time left, if the last progress line is at least a minute old."""
         now_s = time.monotonic()
         if self._total is None or now_s - self._told_s < TELL_EVERY_S:
@@ -108,13 +108,13 @@ def _duration(seconds: float) -> str:
 
 
 @contextmanager
-def notes() -> Iterator[NotePrinter]:
+def note_printer() -> Iterator[NotePrinter]:
     """Yield a `NotePrinter` that also prints the progress every minute while a single step takes long."""
     printer, over = NotePrinter(), Event()
 
     def tell() -> None:
-        while not over.wait(_LOOK_S):
-            printer.tell_if_due()
+        while not over.wait(_CHECK_EVERY_S):
+            printer.print_progress_if_due()
 
     teller = Thread(target=tell, daemon=True, name="tells how far it is")
     teller.start()
@@ -125,7 +125,7 @@ def notes() -> Iterator[NotePrinter]:
         teller.join()
 
 
-class Bar(Progress):
+class ProgressBar(Progress):
     """A `Progress` drawn with rich."""
 
     def __init__(self, progress: rich.progress.Progress) -> None:
@@ -143,21 +143,21 @@ class Bar(Progress):
         self._done += n
         self._progress.update(self._task, completed=self._done)
 
-    def doing(self, activity: str, part: float = 0.0) -> None:
-        """Show the activity beside the bar, and move the bar by `part`."""
-        self._progress.update(self._task, description=activity, completed=self._done + part)
+    def doing(self, activity: str, units_since_advance: float = 0.0) -> None:
+        """Show the activity beside the bar, and move the bar by `units_since_advance`."""
+        self._progress.update(self._task, description=activity, completed=self._done + units_since_advance)
 
     def note(self, text: str) -> None:
         """Print a line above the bar."""
         self._progress.console.print(inert_line(text), markup=False, highlight=False)
 
-    def leave(self) -> None:
+    def release_terminal(self) -> None:
         """Remove the bar."""
         self._progress.stop()
 
 
 @contextmanager
-def bar() -> Iterator[Bar]:
+def progress_bar() -> Iterator[ProgressBar]:
     """Show a bar on a terminal's stderr, or below a notebook's cell, and remove it at the end."""
     from rich import progress as drawn
     from rich.console import Console
@@ -174,4 +174,4 @@ def bar() -> Iterator[Bar]:
     if console.is_jupyter:  # rich's display for notebooks needs ipywidgets, and without them warns at each step
         console = Console(stderr=True, force_jupyter=False, force_terminal=True)
     with drawn.Progress(*columns, console=console, transient=True) as progress:
-        yield Bar(progress)
+        yield ProgressBar(progress)

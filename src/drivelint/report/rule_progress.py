@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from drivelint.report.progress import Progress
 
 
-class ToldLimits(RuleLimits):
+class ReportingRuleLimits(RuleLimits):
     """Limits of rules that also report to the user how many rules a batch has been judged by."""
 
     def __init__(self, progress: Progress, n_rules: int, *args: Any, **options: Any) -> None:
@@ -25,7 +25,7 @@ class ToldLimits(RuleLimits):
         self._progress, self._n_rules, self._n_drives = progress, n_rules, 0
         self._begun: set[str] = set()
 
-    def begin(self, n_drives: int) -> None:
+    def begin_batch(self, n_drives: int) -> None:
         """Report that judging a batch of `n_drives` drives begins, with the derivation of tables."""
         self._n_drives = n_drives
         self._begun.clear()

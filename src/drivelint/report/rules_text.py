@@ -25,14 +25,14 @@ _MERGE_GAP_S: Final = 1.0
 """The default of `merge_gap_s` in a rule's header."""
 
 
-def listing_json(rules: Iterable[Rule]) -> str:
+def rules_as_json(rules: Iterable[Rule]) -> str:
     """Return a JSON list with id, pack, kind, subtype, severity, status, clause and requirements of each rule."""
     keys = ("id", "pack", "kind", "subtype", "severity", "status", "clause")
     rows = [{key: getattr(rule, key) for key in keys} | {"requires": sorted(rule.requires)} for rule in rules]
     return json.dumps(rows, indent=2, ensure_ascii=False)
 
 
-def listing(rules: Iterable[Rule], width: int = 120) -> Table:
+def rules_table(rules: Iterable[Rule], width: int = 120) -> Table:
     """Return a table of the rules for a terminal of `width` columns: id, kind, severity, status and title; if narrow, without kind."""
     table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False)
     wide = width >= NARROW_WIDTH
@@ -57,12 +57,12 @@ def rule_details(rule: Rule) -> Group:
         ("law", ", ".join(rule.law)),
         ("question", rule.hypothesis),
         ("kind", f"{rule.kind}, {rule.subtype}" if rule.subtype else rule.kind),
-        ("window", "" if rule.window_s is None else _seconds(rule, "window_s")),
+        ("window", "" if rule.window_s is None else _duration_text(rule, "window_s")),
         ("quantifier", rule.quantifier if rule.subtype else ""),
         ("combine", "" if rule.combine == "each" else f"{rule.combine}: one verdict for all objects"),
-        ("applies", _restrictions(rule.applies)),
-        ("exempt after", _seconds(rule, "exempt_after_s") if rule.exempt_after_s else ""),
-        ("merge gap", "" if rule.merge_gap_s == _MERGE_GAP_S else _seconds(rule, "merge_gap_s")),
+        ("applies", _restrictions_text(rule.applies)),
+        ("exempt after", _duration_text(rule, "exempt_after_s") if rule.exempt_after_s else ""),
+        ("merge gap", "" if rule.merge_gap_s == _MERGE_GAP_S else _duration_text(rule, "merge_gap_s")),
         ("observes", rule.observes or ""),
         ("sense", sense),
         ("near margin", "" if rule.near_margin is None else f"{rule.near_margin:g} {rule.unit}"),
@@ -87,19 +87,19 @@ def rule_details(rule: Rule) -> Group:
     return Group(*parts)
 
 
-def source(rule: Rule) -> Text:
+def path_and_sql(rule: Rule) -> Text:
     """Return the path of the rule's file and its SQL, unformatted, so that both can be copied."""
     return Text("\n".join([str(rule.path), *(f"\n-- @{name}\n{sql}" for name, sql in rule.sections.items())]))
 
 
-def _restrictions(conditions: Conditions) -> str:
+def _restrictions_text(conditions: Conditions) -> str:
     """Return the conditions under which a rule applies, such as `road_type rural or town, limit_min_mps 13.4`; '' for none."""
     said = [f"{name} {' or '.join(words)}" for name, words in conditions.restricting.items()]
     limits = {"limit_min_mps": conditions.limit_min_mps, "limit_max_mps": conditions.limit_max_mps}
     return ", ".join([*said, *(f"{name} {value:g}" for name, value in limits.items() if value is not None)])
 
 
-def _seconds(rule: Rule, key: str) -> str:
+def _duration_text(rule: Rule, key: str) -> str:
     """Return a duration from the rule's header, and the parameter that sets it, if there is one."""
     value = getattr(rule, key)
     return f"{rule.params[value].default:g} s ({value})" if isinstance(value, str) else f"{value:g} s"

@@ -13,11 +13,11 @@ if TYPE_CHECKING:
 
     from drivelint.result.text import Row
 
-SAME_NS: Final = 1_000_000_000
+SAME_CONTACT_GAP_NS: Final = 1_000_000_000
 """Findings of two rules are about the same contact if the times in which they fail are at most this far apart."""
 
 
-def same_contact(rows: Iterable[Row], rules: Mapping[str, Row]) -> dict[str, list[Row]]:
+def findings_of_same_contact(rows: Iterable[Row], rules: Mapping[str, Row]) -> dict[str, list[Row]]:
     """Return, by the id of each finding that is a contact, the findings of other rules about the same contact."""
     contacts = [row for row in rows if is_contact(row, rules)]
     met = group_rows(contacts, lambda row: (row["drive_id"], frozenset((row["ego_id"], row["object_id"]))))
@@ -26,15 +26,15 @@ def same_contact(rows: Iterable[Row], rules: Mapping[str, Row]) -> dict[str, lis
             other
             for other in of_both
             if other["rule_id"] != row["rule_id"]
-            and other["t_start_ns"] <= row["t_end_ns"] + SAME_NS
-            and row["t_start_ns"] <= other["t_end_ns"] + SAME_NS
+            and other["t_start_ns"] <= row["t_end_ns"] + SAME_CONTACT_GAP_NS
+            and row["t_start_ns"] <= other["t_end_ns"] + SAME_CONTACT_GAP_NS
         ]
         for of_both in met.values()
         for row in of_both
     }
 
 
-def as_others_say(finding: Row, other_findings: Iterable[Row]) -> str:
+def other_certainty_words(finding: Row, other_findings: Iterable[Row]) -> str:
     """Return in words the certainty of another finding of the same contact, if it differs from this finding's; else ''."""
     own_certainty = certainty(finding)
     for other in other_findings:

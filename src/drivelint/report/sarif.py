@@ -13,13 +13,22 @@ from urllib.parse import quote
 
 from drivelint import __version__
 from drivelint.gate import descriptions
-from drivelint.report.outcome import LET_THROUGH, standing
+from drivelint.report.outcome import LET_THROUGH_WORDS, status_at_gate
 from drivelint.report.worst_first import moment_ns, when
 from drivelint.result import counts, request
-from drivelint.result.certainty import certainty, doubt
+from drivelint.result.certainty import certainty, doubt_words
 from drivelint.result.model import exit_status, gating_findings
 from drivelint.result.names import RUN_FILE
-from drivelint.result.text import comparison, finite, number, rule_name, subject, utc_at, went_wrong, with_count
+from drivelint.result.text import (
+    breach_title,
+    measured_values_text,
+    number,
+    replace_non_finite,
+    rule_name,
+    subject,
+    utc_at,
+    with_count,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -31,11 +40,11 @@ SCHEMA: Final = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/sche
 LEVELS: Final = {"critical": "error", "major": "warning", "minor": "note"}
 """The level of each severity. Findings that do not gate (of drafts, or let through by the gate) have the level note."""
 
-ROOT: Final = "%SRCROOT%"
+ROOT_BASE_ID: Final = "%SRCROOT%"
 """The base of the logs' paths: the folder in which the check ran; for code scanning, this is the root of the repository."""
-_STATES: Final = {"new": "new", "changed": "updated", "unchanged": "unchanged"}
-_ROOT_SAID: Final = {"description": {"text": "The folder in which drivelint check ran."}}
-_NOTICES: Final = {
+_BASELINE_STATES: Final = {"new": "new", "changed": "updated", "unchanged": "unchanged"}
+_ROOT_DESCRIPTION: Final = {"description": {"text": "The folder in which drivelint check ran."}}
+_NOTIFICATION_KINDS: Final = {
     "unknown": "A rule could not be judged",
     "error": "A rule could not be run",
     "not-judged": "A drive could not be judged",
@@ -46,11 +55,11 @@ _NOTICES: Final = {
 
 def render(result: Result) -> bytes:
     """Return the SARIF log as UTF-8 JSON with a final newline; the same result gives the same bytes."""
-    content = {"$schema": SCHEMA, "version": "2.1.0", "runs": [_Run(result).content()]}
-    return (json.dumps(finite(content), indent=1, ensure_ascii=True, allow_nan=False) + "\n").encode()
+    content = {"$schema": SCHEMA, "version": "2.1.0", "runs": [_SarifRun(result).content()]}
+    return (json.dumps(replace_non_finite(content), indent=1, ensure_ascii=True, allow_nan=False) + "\n").encode()
 
 
-class _Run:
+class _SarifRun:
     """One result, with the indices of its rules and logs in the lists of the SARIF run."""
 
     def __init__(self, result: Result) -> None:
@@ -62,21 +71,23 @@ class _Run:
         self._gating = frozenset(gating_findings(result)["finding_id"].to_pylist())
         self._rule_index = {rule["rule_id"]: n for n, rule in enumerate(self._rules)}
         self._artifact_index = {drive["drive_id"]: n for n, drive in enumerate(self._logs)}
-        self._paths = _logs_as_named(result)
+        self._paths = _relative_log_paths(result)
 
     def content(self) -> dict[str, Any]:
         """Return the SARIF run as plain data."""
         result, end = self._result, exit_status(self._result)
-        told = counts.verdicts_by(result.verdicts, "rule_id")
-        total = counts.total(result.verdicts)
+        told = counts.verdict_counts_by(result.verdicts, "rule_id")
+        total = counts.verdict_counts(result.verdicts)
         properties = {"verdicts": total, "failOn": result.fail_on, "strict": result.strict}
         if result.gate is not None:
             properties["gate"] = descriptions.gate_counts(result.gate)
         driver = {
             "name": "drivelint",
             "semanticVersion": __version__,
-            "rules": [_rule(rule, told[rule["rule_id"]]) for rule in self._rules],
-            "notifications": [{"id": name, "shortDescription": {"text": text}} for name, text in _NOTICES.items()],
+            "rules": [_rule_descriptor(rule, told[rule["rule_id"]]) for rule in self._rules],
+            "notifications": [
+                {"id": name, "shortDescription": {"text": text}} for name, text in _NOTIFICATION_KINDS.items()
+            ],
         }
         invocation = {
             "executionSuccessful": not total["error"],
@@ -87,26 +98,31 @@ class _Run:
         return {
             "tool": {"driver": driver},
             "invocations": [invocation],
-            **({"originalUriBaseIds": {ROOT: _ROOT_SAID}} if self._paths else {}),
-            "artifacts": [_artifact(drive, self._uri(drive)) for drive in self._logs],
-            "results": [self._finding(row) for row in result.findings.to_pylist()],
+            **({"originalUriBaseIds": {ROOT_BASE_ID: _ROOT_DESCRIPTION}} if self._paths else {}),
+            "artifacts": [_artifact(drive, self._log_uri(drive)) for drive in self._logs],
+            "results": [self._result_of_finding(row) for row in result.findings.to_pylist()],
             "properties": properties,
         }
 
-    def _finding(self, row: Row) -> dict[str, Any]:
+    def _result_of_finding(self, row: Row) -> dict[str, Any]:
         drive, rule_index = self._drives[row["drive_id"]], self._rule_index[row["rule_id"]]
         rule, gate = self._rules[rule_index], self._result.gate
         start_ns = drive["t_start_ns"]
-        measured = "" if row["reason_measures"] else comparison(row)
+        measured = "" if row["reason_measures"] else measured_values_text(row)
         profile = "" if row["profile"] is None else f", profile {row['profile']}"
         who = f"{subject(row)}{profile}, {when(row, self._rule_by_id, start_ns)}"
-        said = [f"{went_wrong(rule)}: {row['reason']}", measured, who, f"({doubt(row)})" if doubt(row) else ""]
+        said = [
+            f"{breach_title(rule)}: {row['reason']}",
+            measured,
+            who,
+            f"({doubt_words(row)})" if doubt_words(row) else "",
+        ]
         found: dict[str, Any] = {
             "ruleId": row["rule_id"],
             "ruleIndex": rule_index,
             "kind": "fail",
             "level": "note"
-            if standing(gate, row["finding_id"]) in LET_THROUGH
+            if status_at_gate(gate, row["finding_id"]) in LET_THROUGH_WORDS
             else _level(row["severity"], rule["status"]),
             "message": {"text": " ".join(part for part in said if part)},
             "locations": [self._location(drive, row)],
@@ -114,9 +130,9 @@ class _Run:
             "properties": {
                 "profile": row["profile"],
                 "severity": row["severity"],
-                "start_s": _since(row["t_start_ns"], start_ns),
-                "end_s": _since(row["t_end_ns"], start_ns),
-                "worst_s": _since(row["t_worst_ns"], start_ns),
+                "start_s": _seconds_since_start(row["t_start_ns"], start_ns),
+                "end_s": _seconds_since_start(row["t_end_ns"], start_ns),
+                "worst_s": _seconds_since_start(row["t_worst_ns"], start_ns),
                 "t_utc": utc_at(moment_ns(row, self._rule_by_id), drive),
                 **{name: row[name] for name in ("observed", "required", "margin", "unit")},
                 **{name: row[name] for name in ("x_m", "y_m", "lon", "lat", "lanelet_id")},
@@ -126,9 +142,9 @@ class _Run:
             },
         }
         if gate is not None:
-            entry, waiver = gate.compared(row["finding_id"]), gate.waiver(row["finding_id"])
+            entry, waiver = gate.compared_finding(row["finding_id"]), gate.waiver(row["finding_id"])
             if gate.baseline is not None:
-                found["baselineState"] = _STATES[entry.standing] if entry else "new"
+                found["baselineState"] = _BASELINE_STATES[entry.standing] if entry else "new"
             if waiver is not None:
                 justification = f"{waiver.reason} ({waiver.owner}, until {waiver.expires})"
                 found["suppressions"] = [{"kind": "external", "status": "accepted", "justification": justification}]
@@ -136,16 +152,16 @@ class _Run:
                 found["suppressions"] = []  # SARIF: if some results are suppressed, the others have an empty list
         return found
 
-    def _uri(self, drive: Row) -> dict[str, str]:
+    def _log_uri(self, drive: Row) -> dict[str, str]:
         """Return the URI of a log: its path relative to the folder of the check, or its name if that path is not known."""
         if path := self._paths.get(drive["drive_id"]):
-            return {"uri": _quoted(path), "uriBaseId": ROOT}
-        return {"uri": _quoted(drive["file_name"])}
+            return {"uri": _path_as_uri(path), "uriBaseId": ROOT_BASE_ID}
+        return {"uri": _path_as_uri(drive["file_name"])}
 
     def _location(self, drive: Row, row: Row | None = None) -> dict[str, Any]:
         """Return the SARIF location of a log; if `row`, a finding, is given, also its actors, time and position."""
         drive_id = drive["drive_id"]
-        artifact = {**self._uri(drive), "index": self._artifact_index[drive_id]}
+        artifact = {**self._log_uri(drive), "index": self._artifact_index[drive_id]}
         place: dict[str, Any] = {"physicalLocation": {"artifactLocation": artifact}}
         if row is not None:
             # a log has no lines, but GitHub's code scanning does not show results without a line
@@ -169,23 +185,25 @@ class _Run:
         """Yield notifications: drives and rules that could not be judged, with the reasons; data quality; waivers."""
         for drive in self._logs:
             if drive["status"] == "not_judged":
-                yield _notice("not-judged", "error", drive["status_reason"] or "no reason given", self._location(drive))
+                yield _notification(
+                    "not-judged", "error", drive["status_reason"] or "no reason given", self._location(drive)
+                )
         result, columns = self._result, ["drive_id", "rule_id", "profile", "verdict", "reason"]
-        for row in counts.distinct_rows(counts.undecided(result.verdicts), columns):
+        for row in counts.distinct_rows(counts.undecided_verdicts(result.verdicts), columns):
             text = f"{rule_name(row)}: {row['verdict']}: {with_count(row['reason'], row['count_all'])}"
             level = "error" if row["verdict"] == "error" else "warning"
-            notice = _notice(row["verdict"], level, text, self._location(self._drives[row["drive_id"]]))
+            notice = _notification(row["verdict"], level, text, self._location(self._drives[row["drive_id"]]))
             yield notice | {"associatedRule": {"id": row["rule_id"], "index": self._rule_index[row["rule_id"]]}}
         for drive in self._logs:
             for check in drive["quality"]:
                 level = "note" if check["severity"] == "info" else check["severity"]
                 text = f"{check['check_id']}: {check['message']}"
-                yield _notice("data-quality", level, text, self._location(drive))
+                yield _notification("data-quality", level, text, self._location(drive))
         for text in descriptions.waiver_warnings(result.gate) if result.gate else ():
-            yield _notice("waiver", "warning", text)
+            yield _notification("waiver", "warning", text)
 
 
-def _logs_as_named(result: Result) -> Mapping[str, str]:
+def _relative_log_paths(result: Result) -> Mapping[str, str]:
     """Return the logs' paths relative to the folder in which the check ran, by `drive_id`; unknown paths are left out."""
     if result.run_options is not None:
         return result.run_options.relative_paths
@@ -194,7 +212,7 @@ def _logs_as_named(result: Result) -> Mapping[str, str]:
     return request.load(result.folder).relative_paths
 
 
-def _rule(rule: Row, verdict_counts: Mapping[str, int]) -> dict[str, Any]:
+def _rule_descriptor(rule: Row, verdict_counts: Mapping[str, int]) -> dict[str, Any]:
     params = [f"{p['name']} = {p['value']}{' ' + p['unit'] if p['unit'] else ''}" for p in rule["params"]]
     lines = [rule["clause"], rule["hypothesis"], f"Derived as: {rule['derivation']}. Status: {rule['status']}."]
     lines += [f"Parameters: {'; '.join(params)}."] if params else []
@@ -226,8 +244,8 @@ def _artifact(drive: Row, location: Mapping[str, str]) -> dict[str, Any]:
     return found
 
 
-def _notice(kind: str, level: str, text: str, place: dict[str, Any] | None = None) -> dict[str, Any]:
-    number = list(_NOTICES).index(kind)
+def _notification(kind: str, level: str, text: str, place: dict[str, Any] | None = None) -> dict[str, Any]:
+    number = list(_NOTIFICATION_KINDS).index(kind)
     notice = {"descriptor": {"id": kind, "index": number}, "level": level, "message": {"text": text}}
     return notice if place is None else notice | {"locations": [place]}
 
@@ -236,10 +254,10 @@ def _level(severity: str, status: str) -> str:
     return LEVELS[severity] if status == "stable" else "note"
 
 
-def _since(t_ns: int | None, start_ns: int | None) -> float | None:
+def _seconds_since_start(t_ns: int | None, start_ns: int | None) -> float | None:
     return None if t_ns is None else (t_ns - (start_ns or 0)) / 1e9
 
 
-def _quoted(path: str) -> str:
+def _path_as_uri(path: str) -> str:
     """Return a file's path as a relative URI; a colon is encoded, so that it does not mark a URI scheme."""
     return quote(path, safe="/", errors="surrogateescape")

@@ -13,15 +13,15 @@ from drivelint.gate import descriptions
 from drivelint.result import counts
 from drivelint.result.model import exit_status
 from drivelint.result.schemas import OUTPUT_VERSION
-from drivelint.result.text import finite
+from drivelint.result.text import replace_non_finite
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
     from drivelint.result.model import Result
 
-_RULE: Final = ["rule_id", "rule_version", "title", "severity", "status", "profiles", "params"]
-_DRIVE: Final = [
+_RULE_COLUMNS: Final = ["rule_id", "rule_version", "title", "severity", "status", "profiles", "params"]
+_DRIVE_COLUMNS: Final = [
     "drive_id", "file_name", "sha256", "format", "map_name", "map_sha256", "handedness", "handedness_source",
     "status", "status_reason", "lossy", "duration_s", "km", "n_states", "n_steps", "n_egos",
     "conditions", "quality", "not_judged",
@@ -30,7 +30,9 @@ _DRIVE: Final = [
 
 def render(result: Result) -> bytes:
     """Return the summary as UTF-8 JSON with a final newline."""
-    return (json.dumps(finite(content(result)), indent=2, ensure_ascii=False, allow_nan=False) + "\n").encode()
+    return (
+        json.dumps(replace_non_finite(content(result)), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    ).encode()
 
 
 def content(result: Result) -> dict[str, Any]:
@@ -48,23 +50,23 @@ def content(result: Result) -> dict[str, Any]:
         **{name: why for name in ("min_judged", "halted", "ended_early") if (why := getattr(result, name)) is not None},
         "notes": list(result.notes),
         "gate": None if result.gate is None else descriptions.gate_counts(result.gate),
-        "verdicts": counts.total(result.verdicts),
+        "verdicts": counts.verdict_counts(result.verdicts),
         "near_misses": near.num_rows,
         "findings": counts.tally(result.findings, counts.SEVERITIES, "severity"),
         "packs": [
             {"pack": pack, "verdicts": told}
-            for pack, told in counts.verdicts_by_pack(result.rules, result.verdicts).items()
+            for pack, told in counts.verdict_counts_by_pack(result.rules, result.verdicts).items()
         ],
-        "rules": _with_counts(result, result.rules.select(_RULE), near),
-        "drives": _with_counts(result, result.drives.select(_DRIVE), near),
+        "rules": _rows_with_counts(result, result.rules.select(_RULE_COLUMNS), near),
+        "drives": _rows_with_counts(result, result.drives.select(_DRIVE_COLUMNS), near),
     }
 
 
-def _with_counts(result: Result, rows: pa.Table, near: pa.Table) -> list[dict[str, Any]]:
+def _rows_with_counts(result: Result, rows: pa.Table, near_misses_table: pa.Table) -> list[dict[str, Any]]:
     """Return the rows with the numbers of their verdicts, near misses and findings; the first column is the id."""
     key = rows.column_names[0]
-    verdicts = counts.verdicts_by(result.verdicts, key)
-    near_misses, findings = (Counter(table[key].to_pylist()) for table in (near, result.findings))
+    verdicts = counts.verdict_counts_by(result.verdicts, key)
+    near_misses, findings = (Counter(table[key].to_pylist()) for table in (near_misses_table, result.findings))
     return [
         {
             **row,

@@ -14,11 +14,11 @@ from rich.text import Text
 
 from drivelint.phrases import listed
 from drivelint.report import NARROW_WIDTH, terminal_summary
-from drivelint.report.outcome import one_per_event
+from drivelint.report.outcome import one_per_event_and_status
 from drivelint.report.worst_first import moment_ns
 from drivelint.result import counts
-from drivelint.result.certainty import doubt
-from drivelint.result.text import NO_VALUE, comparison, ego_name, number, rule_name, seconds, with_count
+from drivelint.result.certainty import doubt_words
+from drivelint.result.text import NO_VALUE, ego_name, measured_values_text, number, rule_name, seconds, with_count
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -27,20 +27,32 @@ if TYPE_CHECKING:
 
     from drivelint.result.model import Result
 
-MAX_RULES: Final = 10
+MAX_RULES_PER_REASON: Final = 10
 """A reason shows this many rules."""
 MAX_ROWS: Final = 20
 """A section shows this many rows; the files contain all."""
 
-_STYLE: Final = {
+_STYLE_OF_VERDICT: Final = {
     "pass": "green",
     "fail": "bold red",
     "unknown": "yellow",
     "not_applicable": "dim",
     "error": "bold magenta",
 }
-_HEAD: Final = {"pass": "pass", "fail": "fail", "unknown": "unknown", "not_applicable": "n/a", "error": "error"}
-_SEVERITY: Final = {"critical": "bold red", "major": "red", "minor": "yellow", "error": "red", "warning": "yellow"}
+_HEADING_OF_VERDICT: Final = {
+    "pass": "pass",
+    "fail": "fail",
+    "unknown": "unknown",
+    "not_applicable": "n/a",
+    "error": "error",
+}
+_STYLE_OF_SEVERITY: Final = {
+    "critical": "bold red",
+    "major": "red",
+    "minor": "yellow",
+    "error": "red",
+    "warning": "yellow",
+}
 
 
 def render(result: Result, out: str | None = None, width: int = 120, *, verbose: bool = False) -> Group:
@@ -54,24 +66,24 @@ def render(result: Result, out: str | None = None, width: int = 120, *, verbose:
     wide = width >= NARROW_WIDTH
     near = result.verdicts.filter(result.verdicts["near_miss"])
     sections: list[RenderableType | None] = [
-        _drives(result, wide=wide),
-        _rules(result, wide=wide),
-        *_findings(result, wide=wide),
+        _drives_table(result, wide=wide),
+        _rules_table(result, wide=wide),
+        *_findings_tables(result, wide=wide),
         _measurement_table(result, "Near misses: kept, but with a small margin", near, "yellow", wide=wide),
-        _open(result),
-        _quality(result),
-        _assumptions(result),
+        _unjudged_table(result),
+        _quality_table(result),
+        _assumptions_text(result),
         terminal_summary.render(result, out, width),
     ]
     return Group(*(Padding(section, (0, 0, 1, 0)) for section in sections if section is not None))
 
 
-def _drives(result: Result, *, wide: bool) -> Table:
-    told = counts.verdicts_by(result.verdicts, "drive_id")
+def _drives_table(result: Result, *, wide: bool) -> Table:
+    told = counts.verdict_counts_by(result.verdicts, "drive_id")
     rows = result.drives.to_pylist()
     title = "Drives" if len(rows) <= MAX_ROWS else f"Drives (first {MAX_ROWS} of {len(rows)})"
-    table = _table(title, "bold", {"drive": 1})
-    _number_columns(table, [*(("km", "time") if wide else ()), *_HEAD.values()])
+    table = _empty_table(title, "bold", {"drive": 1})
+    _add_number_columns(table, [*(("km", "time") if wide else ()), *_HEADING_OF_VERDICT.values()])
     for row in rows[:MAX_ROWS]:
         name = Text(row["drive_id"], style="" if row["status"] == "judged" else "yellow")
         if row["lossy"]:
@@ -82,27 +94,27 @@ def _drives(result: Result, *, wide: bool) -> Table:
     return table
 
 
-def _rules(result: Result, *, wide: bool) -> Table:
-    told = counts.verdicts_by(result.verdicts, "rule_id")
-    table = _table("Rules", "bold", {"rule": 1})
+def _rules_table(result: Result, *, wide: bool) -> Table:
+    told = counts.verdict_counts_by(result.verdicts, "rule_id")
+    table = _empty_table("Rules", "bold", {"rule": 1})
     if wide:
         table.add_column("severity")
-    _number_columns(table, _HEAD.values())
+    _add_number_columns(table, _HEADING_OF_VERDICT.values())
     for row in result.rules.to_pylist():
         name = Text(row["rule_id"])
         if row["status"] != "stable":
             name.append(f" ({row['status']})", style="dim")
-        severity = [Text(row["severity"], style=_SEVERITY[row["severity"]])] if wide else []
+        severity = [Text(row["severity"], style=_STYLE_OF_SEVERITY[row["severity"]])] if wide else []
         table.add_row(name, *severity, *_count_cells(told[row["rule_id"]]))
     table.add_section()
-    packs = counts.verdicts_by_pack(result.rules, result.verdicts)
+    packs = counts.verdict_counts_by_pack(result.rules, result.verdicts)
     for pack, sums in packs.items():  # verdicts of several packs are not added up
         what = "all" if len(packs) == 1 else f"all of {pack}"
         table.add_row(Text(what, style="bold"), *([""] if wide else []), *_count_cells(sums))
     return table
 
 
-def _findings(result: Result, *, wide: bool) -> list[Table | None]:
+def _findings_tables(result: Result, *, wide: bool) -> list[Table | None]:
     """Return the table of findings; with a gate, two tables: first the findings that fail the gate, then the other findings."""
     gate, rows = result.gate, result.findings
     if gate is None:
@@ -125,16 +137,18 @@ def _measurement_table(result: Result, title: str, rows: pa.Table, style: str, *
     if not rows.num_rows:
         return None
     is_of_findings = "finding_id" in rows.column_names
-    counted = one_per_event(result.gate, rows.to_pylist()) if is_of_findings else []
-    more = counts.rows_of_findings(rows.to_pylist(), counted) if is_of_findings else ""
+    counted = one_per_event_and_status(result.gate, rows.to_pylist()) if is_of_findings else []
+    more = counts.extra_rows_sentence(rows.to_pylist(), counted) if is_of_findings else ""
     cut = f"; the first {MAX_ROWS} rows" if rows.num_rows > MAX_ROWS else ""
-    table = _table(f"{title} ({len(counted)})\n{more}{cut}" if more else _title(title, rows.num_rows), style)
+    table = _empty_table(
+        f"{title} ({len(counted)})\n{more}{cut}" if more else _title_with_count(title, rows.num_rows), style
+    )
     table.show_header = wide
-    _number_columns(table, ["time"])
+    _add_number_columns(table, ["time"])
     table.add_column("rule [profile]", overflow="fold", ratio=2)
     if wide:
         table.add_column("object", overflow="fold")
-        _number_columns(table, ["observed", "required", "margin"])
+        _add_number_columns(table, ["observed", "required", "margin"])
     egos = len(pc.unique(rows["ego_id"])) > 1
     previous, starts = None, result.start_times
     rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
@@ -144,64 +158,66 @@ def _measurement_table(result: Result, title: str, rows: pa.Table, style: str, *
             table.add_row("", Text(where, style="bold"))
             previous = where
         when, rule = seconds(moment_ns(row, rules), starts.get(row["drive_id"])), Text(rule_name(row))
-        if doubt(row):
-            rule.append(f" ({doubt(row)})", style="yellow")
+        if doubt_words(row):
+            rule.append(f" ({doubt_words(row)})", style="yellow")
         if wide:
             numbers = (number(row[name], row["unit"]) for name in ("observed", "required", "margin"))
             table.add_row(when, rule, Text(row["object_id"] or ""), *numbers)
         else:
             about = f"object {row['object_id']}: " if row["object_id"] is not None else ""
             table.add_row(when, rule)
-            table.add_row("", Text(about + (comparison(row) or row["reason"]), style="dim"))
+            table.add_row("", Text(about + (measured_values_text(row) or row["reason"]), style="dim"))
     return table
 
 
-def _open(result: Result) -> Table | None:
+def _unjudged_table(result: Result) -> Table | None:
     """Return a table of what could not be judged, with the reasons: drives, then verdicts that are unknown or errors."""
     lost = result.drives.filter(pc.equal(result.drives["status"], "not_judged")).to_pylist()
-    rows = counts.distinct_rows(counts.undecided(result.verdicts), ["verdict", "reason", "rule_id"])
+    rows = counts.distinct_rows(counts.undecided_verdicts(result.verdicts), ["verdict", "reason", "rule_id"])
     why = counts.group_rows(rows, lambda row: (row["verdict"], row["reason"]))
     if not lost and not why:
         return None
-    table = _table(_title("Could not be judged", len(lost) + len(why)), "yellow", {"what": 1, "why": 1})
+    table = _empty_table(
+        _title_with_count("Could not be judged", len(lost) + len(why)), "yellow", {"what": 1, "why": 1}
+    )
     for row in lost[:MAX_ROWS]:
         table.add_row(Text(f"drive {row['drive_id']}", style="yellow"), Text(row["status_reason"] or ""))
     order = sorted(why, key=lambda at: (at[0], -len(why[at]), at[1]))
-    of_egos = counts.distinct_rows(counts.undecided(result.verdicts), ["verdict", "reason", "ego_id"])
+    of_egos = counts.distinct_rows(counts.undecided_verdicts(result.verdicts), ["verdict", "reason", "ego_id"])
     egos = counts.group_rows(of_egos, lambda row: (row["verdict"], row["reason"]))
     several = len({row["ego_id"] for row in of_egos}) > 1
     for verdict, reason in order[:MAX_ROWS]:
-        rules = _first_rules([(row["rule_id"], row["count_all"]) for row in why[verdict, reason]])
+        rules = _first_rule_lines([(row["rule_id"], row["count_all"]) for row in why[verdict, reason]])
         text = Text(reason)
         if several:
             text.append(f"\nego {listed([row['ego_id'] for row in egos[verdict, reason]])}", "dim")
-        table.add_row(Text("\n".join(rules), style=_STYLE[verdict]), text)
+        table.add_row(Text("\n".join(rules), style=_STYLE_OF_VERDICT[verdict]), text)
     return table
 
 
-def _first_rules(rules: list[tuple[str, int]]) -> list[str]:
+def _first_rule_lines(rules: list[tuple[str, int]]) -> list[str]:
     """Return the first rules with their counts, and a line with the number and packs of the other rules."""
-    packs = sorted({rule_id.partition(".")[0] for rule_id, _ in rules[MAX_RULES:]})
-    more = [f"and {len(rules) - MAX_RULES} more of {', '.join(packs)}"] if packs else []
-    return [with_count(*rule) for rule in rules[:MAX_RULES]] + more
+    packs = sorted({rule_id.partition(".")[0] for rule_id, _ in rules[MAX_RULES_PER_REASON:]})
+    more = [f"and {len(rules) - MAX_RULES_PER_REASON} more of {', '.join(packs)}"] if packs else []
+    return [with_count(*rule) for rule in rules[:MAX_RULES_PER_REASON]] + more
 
 
-def _quality(result: Result) -> Table | None:
+def _quality_table(result: Result) -> Table | None:
     """Return a table of the warnings and errors about the data quality of logs and maps."""
     checks = [(drive["drive_id"], check) for drive in result.drives.to_pylist() for check in drive["quality"]]
     worse = [(drive_id, check) for drive_id, check in checks if check["severity"] != "info"]
     seen = counts.group_rows(worse, lambda told: tuple(told[1][name] for name in ("severity", "check_id", "message")))
     if not seen:
         return None
-    table = _table(_title("Data quality", len(seen)), "yellow", {"check": 1, "message": 3})
+    table = _empty_table(_title_with_count("Data quality", len(seen)), "yellow", {"check": 1, "message": 3})
     for (severity, check_id, message), told in list(seen.items())[:MAX_ROWS]:
         drives = {drive_id for drive_id, _ in told}
         where = told[0][0] if len(drives) == 1 else f"{len(drives)} drives"
-        table.add_row(Text(check_id, style=_SEVERITY[severity]), Text(f"{where}: {message}"))
+        table.add_row(Text(check_id, style=_STYLE_OF_SEVERITY[severity]), Text(f"{where}: {message}"))
     return table
 
 
-def _assumptions(result: Result) -> Text | None:
+def _assumptions_text(result: Result) -> Text | None:
     assumed = counts.count_assuming(result.verdicts, "line_of_sight")
     if not assumed:
         return None
@@ -211,7 +227,7 @@ def _assumptions(result: Result) -> Text | None:
     )
 
 
-def _table(title: str, style: str, columns: Mapping[str, int] | None = None) -> Table:
+def _empty_table(title: str, style: str, columns: Mapping[str, int] | None = None) -> Table:
     """Return a table with wrapped text; `columns`: the name of each column and its share of the width."""
     table = Table(title=Text(title, style=style), title_justify="left", box=box.SIMPLE_HEAD)
     table.show_edge = table.pad_edge = False
@@ -220,11 +236,11 @@ def _table(title: str, style: str, columns: Mapping[str, int] | None = None) -> 
     return table
 
 
-def _title(title: str, n: int) -> str:
+def _title_with_count(title: str, n: int) -> str:
     return f"{title} ({n})" if n <= MAX_ROWS else f"{title} (first {MAX_ROWS} of {n})"
 
 
-def _number_columns(table: Table, names: Iterable[str]) -> None:
+def _add_number_columns(table: Table, names: Iterable[str]) -> None:
     for name in names:
         table.add_column(name, justify="right", no_wrap=True)
 
@@ -232,6 +248,8 @@ def _number_columns(table: Table, names: Iterable[str]) -> None:
 def _count_cells(verdict_counts: dict[str, Any]) -> list[Text]:
     """Return one cell per kind of verdict; a zero is a dim dot, so that other numbers stand out."""
     return [
-        Text(str(verdict_counts[verdict]), style=_STYLE[verdict]) if verdict_counts[verdict] else Text("·", style="dim")
+        Text(str(verdict_counts[verdict]), style=_STYLE_OF_VERDICT[verdict])
+        if verdict_counts[verdict]
+        else Text("·", style="dim")
         for verdict in counts.VERDICTS
     ]

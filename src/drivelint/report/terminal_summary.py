@@ -16,14 +16,21 @@ from rich.text import Text
 from drivelint.errors import ExitCode
 from drivelint.gate import descriptions
 from drivelint.phrases import inert_line, plural
-from drivelint.report.inputs import LAW, input_notes
+from drivelint.report.inputs import LAW_LABEL, input_notes
 from drivelint.report.law import law_words
-from drivelint.report.outcome import LABELS, LET_THROUGH, headline, one_per_event, rule_counts, standing
-from drivelint.report.worst_first import is_contact, moment_ns, worst_first, worst_later
+from drivelint.report.outcome import (
+    LABEL_OF_EXIT_CODE,
+    LET_THROUGH_WORDS,
+    headline,
+    one_per_event_and_status,
+    rule_counts,
+    status_at_gate,
+)
+from drivelint.report.worst_first import is_contact, moment_ns, worst_first, worst_time_words
 from drivelint.result import counts
-from drivelint.result.certainty import doubt
-from drivelint.result.model import exit_status, gating_unrecorded, off_map_reason
-from drivelint.result.text import closing, ego_name, number, seconds, tolerance, went_wrong
+from drivelint.result.certainty import doubt_words
+from drivelint.result.model import exit_status, gating_verdicts_lacking_signal, off_map_reason
+from drivelint.result.text import breach_title, closing_words, ego_name, number, seconds, tolerance
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -37,21 +44,21 @@ MOST_DRIVES: Final = 8
 MOST_RULES: Final = 5
 MOST_REASONS: Final = 3
 
-STYLE: Final = {"critical": "bold red", "major": "red", "minor": "yellow"}
-_SHORT: Final = {"critical": "crit", "major": "maj", "minor": "min"}
-PROFILES: Final = {
+STYLE_OF_SEVERITY: Final = {"critical": "bold red", "major": "red", "minor": "yellow"}
+_SHORT_SEVERITIES: Final = {"critical": "crit", "major": "maj", "minor": "min"}
+PROFILE_MEANINGS: Final = {
     "relaxed": "planned with a large margin",
     "nominal": "planned with a usual margin",
     "aggressive": "planned with a small margin",
     "observed": "as it was driven",
 }
 """The profiles that drivelint ships, each with the overtake that it assumes, in words."""
-_STYLE_OF: Final = {
+_STYLE_OF_LABEL: Final = {
     "PASS": "bold green",
     "FAIL": "bold red",
     "ERROR": "bold magenta",
 }
-_CAREFUL: Final = "bold yellow"
+_STYLE_OF_OTHER_LABELS: Final = "bold yellow"
 _STYLE_OF_PART: Final = {"contact": "bold red", "possible contact": "red", "warning": "yellow"}
 
 
@@ -60,19 +67,21 @@ def render(result: Result, out: str | None, width: int = 120) -> Group:
 
     Findings that a gate lets through are only counted, but if a drive has no other findings, the worst is shown.
     """
-    rules = _rules(result)
-    every = one_per_event(result.gate, worst_first(result.findings, rules).to_pylist())
-    found = [row for row in every if standing(result.gate, row["finding_id"]) not in LET_THROUGH]
-    drives = _drives(result, found, every, rules, width)
-    parts: list[RenderableType] = [_head(result), Text(), _verdict(result), Text(), drives, Text()]
+    rules = _rules_by_id(result)
+    every = one_per_event_and_status(result.gate, worst_first(result.findings, rules).to_pylist())
+    found = [row for row in every if status_at_gate(result.gate, row["finding_id"]) not in LET_THROUGH_WORDS]
+    drives = _drives_table(result, found, every, rules, width)
+    parts: list[RenderableType] = [_extent_line(result), Text(), _outcome_text(result), Text(), drives, Text()]
     if found:
-        parts += [_broken(found, _let_through(result, every)), Text()]
-    return Group(*parts, *_lines(result), Text(), *_end(result, found or every, out))
+        parts += [_broken_rules_table(found, _let_through_words(result, every)), Text()]
+    return Group(
+        *parts, *_lines_on_rules_and_inputs(result), Text(), *_exit_and_next_steps_lines(result, found or every, out)
+    )
 
 
-def _head(result: Result) -> Text:
+def _extent_line(result: Result) -> Text:
     drives = result.drives
-    packs = list(counts.verdicts_by_pack(result.rules, result.verdicts))
+    packs = list(counts.verdict_counts_by_pack(result.rules, result.verdicts))
     total = [pc.sum(drives[name]).as_py() or 0.0 for name in ("km", "duration_s")]
     n_rules = plural(result.rules.num_rows, "rule")
     law = law_words(result)
@@ -82,28 +91,28 @@ def _head(result: Result) -> Text:
     )
 
 
-def worst_gating(result: Result) -> list[Row]:
+def gating_findings_worst_first(result: Result) -> list[Row]:
     """Return the findings that gate, the worst first; without a gate, all findings."""
     gate, rows = result.gate, result.findings
     if gate is not None:
         rows = rows.filter(pa.array([gate.is_gating(name) for name in rows["finding_id"].to_pylist()], pa.bool_()))
-    found: list[Row] = worst_first(rows, _rules(result)).to_pylist()
+    found: list[Row] = worst_first(rows, _rules_by_id(result)).to_pylist()
     return found
 
 
-def verdict_line(result: Result) -> str:
+def outcome_line(result: Result) -> str:
     """Return the run's outcome, the line below the head, as plain text with single spaces."""
-    return " ".join(_verdict(result).plain.split())
+    return " ".join(_outcome_text(result).plain.split())
 
 
-def _rules(result: Result) -> dict[str, Any]:
+def _rules_by_id(result: Result) -> dict[str, Any]:
     return {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
 
 
-def _verdict(result: Result) -> Text:
+def _outcome_text(result: Result) -> Text:
     """Return the run's outcome as word and sentence; if nothing was judged, also the reason."""
     told, ended = headline(result), exit_status(result)
-    text = Text(f"{told.label}  ", _STYLE_OF.get(told.label, _CAREFUL))
+    text = Text(f"{told.label}  ", _STYLE_OF_LABEL.get(told.label, _STYLE_OF_OTHER_LABELS))
     for n, part in enumerate(told.parts):
         text.append(f"{'; ' if n else ''}", "default").append(part.words, _STYLE_OF_PART.get(part.kind, "default"))
     if ended.code == ExitCode.NOT_JUDGED:
@@ -111,7 +120,7 @@ def _verdict(result: Result) -> Text:
     return text
 
 
-def _table(names: Iterable[str], max_widths: Mapping[str, int]) -> Table:
+def _empty_table(names: Iterable[str], max_widths: Mapping[str, int]) -> Table:
     """Return a table; `max_widths`: the columns with text and their greatest widths; the other columns contain numbers."""
     table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, header_style="dim")
     for name in names:
@@ -120,7 +129,7 @@ def _table(names: Iterable[str], max_widths: Mapping[str, int]) -> Table:
     return table
 
 
-def _drives(
+def _drives_table(
     result: Result, gating_findings: list[Row], all_findings: list[Row], rules: dict[str, Any], width: int
 ) -> Table:
     """Return a table with a row per drive, the worst first: its worst finding, and its findings by severity.
@@ -129,20 +138,22 @@ def _drives(
     """
     of_drive = counts.group_rows(gating_findings, lambda row: row["drive_id"])
     let_through = counts.group_rows(all_findings, lambda row: row["drive_id"])
-    unknown = counts.verdicts_by(result.verdicts, "drive_id")
-    lacking = set(counts.unrecorded(result.verdicts)["drive_id"].to_pylist())
-    unrecorded = Counter(gating_unrecorded(result)["drive_id"].to_pylist())
+    unknown = counts.verdict_counts_by(result.verdicts, "drive_id")
+    lacking = set(counts.verdicts_lacking_signal(result.verdicts)["drive_id"].to_pylist())
+    unrecorded = Counter(gating_verdicts_lacking_signal(result)["drive_id"].to_pylist())
     starts = result.start_times
 
-    def order(drive: Row) -> tuple[Any, ...]:
+    def sort_key(drive: Row) -> tuple[Any, ...]:
         mine = of_drive.get(drive["drive_id"], [])
         n = [-sum(row["severity"] == severity for row in mine) for severity in counts.SEVERITIES]
         return drive["status"] == "judged", *n, drive["drive_id"], drive["file_name"]
 
-    drives = sorted(result.drives.to_pylist(), key=order)
+    drives = sorted(result.drives.to_pylist(), key=sort_key)
     names = [drive["drive_id"] + (" (lossy)" if drive["lossy"] else "") for drive in drives[:MOST_DRIVES]]
     longest = min(max(map(len, names)), width // 3)
-    table = _table(("drive", "worst", *_SHORT.values(), "unknown"), {"drive": longest, "worst": width - longest - 34})
+    table = _empty_table(
+        ("drive", "worst", *_SHORT_SEVERITIES.values(), "unknown"), {"drive": longest, "worst": width - longest - 34}
+    )
     for drive, shown in zip(drives, names, strict=False):
         name = drive["drive_id"]
         mine = of_drive.get(name, [])
@@ -150,23 +161,23 @@ def _drives(
             table.add_row(Text(shown, "yellow"), Text(drive["status_reason"] or "not judged", "yellow"))
             continue
         if mine:
-            worst = _worst(mine[0], rules, starts[name], several_egos=drive["n_egos"] > 1)
+            worst = _finding_text(mine[0], rules, starts[name], several_egos=drive["n_egos"] > 1)
         elif name in let_through:
-            worst = _finding_let_through(
+            worst = _let_through_text(
                 result, let_through[name][0], rules, starts[name], several_egos=drive["n_egos"] > 1
             )
         else:
-            worst = _without_finding(drive, unknown[name], lacks_signals=name in lacking)
+            worst = _no_finding_text(drive, unknown[name], lacks_signals=name in lacking)
         n = [sum(row["severity"] == severity for row in mine) for severity in counts.SEVERITIES]
-        cells = [_cell(k, STYLE[severity]) for k, severity in zip(n, counts.SEVERITIES, strict=True)]
+        cells = [_count_cell(k, STYLE_OF_SEVERITY[severity]) for k, severity in zip(n, counts.SEVERITIES, strict=True)]
         n_unknown = unknown[name]["unknown"] + unrecorded[name]
-        table.add_row(Text(shown, "yellow" if drive["lossy"] else ""), worst, *cells, _cell(n_unknown, "yellow"))
+        table.add_row(Text(shown, "yellow" if drive["lossy"] else ""), worst, *cells, _count_cell(n_unknown, "yellow"))
     if len(drives) > MOST_DRIVES:
         table.add_row(Text(f"... {len(drives) - MOST_DRIVES} more (--verbose)", "dim"))
     return table
 
 
-def _without_finding(drive: Row, verdicts: Mapping[str, int], *, lacks_signals: bool) -> Text:
+def _no_finding_text(drive: Row, verdicts: Mapping[str, int], *, lacks_signals: bool) -> Text:
     if off_map_reason(drive) is not None:
         return Text("no finding, but the map does not fit", "yellow")
     if verdicts["pass"]:
@@ -175,21 +186,25 @@ def _without_finding(drive: Row, verdicts: Mapping[str, int], *, lacks_signals: 
     return Text("nothing was judged" if applied else "no rule applied", "yellow")
 
 
-def _finding_let_through(
+def _let_through_text(
     result: Result, row: Row, rules: dict[str, Any], start_ns: int | None, *, several_egos: bool
 ) -> Text:
     """Return a finding that a gate lets through, and the reason."""
-    how = standing(result.gate, row["finding_id"])
-    text = _worst(row, rules, start_ns, several_egos=several_egos)
+    how = status_at_gate(result.gate, row["finding_id"])
+    text = _finding_text(row, rules, start_ns, several_egos=several_egos)
     # the text of a possible finding contains that word already
-    return text if how == "possible" and doubt(row) else Text.assemble((f"{LET_THROUGH[how]}: ", "yellow"), text)
+    return (
+        text
+        if how == "possible" and doubt_words(row)
+        else Text.assemble((f"{LET_THROUGH_WORDS[how]}: ", "yellow"), text)
+    )
 
 
-def _cell(n: int, style: str) -> Text:
+def _count_cell(n: int, style: str) -> Text:
     return Text(str(n), style) if n else Text("·", "dim")
 
 
-def _worst(row: Row, rules: dict[str, Any], start_ns: int | None, *, several_egos: bool) -> Text:
+def _finding_text(row: Row, rules: dict[str, Any], start_ns: int | None, *, several_egos: bool) -> Text:
     """Return time, measured value and rule of a finding, numbers first, because a narrow column cuts off the end.
 
     For a contact, return the other actor and the closing speed just before the contact instead of the rule.
@@ -198,7 +213,7 @@ def _worst(row: Row, rules: dict[str, Any], start_ns: int | None, *, several_ego
     who = [] if row["object_id"] is None else [f"object {row['object_id']}"]
     parts = []
     if contact and row["closing_mps"] is not None:
-        parts = [*who, closing(row["closing_mps"])]
+        parts = [*who, closing_words(row["closing_mps"])]
         who = []
     elif row["observed"] is not None and row["required"] is not None:
         profile = "" if row["profile"] is None else f" [{row['profile']}]"
@@ -208,40 +223,40 @@ def _worst(row: Row, rules: dict[str, Any], start_ns: int | None, *, several_ego
             f"{number(row['observed'], row['unit'])}, {limit} {number(row['required'], row['unit'])}{of_it}{profile}"
         )
     if not contact:
-        parts.append(went_wrong(rules[row["rule_id"]]))
+        parts.append(breach_title(rules[row["rule_id"]]))
     parts += who
-    if later := worst_later(row, rules, start_ns):
+    if later := worst_time_words(row, rules, start_ns):
         parts.append(later)
     ego = f"{ego_name(row['ego_id'])} " if several_egos else ""
     when = f"{seconds(moment_ns(row, rules), start_ns):>8} {ego}"
-    what = "possible contact " if doubt(row) else "CONTACT "
-    if doubt(row) and not contact:
+    what = "possible contact " if doubt_words(row) else "CONTACT "
+    if doubt_words(row) and not contact:
         parts[0] = f"possibly {parts[0]}"
     return Text.assemble(when, (what if contact else "", "bold red"), "; ".join(parts))
 
 
-def _let_through(result: Result, every: list[Row]) -> str:
+def _let_through_words(result: Result, every: list[Row]) -> str:
     """Return in words how many findings a gate lets through, by the reason; '' for none."""
-    counted = Counter(standing(result.gate, row["finding_id"]) for row in every)
-    return ", ".join(f"{counted[name]} {words}" for name, words in LET_THROUGH.items() if counted[name])
+    counted = Counter(status_at_gate(result.gate, row["finding_id"]) for row in every)
+    return ", ".join(f"{counted[name]} {words}" for name, words in LET_THROUGH_WORDS.items() if counted[name])
 
 
-def _broken(findings: list[Row], without: str) -> Table:
+def _broken_rules_table(findings: list[Row], left_out_words: str) -> Table:
     """Return a table with a row per broken rule, the worst first; a column counts the findings that are only possible, if any.
 
-    `without`: the findings that the table leaves out, in words.
+    `left_out_words`: the findings that the table leaves out, in words.
     """
-    some_possible = any(doubt(row) for row in findings)
-    first = f"broken rule (without {without})" if without else "broken rule"
+    some_possible = any(doubt_words(row) for row in findings)
+    first = f"broken rule (without {left_out_words})" if left_out_words else "broken rule"
     columns = (first, "findings", *(["possible"] if some_possible else []), "drives", "worst margin")
-    table = _table(columns, {first: 60})
+    table = _empty_table(columns, {first: 60})
     of_rule = counts.group_rows(findings, lambda row: row["rule_id"])
     for rule_id, rows in list(of_rule.items())[:MOST_RULES]:
         margins = [row["margin"] for row in rows if row["margin"] is not None]
         severity = rows[0]["severity"]
-        name = Text.assemble((f"{severity:<8} ", STYLE[severity]), rule_id)
+        name = Text.assemble((f"{severity:<8} ", STYLE_OF_SEVERITY[severity]), rule_id)
         n_drives = len({row["drive_id"] for row in rows})
-        doubted = [_cell(sum(bool(doubt(row)) for row in rows), "yellow")] if some_possible else []
+        doubted = [_count_cell(sum(bool(doubt_words(row)) for row in rows), "yellow")] if some_possible else []
         worst = number(min(margins, default=None), rows[0]["unit"])
         table.add_row(name, str(len(rows)), *doubted, str(n_drives), worst)
     if len(of_rule) > MOST_RULES:
@@ -249,7 +264,7 @@ def _broken(findings: list[Row], without: str) -> Table:
     return table
 
 
-def _lines(result: Result) -> list[Text]:
+def _lines_on_rules_and_inputs(result: Result) -> list[Text]:
     """Return the lines on the number of rules judged, profiles, unknown verdicts by reason, map and logs."""
     n = rule_counts(result)
     said = [f"{n.judged_somewhere} judged", f"{n.never} could never be judged" if n.never else ""]
@@ -261,52 +276,52 @@ def _lines(result: Result) -> list[Text]:
         first += f"    near misses: {near}"
     if given := {f"{c['condition']}={c['value']}" for cs in result.drives["conditions"].to_pylist() for c in cs or ()}:
         first += f"    judged in: {', '.join(sorted(given))}"
-    return [Text(first), *_profiles(result), *_unknown(result), *_inputs(result)]
+    return [Text(first), *_profile_lines(result), *_unknown_reason_lines(result), *_input_lines(result)]
 
 
-def _profiles(result: Result) -> list[Text]:
+def _profile_lines(result: Result) -> list[Text]:
     """Return the meaning of the profiles whose names are in brackets after the numbers of findings."""
-    names = sorted(set(result.findings["profile"].to_pylist()) & PROFILES.keys())
-    said = "; ".join(f"{name}: {PROFILES[name]}" for name in names)
+    names = sorted(set(result.findings["profile"].to_pylist()) & PROFILE_MEANINGS.keys())
+    said = "; ".join(f"{name}: {PROFILE_MEANINGS[name]}" for name in names)
     return [Text(f"profiles of overtaking (one overtake counts once): {said}", "dim")] if names else []
 
 
-def _unknown(result: Result) -> list[Text]:
+def _unknown_reason_lines(result: Result) -> list[Text]:
     """Return the reasons of unknown verdicts other than missing signals, the most frequent first."""
     rows = (
-        counts.undecided(result.verdicts)
+        counts.undecided_verdicts(result.verdicts)
         .select(["verdict", "reason_code", "cause_code", "rule_id", "reason"])
         .to_pylist()
     )
     others = [row for row in rows if not row["reason_code"].startswith("missing_")]
 
-    def rules(verdicts: list[Row]) -> int:
+    def n_rules(verdicts: list[Row]) -> int:
         return len({row["rule_id"] for row in verdicts})
 
     groups = counts.group_rows(others, lambda row: (row["verdict"], row["reason_code"], row["cause_code"] or ""))
-    order = sorted(groups.items(), key=lambda group: (-rules(group[1]), -len(group[1]), group[0]))
+    order = sorted(groups.items(), key=lambda group: (-n_rules(group[1]), -len(group[1]), group[0]))
     lines = []
     for _, group in order[:MOST_REASONS]:
         times = f", {len(group)} times" if len(group) > 1 else ""
-        words = f"{group[0]['verdict']} ({plural(rules(group), 'rule')}{times}): {group[0]['reason']}"
+        words = f"{group[0]['verdict']} ({plural(n_rules(group), 'rule')}{times}): {group[0]['reason']}"
         lines.append(Text(words, "yellow", no_wrap=True, overflow="ellipsis"))
     if len(order) > MOST_REASONS:
         lines.append(Text(f"... {plural(len(order) - MOST_REASONS, 'more reason')} (--verbose)", "dim"))
     return lines
 
 
-def _inputs(result: Result) -> list[Text]:
+def _input_lines(result: Result) -> list[Text]:
     """Return a line for each note on the inputs (map, logs, what was not judged) except the law."""
     return [
         Text.assemble(f"{note.label}: ", (note.words, "yellow" if note.is_warning else "default"))
         for note in input_notes(result)
-        if note.label != LAW
+        if note.label != LAW_LABEL
     ]
 
 
-def _end(result: Result, findings: list[Row], out: str | None) -> list[Text]:
+def _exit_and_next_steps_lines(result: Result, findings: list[Row], out: str | None) -> list[Text]:
     end = exit_status(result)
-    style = _STYLE_OF.get(LABELS.get(end.code, ""), _CAREFUL)
+    style = _STYLE_OF_LABEL.get(LABEL_OF_EXIT_CODE.get(end.code, ""), _STYLE_OF_OTHER_LABELS)
     gate = result.gate
     alone = "" if gate is not None and gate.baseline is not None else " (no baseline)"
     lines = [Text(f"exit {int(end.code)}: {end.why}{alone}", style)]
@@ -315,7 +330,7 @@ def _end(result: Result, findings: list[Row], out: str | None) -> list[Text]:
         lines.append(Text(f"baseline: {changes}"))
     if gate is not None:
         lines += [Text(f"waiver   {line}", "yellow") for line in descriptions.waiver_warnings(gate)]
-    if counts.total(result.verdicts)["unknown"] or counts.unrecorded(result.verdicts).num_rows:
+    if counts.verdict_counts(result.verdicts)["unknown"] or counts.verdicts_lacking_signal(result.verdicts).num_rows:
         lines.append(Text("inspect  drivelint inspect TRACE shows what a log lacks: unknown is not pass"))
     if out is None:
         lines.append(Text("keep     --out DIR writes a report, the tables and the logs with their verdicts", "dim"))

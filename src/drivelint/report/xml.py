@@ -17,11 +17,11 @@ def replace_non_xml(text: str) -> str:
     return escape_invisible(_NOT_XML.sub("\ufffd", text))
 
 
-def add(parent: etree._Element, tag: str, **attributes: str) -> etree._Element:
+def add_element(parent: etree._Element, tag: str, **attributes: str) -> etree._Element:
     """Append an element with these attributes, in this order, to `parent` and return the element."""
     return etree.SubElement(parent, tag, {name: replace_non_xml(value) for name, value in attributes.items()})
 
 
-def document(root: etree._Element) -> bytes:
+def xml_bytes(root: etree._Element) -> bytes:
     """Return the document with this root as indented UTF-8."""
     return bytes(etree.tostring(root, xml_declaration=True, encoding="UTF-8", pretty_print=True))

@@ -16,9 +16,9 @@ from lxml import etree
 from drivelint import __version__
 from drivelint.gate import descriptions
 from drivelint.report.worst_first import when
-from drivelint.report.xml import add, document, replace_non_xml
+from drivelint.report.xml import add_element, replace_non_xml, xml_bytes
 from drivelint.result import counts
-from drivelint.result.text import line, subject, with_count
+from drivelint.result.text import line_of_row, subject, with_count
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 LEVELS: Final = {"critical": "1", "major": "2", "minor": "3"}
 """The levels error, warning and information of each severity. Findings of drafts and waived findings are information."""
-INFORMATION: Final = "3"
+INFORMATION_LEVEL: Final = "3"
 
 
 def render(result: Result) -> bytes:
@@ -42,20 +42,20 @@ def render(result: Result) -> bytes:
     for drive in result.drives.to_pylist():
         about = f"Rules of the road, checked on the drive {drive['drive_id']}"
         name = f"drivelint {drive['drive_id']}"  # ASAM's reader merges bundles of the same name
-        bundle = add(root, "CheckerBundle", build_date="", name=name, version=__version__, description=about)
-        add(bundle, "Param", name="InputFile", value=drive["file_name"])
-        add(bundle, "Param", name="Sha256", value=drive["sha256"] or "unknown")
-        add(bundle, "Param", name="MapFile", value=drive["map_name"] or "none")
+        bundle = add_element(root, "CheckerBundle", build_date="", name=name, version=__version__, description=about)
+        add_element(bundle, "Param", name="InputFile", value=drive["file_name"])
+        add_element(bundle, "Param", name="Sha256", value=drive["sha256"] or "unknown")
+        add_element(bundle, "Param", name="MapFile", value=drive["map_name"] or "none")
         total: Counter[str] = Counter()
         for rule in rules:
             at = drive["drive_id"], rule["rule_id"]
-            total += _checker(bundle, rule, drive, said.get(at, ()), found.get(at, ()), gate=result.gate)
+            total += _write_checker(bundle, rule, drive, said.get(at, ()), found.get(at, ()), gate=result.gate)
         judged = drive["status"] == "judged"
         summary = _counts_text(total) if judged else f"not judged: {drive['status_reason'] or 'no reason given'}"
         bundle.set("summary", replace_non_xml(summary))
     for number, issue in enumerate(root.iter("Issue")):  # ASAM's reader needs numbers that are unique in the file
         issue.set("issueId", str(number))
-    return document(root)
+    return xml_bytes(root)
 
 
 def rule_uid(rule_id: str, pack: str) -> str:
@@ -67,7 +67,7 @@ def rule_uid(rule_id: str, pack: str) -> str:
     return f"drivelint.rules:{re.sub('[^a-z]', '', pack.lower()) or 'custom'}:{release}:{dotted}"
 
 
-def _checker(
+def _write_checker(
     bundle: etree._Element,
     rule: Row,
     drive: Row,
@@ -87,7 +87,7 @@ def _checker(
     )
     none = "the drive was not judged" if drive["status"] != "judged" else "no verdict"
     summary = _counts_text(verdict_counts) if verdict_rows else none
-    checker = add(
+    checker = add_element(
         bundle,
         "Checker",
         checkerId=rule["rule_id"],
@@ -96,43 +96,45 @@ def _checker(
         status=status,
     )
     for param in rule["params"]:
-        add(checker, "Param", name=param["name"], value=f"{param['value']} {param['unit'] or ''}".rstrip())
+        add_element(checker, "Param", name=param["name"], value=f"{param['value']} {param['unit'] or ''}".rstrip())
     for row in findings:
-        _finding(checker, row, rule, drive["t_start_ns"], gate)
+        _write_finding(checker, row, rule, drive["t_start_ns"], gate)
     for row in verdict_rows if status != "skipped" else ():
         if row["verdict"] in {"unknown", "error"}:
             text = f"{row['verdict']}, neither kept nor broken: {with_count(row['reason'], row['count_all'])}"
-            _issue(checker, rule, INFORMATION, text)
-    add(checker, "AddressedRule", ruleUID=rule_uid(rule["rule_id"], rule["pack"]))
+            _add_issue(checker, rule, INFORMATION_LEVEL, text)
+    add_element(checker, "AddressedRule", ruleUID=rule_uid(rule["rule_id"], rule["pack"]))
     for verdict in counts.VERDICTS:
-        add(checker, "Metadata", key=verdict, value=str(verdict_counts[verdict]), description="verdicts of this kind")
+        add_element(
+            checker, "Metadata", key=verdict, value=str(verdict_counts[verdict]), description="verdicts of this kind"
+        )
     return verdict_counts
 
 
-def _finding(checker: etree._Element, row: Row, rule: Row, start_ns: int | None, gate: Gate | None) -> None:
+def _write_finding(checker: etree._Element, row: Row, rule: Row, start_ns: int | None, gate: Gate | None) -> None:
     waiver = gate.waiver(row["finding_id"]) if gate else None
     stable = rule["status"] == "stable"
     profile = "" if row["profile"] is None else f"profile {row['profile']}: "
     moment = when(row, {rule["rule_id"]: rule}, start_ns)
-    text = profile + line(row, moment)
+    text = profile + line_of_row(row, moment)
     notes = [] if stable else [f"{rule['status']}, does not gate"]
     notes += [descriptions.waiver_reason(waiver)] if waiver else []
-    notes += ["known: the baseline contains it"] if gate and gate.in_baseline(row["finding_id"]) else []
-    level = LEVELS[row["severity"]] if stable and waiver is None else INFORMATION
-    issue = _issue(checker, rule, level, f"{text} ({'; '.join(notes)})" if notes else text)
+    notes += ["known: the baseline contains it"] if gate and gate.is_in_baseline(row["finding_id"]) else []
+    level = LEVELS[row["severity"]] if stable and waiver is None else INFORMATION_LEVEL
+    issue = _add_issue(checker, rule, level, f"{text} ({'; '.join(notes)})" if notes else text)
     where = f"{subject(row)}, {moment} into the drive; map metres"
-    place = add(issue, "Locations", description=where)
+    place = add_element(issue, "Locations", description=where)
     if row["x_m"] is not None and row["y_m"] is not None:
-        add(place, "InertialLocation", x=repr(row["x_m"]), y=repr(row["y_m"]), z="0.0")
-    add(place, "TimeLocation", time=repr(row["t_worst_ns"] / 1e9))
+        add_element(place, "InertialLocation", x=repr(row["x_m"]), y=repr(row["y_m"]), z="0.0")
+    add_element(place, "TimeLocation", time=repr(row["t_worst_ns"] / 1e9))
     names = ("finding_id", "profile", "ego_id", "object_id", "observed", "required", "margin", "unit", "lanelet_id")
     facts = {name: str(row[name]) for name in names if row[name] is not None}
-    add(add(issue, "DomainSpecificInfo", name="drivelint"), "Finding", **facts)
+    add_element(add_element(issue, "DomainSpecificInfo", name="drivelint"), "Finding", **facts)
 
 
-def _issue(checker: etree._Element, rule: Row, level: str, text: str) -> etree._Element:
+def _add_issue(checker: etree._Element, rule: Row, level: str, text: str) -> etree._Element:
     uid = rule_uid(rule["rule_id"], rule["pack"])
-    return add(checker, "Issue", issueId="", description=text, level=level, ruleUID=uid)
+    return add_element(checker, "Issue", issueId="", description=text, level=level, ruleUID=uid)
 
 
 def _counts_text(verdict_counts: Mapping[str, int]) -> str:

@@ -20,7 +20,7 @@ def certainty(finding: Mapping[str, Any], least_share: float = LEAST_KEEPING_SHA
     return SURE if finding["n_stays"] >= least_share * finding["n_copies"] else POSSIBLE
 
 
-def doubt(row: Mapping[str, Any]) -> str:
+def doubt_words(row: Mapping[str, Any]) -> str:
     """Return in words that a finding is only possible, and in how many copies; '' for other findings and for verdicts."""
     if row.get("n_copies") is None or certainty(row) == SURE:
         return ""

@@ -25,25 +25,31 @@ ORDER_OF_VERDICTS: Final = (
 )
 ORDER_OF_FINDINGS: Final = f"{ORDER_OF_VERDICTS}, finding_id"
 
-_ONLY: Final = "coalesce(list_contains($only::VARCHAR[], drive_id), true)"  # NULL selects every drive
+_IS_CHOSEN_DRIVE: Final = "coalesce(list_contains($only::VARCHAR[], drive_id), true)"  # NULL selects every drive
 
 
-def verdicts(con: duckdb.DuckDBPyConnection, only: list[str] | None = None) -> pa.Table:
-    """Return the table `verdict`, totally ordered, for the drives `only`; None: for all drives."""
-    rows = con.execute(f"SELECT * FROM verdict WHERE {_ONLY} ORDER BY {ORDER_OF_VERDICTS}", {"only": only})
+def verdicts(con: duckdb.DuckDBPyConnection, drive_ids: list[str] | None = None) -> pa.Table:
+    """Return the table `verdict`, totally ordered, for the drives `drive_ids`; None: for all drives."""
+    rows = con.execute(
+        f"SELECT * FROM verdict WHERE {_IS_CHOSEN_DRIVE} ORDER BY {ORDER_OF_VERDICTS}", {"only": drive_ids}
+    )
     return conform(rows.to_arrow_table(), "verdict")
 
 
-def findings(con: duckdb.DuckDBPyConnection, only: list[str] | None = None) -> pa.Table:
-    """Return the table `finding`, totally ordered, for the drives `only`; None: for all drives."""
-    rows = con.execute(f"SELECT * FROM finding WHERE {_ONLY} ORDER BY {ORDER_OF_FINDINGS}", {"only": only})
+def findings(con: duckdb.DuckDBPyConnection, drive_ids: list[str] | None = None) -> pa.Table:
+    """Return the table `finding`, totally ordered, for the drives `drive_ids`; None: for all drives."""
+    rows = con.execute(
+        f"SELECT * FROM finding WHERE {_IS_CHOSEN_DRIVE} ORDER BY {ORDER_OF_FINDINGS}", {"only": drive_ids}
+    )
     return conform(rows.to_arrow_table(), "finding")
 
 
-def drives(con: duckdb.DuckDBPyConnection, only: list[str] | None = None) -> pa.Table:
-    """Return the table `drive`, ordered, with one row per drive in `only`; None: one row per drive in the database."""
+def drives(con: duckdb.DuckDBPyConnection, drive_ids: list[str] | None = None) -> pa.Table:
+    """Return the table `drive`, ordered, with one row per drive in `drive_ids`; None: one row per drive in the database."""
     make_reason_table(con, "SELECT NULL AS rule_no, reason AS cause, 0 AS start_ns FROM capability WHERE NOT available")
-    rows = con.execute(statement("evidence/drive"), {"only": only, "losses": LOSS_CHECKS, "aside_check": ASIDE_OF_LANE})
+    rows = con.execute(
+        statement("evidence/drive"), {"only": drive_ids, "losses": LOSS_CHECKS, "aside_check": ASIDE_OF_LANE}
+    )
     return conform(rows.to_arrow_table(), "drive")
 
 

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from jinja2.bccache import Bucket
 
 # compiled templates contain values from these files, so a change of the files must invalidate the cache
-_COMPILED: Final = Memo[bytes](
+_TEMPLATE_MEMO: Final = Memo[bytes](
     "templates", bytes, ("*.py", "report/html/*.py", "result/*.py", "incident/*.py", "fleet_report/*.py")
 )
 
@@ -26,12 +26,12 @@ class CompiledTemplates(BytecodeCache):
 
     def load_bytecode(self, bucket: Bucket) -> None:
         """Fill a bucket with the stored code."""
-        if (known := _COMPILED.get(self._name(bucket))) is not None:
+        if (known := _TEMPLATE_MEMO.get(self._memo_key(bucket))) is not None:
             bucket.bytecode_from_string(known)
 
     def dump_bytecode(self, bucket: Bucket) -> None:
         """Store the compiled code."""
-        _COMPILED.put(self._name(bucket), bucket.bytecode_to_string())
+        _TEMPLATE_MEMO.put(self._memo_key(bucket), bucket.bytecode_to_string())
 
-    def _name(self, bucket: Bucket) -> str:
+    def _memo_key(self, bucket: Bucket) -> str:
         return f"{self._kind} {bucket.key} {bucket.checksum}"

@@ -21,7 +21,7 @@ _Row = TypeVar("_Row")
 _Key = TypeVar("_Key")
 
 
-def total(verdicts: pa.Table) -> dict[str, int]:
+def verdict_counts(verdicts: pa.Table) -> dict[str, int]:
     """Return verdict -> number of rows, zeros included."""
     return tally(verdicts, VERDICTS, "verdict")
 
@@ -37,7 +37,7 @@ def count_assuming(verdicts: pa.Table, assumption: str) -> int:
     return tally(verdicts, (assumption,), "assumes")[assumption]
 
 
-def verdicts_by(verdicts: pa.Table, key: str) -> dict[str, dict[str, int]]:
+def verdict_counts_by(verdicts: pa.Table, key: str) -> dict[str, dict[str, int]]:
     """Return value of the column `key` -> verdict -> number of rows, zeros included; values without rows give zeros."""
     counted: dict[str, dict[str, int]] = defaultdict(lambda: dict.fromkeys(VERDICTS, 0))
     for row in distinct_rows(verdicts, [key, "verdict"]):
@@ -45,9 +45,9 @@ def verdicts_by(verdicts: pa.Table, key: str) -> dict[str, dict[str, int]]:
     return counted
 
 
-def verdicts_by_pack(rules: pa.Table, verdicts: pa.Table) -> dict[str, dict[str, int]]:
+def verdict_counts_by_pack(rules: pa.Table, verdicts: pa.Table) -> dict[str, dict[str, int]]:
     """Return pack -> verdict -> number of rows, zeros included, with the packs in the order of `rules`."""
-    told = verdicts_by(verdicts, "rule_id")
+    told = verdict_counts_by(verdicts, "rule_id")
     found: dict[str, dict[str, int]] = {}
     for rule in rules.select(["rule_id", "pack"]).to_pylist():
         sums = found.setdefault(rule["pack"], dict.fromkeys(VERDICTS, 0))
@@ -62,17 +62,17 @@ def distinct_rows(rows: pa.Table, columns: Sequence[str]) -> list[dict[str, Any]
     return list(counted.to_pylist())
 
 
-def undecided(verdicts: pa.Table) -> pa.Table:
+def undecided_verdicts(verdicts: pa.Table) -> pa.Table:
     """Return the verdicts that are unknown or errors."""
     return verdicts.filter(pc.is_in(verdicts["verdict"], value_set=pa.array(["unknown", "error"])))
 
 
-def unrecorded(verdicts: pa.Table) -> pa.Table:
+def verdicts_lacking_signal(verdicts: pa.Table) -> pa.Table:
     """Return the verdicts that are not applicable because the log lacks a signal: the rule's situation may still have occurred."""
     return verdicts.filter(pc.starts_with(verdicts["reason_code"], UNRECORDED_PREFIX))
 
 
-def one_per_event(findings: Iterable[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+def one_finding_per_event(findings: Iterable[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
     """Return one finding per event, in the order of the rows. Numbers of findings in reports count these.
 
     Findings of one rule at the same time are one event in two cases: they have the same ego and object under several profiles, or each
@@ -82,12 +82,14 @@ def one_per_event(findings: Iterable[Mapping[str, Any]]) -> list[Mapping[str, An
     """
     rows = list(findings)
     return [
-        row for place, (row, counted) in enumerate(zip(rows, counted_places(rows), strict=True)) if place == counted
+        row
+        for place, (row, counted) in enumerate(zip(rows, representative_indices(rows), strict=True))
+        if place == counted
     ]
 
 
-def counted_places(findings: Sequence[Mapping[str, Any]]) -> list[int]:
-    """Return for each finding the index of the finding that represents its event, see `one_per_event`."""
+def representative_indices(findings: Sequence[Mapping[str, Any]]) -> list[int]:
+    """Return for each finding the index of the finding that represents its event, see `one_finding_per_event`."""
     ordered = sorted(enumerate(findings), key=lambda item: (certainty(item[1]) == POSSIBLE, item[0]))
     seen: dict[tuple[str, str, frozenset[str | None]], list[int]] = defaultdict(list)
     places = list(range(len(findings)))
@@ -98,27 +100,29 @@ def counted_places(findings: Sequence[Mapping[str, Any]]) -> list[int]:
     return places
 
 
-def by_severity(findings: Iterable[Mapping[str, Any]]) -> str:
+def severity_counts_text(findings: Iterable[Mapping[str, Any]]) -> str:
     """Return the number of findings of each severity as text; '' without findings."""
     found = [row["severity"] for row in findings]
     return ", ".join(f"{found.count(severity)} {severity}" for severity in SEVERITIES if severity in found)
 
 
-def rows_of_findings(rows: Sequence[Mapping[str, Any]], events: Sequence[Mapping[str, Any]]) -> str:
+def extra_rows_sentence(rows: Sequence[Mapping[str, Any]], events: Sequence[Mapping[str, Any]]) -> str:
     """Return why a table has more rows (`rows`) than there are findings (`events`); '' if the numbers are equal."""
     told = {row["finding_id"] for row in events}
     left_out = [row for row in rows if row["finding_id"] not in told]
-    return rows_sentence(len(rows), len(events), is_of_profiles=any(row["profile"] is not None for row in left_out))
+    return rows_and_findings_sentence(
+        len(rows), len(events), has_profile_repeats=any(row["profile"] is not None for row in left_out)
+    )
 
 
-def rows_sentence(n_rows: int, n_findings: int, *, is_of_profiles: bool) -> str:
+def rows_and_findings_sentence(n_rows: int, n_findings: int, *, has_profile_repeats: bool) -> str:
     """Return how many findings the rows represent, and why; '' if each row is a finding.
 
-    `is_of_profiles`: some rows repeat a finding under another profile; else every repeated row is a touch of two egos.
+    `has_profile_repeats`: some rows repeat a finding under another profile; else every repeated row is a touch of two egos.
     """
     if n_rows == n_findings:
         return ""
-    what = "an overtake under two profiles" if is_of_profiles else "a touch of two egos"
+    what = "an overtake under two profiles" if has_profile_repeats else "a touch of two egos"
     rows, found = plural(n_rows, "row"), plural(n_findings, "finding")
     return f"{rows}, {found}: {what} counts once"
 

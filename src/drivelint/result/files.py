@@ -16,22 +16,22 @@ if TYPE_CHECKING:
 
     import pyarrow as pa
 
-ROW_GROUP: Final = 1 << 17
+ROW_GROUP_SIZE: Final = 1 << 17
 
 
 def parquet_bytes(rows: pa.Table, table: str) -> bytes:
     """Return an output table as Parquet, with the columns of `schemas/`; chunks and metadata of `rows` do not change the bytes."""
     about = {"drivelint.table": table, "drivelint.output_schema": str(OUTPUT_VERSION)}
-    return described_parquet(conform(rows, table), table, about)
+    return parquet_bytes_with_metadata(conform(rows, table), table, about)
 
 
-def described_parquet(rows: pa.Table, table: str, about: Mapping[str, str]) -> bytes:
-    """Return a table of `schemas/` as Parquet with the metadata `about`: the same bytes for the same rows.
+def parquet_bytes_with_metadata(rows: pa.Table, table: str, metadata: Mapping[str, str]) -> bytes:
+    """Return a table of `schemas/` as Parquet with the metadata `metadata`: the same bytes for the same rows.
 
     Every column has its comment from `schemas/` as Arrow field metadata (`comment`). Tables with a geometry are GeoParquet.
     """
     comments = column_comments()[table]
-    described = rows.schema.with_metadata(about)
+    described = rows.schema.with_metadata(metadata)
     for i, field in enumerate(rows.schema):
         described = described.set(i, field.with_metadata({"comment": comments[field.name]}))
     sink = io.BytesIO()
@@ -45,7 +45,7 @@ def described_parquet(rows: pa.Table, table: str, about: Mapping[str, str]) -> b
         use_dictionary=True,
         write_statistics=True,
         write_page_checksum=True,
-        row_group_size=ROW_GROUP,
+        row_group_size=ROW_GROUP_SIZE,
         store_schema=True,
     )
     return sink.getvalue()

@@ -24,78 +24,82 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
     from pathlib import Path
 
-_HASHES: Final = "sha256"
-_WORK: Final = ".drivelint.work"
-EARLIER: Final = "earlier"
+_HASHES_KEY: Final = "sha256"
+_WORK_FOLDER_PREFIX: Final = ".drivelint.work"
+EARLIER_FOLDER: Final = "earlier"
 """The subfolder for an earlier result after a run that ended without a result. The next result replaces the earlier one."""
 
 
 @contextmanager
 def working_folder(
-    out: Path, patterns: Sequence[str], reports: Sequence[str], mark: str, *, overwrite: bool = False
+    out: Path, patterns: Sequence[str], report_names: Sequence[str], mark_file: str, *, overwrite: bool = False
 ) -> Iterator[Path]:
     """Create the folder `out` and yield an empty subfolder for the files of a run; the subfolder is removed at the end.
 
-    `patterns`: globs of the file names of a result; `reports`: names of the reports, which can be made again from the tables and which a
-    build server shows; `mark`: as in `replace`. Errors: `UsageError` if `out` is a file, or, without `overwrite`, has files that match
-    `patterns` but were not written by drivelint; `OutputError`.
+    `patterns`: globs of the file names of a result; `report_names`: names of the reports, which can be made again from the tables and
+    which a build server shows; `mark_file`: as in `replace_result`. Errors: `UsageError` if `out` is a file, or, without `overwrite`, has
+    files that match `patterns` but were not written by drivelint; `OutputError`.
     """
     prepare_folder(out)
-    present = _present(out, patterns)
+    present = _matching_files(out, patterns)
     foreign = sorted(present - written_files(out) - {MANIFEST})
     if foreign and not overwrite:
         raise UsageError(
             f"--out {out}: has {listed(foreign, 3)}, which drivelint did not write there ({MANIFEST} does not list it): "
             "choose another folder, or replace it with --overwrite"
         )
-    with _locked(out) as is_ours:
-        for left in out.glob(f"{_WORK}.*") if is_ours else ():
+    with _lock_folder(out) as is_ours:
+        for left in out.glob(f"{_WORK_FOLDER_PREFIX}.*") if is_ours else ():
             shutil.rmtree(left, ignore_errors=True)  # left by a killed run
-        work, before, is_done = out / f"{_WORK}.{os.getpid()}", _identity(out / mark), False
+        work, before, is_done = (
+            out / f"{_WORK_FOLDER_PREFIX}.{os.getpid()}",
+            _inode_and_mtime_ns(out / mark_file),
+            False,
+        )
         try:
             work.mkdir()
-            _remove(out, sorted(_result_files(out, patterns, overwrite=overwrite).intersection(reports)))
+            _remove_files(out, sorted(_result_files(out, patterns, overwrite=overwrite).intersection(report_names)))
             yield work
             is_done = True
         finally:
             shutil.rmtree(work, ignore_errors=True)
-            if not is_done and before is not None and _identity(out / mark) == before:
-                _set_aside(out, patterns, mark, overwrite=overwrite)
+            if not is_done and before is not None and _inode_and_mtime_ns(out / mark_file) == before:
+                _move_to_earlier_folder(out, patterns, mark_file, overwrite=overwrite)
 
 
-def _set_aside(out: Path, patterns: Sequence[str], mark: str, *, overwrite: bool) -> None:
-    """Move an earlier result into the subfolder `EARLIER`. The mark moves first: without it, `out` has no result."""
-    earlier = out / EARLIER
+def _move_to_earlier_folder(out: Path, patterns: Sequence[str], mark_file: str, *, overwrite: bool) -> None:
+    """Move an earlier result into the subfolder `EARLIER_FOLDER`. The mark moves first: without it, `out` has no result."""
+    earlier = out / EARLIER_FOLDER
     with suppress(OutputError):  # files that remain are replaced below; this error must not hide why the run ended
-        _remove(earlier, sorted(_result_files(earlier, patterns, overwrite=False)))
+        _remove_files(earlier, sorted(_result_files(earlier, patterns, overwrite=False)))
     names = _result_files(out, patterns, overwrite=overwrite)
     try:
-        for name in (mark, *sorted(names - {mark}), MANIFEST):
+        for name in (mark_file, *sorted(names - {mark_file}), MANIFEST):
             if (out / name).exists():
                 (earlier / name).parent.mkdir(parents=True, exist_ok=True)
                 (out / name).replace(earlier / name)
     except OSError:
-        _remove(out, [mark])  # without the mark, the files that cannot be moved are no result
-    _remove_empty(out, names)
+        _remove_files(out, [mark_file])  # without the mark, the files that cannot be moved are no result
+    _remove_empty_subfolders(out, names)
 
 
-def _remove(out: Path, names: Sequence[str]) -> None:
+def _remove_files(out: Path, names: Sequence[str]) -> None:
     """Remove these files of a folder, and the subfolders that are empty afterwards. Errors: `OutputError`."""
     try:
         for name in names:
             (out / name).unlink(missing_ok=True)
     except OSError as error:
         raise OutputError(f"{out}: an earlier result cannot be removed: {error.strerror or error}") from error
-    _remove_empty(out, names)
+    _remove_empty_subfolders(out, names)
 
 
-def _remove_empty(out: Path, names: Iterable[str]) -> None:
+def _remove_empty_subfolders(out: Path, names: Iterable[str]) -> None:
     for folder in {(out / name).parent for name in names} - {out}:
         with suppress(OSError):  # another program's file is there
             folder.rmdir()
 
 
-def _identity(path: Path) -> tuple[int, int] | None:
+def _inode_and_mtime_ns(path: Path) -> tuple[int, int] | None:
     """Return inode and modification time, which distinguish a file from its replacement; None without a file."""
     try:
         said = path.stat()
@@ -105,7 +109,7 @@ def _identity(path: Path) -> tuple[int, int] | None:
 
 
 @contextmanager
-def _locked(out: Path) -> Iterator[bool]:
+def _lock_folder(out: Path) -> Iterator[bool]:
     """Lock a folder for this process; yield whether the lock was obtained: not every file system has locks.
 
     The operating system releases a lock when the process ends. A file with a process id is no substitute: every container has a process 1.
@@ -133,16 +137,16 @@ def _locked(out: Path) -> Iterator[bool]:
         os.close(place)
 
 
-def replace(
+def replace_result(
     out: Path,
     contents: dict[str, bytes],
     finished_files: dict[str, Path],
-    mark: str,
+    mark_file: str,
     patterns: Sequence[str],
     *,
     overwrite: bool,
 ) -> None:
-    """Replace the result in `out` by these files. The file `mark` appears last: without it, `out` has no result.
+    """Replace the result in `out` by these files. The file `mark_file` appears last: without it, `out` has no result.
 
     Other files that drivelint wrote there earlier are removed; with `overwrite`, every other file that matches `patterns`.
     Errors: `OutputError`.
@@ -150,14 +154,14 @@ def replace(
     names = {*contents, *finished_files}
     before = _result_files(out, patterns, overwrite=overwrite)
     # if the machine fails halfway, the list has both the old and the new files for the next run
-    publish(out, {MANIFEST: manifest(before | names)}, {})
+    publish(out, {MANIFEST: manifest_bytes(before | names)}, {})
     unused_files: dict[str, Path | None] = dict.fromkeys(sorted(before - names))
-    hashed = {name: data for name, data in contents.items() if name == mark or name.endswith(".parquet")}
+    hashed = {name: data for name, data in contents.items() if name == mark_file or name.endswith(".parquet")}
     hashes = {name: sha256(data).hexdigest() for name, data in sorted(hashed.items())}
-    publish(out, {MANIFEST: manifest(names, hashes), **contents}, {**unused_files, **finished_files}, mark)
-    _remove_empty(out, unused_files)
-    earlier = out / EARLIER
-    _remove(
+    publish(out, {MANIFEST: manifest_bytes(names, hashes), **contents}, {**unused_files, **finished_files}, mark_file)
+    _remove_empty_subfolders(out, unused_files)
+    earlier = out / EARLIER_FOLDER
+    _remove_files(
         earlier,
         [*sorted(_result_files(earlier, patterns, overwrite=False)), *([MANIFEST] if written_files(earlier) else [])],
     )
@@ -165,23 +169,23 @@ def replace(
         earlier.rmdir()
 
 
-def add(out: Path, name: str, content: bytes) -> None:
+def add_file(out: Path, name: str, content: bytes) -> None:
     """Write one more file into the folder of a result. Errors: `OutputError`."""
-    publish(out, {MANIFEST: manifest({*written_files(out), name}, _hashes(out)), name: content}, {})
+    publish(out, {MANIFEST: manifest_bytes({*written_files(out), name}, _stored_hashes(out)), name: content}, {})
 
 
 def changed_files(out: Path) -> list[str]:
     """Return the names of the tables and the summary that were changed after drivelint wrote them; empty without stored hashes."""
-    return [name for name, said in _hashes(out).items() if _sha256(out / name) != said]
+    return [name for name, said in _stored_hashes(out).items() if _sha256(out / name) != said]
 
 
-def left_by_killed_run(out: Path) -> Path | None:
+def folder_of_killed_run(out: Path) -> Path | None:
     """Return the working folder that a killed run left, so that the result in `out` is of an earlier run; else None."""
-    left = sorted(out.glob(f"{_WORK}.*"))
+    left = sorted(out.glob(f"{_WORK_FOLDER_PREFIX}.*"))
     if not left:
         return None
     try:
-        with _locked(out) as is_ours:
+        with _lock_folder(out) as is_ours:
             return left[0] if is_ours else None
     except UsageError:
         return None
@@ -196,17 +200,17 @@ def _sha256(path: Path) -> str | None:
         return None
 
 
-def _present(out: Path, patterns: Sequence[str]) -> set[str]:
+def _matching_files(out: Path, patterns: Sequence[str]) -> set[str]:
     return {path.relative_to(out).as_posix() for pattern in patterns for path in out.glob(pattern)}
 
 
 def _result_files(out: Path, patterns: Sequence[str], *, overwrite: bool) -> set[str]:
     """Return the files of an earlier result, except `files.json`: the listed files, or with `overwrite` all that match `patterns`."""
-    present = _present(out, patterns) - {MANIFEST}
+    present = _matching_files(out, patterns) - {MANIFEST}
     return present if overwrite else present & written_files(out)
 
 
-def _hashes(out: Path) -> dict[str, str]:
+def _stored_hashes(out: Path) -> dict[str, str]:
     try:
         return hashes_in((out / MANIFEST).read_bytes())
     except OSError:
@@ -216,12 +220,12 @@ def _hashes(out: Path) -> dict[str, str]:
 def hashes_in(content: bytes) -> dict[str, str]:
     """Return name -> sha256 from the content of `files.json`; empty for a damaged file or one of an older version."""
     try:
-        return {str(name): str(said) for name, said in json.loads(content)[_HASHES].items()}
+        return {str(name): str(said) for name, said in json.loads(content)[_HASHES_KEY].items()}
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
         return {}
 
 
-def manifest(names: set[str], hashes: Mapping[str, str] | None = None) -> bytes:
+def manifest_bytes(names: set[str], hashes: Mapping[str, str] | None = None) -> bytes:
     """Return the content of `files.json` for the files of these names."""
-    said = {MANIFEST_KEY: sorted(names), **({_HASHES: hashes} if hashes else {})}
+    said = {MANIFEST_KEY: sorted(names), **({_HASHES_KEY: hashes} if hashes else {})}
     return (json.dumps(said, indent=2, ensure_ascii=False) + "\n").encode()

@@ -24,7 +24,7 @@ DIFF_STATUSES: Final = ("new", "changed", "unchanged", "fixed", "elsewhere", "un
 
 Findings of NEW are new, changed or unchanged. Findings that only BASE has are one of these: fixed (NEW finds the rule kept or not
 applicable); elsewhere (in NEW the rule fails at another step or place); unknown (NEW cannot decide); lost (NEW did not judge there)."""
-NOT_FIXED: Final = {"unknown": "unknown now", "lost": "not judged now", "elsewhere": "still failing elsewhere"}
+NOT_FIXED_WORDS: Final = {"unknown": "unknown now", "lost": "not judged now", "elsewhere": "still failing elsewhere"}
 """Status of a finding that only BASE has and that is not fixed -> words."""
 GATE_VERSION: Final = 1
 """Version of the file: raised when a key changes its meaning or is removed."""
@@ -60,7 +60,7 @@ class ComparedFinding:
     """Id of the finding that represents this one's event in its result; '': this finding itself."""
 
     @property
-    def counted_id(self) -> str:
+    def event_id(self) -> str:
         """The id of the finding that represents this one's event."""
         return self.event or self.finding_id
 
@@ -81,7 +81,7 @@ class NewUnknowns:
 
 def n_findings(entries: Iterable[ComparedFinding]) -> int:
     """Return the number of findings, counting one per event."""
-    return len({entry.counted_id for entry in entries})
+    return len({entry.event_id for entry in entries})
 
 
 class Difference(msgspec.Struct, frozen=True):
@@ -118,8 +118,8 @@ class Difference(msgspec.Struct, frozen=True):
 
     def event_counts(self) -> dict[str, int]:
         """Return diff status -> number of findings, one per event; an event with a changed and an unchanged finding is changed."""
-        changed = {entry.counted_id for entry in self.with_diff_status("changed")}
-        as_before = [entry for entry in self.with_diff_status("unchanged") if entry.counted_id not in changed]
+        changed = {entry.event_id for entry in self.with_diff_status("changed")}
+        as_before = [entry for entry in self.with_diff_status("unchanged") if entry.event_id not in changed]
         found = {status: n_findings(self.with_diff_status(status)) for status in DIFF_STATUSES}
         return found | {"unchanged": n_findings(as_before)}
 
@@ -127,9 +127,9 @@ class Difference(msgspec.Struct, frozen=True):
         """Return the findings with this status."""
         return [entry for entry in self.entries if entry.standing == status]
 
-    def not_fixed(self) -> list[ComparedFinding]:
+    def unfixed_findings(self) -> list[ComparedFinding]:
         """Return the findings that only BASE has and that are not fixed."""
-        return [entry for status in NOT_FIXED for entry in self.with_diff_status(status)]
+        return [entry for status in NOT_FIXED_WORDS for entry in self.with_diff_status(status)]
 
 
 @dataclass(frozen=True)
@@ -174,34 +174,34 @@ class Gate:
     possible: tuple[str, ...] = ()
 
     @cached_property
-    def _standing(self) -> dict[str, ComparedFinding]:
+    def _compared_by_id(self) -> dict[str, ComparedFinding]:
         entries = self.baseline.entries if self.baseline else ()
         # if several entries have the same id, the first one wins
         return {e.finding_id: e for e in reversed(entries) if e.standing in {"new", "changed", "unchanged"}}
 
-    def compared(self, finding_id: str) -> ComparedFinding | None:
+    def compared_finding(self, finding_id: str) -> ComparedFinding | None:
         """Return the finding as compared with the baseline; None without a baseline."""
-        return self._standing.get(finding_id)
+        return self._compared_by_id.get(finding_id)
 
     def waiver(self, finding_id: str) -> Waiver | None:
         """Return the waiver of a finding; None if it is not waived."""
         number = self.waived.get(finding_id)
         return None if number is None else self.waivers[number]
 
-    def in_baseline(self, finding_id: str) -> bool:
+    def is_in_baseline(self, finding_id: str) -> bool:
         """Return whether the baseline had this finding."""
-        entry = self.compared(finding_id)
+        entry = self.compared_finding(finding_id)
         return entry is not None and entry.standing != "new"
 
     def is_gating(self, finding_id: str) -> bool:
         """Return whether a finding may fail a run: it is not waived, not in the baseline, and not only possible."""
-        return self.standing(finding_id) in {"new", "open"}
+        return self.status_at_gate(finding_id) in {"new", "open"}
 
-    def standing(self, finding_id: str) -> str:
+    def status_at_gate(self, finding_id: str) -> str:
         """Return the status of a finding at the gate: waived, known (in the baseline), possible; else new, or open without a baseline."""
         if finding_id in self.waived:
             return "waived"
-        if self.in_baseline(finding_id):
+        if self.is_in_baseline(finding_id):
             return "known"
         if self.is_possible(finding_id):
             return "possible"
@@ -209,29 +209,29 @@ class Gate:
 
     def is_possible(self, finding_id: str) -> bool:
         """Return whether the share of copies that keep a finding is below the requested confidence."""
-        return finding_id in self._possible
+        return finding_id in self._possible_ids
 
     @cached_property
-    def _possible(self) -> frozenset[str]:
+    def _possible_ids(self) -> frozenset[str]:
         return frozenset(self.possible)
 
 
 @dataclass(frozen=True)
-class _File:
+class _GateFile:
     gate_schema: int
     gate: Gate
 
 
 def render(gate: Gate) -> bytes:
     """Return a gate as UTF-8 JSON with a final newline; NaN and infinity become null."""
-    return msgspec.json.format(msgspec.json.encode(_File(GATE_VERSION, gate)), indent=2) + b"\n"
+    return msgspec.json.format(msgspec.json.encode(_GateFile(GATE_VERSION, gate)), indent=2) + b"\n"
 
 
 def load(folder: Path) -> Gate | None:
     """Return the gate of a result folder; None if it has no gate. Errors: `UsageError` for an unreadable `gate.json`."""
     path = folder / GATE_FILE
     try:
-        found = msgspec.json.decode(path.read_bytes(), type=_File)
+        found = msgspec.json.decode(path.read_bytes(), type=_GateFile)
     except FileNotFoundError:
         return None
     except (OSError, msgspec.MsgspecError, UnicodeDecodeError) as error:

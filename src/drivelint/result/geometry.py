@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 
     Geometries = NDArray[np.object_]
 
-COLUMN: Final = "geom"
-EARTH_COLUMN: Final = "geom_lonlat"
-_RING_POINTS: Final = 4  # the least number: a triangle with its first point repeated
+MAP_GEOMETRY_COLUMN: Final = "geom"
+EARTH_GEOMETRY_COLUMN: Final = "geom_lonlat"
+_LEAST_RING_POINTS: Final = 4  # the least number: a triangle with its first point repeated
 
 
-class Shape(NamedTuple):
+class GeometryColumn(NamedTuple):
     """A geometry column of a table: its type in GeoParquet, its meaning, and the function that makes it from the rows.
 
     The function returns None for rows without a geometry.
@@ -43,7 +43,7 @@ def with_geometry(rows: pa.Table, table: str) -> pa.Table:
 
     Tables without geometries are returned unchanged.
     """
-    if not (shapes := SHAPES.get(table)):
+    if not (shapes := GEOMETRIES_OF_TABLE.get(table)):
         return rows
     about: dict[str, dict[str, Any]] = {}
     metadata = rows.schema.metadata or {}
@@ -52,7 +52,7 @@ def with_geometry(rows: pa.Table, table: str) -> pa.Table:
         field = pa.field(column, pa.binary(), metadata={"comment": f"{shape.kind}: {shape.comment}"})
         rows = rows.append_column(field, pa.array(wkb, pa.binary(), from_pandas=True))
         # no key "crs" means longitude and latitude; null means that the reference system is unknown
-        frame = {} if column == EARTH_COLUMN else {"crs": None}
+        frame = {} if column == EARTH_GEOMETRY_COLUMN else {"crs": None}
         about[column] = {"encoding": "WKB", "geometry_types": [shape.kind], **frame}
     geo = {"version": "1.1.0", "primary_column": next(iter(shapes)), "columns": about}
     return rows.replace_schema_metadata({**metadata, b"geo": json.dumps(geo, sort_keys=True).encode()})
@@ -60,18 +60,20 @@ def with_geometry(rows: pa.Table, table: str) -> pa.Table:
 
 def without_geometry(rows: pa.Table) -> pa.Table:
     """Return the rows without the columns that `with_geometry` added."""
-    return rows.drop_columns([name for name in (COLUMN, EARTH_COLUMN) if name in rows.column_names])
+    return rows.drop_columns(
+        [name for name in (MAP_GEOMETRY_COLUMN, EARTH_GEOMETRY_COLUMN) if name in rows.column_names]
+    )
 
 
-def _places(rows: pa.Table) -> Geometries:
-    return _points(rows, "x_m", "y_m")
+def _points_on_map(rows: pa.Table) -> Geometries:
+    return _points_from_columns(rows, "x_m", "y_m")
 
 
-def _places_on_earth(rows: pa.Table) -> Geometries:
-    return _points(rows, "lon", "lat")
+def _points_on_earth(rows: pa.Table) -> Geometries:
+    return _points_from_columns(rows, "lon", "lat")
 
 
-def _points(rows: pa.Table, x: str, y: str) -> Geometries:
+def _points_from_columns(rows: pa.Table, x: str, y: str) -> Geometries:
     xy = np.column_stack([floats(rows[x]), floats(rows[y])])
     points = np.full(len(xy), None, object)
     known = np.isfinite(xy).all(axis=1)
@@ -79,17 +81,17 @@ def _points(rows: pa.Table, x: str, y: str) -> Geometries:
     return points
 
 
-def _rings(rows: pa.Table) -> Geometries:
-    return _polygons(*_coordinates(rows, ""))
+def _danger_space_polygons(rows: pa.Table) -> Geometries:
+    return _polygons(*_points_and_offsets(rows, ""))
 
 
-def _lanes(rows: pa.Table) -> Geometries:
+def _lane_polygons(rows: pa.Table) -> Geometries:
     """Return the area between the bounds as a closed ring: along the left bound, then back along the right bound."""
-    left, left_offsets = _coordinates(rows, "left_")
-    right, right_offsets = _coordinates(rows, "right_")
+    left, left_offsets = _points_and_offsets(rows, "left_")
+    right, right_offsets = _points_and_offsets(rows, "right_")
     begins = np.flatnonzero(np.diff(left_offsets))
     begin = left[left_offsets[begins]]
-    row = np.concatenate([_row_of(left_offsets), _row_of(right_offsets), begins])
+    row = np.concatenate([_row_of_points(left_offsets), _row_of_points(right_offsets), begins])
     place = np.concatenate(
         [np.arange(len(left)), -np.arange(len(right)) + len(left) + len(right), np.full(len(begin), np.inf)]
     )
@@ -98,12 +100,12 @@ def _lanes(rows: pa.Table) -> Geometries:
     return _polygons(np.concatenate([left, right, begin])[order], offsets)
 
 
-def _boxes(rows: pa.Table) -> Geometries:
+def _actor_box_areas(rows: pa.Table) -> Geometries:
     """Return the areas of the boxes of each scene's actors in plan view; actors of unknown size are omitted."""
     actors = rows["actors"].combine_chunks()
     if isinstance(actors, pa.ChunkedArray):  # no rows
         return np.empty(0, object)
-    row = _row_of(np.asarray(actors.offsets) - actors.offsets[0].as_py())
+    row = _row_of_points(np.asarray(actors.offsets) - actors.offsets[0].as_py())
     x, y, yaw, length, width = (
         floats(actors.flatten().field(name)) for name in ("x_m", "y_m", "yaw_rad", "length_m", "width_m")
     )
@@ -112,7 +114,7 @@ def _boxes(rows: pa.Table) -> Geometries:
     corners = np.stack([x[:, None] + along * cos - across * sin, y[:, None] + along * sin + across * cos], axis=-1)
     known = np.isfinite(corners).all(axis=(1, 2))
     boxes = shapely.polygons(corners[known])
-    covered = _by_row(shapely.multipolygons, boxes, row[known], rows.num_rows)
+    covered = _geometries_by_row(shapely.multipolygons, boxes, row[known], rows.num_rows)
     overlapping = ~shapely.is_valid(covered) & ~shapely.is_missing(covered)  # two actors are in contact
     covered[overlapping] = shapely.buffer(covered[overlapping], 0)
     one = shapely.get_type_id(covered) == shapely.GeometryType.POLYGON
@@ -120,19 +122,23 @@ def _boxes(rows: pa.Table) -> Geometries:
     return covered
 
 
-def _tracks(rows: pa.Table) -> Geometries:
+def _track_lines(rows: pa.Table) -> Geometries:
     """Return one line per row through its known positions; a single position gives a line of zero length."""
-    xy, row = _known_places(rows)
+    xy, row = _known_points(rows)
     single = np.bincount(row, minlength=rows.num_rows)[row] == 1
-    return _by_row(shapely.linestrings, np.repeat(xy, 1 + single, axis=0), np.repeat(row, 1 + single), rows.num_rows)
+    return _geometries_by_row(
+        shapely.linestrings, np.repeat(xy, 1 + single, axis=0), np.repeat(row, 1 + single), rows.num_rows
+    )
 
 
-def _moments(rows: pa.Table) -> Geometries:
-    xy, row = _known_places(rows)
-    return _by_row(shapely.multipoints, shapely.points(xy), row, rows.num_rows)
+def _judged_points(rows: pa.Table) -> Geometries:
+    xy, row = _known_points(rows)
+    return _geometries_by_row(shapely.multipoints, shapely.points(xy), row, rows.num_rows)
 
 
-def _by_row(make: Callable[..., Geometries], parts: NDArray[Any], row: NDArray[np.int64], n: int) -> Geometries:
+def _geometries_by_row(
+    make: Callable[..., Geometries], parts: NDArray[Any], row: NDArray[np.int64], n: int
+) -> Geometries:
     """Return the geometries (n) that `make` builds from the parts of each row; None for a row without parts.
 
     With no parts at all, shapely would return an empty array, even with `out`.
@@ -141,14 +147,14 @@ def _by_row(make: Callable[..., Geometries], parts: NDArray[Any], row: NDArray[n
     return np.asarray(make(parts, indices=row, out=made)) if len(parts) else made
 
 
-def _known_places(rows: pa.Table) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _known_points(rows: pa.Table) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Return the known positions, and the row of each position."""
-    xy, offsets = _coordinates(rows, "")
+    xy, offsets = _points_and_offsets(rows, "")
     known = np.isfinite(xy).all(axis=1)
-    return xy[known], _row_of(offsets)[known]
+    return xy[known], _row_of_points(offsets)[known]
 
 
-def _coordinates(rows: pa.Table, prefix: str) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _points_and_offsets(rows: pa.Table, prefix: str) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Return the points of all rows' lists of coordinates, and the offsets at which the points of each row begin."""
     columns = [rows[f"{prefix}{axis}_m"] for axis in "xy"]
     lengths = np.asarray(pa.compute.list_value_length(columns[0]).fill_null(0), np.int64)
@@ -158,9 +164,9 @@ def _coordinates(rows: pa.Table, prefix: str) -> tuple[NDArray[np.float64], NDAr
 
 def _polygons(xy: NDArray[np.float64], offsets: NDArray[np.int64]) -> Geometries:
     """Return a polygon for each ring; None for a ring with too few or unknown points."""
-    n_points, row = np.diff(offsets), _row_of(offsets)
+    n_points, row = np.diff(offsets), _row_of_points(offsets)
     n_unknown = np.bincount(row[~np.isfinite(xy).all(axis=1)], minlength=len(n_points))
-    whole = (n_points >= _RING_POINTS) & (n_unknown == 0)
+    whole = (n_points >= _LEAST_RING_POINTS) & (n_unknown == 0)
     polygons = np.full(len(n_points), None, object)
     if whole.any():
         rings = np.concatenate([[0], np.cumsum(n_points[whole])]), np.arange(whole.sum() + 1)
@@ -168,20 +174,26 @@ def _polygons(xy: NDArray[np.float64], offsets: NDArray[np.int64]) -> Geometries
     return polygons
 
 
-def _row_of(offsets: NDArray[np.int64]) -> NDArray[np.int64]:
+def _row_of_points(offsets: NDArray[np.int64]) -> NDArray[np.int64]:
     return np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))
 
 
-SHAPES: Final[Mapping[str, Mapping[str, Shape]]] = {
+GEOMETRIES_OF_TABLE: Final[Mapping[str, Mapping[str, GeometryColumn]]] = {
     "finding": {
-        COLUMN: Shape("Point", "the ego at the worst step", _places),
-        EARTH_COLUMN: Shape("Point", "the same, in degrees of longitude and latitude (WGS 84)", _places_on_earth),
+        MAP_GEOMETRY_COLUMN: GeometryColumn("Point", "the ego at the worst step", _points_on_map),
+        EARTH_GEOMETRY_COLUMN: GeometryColumn(
+            "Point", "the same, in degrees of longitude and latitude (WGS 84)", _points_on_earth
+        ),
     },
-    "drive": {EARTH_COLUMN: Shape("Point", "lon and lat", _places_on_earth)},
-    "scene": {COLUMN: Shape("MultiPolygon", "the ground under the boxes of the actors at the moment", _boxes)},
-    "lane_shape": {COLUMN: Shape("Polygon", "the lane between its bounds", _lanes)},
-    "danger_space": {COLUMN: Shape("Polygon", "the danger space", _rings)},
-    "track": {COLUMN: Shape("LineString", "the way", _tracks)},
-    "course": {COLUMN: Shape("MultiPoint", "the ego at the judged steps", _moments)},
+    "drive": {EARTH_GEOMETRY_COLUMN: GeometryColumn("Point", "lon and lat", _points_on_earth)},
+    "scene": {
+        MAP_GEOMETRY_COLUMN: GeometryColumn(
+            "MultiPolygon", "the ground under the boxes of the actors at the moment", _actor_box_areas
+        )
+    },
+    "lane_shape": {MAP_GEOMETRY_COLUMN: GeometryColumn("Polygon", "the lane between its bounds", _lane_polygons)},
+    "danger_space": {MAP_GEOMETRY_COLUMN: GeometryColumn("Polygon", "the danger space", _danger_space_polygons)},
+    "track": {MAP_GEOMETRY_COLUMN: GeometryColumn("LineString", "the way", _track_lines)},
+    "course": {MAP_GEOMETRY_COLUMN: GeometryColumn("MultiPoint", "the ego at the judged steps", _judged_points)},
 }
 """Table of the schema -> column in the file -> its geometry. Viewers show the first column."""

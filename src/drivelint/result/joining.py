@@ -15,17 +15,17 @@ if TYPE_CHECKING:
 
     from drivelint.result.model import Result
 
-_ORDER: Final = {
+_ORDER_OF_ROWS: Final = {
     "verdicts": collect.ORDER_OF_VERDICTS,
     "findings": collect.ORDER_OF_FINDINGS,
     "drives": "drive_id, file_name",
-    **evidence.ORDER,
+    **evidence.ORDER_OF_ROWS,
     "pictures": "drive_id, t_ns, camera_no, t_frame_ns",
 }
 """Table -> the order of its rows."""
 
 
-def join(results: Sequence[Result]) -> Result:
+def join_results(results: Sequence[Result]) -> Result:
     """Return one result from several results without common drives; settings and notes are from the first result.
 
     The lanes of a map that occurs in several results are included once.
@@ -33,7 +33,7 @@ def join(results: Sequence[Result]) -> Result:
     first = results[0]
     with store.connect(threads=1) as con:
         tables = {}
-        for name, order in _ORDER.items():
+        for name, order in _ORDER_OF_ROWS.items():
             con.register("_rows", pa.concat_tables([getattr(result, name) for result in results]))
             once = f"DISTINCT ON ({order})" if name == "lanes" else ""
             tables[name] = con.execute(f"SELECT {once} * FROM _rows ORDER BY {order}").to_arrow_table()

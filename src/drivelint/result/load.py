@@ -10,10 +10,10 @@ import pyarrow.parquet as pq
 
 from drivelint.errors import DriveLintError, UsageError
 from drivelint.result import gate as gates
-from drivelint.result.folder import changed_files, left_by_killed_run
+from drivelint.result.folder import changed_files, folder_of_killed_run
 from drivelint.result.geometry import without_geometry
 from drivelint.result.model import Result
-from drivelint.result.names import PICTURES, TABLE_OF_FILE
+from drivelint.result.names import TABLE_OF_FILE, TABLE_OF_PICTURE_FILE
 from drivelint.result.schemas import OUTPUT_VERSION
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ def load_result(folder: Path) -> Result:
     should have replaced.
     """
     summary = _summary(folder)
-    if left := left_by_killed_run(folder):
+    if left := folder_of_killed_run(folder):
         raise UsageError(
             f"{folder}: of an earlier run: the run that should replace it was killed: check the drives again, or remove {left} to read it"
         )
@@ -37,7 +37,7 @@ def load_result(folder: Path) -> Result:
             "check the drives again"
         )
     tables = {name: _table(folder / f"{name}.parquet") for name in TABLE_OF_FILE}
-    tables |= {name: _table(path) for name in PICTURES if (path := folder / f"{name}.parquet").exists()}
+    tables |= {name: _table(path) for name in TABLE_OF_PICTURE_FILE if (path := folder / f"{name}.parquet").exists()}
     gate = gates.load(folder)
     try:
         found = Result(
@@ -65,7 +65,7 @@ def _summary(folder: Path) -> dict[str, Any]:
         found = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError) as error:
         raise UsageError(
-            f"{folder}: no result of drivelint check: summary.json {_why(error)}: name the folder that check --out wrote"
+            f"{folder}: no result of drivelint check: summary.json {_file_problem_words(error)}: name the folder that check --out wrote"
         ) from error
     if isinstance(found, dict) and "digest" in found and (folder / "audit.json").is_file():
         raise UsageError(
@@ -84,8 +84,8 @@ def _table(path: Path) -> pa.Table:
         with path.open("rb") as file:  # opened by Python, since receipts record the files that Python opens
             return without_geometry(pq.read_table(file, page_checksum_verification=True))
     except (OSError, pa.ArrowException, UnicodeDecodeError) as error:
-        raise UsageError(f"{path}: {_why(error)}: check the drives again") from error
+        raise UsageError(f"{path}: {_file_problem_words(error)}: check the drives again") from error
 
 
-def _why(error: Exception) -> str:
+def _file_problem_words(error: Exception) -> str:
     return "is missing" if isinstance(error, FileNotFoundError) else "cannot be read"

@@ -13,9 +13,9 @@ from drivelint.drive.trace import EGO_ABSENT
 from drivelint.errors import ExitCode
 from drivelint.phrases import listed, plural
 from drivelint.reasons.signals import UNRECORDED_PREFIX, signal_name
-from drivelint.result.counts import SEVERITIES, group_rows, one_per_event, unrecorded
-from drivelint.result.gate import NOT_FIXED, n_findings
-from drivelint.result.names import PICTURES, TABLE_OF_FILE
+from drivelint.result.counts import SEVERITIES, group_rows, one_finding_per_event, verdicts_lacking_signal
+from drivelint.result.gate import NOT_FIXED_WORDS, n_findings
+from drivelint.result.names import TABLE_OF_FILE, TABLE_OF_PICTURE_FILE
 from drivelint.result.schemas import conform, empty_table
 
 if TYPE_CHECKING:
@@ -27,9 +27,11 @@ if TYPE_CHECKING:
     from drivelint.result.text import Row
 
 
-MISFITS: Final = frozenset({"ego_not_a_vehicle", "seldom_on_lane", "often_against_lane", "far_from_centre_line"})
+MAP_MISFIT_CODES: Final = frozenset(
+    {"ego_not_a_vehicle", "seldom_on_lane", "often_against_lane", "far_from_centre_line"}
+)
 """Reasons for a missing signal `registration` that mean that the map does not fit."""
-BEYOND_LIMITS: Final = ("rule_timeout", "out_of_memory")
+LIMIT_ERROR_CODES: Final = ("rule_timeout", "out_of_memory")
 """Reason codes of errors because a rule exceeded its time or memory. The rule's SQL is valid; another machine may run it."""
 
 
@@ -81,7 +83,7 @@ class Result:
     ended_early: str | None = None
 
     def __post_init__(self) -> None:
-        for name, table in {**TABLE_OF_FILE, **PICTURES}.items():
+        for name, table in {**TABLE_OF_FILE, **TABLE_OF_PICTURE_FILE}.items():
             object.__setattr__(self, name, conform(getattr(self, name), table))
 
     @property
@@ -90,7 +92,7 @@ class Result:
         return dict(zip(self.drives["drive_id"].to_pylist(), self.drives["t_start_ns"].to_pylist(), strict=True))
 
     @property
-    def lossy(self) -> bool:
+    def is_lossy(self) -> bool:
         """Whether parts of any judged log could not be read."""
         return bool(pc.any(pc.and_(self.drives["lossy"], pc.equal(self.drives["status"], "judged"))).as_py())
 
@@ -114,19 +116,19 @@ def exit_status(result: Result) -> ExitStatus:
 def _exit_statuses(result: Result) -> Iterator[ExitStatus]:
     """Yield the exit codes of the run with their reasons, by descending precedence."""
     if result.interrupted:
-        yield ExitStatus(ExitCode.INTERRUPTED, partial_sentence(result.drives))
+        yield ExitStatus(ExitCode.INTERRUPTED, interruption_sentence(result.drives))
     if (erring := _error_verdicts(result, beyond_limits=False)).num_rows:
-        yield ExitStatus(ExitCode.USAGE, f"{_error_phrase(erring)}: could not be run: {_rules_of(erring)}")
+        yield ExitStatus(ExitCode.USAGE, f"{_error_phrase(erring)}: could not be run: {_rule_ids_text(erring)}")
     if result.halted is not None:
         yield ExitStatus(ExitCode.FAILED, result.halted)
-    stopped, let_through = _stopped(result), _let_through(result)
+    stopped, let_through = _failure_words(result), _let_through_words(result)
     if stopped:
         yield ExitStatus(ExitCode.FAILED, f"{stopped} at or above severity {result.fail_on}{let_through}")
     yield from _not_judged_statuses(result)
     yield from _lossy_status(result)
     if result.fail_on == "never":
         yield ExitStatus(ExitCode.OK, "failures do not gate (--fail-on never)")
-    if nothing := _nothing_decided(result):
+    if nothing := _why_nothing_decided(result):
         yield ExitStatus(ExitCode.OK, f"{nothing}; no rule of the run is stable")
     new = "new " if result.gate is not None and result.gate.baseline is not None else ""
     yield ExitStatus(ExitCode.OK, f"nothing {new}failed at or above severity {result.fail_on}{let_through}")
@@ -139,25 +141,27 @@ def _not_judged_statuses(result: Result) -> Iterator[ExitStatus]:
             ExitCode.NOT_JUDGED, f"{lost} of {plural(result.drives.num_rows, 'drive')} could not be judged"
         )
     if (limited := _error_verdicts(result, beyond_limits=True)).num_rows:
-        yield ExitStatus(ExitCode.NOT_JUDGED, f"{_error_phrase(limited)}: exceeded its limits: {_rules_of(limited)}")
+        yield ExitStatus(
+            ExitCode.NOT_JUDGED, f"{_error_phrase(limited)}: exceeded its limits: {_rule_ids_text(limited)}"
+        )
     off_map = [reason for drive in result.drives.to_pylist() if (reason := off_map_reason(drive)) is not None]
     if off_map:
         drives = plural(result.drives.num_rows, "drive")
         yield ExitStatus(ExitCode.NOT_JUDGED, f"the map does not fit {len(off_map)} of {drives}: {off_map[0]}")
-    if gone := gating_gone(result):
+    if gone := gating_gone_findings(result):
         yield ExitStatus(ExitCode.NOT_JUDGED, _gone_findings_sentence(result, gone))
     if (unknown := gating_unknowns(result)).num_rows:
         yield ExitStatus(ExitCode.NOT_JUDGED, _unknown_verdicts_sentence(result, unknown))
     if result.ended_early is not None:
         yield ExitStatus(ExitCode.NOT_JUDGED, result.ended_early)
-    if too_little := too_little_decided(result):
+    if too_little := why_too_little_decided(result):
         yield ExitStatus(ExitCode.NOT_JUDGED, too_little)
 
 
 def _error_verdicts(result: Result, *, beyond_limits: bool) -> pa.Table:
     """Return the verdicts in error: with `beyond_limits` those due to too much time or memory, else all other errors."""
     rows = result.verdicts.filter(pc.equal(result.verdicts["verdict"], "error"))
-    limited = pc.is_in(rows["reason_code"], value_set=pa.array(BEYOND_LIMITS, pa.string()))
+    limited = pc.is_in(rows["reason_code"], value_set=pa.array(LIMIT_ERROR_CODES, pa.string()))
     return rows.filter(limited if beyond_limits else pc.invert(limited))
 
 
@@ -165,21 +169,21 @@ def _error_phrase(rows: pa.Table) -> str:
     return f"{plural(rows.num_rows, 'verdict')} in error"
 
 
-def _rules_of(rows: pa.Table) -> str:
+def _rule_ids_text(rows: pa.Table) -> str:
     return listed(sorted(rows["rule_id"].unique().to_pylist()))
 
 
 def _lossy_status(result: Result) -> Iterator[ExitStatus]:
     """Yield exit code 3 if parts of judged logs were lost."""
-    if result.lossy:
+    if result.is_lossy:
         judged = [drive for drive in result.drives.to_pylist() if drive["status"] == "judged"]
-        absent = [words for drive in judged for words in ego_absences(drive)]
+        absent = [words for drive in judged for words in ego_absence_texts(drive)]
         more = f" and {plural(len(absent) - 1, 'more ego')}" if absent[1:] else ""
         why = "; ".join(["judged on lossy input: parts of a log were lost", *absent[:1]])
         yield ExitStatus(ExitCode.LOSSY, f"{why}{more}")
 
 
-def partial_sentence(drives: pa.Table) -> str:
+def interruption_sentence(drives: pa.Table) -> str:
     """Return how many drives an interrupted run has judged, in words. `drives`: its table `drive`."""
     judged = int(pc.sum(pc.equal(drives["status"], "judged")).as_py() or 0)
     return f"partial: {judged} of {plural(drives.num_rows, 'drive')} judged, interrupted"
@@ -187,17 +191,17 @@ def partial_sentence(drives: pa.Table) -> str:
 
 def gating_findings(result: Result) -> pa.Table:
     """Return the findings that cause exit code 1: of stable rules, severe enough, and gating by `Gate.is_gating`."""
-    rows = _severe(result, result.findings)
+    rows = _severe_rows_of_stable_rules(result, result.findings)
     if (gate := result.gate) is None:
         return rows
     return rows.filter(pa.array([gate.is_gating(name) for name in rows["finding_id"].to_pylist()], pa.bool_()))
 
 
-def gating_gone(result: Result) -> list[ComparedFinding]:
+def gating_gone_findings(result: Result) -> list[ComparedFinding]:
     """Return the baseline's findings that cause exit code 4: of stable rules, severe enough, absent from the run but not fixed."""
     before = None if result.gate is None else result.gate.baseline
-    gone = [] if before is None else before.not_fixed()
-    return [entry for entry in gone if entry.stable and entry.severity in _severities(result)]
+    gone = [] if before is None else before.unfixed_findings()
+    return [entry for entry in gone if entry.stable and entry.severity in _gating_severities(result)]
 
 
 def failures_without_finding(result: Result) -> pa.Table:
@@ -216,7 +220,7 @@ def gating_unknowns(result: Result) -> pa.Table:
 
     They include verdicts that are not applicable because the log lacks a signal.
     """
-    rows = _of_stable_rules(result, result.verdicts)
+    rows = _rows_of_stable_rules(result, result.verdicts)
     rows = rows.filter(
         pc.or_(pc.equal(rows["verdict"], "unknown"), pc.starts_with(rows["reason_code"], UNRECORDED_PREFIX))
     )
@@ -224,14 +228,14 @@ def gating_unknowns(result: Result) -> pa.Table:
     return rows if result.strict else rows.filter(pc.is_in(rows["rule_id"], value_set=required))
 
 
-def gating_unrecorded(result: Result) -> pa.Table:
+def gating_verdicts_lacking_signal(result: Result) -> pa.Table:
     """Return the verdicts of `gating_unknowns` that are not applicable because the log lacks a signal."""
-    return unrecorded(gating_unknowns(result))
+    return verdicts_lacking_signal(gating_unknowns(result))
 
 
-def too_little_decided(result: Result) -> str | None:
+def why_too_little_decided(result: Result) -> str | None:
     """Return why this run decided too little (exit code 4): nothing, or a smaller share than `min_judged`; None: it decided enough."""
-    if _of_stable_rules(result, result.verdicts).num_rows and (nothing := _nothing_decided(result)):
+    if _rows_of_stable_rules(result, result.verdicts).num_rows and (nothing := _why_nothing_decided(result)):
         return nothing
     share = None if result.min_judged is None else decided_share(result.verdicts)
     if share is None or result.min_judged is None or share >= result.min_judged:
@@ -255,22 +259,22 @@ def decided_share(verdicts: pa.Table) -> float | None:
     return sum(is_decided.values()) / len(is_decided) if is_decided else None
 
 
-def is_undecided(result: Result) -> bool:
+def is_too_little_decided(result: Result) -> bool:
     """Return whether the first reason for exit code 4 is that the run decided too little."""
     first = next(_not_judged_statuses(result), None)
-    return first is not None and first.why == too_little_decided(result)
+    return first is not None and first.why == why_too_little_decided(result)
 
 
-def _nothing_decided(result: Result) -> str | None:
+def _why_nothing_decided(result: Result) -> str | None:
     """Return why nothing could be decided, in words; None if something was decided."""
-    lacking, n = unrecorded(result.verdicts).num_rows, result.verdicts.num_rows
-    if not n or _count(result.verdicts, "unknown") + lacking != n:
+    lacking, n = verdicts_lacking_signal(result.verdicts).num_rows, result.verdicts.num_rows
+    if not n or _n_of_verdict(result.verdicts, "unknown") + lacking != n:
         return None
     why = "the log lacks a signal for every rule" if lacking == n else "every verdict is unknown"
     return f"nothing failed, because nothing could be decided: {why}"
 
 
-def ego_absences(drive: Row) -> list[str]:
+def ego_absence_texts(drive: Row) -> list[str]:
     """Return how long each ego of a drive is absent from its log, for absences that count as a loss. `drive`: a row of `drive`."""
     return [found["message"].partition(",")[0] for found in drive["quality"] if found["check_id"] == EGO_ABSENT]
 
@@ -280,35 +284,35 @@ def off_map_reason(drive: Row) -> str | None:
 
     `drive`: a row of the table `drive`.
     """
-    lost = {row["ego_id"]: str(row["reason"]) for row in drive["not_judged"] if row["reason_code"] in MISFITS}
+    lost = {row["ego_id"]: str(row["reason"]) for row in drive["not_judged"] if row["reason_code"] in MAP_MISFIT_CODES}
     egos = [ego["ego_id"] for ego in drive["exposure"]]
     return lost[egos[0]] if egos and lost.keys() >= set(egos) else None
 
 
-def _count(verdicts: pa.Table, verdict: str) -> int:
+def _n_of_verdict(verdicts: pa.Table, verdict: str) -> int:
     return int(pc.sum(pc.equal(verdicts["verdict"], verdict)).as_py() or 0)
 
 
-def _of_stable_rules(result: Result, rows: pa.Table) -> pa.Table:
+def _rows_of_stable_rules(result: Result, rows: pa.Table) -> pa.Table:
     stable = result.rules.filter(pc.equal(result.rules["status"], "stable"))["rule_id"]
     return rows.filter(pc.is_in(rows["rule_id"], value_set=stable.combine_chunks()))
 
 
-def _severe(result: Result, rows: pa.Table) -> pa.Table:
+def _severe_rows_of_stable_rules(result: Result, rows: pa.Table) -> pa.Table:
     """Return the rows of stable rules at or above the severity that causes exit code 1."""
-    rows = _of_stable_rules(result, rows)
-    return rows.filter(pc.is_in(rows["severity"], value_set=pa.array(_severities(result), pa.string())))
+    rows = _rows_of_stable_rules(result, rows)
+    return rows.filter(pc.is_in(rows["severity"], value_set=pa.array(_gating_severities(result), pa.string())))
 
 
-def _severities(result: Result) -> tuple[str, ...]:
+def _gating_severities(result: Result) -> tuple[str, ...]:
     return () if result.fail_on == "never" else SEVERITIES[: SEVERITIES.index(result.fail_on) + 1]
 
 
-def _stopped(result: Result) -> str:
+def _failure_words(result: Result) -> str:
     """Return the reason for exit code 1, in words; '' for none."""
     found, bare = (
-        len(one_per_event(gating_findings(result).to_pylist())),
-        _severe(result, failures_without_finding(result)).num_rows,
+        len(one_finding_per_event(gating_findings(result).to_pylist())),
+        _severe_rows_of_stable_rules(result, failures_without_finding(result)).num_rows,
     )
     new = "new finding" if result.gate is not None and result.gate.baseline is not None else "finding"
     parts = [plural(found, new)] if found else []
@@ -316,21 +320,26 @@ def _stopped(result: Result) -> str:
     return " and ".join(parts)
 
 
-def _let_through(result: Result) -> str:
+def _let_through_words(result: Result) -> str:
     """Return how many severe findings baseline, waivers and confidence exempt, in words; '' without any of these."""
     if (gate := result.gate) is None:
         return ""
-    of_standing = group_rows(_severe(result, result.findings).to_pylist(), lambda row: gate.standing(row["finding_id"]))
+    of_standing = group_rows(
+        _severe_rows_of_stable_rules(result, result.findings).to_pylist(),
+        lambda row: gate.status_at_gate(row["finding_id"]),
+    )
     asked = {"known": gate.baseline is not None, "waived": bool(gate.waivers), "possible": gate.confidence is not None}
     words = {"known": "known", "waived": "waived", "possible": "only possible"}
-    through = [f"{len(one_per_event(of_standing.get(name, ())))} {words[name]}" for name, told in asked.items() if told]
+    through = [
+        f"{len(one_finding_per_event(of_standing.get(name, ())))} {words[name]}" for name, told in asked.items() if told
+    ]
     return f" (of that severity {', '.join(through)})" if through else ""
 
 
 def _gone_findings_sentence(result: Result, unfixed: Sequence[ComparedFinding]) -> str:
     """Return in words how many of the baseline's severe findings are absent but not fixed, and why."""
-    by_status = {status: [entry for entry in unfixed if entry.standing == status] for status in NOT_FIXED}
-    why = [f"{n_findings(mine)} {NOT_FIXED[status]}" for status, mine in by_status.items() if mine]
+    by_status = {status: [entry for entry in unfixed if entry.standing == status] for status in NOT_FIXED_WORDS}
+    why = [f"{n_findings(mine)} {NOT_FIXED_WORDS[status]}" for status, mine in by_status.items() if mine]
     n = n_findings(unfixed)
     verb = "is" if n == 1 else "are"
     subject = f"{plural(n, 'finding')} of the baseline at or above severity {result.fail_on}"

@@ -9,7 +9,7 @@ from drivelint import own_files
 MANIFEST: Final = own_files.MANIFEST
 RUN_FILE: Final = "run.json"
 GATE_FILE: Final = "gate.json"
-MARK: Final = "summary.json"
+MARK_FILE: Final = "summary.json"
 """The file without which a folder is no result: it is written last."""
 TABLE_OF_FILE: Final = {
     "verdicts": "verdict",
@@ -25,7 +25,7 @@ TABLE_OF_FILE: Final = {
     "opportunities": "opportunity_record",
 }
 """Stem of the Parquet file -> table of the schema."""
-PICTURES: Final = {"pictures": "picture"}
+TABLE_OF_PICTURE_FILE: Final = {"pictures": "picture"}
 """Stem of the Parquet file that only results with camera pictures have -> table of the schema."""
 REPORT_FILES: Final = {
     "html": "report.html",
@@ -35,10 +35,10 @@ REPORT_FILES: Final = {
     "markdown": "report.md",
 }
 """Report format -> name of the report file."""
-RESULT_FILES: Final = (
-    *(f"{name}.parquet" for name in (*TABLE_OF_FILE, *PICTURES)),
+RESULT_FILE_GLOBS: Final = (
+    *(f"{name}.parquet" for name in (*TABLE_OF_FILE, *TABLE_OF_PICTURE_FILE)),
     *REPORT_FILES.values(),
-    *(GATE_FILE, RUN_FILE, "margins.parquet", "drivelint.duckdb", MARK, MANIFEST),
+    *(GATE_FILE, RUN_FILE, "margins.parquet", "drivelint.duckdb", MARK_FILE, MANIFEST),
     *("annotated/*.mcap", "annotated/viewer-layout.json"),
 )
 """Globs for the names of all files that a result may have."""

@@ -14,13 +14,13 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
 
 
-def on_one_line(result: Result) -> Result:
+def result_on_one_line(result: Result) -> Result:
     """Return the result with every text of verdicts, findings, drives and rules on one line."""
-    tables = {name: _texts(getattr(result, name)) for name in ("verdicts", "findings", "rules")}
-    return replace(result, drives=_texts(_nested(result.drives)), **tables)
+    tables = {name: _columns_on_one_line(getattr(result, name)) for name in ("verdicts", "findings", "rules")}
+    return replace(result, drives=_columns_on_one_line(_nested_columns_on_one_line(result.drives)), **tables)
 
 
-def _texts(rows: pa.Table) -> pa.Table:
+def _columns_on_one_line(rows: pa.Table) -> pa.Table:
     for no, field in enumerate(rows.schema):
         if pa.types.is_string(field.type) and pc.any(pc.match_substring(rows.column(no), "\n")).as_py():
             texts = [text and one_line(text) for text in rows.column(no).to_pylist()]
@@ -28,17 +28,19 @@ def _texts(rows: pa.Table) -> pa.Table:
     return rows
 
 
-def _nested(drives: pa.Table) -> pa.Table:
+def _nested_columns_on_one_line(drives: pa.Table) -> pa.Table:
     for no, field in enumerate(drives.schema):
         if pa.types.is_nested(field.type):
-            drives = drives.set_column(no, field, pa.array(flat(drives.column(no).to_pylist()), field.type))
+            drives = drives.set_column(
+                no, field, pa.array(nested_texts_on_one_line(drives.column(no).to_pylist()), field.type)
+            )
     return drives
 
 
-def flat(value: Any) -> Any:
+def nested_texts_on_one_line(value: Any) -> Any:
     """Return a nested value with every text in it on one line."""
     if isinstance(value, str):
         return one_line(value)
     if isinstance(value, list | tuple):
-        return type(value)(flat(each) for each in value)
-    return {key: flat(each) for key, each in value.items()} if isinstance(value, dict) else value
+        return type(value)(nested_texts_on_one_line(each) for each in value)
+    return {key: nested_texts_on_one_line(each) for key, each in value.items()} if isinstance(value, dict) else value

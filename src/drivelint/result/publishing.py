@@ -32,31 +32,31 @@ def prepare_folder(out: Path) -> None:
         probe.touch()
         probe.unlink()
     except OSError as error:
-        raise _unwritable(out, error) from error
+        raise _unwritable_error(out, error) from error
 
 
 def publish(
-    out: Path, contents: dict[str, bytes], finished_files: dict[str, Path | None], mark: str | None = None
+    out: Path, contents: dict[str, bytes], finished_files: dict[str, Path | None], mark_file: str | None = None
 ) -> None:
     """Write files into the folder `out`; all files are complete on disk before the first is renamed to its final name.
 
     `contents`: name -> bytes; `finished_files`: name -> a finished file to move there, or None to remove an earlier run's file of that
-    name. Files get their names in order, first `finished_files`, then `contents`. `mark`: the name of the file that marks the folder as
-    complete; an earlier mark is removed before any other change. Errors: `OutputError` if the folder cannot be written (exit 75).
+    name. Files get their names in order, first `finished_files`, then `contents`. `mark_file`: the name of the file that marks the folder
+    as complete; an earlier mark is removed before any other change. Errors: `OutputError` if the folder cannot be written (exit 75).
     """
     staged: list[tuple[Path, Path]] = []
     try:
         out.mkdir(parents=True, exist_ok=True)
         for name, source in finished_files.items():
             if source is not None:
-                staged.append(_temporary(out / name))
+                staged.append(_temporary_and_final_path(out / name))
                 shutil.move(source, staged[-1][0])
         for name, content in contents.items():
-            staged.append(_temporary(out / name))
+            staged.append(_temporary_and_final_path(out / name))
             staged[-1][0].write_bytes(content)
         for temporary, _ in staged:
             _sync(temporary)
-        for name in [mark] if mark else []:
+        for name in [mark_file] if mark_file else []:
             (out / name).unlink(missing_ok=True)
             _sync(out)
         for name in [name for name, source in finished_files.items() if source is None]:
@@ -65,13 +65,13 @@ def publish(
             temporary.replace(final)
         _sync(out)
     except OSError as error:
-        raise _unwritable(out, error) from error
+        raise _unwritable_error(out, error) from error
     finally:
         for temporary, _ in staged:
             temporary.unlink(missing_ok=True)
 
 
-def _temporary(final: Path) -> tuple[Path, Path]:
+def _temporary_and_final_path(final: Path) -> tuple[Path, Path]:
     """Return the temporary path in the folder of a file, and the file's final path."""
     final.parent.mkdir(exist_ok=True)
     # the final name may already have the greatest length, so the temporary name uses a digest
@@ -79,7 +79,7 @@ def _temporary(final: Path) -> tuple[Path, Path]:
     return final.with_name(f".{digest[:16]}.{os.getpid()}.tmp"), final
 
 
-def _unwritable(out: Path, error: OSError) -> OutputError:
+def _unwritable_error(out: Path, error: OSError) -> OutputError:
     return OutputError(
         f"{out}: cannot write the results: {error.strerror or error}; free the disk or choose another --out"
     )

@@ -17,8 +17,8 @@ from drivelint.drive.trace import DriveInput
 from drivelint.errors import UsageError
 from drivelint.result.names import RUN_FILE
 
-_PATHS: Final = ("map", "map_dir")
-_JSON_NAMES: Final = {"relative_paths": "named", "manifest_options": "own"}
+_PATH_OPTIONS: Final = ("map", "map_dir")
+_KEY_OF_FIELD: Final = {"relative_paths": "named", "manifest_options": "own"}
 """Field -> its key in the file, for fields with another key."""
 
 
@@ -53,7 +53,7 @@ class RunRequest(DriveInput):
         cls, options: DriveInput, traces: dict[str, str], manifest_options: dict[str, DriveInput] | None = None
     ) -> RunRequest:
         """Return the request with the options of `check`, unchanged except for the traces."""
-        apart = {"traces", *_JSON_NAMES}
+        apart = {"traces", *_KEY_OF_FIELD}
         kept = {each.name: getattr(options, each.name) for each in fields(cls) if each.name not in apart}
         relative_paths = {
             drive: path
@@ -66,12 +66,12 @@ class RunRequest(DriveInput):
 def render(run_options: RunRequest, out: Path) -> bytes:
     """Return the request as UTF-8 JSON with a final newline, every path relative to the result folder `out`."""
     content: dict[str, Any] = msgspec.to_builtins(run_options, enc_hook=str)
-    named = {_JSON_NAMES.get(name, name): value for name, value in content.items() if name != "traces"}
-    plain = {"traces": {drive: _relative(path, out) for drive, path in sorted(content["traces"].items())}, **named}
-    plain["rules_dirs"] = [_relative(path, out) for path in plain["rules_dirs"]]
-    _make_relative(plain, out)
+    named = {_KEY_OF_FIELD.get(name, name): value for name, value in content.items() if name != "traces"}
+    plain = {"traces": {drive: _relative_path(path, out) for drive, path in sorted(content["traces"].items())}, **named}
+    plain["rules_dirs"] = [_relative_path(path, out) for path in plain["rules_dirs"]]
+    _make_paths_relative(plain, out)
     for mine in plain["own"].values():
-        _make_relative(mine, out)
+        _make_paths_relative(mine, out)
     if not plain["own"]:
         del plain["own"]
     return (json.dumps(plain, indent=2, ensure_ascii=False) + "\n").encode()
@@ -88,10 +88,10 @@ def load(folder: Path) -> RunRequest:
             file.read_text(encoding="utf-8")
         )  # older results lack these keys
         for each in (plain, *plain.get("own", {}).values()):
-            _join_to(folder, each)
+            _join_paths_to_folder(folder, each)
         plain["traces"] = {drive: str(folder / path) for drive, path in plain["traces"].items()}
         plain["rules_dirs"] = [str(folder / path) for path in plain["rules_dirs"]]
-        plain |= {field_: plain.pop(name) for field_, name in _JSON_NAMES.items() if name in plain}
+        plain |= {field_: plain.pop(name) for field_, name in _KEY_OF_FIELD.items() if name in plain}
         return msgspec.convert(plain, RunRequest, dec_hook=lambda kind, value: kind(value))
     except FileNotFoundError as error:
         raise UsageError(
@@ -101,18 +101,18 @@ def load(folder: Path) -> RunRequest:
         raise UsageError(f"{file}: not what drivelint writes: check the drives again") from error
 
 
-def _make_relative(plain: dict[str, Any], out: Path) -> None:
+def _make_paths_relative(plain: dict[str, Any], out: Path) -> None:
     """Make the paths of the options about a log relative to the result folder."""
-    plain |= {key: _relative(plain[key], out) for key in _PATHS if plain[key] is not None}
+    plain |= {key: _relative_path(plain[key], out) for key in _PATH_OPTIONS if plain[key] is not None}
     if plain["mapping"] is not None and Path(plain["mapping"]).is_file():  # else the name of a shipped mapping
-        plain["mapping"] = {"file": _relative(plain["mapping"], out)}
+        plain["mapping"] = {"file": _relative_path(plain["mapping"], out)}
 
 
-def _join_to(folder: Path, plain: dict[str, Any]) -> None:
-    """Undo `_make_relative`."""
+def _join_paths_to_folder(folder: Path, plain: dict[str, Any]) -> None:
+    """Undo `_make_paths_relative`."""
     if isinstance(plain["mapping"], dict):
         plain["mapping"] = str(folder / plain["mapping"]["file"])
-    plain |= {key: str(folder / plain[key]) for key in _PATHS if plain[key] is not None}
+    plain |= {key: str(folder / plain[key]) for key in _PATH_OPTIONS if plain[key] is not None}
 
 
 def _path_from_workdir(path: str) -> str:
@@ -125,7 +125,7 @@ def _path_from_workdir(path: str) -> str:
     return ""
 
 
-def _relative(path: str, out: Path) -> str:
+def _relative_path(path: str, out: Path) -> str:
     whole = Path(path).resolve()
     try:
         return Path(os.path.relpath(whole, out.resolve())).as_posix()

@@ -7,10 +7,10 @@ from collections.abc import Mapping
 from datetime import UTC, datetime, timedelta
 from typing import Any, Final
 
-from drivelint.result.certainty import doubt
+from drivelint.result.certainty import doubt_words
 
 NO_VALUE: Final = "-"
-LONGEST_LABEL: Final = 12
+MOST_LABEL_CHARS: Final = 12
 """Largest number of characters of an id in a picture."""
 
 Row = Mapping[str, Any]
@@ -25,15 +25,15 @@ def number(value: float | None, unit: str | None = None) -> str:
     return f"{text} {unit}" if unit else text
 
 
-def went_wrong(rule: Row) -> str:
+def breach_title(rule: Row) -> str:
     """Return the title for a breach of a rule. `rule`: a row of the table `rule`."""
     return rule["breach"] or f"Not kept: {rule['title']}"
 
 
-def closing(mps: float) -> str:
-    """Return in words how fast two road users approach each other, or move apart if `mps` is negative."""
-    apart = mps < 0 and round(mps, 2) != 0
-    return f"{'moving apart' if apart else 'closing'} at {number(abs(mps), 'm/s')}"
+def closing_words(closing_mps: float) -> str:
+    """Return in words how fast two road users approach each other, or move apart if `closing_mps` is negative."""
+    apart = closing_mps < 0 and round(closing_mps, 2) != 0
+    return f"{'moving apart' if apart else 'closing'} at {number(abs(closing_mps), 'm/s')}"
 
 
 def non_breaking(text: str) -> str:
@@ -78,7 +78,7 @@ def ego_name(ego_id: str) -> str:
 
 def brief_id(actor_id: str) -> str:
     """Return an id, shortened for a picture: data sets have UUIDs of 36 characters."""
-    return actor_id if len(actor_id) <= LONGEST_LABEL else f"{actor_id[: LONGEST_LABEL - 4]}…"
+    return actor_id if len(actor_id) <= MOST_LABEL_CHARS else f"{actor_id[: MOST_LABEL_CHARS - 4]}…"
 
 
 def subject(row: Row) -> str:
@@ -87,7 +87,7 @@ def subject(row: Row) -> str:
     return f"{who}, object {row['object_id']}" if row["object_id"] is not None else who
 
 
-def comparison(row: Row) -> str:
+def measured_values_text(row: Row) -> str:
     """Return the observed and the required value with the margin; '' for a rule without measured values."""
     if row["observed"] is None and row["required"] is None:
         return ""
@@ -103,13 +103,13 @@ def tolerance(row: Row, rule: Row) -> float | None:
     return None if not given or row["required"] is None or math.isclose(row["required"], given) else given
 
 
-def line(row: Row, when: str) -> str:
-    """Return a verdict or finding as one line: `when`, ego and object, measured values, reason, and `doubt`.
+def line_of_row(row: Row, when: str) -> str:
+    """Return a verdict or finding as one line: `when`, ego and object, measured values, reason, and `doubt_words`.
 
     The measured values are omitted if the reason contains them.
     """
-    measured = "" if row["reason_measures"] else comparison(row)
-    parts = [f"{when}: {subject(row)}", measured, row["reason"], doubt(row)]
+    measured = "" if row["reason_measures"] else measured_values_text(row)
+    parts = [f"{when}: {subject(row)}", measured, row["reason"], doubt_words(row)]
     return "; ".join(part for part in parts if part)
 
 
@@ -118,10 +118,10 @@ def with_count(reason: str, n: int) -> str:
     return reason if n == 1 else f"{reason} ({n} times)"
 
 
-def finite(value: Any) -> Any:
+def replace_non_finite(value: Any) -> Any:
     """Return nested plain data with None in place of NaN and infinity, which JSON cannot express."""
     if isinstance(value, float):
         return value if math.isfinite(value) else None
     if isinstance(value, dict):
-        return {key: finite(item) for key, item in value.items()}
-    return [finite(item) for item in value] if isinstance(value, list | tuple) else value
+        return {key: replace_non_finite(item) for key, item in value.items()}
+    return [replace_non_finite(item) for item in value] if isinstance(value, list | tuple) else value

@@ -12,7 +12,7 @@ import pyarrow as pa
 from drivelint.drive.conditions import condition_problem, value_problem
 from drivelint.errors import UsageError
 from drivelint.phrases import hint
-from drivelint.result.files import described_parquet
+from drivelint.result.files import parquet_bytes_with_metadata
 from drivelint.scene import recorder
 from drivelint.scene.actor import Actor
 from drivelint.scene.layout import roads_of
@@ -80,7 +80,7 @@ class Scene:
     def files(self) -> dict[str, bytes]:
         """Return the log as Parquet tables, and its map, name -> content. Errors: `UsageError`."""
         tables = {name: table for name, table in self.tables().items() if table.num_rows}
-        log = {f"{name}.parquet": described_parquet(table, name, {}) for name, table in tables.items()}
+        log = {f"{name}.parquet": parquet_bytes_with_metadata(table, name, {}) for name, table in tables.items()}
         return {**log, MAP_FILE: self.map_text.encode()}
 
     def _conditions(self) -> list[dict[str, Any]]:

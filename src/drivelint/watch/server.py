@@ -19,7 +19,7 @@ from drivelint.annotate.tracks import tracks
 from drivelint.errors import UsageError
 from drivelint.formats.foxglove import messages as foxglove_messages
 from drivelint.phrases import one_line
-from drivelint.result.text import finite
+from drivelint.result.text import replace_non_finite
 from drivelint.watch.sources.transports import LOOPBACK, is_loopback
 
 if TYPE_CHECKING:
@@ -144,7 +144,7 @@ class LiveServer:
 
     def _log(self, channel: int, message: Mapping[str, Any], t_ns: int) -> None:
         # viewers refuse a schema that allows null, so a message leaves out fields with unknown values
-        known = {name: value for name, value in message.items() if finite(value) is not None}
+        known = {name: value for name, value in message.items() if replace_non_finite(value) is not None}
         self._server.publish(channel, msgspec.json.encode(known), self._times(t_ns).at(t_ns))
 
     def _times(self, t_ns: int) -> LogClock:

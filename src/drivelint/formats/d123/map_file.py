@@ -13,7 +13,7 @@ from drivelint.formats.d123 import facts
 from drivelint.formats.d123.arrow_files import METADATA_KEY
 from drivelint.formats.d123.map_layers import LIGHT_LANES_KEY, Intersection, LaneGroup, Layers
 from drivelint.formats.map_registry import read_source
-from drivelint.receipts.events import looked_for
+from drivelint.receipts.events import report_searched_path
 from drivelint.road.quality import MapQuality
 
 if TYPE_CHECKING:
@@ -34,7 +34,9 @@ def find_map(
     `light_lanes`: the lanes for which the log has states of lights.
     """
     shared = shared_map(folder, info)
-    path = next((path for path in (folder / OWN_MAP, shared) if path is not None and looked_for(path).is_file()), None)
+    path = next(
+        (path for path in (folder / OWN_MAP, shared) if path is not None and report_searched_path(path).is_file()), None
+    )
     if path is None:
         looked = " nor at ".join(str(each) for each in (folder / OWN_MAP, shared) if each is not None)
         return None, [], [f"the log has no map: no file at {looked}: give a map with --map"]

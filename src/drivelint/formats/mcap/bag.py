@@ -14,7 +14,7 @@ from drivelint.formats.mcap.reader import Container
 from drivelint.formats.mcap.summary import Summary, read_index
 from drivelint.formats.ros2.messages import DETECTIONS, MESSAGES, ODOMETRY_ROLE, ROAD_USERS
 from drivelint.formats.ros2.types import message_kind
-from drivelint.receipts.events import looked_for
+from drivelint.receipts.events import report_searched_path
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -76,7 +76,8 @@ def _part(folder: Path, name: str) -> Path | None:
     """Return the file of a bag, or None if it is missing."""
     # older recorders list only a file's name, or prefix it with the folder's name
     return next(
-        (each for each in (folder / name, folder / name.rsplit("/", 1)[-1]) if looked_for(each).is_file()), None
+        (each for each in (folder / name, folder / name.rsplit("/", 1)[-1]) if report_searched_path(each).is_file()),
+        None,
     )
 
 

@@ -13,7 +13,7 @@ from drivelint.fleet_report.audit_views import opened_packed
 from drivelint.pack import bag
 from drivelint.pack.audits.tables import AUDIT
 from drivelint.pack.statement import PREDICATE, SEALED, TYPE, resource_descriptor, result_word
-from drivelint.result.model import MISFITS
+from drivelint.result.model import MAP_MISFIT_CODES
 from drivelint.sql.statements import statement as query
 
 if TYPE_CHECKING:
@@ -24,7 +24,11 @@ if TYPE_CHECKING:
 def statement(folder: Path, evidence: Mapping[str, Any]) -> bytes:
     """Return the statement about the audit whose tables and manifest are in the pack `folder`."""
     with opened_packed(folder / AUDIT) as (con, _):
-        drives = con.execute(query("audit/drive_outcomes"), {"misfits": sorted(MISFITS)}).to_arrow_table().to_pylist()
+        drives = (
+            con.execute(query("audit/drive_outcomes"), {"misfits": sorted(MAP_MISFIT_CODES)})
+            .to_arrow_table()
+            .to_pylist()
+        )
     outcomes = {word: _names(drives, word) for word in ("pass", "near_miss", "fail", "unknown")}
     maps = sorted({(drive["map"], drive["map_sha256"]) for drive in drives if drive["map_sha256"]})
     audit = evidence["audit"]

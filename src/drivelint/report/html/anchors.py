@@ -9,7 +9,7 @@ import hashlib
 import re
 from typing import Final
 
-_PLAIN: Final = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,79}")
+_PLAIN_ID: Final = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,79}")
 
 
 def anchor(kind: str, *key: str | int) -> str:
@@ -20,6 +20,6 @@ def anchor(kind: str, *key: str | int) -> str:
     if len(key) > 1:
         return f"{kind}-{hashlib.sha256(repr(key).encode()).hexdigest()[:12]}"
     name = str(key[0])
-    if not _PLAIN.fullmatch(name):
+    if not _PLAIN_ID.fullmatch(name):
         name = hashlib.sha256(name.encode("utf-8", "surrogatepass")).hexdigest()[:16]
     return f"{kind}-{name}"

@@ -6,17 +6,23 @@ from collections import Counter
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from drivelint.gate import descriptions
-from drivelint.result.gate import NOT_FIXED
+from drivelint.result.gate import NOT_FIXED_WORDS
 
 if TYPE_CHECKING:
     from drivelint.result.gate import Gate
 
-MAX_LISTED: Final = 40
+MAX_LISTED_FINDINGS: Final = 40
 """The page lists this many findings of the earlier result per status."""
-_FOLDED_STATUSES: Final = ("changed", *NOT_FIXED, "fixed")
-_STATES: Final = {"expired": "expired", "unmatched": "matches no finding", "active": "in force"}
+_FOLDED_STATUSES: Final = ("changed", *NOT_FIXED_WORDS, "fixed")
+_WAIVER_STATES: Final = {"expired": "expired", "unmatched": "matches no finding", "active": "in force"}
 """The states of a waiver in words; states that need action come first."""
-_LABELS: Final = {"new": "new", "open": "not waived", "known": "known", "waived": "waived", "possible": "only possible"}
+_STATUS_LABELS: Final = {
+    "new": "new",
+    "open": "not waived",
+    "known": "known",
+    "waived": "waived",
+    "possible": "only possible",
+}
 
 
 class BaselineStatus(NamedTuple):
@@ -41,8 +47,8 @@ def finding_status(gate: Gate | None, finding_id: str) -> BaselineStatus | None:
     """Return the status of a finding against the gate; None without a gate. A waiver takes precedence over the baseline."""
     if gate is None:
         return None
-    kind = gate.standing(finding_id)
-    waiver, entry = gate.waiver(finding_id), gate.compared(finding_id)
+    kind = gate.status_at_gate(finding_id)
+    waiver, entry = gate.waiver(finding_id), gate.compared_finding(finding_id)
     why = ""
     if waiver is not None:
         why = f"{descriptions.waiver_reason(waiver)} ({waiver.where})"
@@ -52,11 +58,11 @@ def finding_status(gate: Gate | None, finding_id: str) -> BaselineStatus | None:
         why = f"before: {descriptions.verdict_there(entry)}: {entry.why}"
     elif entry is not None and entry.standing == "changed":
         why = entry.why
-    return BaselineStatus(kind, _label(gate, kind), why)
+    return BaselineStatus(kind, _status_label(gate, kind), why)
 
 
-def _label(gate: Gate, kind: str) -> str:
-    return "not compared" if kind == "open" and not gate.waivers else _LABELS[kind]
+def _status_label(gate: Gate, kind: str) -> str:
+    return "not compared" if kind == "open" and not gate.waivers else _STATUS_LABELS[kind]
 
 
 def gate_summary(gate: Gate | None, finding_ids: list[str]) -> dict[str, Any] | None:
@@ -68,17 +74,17 @@ def gate_summary(gate: Gate | None, finding_ids: list[str]) -> dict[str, Any] | 
     if gate is None:
         return None
     kinds = Counter(status.kind for name in finding_ids if (status := finding_status(gate, name)) is not None)
-    shown = [kind for kind in _LABELS if kind != ("open" if gate.baseline is not None else "new")]
+    shown = [kind for kind in _STATUS_LABELS if kind != ("open" if gate.baseline is not None else "new")]
     given = {"waived": bool(gate.waivers), "known": gate.baseline is not None, "possible": gate.confidence is not None}
     before = gate.baseline
     gone = {kind: before.with_diff_status(kind) for kind in _FOLDED_STATUSES} if before else {}
     return {
         "since": before.base_name if before else "",
         "confidence": gate.confidence,
-        "counts": [(kind, _label(gate, kind), kinds[kind]) for kind in shown if given.get(kind, True)],
+        "counts": [(kind, _status_label(gate, kind), kinds[kind]) for kind in shown if given.get(kind, True)],
         "waivers": [
             (waiver, label, descriptions.waiver_scope(waiver))
-            for state, label in _STATES.items()
+            for state, label in _WAIVER_STATES.items()
             for waiver in gate.waivers
             if waiver.state == state
         ],
@@ -87,7 +93,7 @@ def gate_summary(gate: Gate | None, finding_ids: list[str]) -> dict[str, Any] | 
             {
                 "title": descriptions.DIFF_STATUS_TITLES[kind],
                 "n": len(entries),
-                "lines": [descriptions.finding_line(entry) for entry in entries[:MAX_LISTED]],
+                "lines": [descriptions.finding_line(entry) for entry in entries[:MAX_LISTED_FINDINGS]],
             }
             for kind, entries in gone.items()
             if entries

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.result.text import closing, seconds
+from drivelint.result.text import closing_words, seconds
 
 if TYPE_CHECKING:
     from drivelint.result.text import Row
 
-MOST_BEFORE_NS: Final = 1_000_000_000
+MOST_TIME_BEFORE_NS: Final = 1_000_000_000
 """Speeds measured earlier than this before the contact are not used."""
 
 
-def before_contact(scene: Row, contact: Row, start_ns: int) -> dict[str, Any] | None:
+def speeds_before_contact(scene: Row, contact: Row, start_ns: int) -> dict[str, Any] | None:
     """Return the speeds at the last time before a contact at which `scene` has both actors; None if it has no such time.
 
     `contact`: the finding; the closing speed is taken from it.
@@ -25,13 +25,15 @@ def before_contact(scene: Row, contact: Row, start_ns: int) -> dict[str, Any] | 
         {point["t_ns"]: point for point in ways.get(who, [])} for who in (contact["ego_id"], contact["object_id"])
     )
     times = sorted(t for t in ego.keys() & met.keys() if t < contact["t_start_ns"])
-    if not times or contact["t_start_ns"] - times[-1] > MOST_BEFORE_NS:
+    if not times or contact["t_start_ns"] - times[-1] > MOST_TIME_BEFORE_NS:
         return None
     last = times[-1]
     speeds = [(who, way[last]["speed_mps"]) for who, way in ((contact["ego_id"], ego), (contact["object_id"], met))]
     said = ", ".join(f"{who} at {v:.1f} m/s" for who, v in speeds if v is not None)
     # a scene does not contain every step: the closing speed may be from a later step than `last`
-    nearing = "" if contact["closing_mps"] is None else f"{closing(contact['closing_mps'])} just before the contact"
+    nearing = (
+        "" if contact["closing_mps"] is None else f"{closing_words(contact['closing_mps'])} just before the contact"
+    )
     told = [nearing, f"at {seconds(last, start_ns)}: {said}" if said else ""]
     return {
         "time": seconds(last, start_ns),

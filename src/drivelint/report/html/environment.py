@@ -17,39 +17,43 @@ from drivelint.phrases import escape_invisible
 from drivelint.report.html.anchors import anchor
 from drivelint.result.compiled_templates import CompiledTemplates
 from drivelint.result.schemas import OUTPUT_VERSION
-from drivelint.result.text import ego_name, measure, number, went_wrong
+from drivelint.result.text import breach_title, ego_name, measure, number
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-TEMPLATES: Final = Path(__file__).parent / "templates"
+TEMPLATES_FOLDER: Final = Path(__file__).parent / "templates"
 _MPS2: Final = re.compile(r"(?:(?<=\d[ \u00a0])|(?<= in )|^)m/s2\b")
-PICTURE_STYLE: Final = "pictures.css"
+PICTURE_STYLE_FILE: Final = "pictures.css"
 """The style of pictures from cameras; only pages with such pictures contain it."""
-_STYLES: Final = ("report.css", "charts.css", "narrow.css", "first.css")
+_STYLE_FILES: Final = ("report.css", "charts.css", "narrow.css", "first.css")
 
 
 def page_environment(
-    scripts: Sequence[str], folder: Path | None = None, styles: Sequence[str] = (), *, base: Sequence[str] = _STYLES
+    scripts: Sequence[str],
+    folder: Path | None = None,
+    styles: Sequence[str] = (),
+    *,
+    base_styles: Sequence[str] = _STYLE_FILES,
 ) -> Environment:
     """Return the template environment of a page: the report's templates, and the templates in `folder`, which take precedence.
 
-    `scripts`: scripts from the report's templates. `base`: the report's styles for the page; the `styles` of `folder` follow them.
+    `scripts`: scripts from the report's templates. `base_styles`: the report's styles for the page; the `styles` of `folder` follow them.
     """
     environment = Environment(
-        finalize=visible,
+        finalize=escape_for_page,
         bytecode_cache=CompiledTemplates("page"),
-        loader=FileSystemLoader([*([folder] if folder else []), TEMPLATES]),
+        loader=FileSystemLoader([*([folder] if folder else []), TEMPLATES_FOLDER]),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
     style = _concatenated_texts(
-        [*(TEMPLATES / name for name in base), *((folder or TEMPLATES) / name for name in styles)]
+        [*(TEMPLATES_FOLDER / name for name in base_styles), *((folder or TEMPLATES_FOLDER) / name for name in styles)]
     )
-    script = _concatenated_texts(TEMPLATES / name for name in scripts)
-    more = _concatenated_texts([TEMPLATES / PICTURE_STYLE])
+    script = _concatenated_texts(TEMPLATES_FOLDER / name for name in scripts)
+    more = _concatenated_texts([TEMPLATES_FOLDER / PICTURE_STYLE_FILE])
     environment.globals.update(
         style=Markup(style),  # noqa: S704 - ours
         script=Markup(script),  # noqa: S704 - ours
@@ -62,7 +66,7 @@ def page_environment(
         duckdb_version=duckdb.__version__,
         output_schema=OUTPUT_VERSION,
     )
-    environment.filters |= {"ego_name": ego_name, "measure": measure, "went_wrong": went_wrong}
+    environment.filters |= {"ego_name": ego_name, "measure": measure, "breach_title": breach_title}
     return environment
 
 
@@ -73,7 +77,7 @@ def _policy(styles: str, script: str) -> str:
     )
 
 
-def visible(value: Any) -> Any:
+def escape_for_page(value: Any) -> Any:
     """Return a template's value; in a text, invisible characters, such as those that reverse the reading order, are escaped.
 
     The unit m/s2, alone or after a number, becomes m/s².

@@ -9,28 +9,28 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from drivelint.catalogue.header import CONTACT
 from drivelint.engine.robustness.copies import MeasurementErrors
 from drivelint.report.html.anchors import anchor
-from drivelint.report.html.contact import before_contact
+from drivelint.report.html.contact import speeds_before_contact
 from drivelint.report.html.margin_series import margin_series
 from drivelint.report.html.plan_view import plan_view
 from drivelint.report.html.replay import centiseconds
-from drivelint.report.html.svg import num
-from drivelint.report.same_contact import as_others_say
+from drivelint.report.html.svg import svg_number
+from drivelint.report.same_contact import other_certainty_words
 from drivelint.report.worst_first import moment_ns, when
 from drivelint.result.certainty import POSSIBLE, certainty
 from drivelint.result.counts import SEVERITIES, group_rows
-from drivelint.result.text import measure, non_breaking, number, seconds, utc_at, went_wrong
+from drivelint.result.text import breach_title, measure, non_breaking, number, seconds, utc_at
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from drivelint.report.html.baseline_status import BaselineStatus
-    from drivelint.report.html.road import Road
+    from drivelint.report.html.road import DrawnMaps
 
     Row = Mapping[str, Any]
     Key = tuple[str, str, int]
 
-_SENSE: Final = {">": "more than", ">=": "at least", "<": "less than", "<=": "at most"}
-_SPACES: Final = "danger_space"
+_SENSE_WORDS: Final = {">": "more than", ">=": "at least", "<": "less than", "<=": "at most"}
+_DANGER_SPACE_TAG: Final = "danger_space"
 """The tag of rules whose plan views show danger spaces."""
 MAX_INCIDENTS_IN_SUMMARY: Final = 6
 """The printed report shows the plan views of this many moments of a drive."""
@@ -65,40 +65,41 @@ def finding_line(
     rule: Row,
     start_ns: int,
     *,
-    linked: bool,
-    steps: Row | None,
+    has_section: bool,
+    course: Row | None,
     status: BaselineStatus | None,
-    same: Sequence[Row] = (),
+    same_contact_findings: Sequence[Row] = (),
 ) -> FindingLine:
     """Return a finding or near miss as the page shows it.
 
-    `linked`: its drive has a section in the page; `steps`: its row of the table `course`; `same`: other findings of the same contact.
+    `has_section`: its drive has a section in the page; `course`: its row of the table `course`; `same_contact_findings`: other findings
+    of the same contact.
     """
     unit, long = row["unit"], row["t_end_ns"] is not None and row["t_end_ns"] != row["t_start_ns"]
-    sense = _SENSE.get(rule["sense"])
+    sense = _SENSE_WORDS.get(rule["sense"])
     required = number(row["required"], unit)
     if sense is not None:
         required = "none" if row["required"] == 0 and rule["sense"][0] == "<" else f"{sense} {non_breaking(required)}"
-    sure = how_sure(row, same) if kind == "fail" else None
+    sure = certainty_on_page(row, same_contact_findings) if kind == "fail" else None
     found = [status.filter_key] if status else []
     found += [f"sure-{sure['kind']}"] if sure and sure["kind"] else []
     moment = moment_ns(row, {rule["rule_id"]: rule})
     first_contact = "" if moment == row["t_worst_ns"] else f"; first contact at {seconds(moment, start_ns)}"
-    place = anchor("finding", row["finding_id"]) if linked and kind == "fail" else ""
+    place = anchor("finding", row["finding_id"]) if has_section and kind == "fail" else ""
     return FindingLine(
         row,
         rule,
         kind,
         anchor=place,
-        href=f"#{place or anchor('moment', *incident_key(row))}" if linked else "",
+        href=f"#{place or anchor('moment', *incident_key(row))}" if has_section else "",
         keys=" ".join((kind, row["severity"], rule["pack"], *found)),
         time=non_breaking(seconds(row["t_worst_ns"], start_ns)),
         when=when(row, {rule["rule_id"]: rule}, start_ns).replace(" s", non_breaking(" s")),
         stretch=f"{seconds(row['t_start_ns'], start_ns)} to {seconds(row['t_end_ns'], start_ns)}" if long else "",
         required=required,
-        gauge=_gauge(row["observed"], row["required"]),
+        gauge=_gauge_positions(row["observed"], row["required"]),
         sentence=(_measurement_sentence(row, rule, required) if sense else row["reason"]) + first_contact,
-        course=None if steps is None else margin_series(steps, row["t_worst_ns"], unit, start_ns),
+        course=None if course is None else margin_series(course, row["t_worst_ns"], unit, start_ns),
         standing=status,
         sure=sure,
     )
@@ -111,10 +112,10 @@ def _measurement_sentence(row: Row, rule: Row, required: str) -> str:
     return sentence if row["reason_measures"] else f"{sentence} ({row['reason']})"
 
 
-def how_sure(finding: Row, same: Sequence[Row] = ()) -> dict[str, str]:
+def certainty_on_page(finding: Row, same_contact_findings: Sequence[Row] = ()) -> dict[str, str]:
     """Return whether a finding is sure or possible (`kind`, '' if no copies were judged), and in how many copies it stays.
 
-    Copies are copies of the drive with assumed recording errors. `same`: other findings of the same contact.
+    Copies are copies of the drive with assumed recording errors. `same_contact_findings`: other findings of the same contact.
     """
     said = certainty(finding)
     if said is None:
@@ -122,7 +123,7 @@ def how_sure(finding: Row, same: Sequence[Row] = ()) -> dict[str, str]:
     of = f"{finding['n_stays']} of {finding['n_copies']}"
     only = "only " if said == POSSIBLE else ""
     why = f"it is also a finding in {only}{of} copies of the drive with assumed errors ({MeasurementErrors().words})"
-    if others := as_others_say(finding, same):
+    if others := other_certainty_words(finding, same_contact_findings):
         why += f"; {others}"
     return {"kind": said, "label": f"{said}, {of}", "why": why}
 
@@ -132,7 +133,7 @@ def incident_key(row: Row) -> Key:
     return row["drive_id"], row["ego_id"], row["t_worst_ns"]
 
 
-def _in_summary(lines: Iterable[FindingLine]) -> dict[Key, int]:
+def _ranks_in_summary(lines: Iterable[FindingLine]) -> dict[Key, int]:
     """Return the incidents of one drive that its summary shows, with their ranks from 0, the worst.
 
     The summary shows the worst incident of each rule, the most severe rules first.
@@ -146,7 +147,7 @@ def _in_summary(lines: Iterable[FindingLine]) -> dict[Key, int]:
     return {at: n for n, at in enumerate(order[:MAX_INCIDENTS_IN_SUMMARY])}
 
 
-def incidents(lines: Sequence[FindingLine], pictures: Mapping[Key, dict[str, Any]], drive: Row) -> list[dict[str, Any]]:
+def incidents(lines: Sequence[FindingLine], views: Mapping[Key, dict[str, Any]], drive: Row) -> list[dict[str, Any]]:
     """Return the incidents of one drive in time order: the findings and near misses of one ego at one time.
 
     `cards`: the findings and near misses by rule; `plan`: the plan view, or None; `t`: hundredths of a second since the drive's start.
@@ -154,10 +155,10 @@ def incidents(lines: Sequence[FindingLine], pictures: Mapping[Key, dict[str, Any
     `on_earth`: a finding with known longitude and latitude, or None; `t_utc`: the time in UTC, None if the log does not give it.
     `cameras`, `pictured`: empty; `add_pictures` fills them in. `drive`: a row of the result's drives.
     """
-    groups, leading = group_rows(lines, lambda line: incident_key(line.row)), _in_summary(lines)
+    groups, leading = group_rows(lines, lambda line: incident_key(line.row)), _ranks_in_summary(lines)
     return [
-        _moment(at, found, drive)
-        | {"plan": pictures.get(at), "leading": at in leading, "rank": leading.get(at)}
+        _incident(at, found, drive)
+        | {"plan": views.get(at), "leading": at in leading, "rank": leading.get(at)}
         | {"cameras": [], "pictured": ""}
         for at, found in sorted(groups.items(), key=lambda item: (item[0][2], item[0][1]))
     ]
@@ -167,7 +168,7 @@ def plan_views(
     lines: Iterable[FindingLine],
     scenes: Mapping[Key, Row],
     spaces: Mapping[Key, list[Row]],
-    road: Road,
+    road: DrawnMaps,
     starts: Mapping[str, int],
     *,
     max_views: int,
@@ -176,21 +177,21 @@ def plan_views(
     lines_by_incident = group_rows(lines, lambda line: incident_key(line.row))
     views: dict[Key, dict[str, Any]] = {}
     for at, found in [(at, found) for at, found in lines_by_incident.items() if at in scenes][:max_views]:
-        about = any(_SPACES in line.rule["tags"] for line in found)
+        about = any(_DANGER_SPACE_TAG in line.rule["tags"] for line in found)
         contact = next((line.row for line in found if line.kind == "fail" and CONTACT in line.rule["tags"]), None)
-        before = None if contact is None else before_contact(scenes[at], contact, starts.get(at[0], 0))
-        picture = plan_view(scenes[at], road, _objects(found), spaces.get(at, []) if about else [])
+        before = None if contact is None else speeds_before_contact(scenes[at], contact, starts.get(at[0], 0))
+        picture = plan_view(scenes[at], road, _object_ids(found), spaces.get(at, []) if about else [])
         views[at] = picture | {"before": before["words"] if before else ""}
     return views
 
 
-def _objects(lines: Iterable[FindingLine]) -> set[str]:
+def _object_ids(lines: Iterable[FindingLine]) -> set[str]:
     return {line.row["object_id"] for line in lines if line.row["object_id"] is not None}
 
 
-def _moment(at: Key, incident_lines: Sequence[FindingLine], drive: Row) -> dict[str, Any]:
+def _incident(at: Key, incident_lines: Sequence[FindingLine], drive: Row) -> dict[str, Any]:
     failed = [line for line in incident_lines if line.kind == "fail"]
-    title: Callable[[Row], str] = went_wrong if failed else itemgetter("title")
+    title: Callable[[Row], str] = breach_title if failed else itemgetter("title")
     gravest = sorted(failed or incident_lines, key=lambda line: SEVERITIES.index(line.row["severity"]))
     cards = group_rows(incident_lines, lambda line: line.row["rule_id"])
     return {
@@ -201,21 +202,21 @@ def _moment(at: Key, incident_lines: Sequence[FindingLine], drive: Row) -> dict[
         "t_utc": utc_at(at[2], drive),
         "keys": " ".join(sorted({name for line in incident_lines for name in line.keys.split()})),
         "ego_id": at[1],
-        "objects": sorted(_objects(incident_lines)),
+        "objects": sorted(_object_ids(incident_lines)),
         "kind": "fail" if failed else "near",
         "severity": gravest[0].row["severity"],
         "titles": list(dict.fromkeys(title(line.rule) for line in gravest)),
         "on_earth": next((line.row for line in failed if None not in {line.row["lon"], line.row["lat"]}), None),
-        "cards": [(lines[0].rule, lines) for _, lines in sorted(cards.items(), key=_weight)],
+        "cards": [(lines[0].rule, lines) for _, lines in sorted(cards.items(), key=_card_sort_key)],
     }
 
 
-def _weight(item: tuple[str, Sequence[FindingLine]]) -> tuple[bool, int, str]:
+def _card_sort_key(item: tuple[str, Sequence[FindingLine]]) -> tuple[bool, int, str]:
     rule_id, lines = item
     return lines[0].kind != "fail", SEVERITIES.index(lines[0].row["severity"]), rule_id
 
 
-def _gauge(observed: float | None, required: float | None) -> dict[str, str] | None:
+def _gauge_positions(observed: float | None, required: float | None) -> dict[str, str] | None:
     """Return a bar from zero to the observed value, and the position of the required value, in percent of the drawing's width."""
     if observed is None or required is None or not max(abs(observed), abs(required)) < float("inf"):
         return None
@@ -224,12 +225,17 @@ def _gauge(observed: float | None, required: float | None) -> dict[str, str] | N
         return None
     low, high = low - 0.06 * (high - low), high + 0.06 * (high - low)
 
-    def at(value: float) -> float:
+    def position_percent(value: float) -> float:
         return 100 * (value - low) / (high - low)
 
-    start, end = sorted((at(0.0), at(observed)))
-    places = {"zero": at(0.0), "x": start, "w": max(end - start, 0.4), "required": at(required)}
-    return {name: f"{num(value)}%" for name, value in places.items()}
+    start, end = sorted((position_percent(0.0), position_percent(observed)))
+    places = {
+        "zero": position_percent(0.0),
+        "x": start,
+        "w": max(end - start, 0.4),
+        "required": position_percent(required),
+    }
+    return {name: f"{svg_number(value)}%" for name, value in places.items()}
 
 
 def involved_actors(lines: Sequence[FindingLine], scenes: Mapping[Key, Row]) -> list[dict[str, Any]]:
@@ -251,7 +257,7 @@ def involved_actors(lines: Sequence[FindingLine], scenes: Mapping[Key, Row]) -> 
     return [
         {
             "name": f"{'object' if is_object else 'ego'} {who}",
-            "what": _kind(seen[who]),
+            "what": _actor_class_words(seen[who]),
             "sized": next((a for a in seen[who] if None not in {a["length_m"], a["width_m"]}), None),
             "speeds": [a["speed_mps"] for a in seen[who] if a["speed_mps"] is not None],
             "n": n,
@@ -261,5 +267,5 @@ def involved_actors(lines: Sequence[FindingLine], scenes: Mapping[Key, Row]) -> 
     ]
 
 
-def _kind(actors: Sequence[Row]) -> str:
+def _actor_class_words(actors: Sequence[Row]) -> str:
     return next((a["actor_class"] for a in actors if a["actor_class"]), "of unknown kind").replace("_", " ")

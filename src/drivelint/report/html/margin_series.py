@@ -6,7 +6,7 @@ import math
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.report.html.svg import Axis, axis_that_decides, num
+from drivelint.report.html.svg import Axis, axis_for_deciding_values, svg_number
 from drivelint.result.text import number
 
 if TYPE_CHECKING:
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 WIDTH: Final = 420
 HEIGHT: Final = 132
 _LEFT, _RIGHT, _TOP, _BOTTOM = 42.0, WIDTH - 8.0, 8.0, HEIGHT - 20.0
-_ROWS: Final = 9
-_LEAST: Final = 3
+_MOST_SHOWN_STEPS: Final = 9
+_LEAST_STEPS: Final = 3
 """The least number of steps for which a chart is drawn."""
 
 
@@ -29,16 +29,16 @@ def margin_series(row: Row, worst_ns: int, unit: str | None, start_ns: int) -> d
     """
     t: list[int] = row["t_ns"]
     worst = min(range(len(t)), key=lambda i: abs(t[i] - worst_ns))
-    first = max(0, min(worst - _ROWS // 2, len(t) - _ROWS))
+    first = max(0, min(worst - _MOST_SHOWN_STEPS // 2, len(t) - _MOST_SHOWN_STEPS))
     steps = [
         {
             "time": f"{(t[i] - start_ns) / 1e9:.2f}",
             **{name: row[name][i] for name in ("observed", "required", "margin", "holds")},
             "worst": i == worst,
         }
-        for i in range(first, min(first + _ROWS, len(t)))
+        for i in range(first, min(first + _MOST_SHOWN_STEPS, len(t)))
     ]
-    measured = len(t) >= _LEAST and any(value is not None for value in row["observed"])
+    measured = len(t) >= _LEAST_STEPS and any(value is not None for value in row["observed"])
     return {
         "chart": _chart(row, worst, unit, start_ns) if measured else None,
         "unit": unit or "",
@@ -58,43 +58,45 @@ def _chart(row: Row, worst: int, unit: str | None, start_ns: int) -> dict[str, A
     seen = row["observed"][worst]
     limits = [v for v, kept in zip(row["required"], row["holds"], strict=True) if kept is False]
     deciding = [v for v in (seen, row["required"][worst], *limits) if v is not None]
-    y, cut = axis_that_decides(values, deciding, _BOTTOM, _TOP)
+    y, cut = axis_for_deciding_values(values, deciding, _BOTTOM, _TOP)
     return {
-        "observed": _line(t, row["observed"], x, y),
-        "required": _line(t, row["required"], x, y),
-        "spans": _spans(t, row["holds"], x),
-        "worst": (num(x.at(t[worst])), num((_TOP + _BOTTOM) / 2 if seen is None else y.at(seen))),
+        "observed": _line_path(t, row["observed"], x, y),
+        "required": _line_path(t, row["required"], x, y),
+        "spans": _spans_not_kept(t, row["holds"], x),
+        "worst": (svg_number(x.at(t[worst])), svg_number((_TOP + _BOTTOM) / 2 if seen is None else y.at(seen))),
         "t_ticks": x.ticks(6),
         "v_ticks": y.ticks(4),
         "unit": unit or "",
         "cut": " and ".join(number(v, unit) for v in cut),
         "t0": round(t[0] * 100),
         "t1": round(t[-1] * 100),
-        "words": _words(row, t, unit),
+        "words": _chart_words(row, t, unit),
     }
 
 
-def _line(t: Sequence[float], values: Sequence[float | None], x: Axis, y: Axis) -> str:
+def _line_path(t: Sequence[float], values: Sequence[float | None], x: Axis, y: Axis) -> str:
     """Return the SVG path through the values, interrupted where a value is None or steps are missing."""
-    gap = 3 * _typical(t)
+    gap = 3 * _typical_step_s(t)
     parts, last = [], None
     for at, value in zip(t, values, strict=True):
         if value is None:
             last = None
             continue
-        parts.append(f"{'M' if last is None or at - last > gap else 'L'}{num(x.at(at))},{num(y.at(value))}")
+        parts.append(
+            f"{'M' if last is None or at - last > gap else 'L'}{svg_number(x.at(at))},{svg_number(y.at(value))}"
+        )
         last = at
     return "".join(parts)
 
 
-def _typical(t: Sequence[float]) -> float:
+def _typical_step_s(t: Sequence[float]) -> float:
     steps = sorted(b - a for a, b in pairwise(t))
     return steps[len(steps) // 2] if steps else math.inf
 
 
-def _spans(t: Sequence[float], holds: Sequence[bool | None], x: Axis) -> list[dict[str, str]]:
+def _spans_not_kept(t: Sequence[float], holds: Sequence[bool | None], x: Axis) -> list[dict[str, str]]:
     """Return the periods in which the rule is not kept or unknown; each extends by half a step on both sides."""
-    half, gap = _typical(t) / 2, 3 * _typical(t)
+    half, gap = _typical_step_s(t) / 2, 3 * _typical_step_s(t)
     runs: list[tuple[str, float, float]] = []
     for at, kept in zip(t, holds, strict=True):
         kind = {True: "", False: "fail", None: "unknown"}[kept]
@@ -106,11 +108,11 @@ def _spans(t: Sequence[float], holds: Sequence[bool | None], x: Axis) -> list[di
     for kind, a, b in runs:
         if kind:
             left, right = max(x.at(a - half), _LEFT), min(x.at(b + half), _RIGHT)
-            drawn.append({"kind": kind, "x": num(left), "w": num(max(right - left, 1.5))})
+            drawn.append({"kind": kind, "x": svg_number(left), "w": svg_number(max(right - left, 1.5))})
     return drawn
 
 
-def _words(row: Row, t: Sequence[float], unit: str | None) -> str:
+def _chart_words(row: Row, t: Sequence[float], unit: str | None) -> str:
     seen = [v for v in row["observed"] if v is not None]
     between = f"observed between {number(min(seen), unit)} and {number(max(seen), unit)}, "
     failed = sum(kept is False for kept in row["holds"])

@@ -9,7 +9,7 @@ import statistics
 from collections import Counter
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.report.html.svg import Axis, num, percent, round_step
+from drivelint.report.html.svg import Axis, percent, round_step, svg_number
 from drivelint.result.text import number, seconds
 
 if TYPE_CHECKING:
@@ -27,20 +27,20 @@ ASSERTION_TITLES: Final = (
 )
 """The conditions that the runtime assertions require, in the order of `overtake_record.stretches`."""
 _STAGES: Final = ("pulling_out", "passing", "cutting_in")
-_VERDICT: Final = {"nobody": "not_applicable"}
-_APART: Final = 20.0  # percent: the width of a label on a phone
-_THIN: Final = 0.6  # percent: the least width of a band
-_WORST: Final = ("fail", "unknown", "pass", "nobody")
-_ZONES_S: Final = (0.0, 0.5, 2.5)  # the spare time at which zones B, C and D begin
-_SHAPES: Final = ("circle", "square", "diamond", "triangle", "cross")
+_VERDICT_OF_ASSERTION: Final = {"nobody": "not_applicable"}
+_LABEL_DISTANCE_PERCENT: Final = 20.0  # percent: the width of a label on a phone
+_LEAST_BAND_PERCENT: Final = 0.6  # percent: the least width of a band
+_VERDICTS_WORST_FIRST: Final = ("fail", "unknown", "pass", "nobody")
+_ZONE_STARTS_S: Final = (0.0, 0.5, 2.5)  # the spare time at which zones B, C and D begin
+_DOT_SHAPES: Final = ("circle", "square", "diamond", "triangle", "cross")
 _PLOT_W, _PLOT_H = 560, 400
-_LABELS: Final = 10
+_MOST_LABELS: Final = 10
 _NOT_COMPUTED: Final = {"zone": None, "sda_m": None, "spare_m": None, "reason": "not computed"}
-_TIMES: Final = ("t0_ns", "t1_ns", "t2_ns", "t3_ns")
-FAR_M: Final = 2000.0
+_TIME_COLUMNS: Final = ("t0_ns", "t1_ns", "t2_ns", "t3_ns")
+MOST_SHOWN_SDA_M: Final = 2000.0
 """A longer safe distance ahead only shows that the ego was hardly faster than the vehicle being passed."""
 _BARS_W, _BARS_H = 560, 230
-_BINS: Final = 12
+_HISTOGRAM_BINS: Final = 12
 _PREFERRED_PROFILE: Final = "nominal"
 
 
@@ -56,58 +56,62 @@ def overtake_views(
         return None
     told = {(p["style"], p["profile"]) for row in records for p in row["profiles"]}
     profiles = [profile for _, profile in sorted(told)]
-    picked = sorted(records, key=_least_spare)[:MAX_OVERTAKES]
+    picked = sorted(records, key=_least_spare_sort_key)[:MAX_OVERTAKES]
     listed = sorted(picked, key=lambda r: (r["drive_id"], r["ego_id"], r["occurrence"]))
     return {
         "profiles": profiles,
         "what_ifs": sorted(set(profiles) - set(judged_profiles)),
-        "overtakes": [_overtake(row, profiles, starts.get(row["drive_id"]) or 0) for row in listed],
+        "overtakes": [_overtake_view(row, profiles, starts.get(row["drive_id"]) or 0) for row in listed],
         "n": len(records),
-        "zones": _zones(listed, profiles, starts),
+        "zones": _zone_plot(listed, profiles, starts),
     }
 
 
-def _least_spare(row: Row) -> tuple[float, str, str, int]:
-    spare = [max(p["spare_m"], -FAR_M) for p in row["profiles"] if p["spare_m"] is not None]
+def _least_spare_sort_key(row: Row) -> tuple[float, str, str, int]:
+    spare = [max(p["spare_m"], -MOST_SHOWN_SDA_M) for p in row["profiles"] if p["spare_m"] is not None]
     return min(spare, default=float("inf")), row["drive_id"], row["ego_id"], row["occurrence"]
 
 
-def _overtake(row: Row, profiles: Sequence[str], start_ns: int) -> dict[str, Any]:
+def _overtake_view(row: Row, profiles: Sequence[str], start_ns: int) -> dict[str, Any]:
     cells = {p["profile"]: p for p in row["profiles"]}
     stages = [stage for stage in _STAGES if any(s["stage"] == stage for s in row["stretches"])]
     clock = Axis(row["t0_ns"], max(row["t_end_ns"], row["t0_ns"] + 1), 0.0, 100.0)
     return {
         "row": row,
         "time": seconds(row["t0_ns"], start_ns),
-        "cells": [_cell(cells.get(profile, _NOT_COMPUTED)) for profile in profiles],
+        "cells": [_profile_cell(cells.get(profile, _NOT_COMPUTED)) for profile in profiles],
         "stages": stages,
-        "rows": [_assertion(n, row["stretches"], stages, clock) for n in range(len(ASSERTION_TITLES))]
+        "rows": [_assertion_row(n, row["stretches"], stages, clock) for n in range(len(ASSERTION_TITLES))]
         if stages
         else [],
-        "times": _marks(
-            [(clock.at(row[at]), f"{at[:2]} {(row[at] - start_ns) / 1e9:.1f}") for at in _TIMES if row[at] is not None]
+        "times": _axis_labels(
+            [
+                (clock.at(row[at]), f"{at[:2]} {(row[at] - start_ns) / 1e9:.1f}")
+                for at in _TIME_COLUMNS
+                if row[at] is not None
+            ]
         ),
-        "bounds": _bounds(row["stretches"], clock),
+        "bounds": _stage_spans(row["stretches"], clock),
     }
 
 
-def _cell(p: Row) -> Row:
-    """Return a profile's row with `is_far`: whether its safe distance ahead exceeds `FAR_M`, so that the page does not print it."""
-    return {**p, "is_far": p["sda_m"] is not None and p["sda_m"] > FAR_M}
+def _profile_cell(p: Row) -> Row:
+    """Return a profile's row with `is_far`: its safe distance ahead exceeds `MOST_SHOWN_SDA_M`, so the page does not print it."""
+    return {**p, "is_far": p["sda_m"] is not None and p["sda_m"] > MOST_SHOWN_SDA_M}
 
 
-def _marks(times: Sequence[tuple[float, str]]) -> list[tuple[str, str]]:
+def _axis_labels(times: Sequence[tuple[float, str]]) -> list[tuple[str, str]]:
     """Return positions and labels on the axis; labels that would overlap are joined at the position of the first."""
     kept: list[tuple[float, str]] = []
     for at, label in times:
-        if kept and at - kept[-1][0] < _APART:
+        if kept and at - kept[-1][0] < _LABEL_DISTANCE_PERCENT:
             kept[-1] = kept[-1][0], f"{kept[-1][1]}, {label}"
         else:
             kept.append((at, label))
     return [(percent(at), label) for at, label in kept]
 
 
-def _bounds(stretches: Sequence[Row], clock: Axis) -> list[tuple[str, str, str]]:
+def _stage_spans(stretches: Sequence[Row], clock: Axis) -> list[tuple[str, str, str]]:
     """Return the stages, each as name, position and width."""
     drawn = []
     for stage in _STAGES:
@@ -118,17 +122,17 @@ def _bounds(stretches: Sequence[Row], clock: Axis) -> list[tuple[str, str, str]]
     return drawn
 
 
-def _assertion(n: int, stretches: Sequence[Row], stages: Sequence[str], clock: Axis) -> dict[str, Any]:
+def _assertion_row(n: int, stretches: Sequence[Row], stages: Sequence[str], clock: Axis) -> dict[str, Any]:
     """Return assertion `n`: its verdict and greatest depth per stage, and its verdicts over time as bands in percent."""
     cells = []
     for stage in stages:
         mine = [(s["said"][n], s["worst_m"][n]) for s in stretches if s["stage"] == stage]
-        verdict = min((said for said, _ in mine), key=_WORST.index)
+        verdict = min((said for said, _ in mine), key=_VERDICTS_WORST_FIRST.index)
         deep = max((m for _, m in mine if m is not None), default=None)
-        cells.append((_VERDICT.get(verdict, verdict), deep))
+        cells.append((_VERDICT_OF_ASSERTION.get(verdict, verdict), deep))
     runs: list[list[Any]] = []
     for s in stretches:
-        said = _VERDICT.get(s["said"][n], s["said"][n])
+        said = _VERDICT_OF_ASSERTION.get(s["said"][n], s["said"][n])
         if runs and runs[-1][0] == said:
             runs[-1][2] = s["t_end_ns"]
         else:
@@ -136,18 +140,20 @@ def _assertion(n: int, stretches: Sequence[Row], stages: Sequence[str], clock: A
     ends = [start for _, start, _ in runs[1:]] + [runs[-1][2]]
     bands = []
     for (said, start, last), end in zip(runs, ends, strict=True):
-        a, b = clock.at(start), min(max(clock.at(max(last, end)), clock.at(start) + _THIN), 100.0)
-        bands.append((said, percent(min(a, 100.0 - _THIN)), percent(b - min(a, 100.0 - _THIN))))
+        a, b = clock.at(start), min(max(clock.at(max(last, end)), clock.at(start) + _LEAST_BAND_PERCENT), 100.0)
+        bands.append(
+            (said, percent(min(a, 100.0 - _LEAST_BAND_PERCENT)), percent(b - min(a, 100.0 - _LEAST_BAND_PERCENT)))
+        )
     return {"title": ASSERTION_TITLES[n], "cells": cells, "bands": bands}
 
 
-def _zones(records: Sequence[Row], profiles: Sequence[str], starts: Mapping[str, int]) -> dict[str, Any] | None:
+def _zone_plot(records: Sequence[Row], profiles: Sequence[str], starts: Mapping[str, int]) -> dict[str, Any] | None:
     """Return the zone plot: areas, axes, one dot per overtake and profile, names, and the closing speed assumed for the areas."""
     known = [
         (row, p)
         for row in records
         for p in row["profiles"]
-        if p["da_m"] is not None and p["sda_m"] is not None and p["sda_m"] <= FAR_M
+        if p["da_m"] is not None and p["sda_m"] is not None and p["sda_m"] <= MOST_SHOWN_SDA_M
     ]
     missing = sum(len(row["profiles"]) for row in records) - len(known)
     if not known:
@@ -156,16 +162,16 @@ def _zones(records: Sequence[Row], profiles: Sequence[str], starts: Mapping[str,
     x, y = Axis(0.0, far, 48.0, _PLOT_W - 12.0), Axis(0.0, far, _PLOT_H - 40.0, 10.0)
     closing = [p["spare_m"] / p["spare_s"] for _, p in known if p["spare_s"]]
     v = statistics.median(closing) if closing else 0.0
-    shapes = {profile: _SHAPES[min(n, len(_SHAPES) - 1)] for n, profile in enumerate(profiles)}
+    shapes = {profile: _DOT_SHAPES[min(n, len(_DOT_SHAPES) - 1)] for n, profile in enumerate(profiles)}
     rows = {id(row): row for row, _ in known}.values()
     return {
-        "areas": _areas(x, y, far, v),
+        "areas": _zone_areas(x, y, far, v),
         "x_ticks": x.ticks(7),
         "y_ticks": y.ticks(7),
         "dots": [
             {
-                "x": num(x.at(p["sda_m"])),
-                "y": num(y.at(p["da_m"])),
+                "x": svg_number(x.at(p["sda_m"])),
+                "y": svg_number(y.at(p["da_m"])),
                 "shape": shapes[p["profile"]],
                 "zone": p["zone"],
                 "title": f"{row['drive_id']} at {seconds(row['t0_ns'], starts.get(row['drive_id']))}, {p['profile']}: distance ahead "
@@ -173,7 +179,7 @@ def _zones(records: Sequence[Row], profiles: Sequence[str], starts: Mapping[str,
             }
             for row, p in known
         ],
-        "names": [_name(row, x, y) for row in rows] if len(rows) <= _LABELS else [],
+        "names": [_plot_label(row, x, y) for row in rows] if len(rows) <= _MOST_LABELS else [],
         "shapes": list(shapes.items()),
         "speed": number(v, "m/s"),
         "same_speed": bool(closing) and max(closing) - min(closing) < 0.05 * v,
@@ -181,22 +187,22 @@ def _zones(records: Sequence[Row], profiles: Sequence[str], starts: Mapping[str,
     }
 
 
-def _name(row: Row, x: Axis, y: Axis) -> tuple[str, str, str]:
+def _plot_label(row: Row, x: Axis, y: Axis) -> tuple[str, str, str]:
     """Return position and name of an overtake: at the right edge, above the height of its dots."""
     da = next(p["da_m"] for p in row["profiles"] if p["da_m"] is not None and p["sda_m"] is not None)
-    return num(x.end - 4), num(y.at(da) - 11), row["drive_id"]
+    return svg_number(x.end - 4), svg_number(y.at(da) - 11), row["drive_id"]
 
 
-def _areas(x: Axis, y: Axis, far: float, v: float) -> list[tuple[str, str, tuple[str, str] | None]]:
+def _zone_areas(x: Axis, y: Axis, far: float, v: float) -> list[tuple[str, str, tuple[str, str] | None]]:
     """Return the zones from bottom to top: name, path, and the position of its letter (None if the zone is too thin for it)."""
-    floors = [-far, *(v * s for s in _ZONES_S), 2 * far]
+    floors = [-far, *(v * s for s in _ZONE_STARTS_S), 2 * far]
     drawn: list[tuple[str, str, tuple[str, str] | None]] = []
     for zone, low, high in zip("ABCD", floors[:-1], floors[1:], strict=True):
         corners = [(0.0, low), (far, low + far), (far, high + far), (0.0, high)]
-        path = "M" + " ".join(f"{num(x.at(a))},{num(y.at(b))}" for a, b in corners) + "Z"
+        path = "M" + " ".join(f"{svg_number(x.at(a))},{svg_number(y.at(b))}" for a, b in corners) + "Z"
         thick = min(high, far) - max(low, 0.0) if zone != "A" else far
         a, b = (0.7 * far, 0.1 * far) if zone == "A" else (0.04 * far, 0.04 * far + (low + min(high, far)) / 2)
-        letter = (num(x.at(a)), num(y.at(b) + 6)) if thick > 0.03 * far and b < 0.97 * far else None
+        letter = (svg_number(x.at(a)), svg_number(y.at(b) + 6)) if thick > 0.03 * far and b < 0.97 * far else None
         drawn.append((zone, path, letter))
     return drawn
 
@@ -212,7 +218,7 @@ def overtaking_opportunities(records: Sequence[Row]) -> dict[str, Any] | None:
     profile = _PREFERRED_PROFILE if _PREFERRED_PROFILE in profiles else profiles[0]
     mine = [row for row in records if row["profile"] == profile]
     known = [row for row in mine if row["da_m"] is not None]
-    bars, x_ticks, y_ticks = _bars(known) if known else ([], [], [])
+    bars, x_ticks, y_ticks = _histogram_bars_and_ticks(known) if known else ([], [], [])
     return {
         "profile": profile,
         "n": len(mine),
@@ -231,9 +237,11 @@ def _zone_counts(profile: str, records: Sequence[Row]) -> tuple[str, list[tuple[
     return profile, known, unknown
 
 
-def _bars(opportunities: Sequence[Row]) -> tuple[list[dict[str, str]], list[tuple[str, str]], list[tuple[str, str]]]:
+def _histogram_bars_and_ticks(
+    opportunities: Sequence[Row],
+) -> tuple[list[dict[str, str]], list[tuple[str, str]], list[tuple[str, str]]]:
     far = max(row["da_m"] for row in opportunities)
-    width = round_step(max(far, 10.0) / _BINS)
+    width = round_step(max(far, 10.0) / _HISTOGRAM_BINS)
     n = int(far // width) + 1
     counts = [[0, 0] for _ in range(n)]
     for row in opportunities:
@@ -246,12 +254,12 @@ def _bars(opportunities: Sequence[Row]) -> tuple[list[dict[str, str]], list[tupl
         low, middle, high = y.at(0), y.at(taken), y.at(taken + passed)
         bars.append(
             {
-                "x": num(a + 1),
-                "w": num(b - a - 2),
-                "taken_y": num(middle),
-                "taken_h": num(low - middle),
-                "passed_y": num(high),
-                "passed_h": num(middle - high),
+                "x": svg_number(a + 1),
+                "w": svg_number(b - a - 2),
+                "taken_y": svg_number(middle),
+                "taken_h": svg_number(low - middle),
+                "passed_y": svg_number(high),
+                "passed_h": svg_number(middle - high),
                 "words": f"{k * width:g} to {(k + 1) * width:g} m: {taken} taken, {passed} not taken",
             }
         )

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any, Final
 import pyarrow.compute as pc
 
 from drivelint.report.outcome import headline
-from drivelint.report.worst_first import is_contact, moment_ns, sureness, worst_later
+from drivelint.report.worst_first import is_contact, moment_ns, sureness_rank, worst_time_words
 from drivelint.result import counts
 from drivelint.result.certainty import POSSIBLE, certainty
-from drivelint.result.text import closing, ego_name, measure, non_breaking, seconds
+from drivelint.result.text import closing_words, ego_name, measure, non_breaking, seconds
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -19,10 +19,10 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
     from drivelint.result.text import Row
 
-_MAX_NAMED_RULES: Final = 4
-_LONG_KM: Final = 100.0
-_STORY_DRIVES: Final = 6
-_STORY_PARTIES: Final = 6
+_MOST_NAMED_CONTACTS: Final = 4
+_LEAST_KM_FOR_RATES: Final = 100.0
+_MOST_SUMMARISED_DRIVES: Final = 6
+_MOST_NAMED_PARTIES: Final = 6
 
 
 def page_headline(result: Result) -> tuple[str, str, str]:
@@ -31,7 +31,7 @@ def page_headline(result: Result) -> tuple[str, str, str]:
     return told.kind, told.label, told.sentence[:1].upper() + told.sentence[1:]
 
 
-def contacts(result: Result, lines: Sequence[FindingLine], rules: Mapping[str, Row]) -> dict[str, Any] | None:
+def contact_summary(result: Result, lines: Sequence[FindingLine], rules: Mapping[str, Row]) -> dict[str, Any] | None:
     """Return the contacts of all findings, with their times; None if no finding is a contact. `lines`: the findings of the page.
 
     `named`: the first contacts in words, each with a link to its surest finding; `n_more`: the number of further contacts;
@@ -44,14 +44,16 @@ def contacts(result: Result, lines: Sequence[FindingLine], rules: Mapping[str, R
     met = counts.group_rows(touches, lambda row: (row["drive_id"], frozenset((row["ego_id"], row["object_id"]))))
     named = []
     for found in met.values():
-        first = min(found, key=sureness)
+        first = min(found, key=sureness_rank)
         who = ego_name(first["ego_id"]) + ("" if first["object_id"] is None else f" and object {first['object_id']}")
         # print the depth of the overlap: one centimetre may be an error of the recorder
         measured = [row for row in found if row["unit"] == "m" and row["observed"] is not None]
         worst = min(measured, key=lambda row: row["observed"], default=None)
-        later = "" if worst is None else worst_later(worst, rules, starts[worst["drive_id"]]).removeprefix("deepest")
+        later = (
+            "" if worst is None else worst_time_words(worst, rules, starts[worst["drive_id"]]).removeprefix("deepest")
+        )
         deep = "" if worst is None else f", {measure(-worst['observed'], 'm')} deep{non_breaking(later)}"
-        speed = "" if first["closing_mps"] is None else f", {closing(first['closing_mps'])}"
+        speed = "" if first["closing_mps"] is None else f", {closing_words(first['closing_mps'])}"
         where = f", {first['drive_id']}" if len(starts) > 1 else ""
         said = (
             f"{who} at {non_breaking(seconds(moment_ns(first, rules), starts[first['drive_id']]))}{speed}{deep}{where}"
@@ -62,13 +64,13 @@ def contacts(result: Result, lines: Sequence[FindingLine], rules: Mapping[str, R
         return None
     sure = not all(doubt for *_, doubt in named)
     return {
-        "named": [each[:2] for each in named[:_MAX_NAMED_RULES]],
-        "n_more": len(named[_MAX_NAMED_RULES:]),
+        "named": [each[:2] for each in named[:_MOST_NAMED_CONTACTS]],
+        "n_more": len(named[_MOST_NAMED_CONTACTS:]),
         "sure": sure,
     }
 
 
-def rates(result: Result, events: Sequence[Row]) -> dict[str, Any]:
+def finding_rates(result: Result, events: Sequence[Row]) -> dict[str, Any]:
     """Return, by severity, the number of findings, of drives with findings, and of findings per 100 km and per hour of driving.
 
     `events`: one finding of each event.
@@ -88,7 +90,7 @@ def rates(result: Result, events: Sequence[Row]) -> dict[str, Any]:
         for severity in counts.SEVERITIES
         if severity in found
     ]
-    return {"rows": rows, "per": km >= _LONG_KM and hours >= 1}
+    return {"rows": rows, "per": km >= _LEAST_KM_FOR_RATES and hours >= 1}
 
 
 def broken_rules(
@@ -98,7 +100,7 @@ def broken_rules(
 
     `worst`: the rule's worst finding on the page, None if the page shows none of its findings. `events`: one finding of each event.
     """
-    verdicts = counts.verdicts_by(result.verdicts, "rule_id")
+    verdicts = counts.verdict_counts_by(result.verdicts, "rule_id")
     shown = counts.group_rows(lines, lambda line: line.row["rule_id"])
     found = [
         {
@@ -107,20 +109,20 @@ def broken_rules(
             "n_drives": len({row["drive_id"] for row in rows}),
             "n_fail": verdicts[rule_id]["fail"],
             "n_judged": verdicts[rule_id]["fail"] + verdicts[rule_id]["pass"],
-            "worst": min(shown.get(rule_id, []), key=_margin, default=None),
+            "worst": min(shown.get(rule_id, []), key=_margin_of_line, default=None),
         }
         for rule_id, rows in counts.group_rows(events, lambda row: row["rule_id"]).items()
     ]
     return sorted(found, key=lambda b: (counts.SEVERITIES.index(b["rule"]["severity"]), -b["n"], b["rule"]["rule_id"]))
 
 
-def _margin(line: FindingLine) -> float:
+def _margin_of_line(line: FindingLine) -> float:
     return float("-inf") if line.row["margin"] is None else line.row["margin"]
 
 
-def verdicts_by_pack(result: Result) -> list[dict[str, Any]]:
+def pack_summaries(result: Result) -> list[dict[str, Any]]:
     """Return, for each pack, the number of its rules and of its verdicts of each kind."""
-    told = counts.verdicts_by_pack(result.rules, result.verdicts)
+    told = counts.verdict_counts_by_pack(result.rules, result.verdicts)
     rules = counts.group_rows(result.rules.select(["pack", "pack_title"]).to_pylist(), lambda row: row["pack"])
     return [
         {
@@ -150,13 +152,13 @@ def drive_summaries(sections: Sequence[Mapping[str, Any]], n_drives: int) -> lis
     `who`: the vehicles and people that the findings are about.
     """
     told = []
-    for section in sections if n_drives <= _STORY_DRIVES else ():
+    for section in sections if n_drives <= _MOST_SUMMARISED_DRIVES else ():
         who = [f"{party['name']} ({party['what']})" for party in section["parties"] if party["n"]]
         summary = {
             "drive_id": section["drive_id"],
             "file_name": section["file_name"],
-            "who": who[:_STORY_PARTIES],
-            "n_more": len(who[_STORY_PARTIES:]),
+            "who": who[:_MOST_NAMED_PARTIES],
+            "n_more": len(who[_MOST_NAMED_PARTIES:]),
             "moments": [moment for moment in section["moments"] if moment["leading"]],
         }
         told += [summary] if summary["moments"] else []

@@ -11,10 +11,10 @@ import pyarrow.compute as pc
 from drivelint.report.html import overview
 from drivelint.report.html.anchors import anchor
 from drivelint.report.html.baseline_status import finding_status, gate_summary
-from drivelint.report.html.explanations import glossary_entries, notes_on_logs
+from drivelint.report.html.explanations import glossary_entries, notes_on_known_logs
 from drivelint.report.html.incidents import finding_line, incidents, involved_actors, plan_views
-from drivelint.report.html.overtakes import FAR_M, overtake_views, overtaking_opportunities
-from drivelint.report.html.pictures import add_pictures, pictures_by_moment
+from drivelint.report.html.overtakes import MOST_SHOWN_SDA_M, overtake_views, overtaking_opportunities
+from drivelint.report.html.pictures import add_pictures, cameras_by_moment
 from drivelint.report.html.plan_view import actor_shapes
 from drivelint.report.html.reasons import (
     VerdictReason,
@@ -24,12 +24,12 @@ from drivelint.report.html.reasons import (
     verdict_reason,
 )
 from drivelint.report.html.replay import replays
-from drivelint.report.html.road import Road
+from drivelint.report.html.road import DrawnMaps
 from drivelint.report.html.timeline import empty_timeline, separate_shared_rules, timelines
-from drivelint.report.html.worst_moment import Evidence, finding_key, worst_moment
+from drivelint.report.html.worst_moment import MomentEvidence, finding_key, worst_moment
 from drivelint.report.inputs import input_notes
-from drivelint.report.outcome import one_per_event, rule_counts
-from drivelint.report.same_contact import same_contact
+from drivelint.report.outcome import one_per_event_and_status, rule_counts
+from drivelint.report.same_contact import findings_of_same_contact
 from drivelint.report.worst_first import worst_first
 from drivelint.result import counts
 from drivelint.result.counts import group_rows
@@ -48,10 +48,10 @@ MAX_FINDINGS: Final = 600
 """The page shows this many of the worst findings; the Parquet files contain all."""
 MAX_NEAR_MISSES: Final = 150
 """The page shows this many of the worst near misses."""
-MAX_PICTURES: Final = 150
+MAX_PLAN_VIEWS: Final = 150
 MAX_CHARTS: Final = 150
 """The page shows the measured values over time of this many of the worst findings and near misses."""
-MAX_DRIVES: Final = 60
+MAX_DRIVE_SECTIONS: Final = 60
 """This many drives get a section: drives with findings first, then drives with near misses, then drives with unknown verdicts."""
 MAX_UNFOLDED_DRIVES: Final = 3
 """If the result has at most this many drives, their sections are unfolded."""
@@ -59,7 +59,7 @@ MAX_UNFOLDED_DRIVES: Final = 3
 MAX_DETAILED_DRIVES: Final = 20
 """If the result has more drives, the timelines name the rules that were always kept instead of drawing them."""
 
-_NAMES: Final = {
+_VERDICT_WORDS: Final = {
     "fail": "not kept",
     "error": "error",
     "unknown": "unknown",
@@ -73,24 +73,24 @@ def content(result: Result) -> dict[str, Any]:
     rules = {row["rule_id"]: row for row in result.rules.to_pylist()}
     drives = result.drives.to_pylist()
     starts = {row["drive_id"]: row["t_start_ns"] or 0 for row in drives}
-    told = counts.verdicts_by(result.verdicts, "drive_id")
-    counted = one_per_event(result.gate, result.findings.to_pylist())
+    told = counts.verdict_counts_by(result.verdicts, "drive_id")
+    counted = one_per_event_and_status(result.gate, result.findings.to_pylist())
     by_drive = counts.group_rows(counted, lambda row: row["drive_id"])
     rows = _worst_rows(result, rules)
-    shown = _with_section(drives, [row["drive_id"] for _, row in rows], told)
+    shown = _drives_with_section(drives, [row["drive_id"] for _, row in rows], told)
     courses = {finding_key(row): row for row in result.courses.to_pylist()}
-    lines = _lines(result, rows, rules, starts, courses, linked_drives=shown)
+    lines = _finding_lines(result, rows, rules, starts, courses, linked_drives=shown)
     failed = [line for line in lines if line.kind == "fail"]
     moment: Callable[[Row], Key] = itemgetter("drive_id", "ego_id", "t_ns")
     scenes = {moment(row): row for row in result.scenes.to_pylist()}
     spaces = group_rows(result.spaces.to_pylist(), moment)
-    road = Road(result.lanes)
-    drawn = plan_views(lines, scenes, spaces, road, starts, max_views=MAX_PICTURES)
+    road = DrawnMaps(result.lanes)
+    drawn = plan_views(lines, scenes, spaces, road, starts, max_views=MAX_PLAN_VIEWS)
     listed = group_rows(lines, lambda line: line.row["drive_id"])
     anchors = {line.anchor: line.standing.filter_key if line.standing else "" for line in failed}
     verdicts, found = _rows_by_drive(result.verdicts, shown), _rows_by_drive(result.findings, shown)
     sections = [
-        _section(
+        _drive_section(
             row,
             timelines(row, verdicts.get(row["drive_id"], []), found.get(row["drive_id"], []), rules, anchors),
             incidents(listed.get(row["drive_id"], []), drawn, row),
@@ -100,11 +100,11 @@ def content(result: Result) -> dict[str, Any]:
         for row in drives
         if row["drive_id"] in shown
     ]
-    totals = counts.total(result.verdicts)
+    totals = counts.verdict_counts(result.verdicts)
     worst = worst_moment(
-        lines, Evidence(scenes, drawn, courses), {row["drive_id"]: row for row in drives}, result.folder
+        lines, MomentEvidence(scenes, drawn, courses), {row["drive_id"]: row for row in drives}, result.folder
     )
-    cameras = pictures_by_moment(result.pictures)
+    cameras = cameras_by_moment(result.pictures)
     add_pictures(worst, sections, cameras)
     broken, told_of = (
         overview.broken_rules(result, rules, failed, counted),
@@ -116,16 +116,16 @@ def content(result: Result) -> dict[str, Any]:
         "inputs": input_notes(result),
         "worst": worst,
         "pictured": bool(cameras),
-        "rates": overview.rates(result, counted),
-        "contacts": overview.contacts(result, failed, rules),
+        "rates": overview.finding_rates(result, counted),
+        "contacts": overview.contact_summary(result, failed, rules),
         "rule_counts": rule_counts(result),
         "counts": overview.verdict_shares(totals),
-        "names": _NAMES,
+        "names": _VERDICT_WORDS,
         "severities": list(counts.SEVERITIES),
         "passes": totals["pass"],
         "n_findings": len(counted),
         "n_rows": result.findings.num_rows,
-        "rows_sentence": counts.rows_of_findings(result.findings.to_pylist(), counted),
+        "rows_sentence": counts.extra_rows_sentence(result.findings.to_pylist(), counted),
         "n_overtakes": result.overtakes.num_rows,
         "gate": gate_summary(result.gate, [row["finding_id"] for row in counted]),
         "n_near": int(pc.sum(result.verdicts["near_miss"]).as_py() or 0),
@@ -133,12 +133,12 @@ def content(result: Result) -> dict[str, Any]:
         "broken": broken,
         "words": glossary_entries(overview.first_page_texts(broken, told_of, failed)),
         "several_egos": len({(line.row["drive_id"], line.row["ego_id"]) for line in lines}) > len(listed),
-        "notes": notes_on_logs([row for row in drives if row["status"] == "judged"]),
-        "packs": overview.verdicts_by_pack(result),
+        "notes": notes_on_known_logs([row for row in drives if row["status"] == "judged"]),
+        "packs": overview.pack_summaries(result),
         "stories": told_of,
         "findings": failed,
         "near": [line for line in lines if line.kind == "near"],
-        "filters": _filters(lines, rules),
+        "filters": _filter_choices(lines, rules),
         "not_judged": [row for row in drives if row["status"] == "not_judged"],
         "open": reason_groups(result.verdicts, {rule_id: rule["title"] for rule_id, rule in rules.items()}),
         "duration_s": sum(row["duration_s"] or 0.0 for row in drives),
@@ -162,7 +162,7 @@ def content(result: Result) -> dict[str, Any]:
         "tiles": road.tiles() if drawn else [],
         "shapes": actor_shapes(scenes[at] for at in drawn),
         "replays": replays([scenes[at] for at in drawn], spaces, starts, road),
-        "far_m": FAR_M,
+        "far_m": MOST_SHOWN_SDA_M,
         "overtakes": overtake_views(
             result.overtakes.to_pylist(), starts, {p for ps in result.rules["profiles"].to_pylist() for p in ps}
         ),
@@ -182,7 +182,7 @@ def _worst_rows(result: Result, rules: Mapping[str, Row]) -> list[tuple[str, Row
     return [*(("fail", row) for row in failed), *(("near", row) for row in close)]
 
 
-def _lines(
+def _finding_lines(
     result: Result,
     rows: Sequence[tuple[str, Row]],
     rules: Mapping[str, Row],
@@ -192,52 +192,52 @@ def _lines(
     linked_drives: set[str],
 ) -> list[FindingLine]:
     """Return the rows with their texts; rows of drives in `linked_drives` get links."""
-    same = same_contact((row for kind, row in rows if kind == "fail"), rules)
+    same = findings_of_same_contact((row for kind, row in rows if kind == "fail"), rules)
     return [
         finding_line(
             row,
             kind,
             rules[row["rule_id"]],
             starts.get(row["drive_id"], 0),
-            linked=row["drive_id"] in linked_drives,
-            steps=courses.get(finding_key(row)) if n < MAX_CHARTS else None,
+            has_section=row["drive_id"] in linked_drives,
+            course=courses.get(finding_key(row)) if n < MAX_CHARTS else None,
             status=finding_status(result.gate, row["finding_id"]) if kind == "fail" else None,
-            same=same.get(row["finding_id"], ()) if kind == "fail" else (),
+            same_contact_findings=same.get(row["finding_id"], ()) if kind == "fail" else (),
         )
         for n, (kind, row) in enumerate(rows)
     ]
 
 
-def _with_section(
-    drives: Sequence[Row], worst: Iterable[str], verdict_counts: Mapping[str, Mapping[str, int]]
+def _drives_with_section(
+    drives: Sequence[Row], worst_drives: Iterable[str], verdict_counts: Mapping[str, Mapping[str, int]]
 ) -> set[str]:
-    """Return the ids of at most `MAX_DRIVES` drives that get a section.
+    """Return the ids of at most `MAX_DRIVE_SECTIONS` drives that get a section.
 
-    Drives in `worst` are preferred, in that order, then drives with unknown verdicts or errors.
+    Drives in `worst_drives` are preferred, in that order, then drives with unknown verdicts or errors.
     """
-    place = {drive_id: n for n, drive_id in enumerate(dict.fromkeys(worst))}
+    place = {drive_id: n for n, drive_id in enumerate(dict.fromkeys(worst_drives))}
 
-    def weight(row: Row) -> tuple[int, int]:
+    def sort_key(row: Row) -> tuple[int, int]:
         verdicts = verdict_counts[row["drive_id"]]
         if row["drive_id"] in place:
             return 0, place[row["drive_id"]]
         return (1, 0) if verdicts["unknown"] or verdicts["error"] else (2, 0)
 
     judged = [row for row in drives if row["status"] == "judged"]
-    return {row["drive_id"] for row in sorted(judged, key=weight)[:MAX_DRIVES]}
+    return {row["drive_id"] for row in sorted(judged, key=sort_key)[:MAX_DRIVE_SECTIONS]}
 
 
-def _rows_by_drive(rows: pa.Table, drives: set[str]) -> dict[str, list[Row]]:
-    mine = rows.filter(pc.is_in(rows["drive_id"], value_set=pa.array(sorted(drives), pa.string())))
+def _rows_by_drive(rows: pa.Table, drive_ids: set[str]) -> dict[str, list[Row]]:
+    mine = rows.filter(pc.is_in(rows["drive_id"], value_set=pa.array(sorted(drive_ids), pa.string())))
     return group_rows(mine.to_pylist(), lambda row: row["drive_id"])
 
 
-def _filters(lines: Sequence[FindingLine], rules: Mapping[str, Row]) -> dict[str, list[tuple[str, str]]]:
+def _filter_choices(lines: Sequence[FindingLine], rules: Mapping[str, Row]) -> dict[str, list[tuple[str, str]]]:
     """Return the choices of each filter of the page as pairs of value and label."""
     severities = {rule["severity"] for rule in rules.values()}
     drives = sorted({line.row["drive_id"] for line in lines})
     return {
-        "verdict": [(v, _NAMES.get(v, "near miss")) for v in ("fail", "near", "unknown", "pass", "error")],
+        "verdict": [(v, _VERDICT_WORDS.get(v, "near miss")) for v in ("fail", "near", "unknown", "pass", "error")],
         "severity": [(s, s) for s in counts.SEVERITIES if s in severities],
         "pack": [(p, p) for p in sorted({rule["pack"] for rule in rules.values()})],
         "sure": sorted(
@@ -248,20 +248,25 @@ def _filters(lines: Sequence[FindingLine], rules: Mapping[str, Row]) -> dict[str
     }
 
 
-def _section(
-    row: Row, tracks: Sequence[Timeline], moments: Sequence[Row], involved: Sequence[dict[str, Any]], *, unfolded: bool
+def _drive_section(
+    row: Row,
+    ego_timelines: Sequence[Timeline],
+    moments: Sequence[Row],
+    actors: Sequence[dict[str, Any]],
+    *,
+    unfolded: bool,
 ) -> dict[str, Any]:
     """Return the section of a drive: its row, the actors involved, and the timeline and incidents of each ego."""
     weight = {"error": 0, "warning": 1, "info": 2}
-    folded, tracks = separate_shared_rules(tracks)
-    without = sorted({m["ego_id"] for m in moments} - {t.ego_id for t in tracks})
-    tracks = [*tracks, *(empty_timeline(ego_id) for ego_id in without)]
-    egos = [{"timeline": t, "moments": [m for m in moments if m["ego_id"] == t.ego_id]} for t in tracks]
+    folded, ego_timelines = separate_shared_rules(ego_timelines)
+    without = sorted({m["ego_id"] for m in moments} - {t.ego_id for t in ego_timelines})
+    ego_timelines = [*ego_timelines, *(empty_timeline(ego_id) for ego_id in without)]
+    egos = [{"timeline": t, "moments": [m for m in moments if m["ego_id"] == t.ego_id]} for t in ego_timelines]
     missing = group_rows(row["not_judged"], lambda gap: gap["reason"])
     return {
         **row,
         "folded": folded,
-        "parties": involved,
+        "parties": actors,
         "missing": [
             {"reason": why, "n": len(gaps), "egos": ", ".join(gap["ego_id"] for gap in gaps)}
             for why, gaps in missing.items()
@@ -273,9 +278,9 @@ def _section(
     }
 
 
-def _rules(result: Result, rules: Mapping[str, Row]) -> list[dict[str, Any]]:
+def _rules_with_counts(result: Result, rules: Mapping[str, Row]) -> list[dict[str, Any]]:
     """Return the rules with their counts and the worst margin of any verdict."""
-    told = counts.verdicts_by(result.verdicts, "rule_id")
+    told = counts.verdict_counts_by(result.verdicts, "rule_id")
     worst = result.verdicts.group_by(["rule_id"], use_threads=False).aggregate([("margin", "min")]).to_pylist()
     margins = {row["rule_id"]: row["margin_min"] for row in worst}
     return [
@@ -290,13 +295,13 @@ def _rules(result: Result, rules: Mapping[str, Row]) -> list[dict[str, Any]]:
 
 def _rule_groups(result: Result, rules: Mapping[str, Row]) -> list[dict[str, Any]]:
     """Return the rules by pack: first the rules that were judged in at least one drive, then the others, folded by reason."""
-    why = _first_reason(result.verdicts)
+    why = _reasons_of_idle_rules(result.verdicts)
     order = ("not_applicable", "unknown")
     groups = []
-    for pack, mine in group_rows(_rules(result, rules), lambda rule: rule["pack"]).items():
+    for pack, mine in group_rows(_rules_with_counts(result, rules), lambda rule: rule["pack"]).items():
         judged = sum(bool(rule["verdicts"]["pass"] + rule["verdicts"]["fail"]) for rule in mine)
         idle = [(*why[rule["rule_id"]], rule) for rule in mine if rule["rule_id"] in why]
-        folds = group_rows(idle, lambda item: (item[0], item[1].kind, _said_of_idle(item[2]["verdicts"])))
+        folds = group_rows(idle, lambda item: (item[0], item[1].kind, _words_on_idle_rule(item[2]["verdicts"])))
         weightiest = sorted(folds.items(), key=lambda item: (order.index(item[0][0]), -len(item[1]), *item[0][1:]))
         groups.append(
             {
@@ -317,14 +322,14 @@ def _rule_groups(result: Result, rules: Mapping[str, Row]) -> list[dict[str, Any
     return groups
 
 
-def _said_of_idle(verdict_counts: Mapping[str, int]) -> str:
+def _words_on_idle_rule(verdict_counts: Mapping[str, int]) -> str:
     """Return in words why a rule was judged in no drive; it may be not applicable for some egos and unknown for others."""
     if not verdict_counts["unknown"]:
         return "never applied"
     return "not applicable or not judged" if verdict_counts["not_applicable"] else "not judged"
 
 
-def _first_reason(verdicts: pa.Table) -> dict[str, tuple[str, VerdictReason]]:
+def _reasons_of_idle_rules(verdicts: pa.Table) -> dict[str, tuple[str, VerdictReason]]:
     """Return verdict and reason of the rules that were judged in no drive, because they never applied or data are missing."""
     rows = counts.distinct_rows(verdicts, ["rule_id", "verdict", "reason_code", "cause_code", "reason"])
     rows.sort(key=lambda r: (r["rule_id"], r["verdict"] == "not_applicable", -r["count_all"], r["reason"]))

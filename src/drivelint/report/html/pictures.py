@@ -14,11 +14,11 @@ if TYPE_CHECKING:
 
 Moment = tuple[str, int]
 _MINUS: Final = "\u2212"
-_SAME_NS: Final = 5_000_000
+_SAME_MOMENT_NS: Final = 5_000_000
 """A frame nearer to the moment than this is labelled "at the moment": times are printed in hundredths of a second."""
 
 
-def pictures_by_moment(pictures: pa.Table) -> dict[Moment, list[dict[str, Any]]]:
+def cameras_by_moment(pictures: pa.Table) -> dict[Moment, list[dict[str, Any]]]:
     """Return, by drive and time, the cameras, each with its pictures in time order. `pictures`: the table `picture`."""
     rows = pictures.to_pylist()
     shown: dict[Moment, list[dict[str, Any]]] = {}
@@ -26,7 +26,10 @@ def pictures_by_moment(pictures: pa.Table) -> dict[Moment, list[dict[str, Any]]]
         rows, lambda row: (row["drive_id"], row["t_ns"], row["camera_no"], row["camera"])
     ).items():
         shown.setdefault((drive_id, t_ns), []).append(
-            {"camera": camera, "shots": [_shot(row) for row in sorted(mine, key=lambda row: row["t_frame_ns"])]}
+            {
+                "camera": camera,
+                "shots": [_shot_for_page(row) for row in sorted(mine, key=lambda row: row["t_frame_ns"])],
+            }
         )
     return shown
 
@@ -54,7 +57,7 @@ def add_pictures(
                 each["cameras"], anchors[moment] = cameras[moment], each["anchor"]
 
 
-def _shot(row: dict[str, Any]) -> dict[str, Any]:
+def _shot_for_page(row: dict[str, Any]) -> dict[str, Any]:
     return {
         "src": "data:image/jpeg;base64," + base64.b64encode(row["jpeg"]).decode(),
         "width": row["width_px"],
@@ -66,6 +69,6 @@ def _shot(row: dict[str, Any]) -> dict[str, Any]:
 
 def _offset_text(off_ns: int) -> str:
     """Return in words when a frame was taken, relative to the moment."""
-    if abs(off_ns) < _SAME_NS:
+    if abs(off_ns) < _SAME_MOMENT_NS:
         return "at the moment"
     return f"{'+' if off_ns > 0 else _MINUS}{abs(off_ns) / 1e9:.2f} s"

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from drivelint.result.text import Row
 
 MAX_REASONS: Final = 60
-_OF_THE_MOMENT: Final = {"missing_step", "applies_unknown", "anchor_unknown", "reference_time_unknown"}
+_CODES_OF_MOMENT: Final = {"missing_step", "applies_unknown", "anchor_unknown", "reference_time_unknown"}
 
 
 class VerdictReason(NamedTuple):
@@ -32,12 +32,12 @@ def verdict_reason(row: Row) -> VerdictReason:
     return VerdictReason((row["reason_code"], row["cause_code"] or "", text), row["reason"])
 
 
-def summarise_reasons(reasons_given: Iterable[VerdictReason]) -> str:
+def summarise_reasons(reasons: Iterable[VerdictReason]) -> str:
     """Return the shortest reason as text, with the number of other reasons; the text does not name the verdict.
 
     Among reasons of equal length, the alphabetically first is chosen, so that the order of the rows does not matter.
     """
-    first, *others = sorted(set(reasons_given), key=lambda reason: (len(reason.text), reason.text, reason.kind))
+    first, *others = sorted(set(reasons), key=lambda reason: (len(reason.text), reason.text, reason.kind))
     alike = sum(reason.kind == first.kind for reason in others)
     more = [f"{alike} similar"] if alike else []
     more += [plural(len(others) - alike, "other reason")] if len(others) > alike else []
@@ -47,7 +47,7 @@ def summarise_reasons(reasons_given: Iterable[VerdictReason]) -> str:
 
 def can_be_provided(code: str) -> bool:
     """Return whether a log, a map or an option could provide the missing signal or condition."""
-    return code not in _OF_THE_MOMENT and (code.startswith("missing_") or code.endswith("_unknown"))
+    return code not in _CODES_OF_MOMENT and (code.startswith("missing_") or code.endswith("_unknown"))
 
 
 def reason_groups(verdicts: pa.Table, titles: Mapping[str, str]) -> list[dict[str, Any]]:
@@ -56,7 +56,7 @@ def reason_groups(verdicts: pa.Table, titles: Mapping[str, str]) -> list[dict[st
     Reasons that the user can remove by providing data come first, then the most frequent.
     """
     keys = ["verdict", "reason_code", "cause_code", "reason", "rule_id", "drive_id"]
-    rows = counts.distinct_rows(counts.undecided(verdicts), keys)
+    rows = counts.distinct_rows(counts.undecided_verdicts(verdicts), keys)
     groups = counts.group_rows(rows, lambda row: (row["verdict"], verdict_reason(row).kind))
     found = [
         {

@@ -9,32 +9,32 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from markupsafe import Markup
 
-from drivelint.report.html.svg import polygon
+from drivelint.report.html.svg import polygon_path
 from drivelint.result.counts import group_rows
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from drivelint.report.html.road import Road
+    from drivelint.report.html.road import DrawnMaps
     from drivelint.result.text import Row
 
     Key = tuple[str, str, int]
 
-MAX_POINTS: Final = 60_000
+MAX_REPLAY_POINTS: Final = 60_000
 """Positions of actors in the page; further drives are shown without a replay."""
-_TICK_NS: Final = 10_000_000
-_CM: Final = 100
+_NS_PER_CENTISECOND: Final = 10_000_000
+_CM_PER_M: Final = 100
 
 
 def centiseconds(t_ns: int, start_ns: int) -> int:
     """Return a time in hundredths of a second since the drive's start, the unit of the page's script."""
-    return round((t_ns - start_ns) / _TICK_NS)
+    return round((t_ns - start_ns) / _NS_PER_CENTISECOND)
 
 
 def replays(
-    scenes: Iterable[Row], spaces: Mapping[Key, Sequence[Row]], starts: Mapping[str, int], road: Road
+    scenes: Iterable[Row], spaces: Mapping[Key, Sequence[Row]], starts: Mapping[str, int], road: DrawnMaps
 ) -> dict[str, Markup]:
-    """Return the replay of each drive as JSON for the page's script, up to `MAX_POINTS` points in total.
+    """Return the replay of each drive as JSON for the page's script, up to `MAX_REPLAY_POINTS` points in total.
 
     `a`: actor -> times, x, y (cm from the map's origin) and heading (centirad), each as its first value and then differences;
     `s`: ego -> time -> actor -> SVG path of its danger space in the drawn units of `road`.
@@ -44,39 +44,42 @@ def replays(
     for drive_id, rows in group_rows(scenes, lambda scene: scene["drive_id"]).items():
         start = starts.get(drive_id) or 0
         lanes = road.lanes_of(rows[0]["environment_id"])
-        tracks = _tracks(rows)
+        tracks = _positions_by_actor(rows)
         n += sum(len(track) for track in tracks.values())
-        if n > MAX_POINTS:
+        if n > MAX_REPLAY_POINTS:
             break
         actors = {
-            actor: _columns(sorted(track.items()), start, lanes.origin) for actor, track in sorted(tracks.items())
+            actor: _columns_of_differences(sorted(track.items()), start, lanes.origin)
+            for actor, track in sorted(tracks.items())
         }
         rings: dict[str, dict[int, dict[str, str]]] = {}
         for (drive, ego, t_ns), around in spaces.items():
             if drive == drive_id:
                 rings.setdefault(ego, {})[centiseconds(t_ns, start)] = {
-                    ring["actor_id"]: polygon(np.rint(lanes.to_units(np.column_stack([ring["x_m"], ring["y_m"]]))))
+                    ring["actor_id"]: polygon_path(
+                        np.rint(lanes.to_drawn_units(np.column_stack([ring["x_m"], ring["y_m"]])))
+                    )
                     for ring in around
                 }
         told[drive_id] = _json({"a": actors, "s": rings})
     return told
 
 
-def _tracks(scenes: Sequence[Row]) -> dict[str, dict[int, tuple[float, float, float]]]:
+def _positions_by_actor(scenes: Sequence[Row]) -> dict[str, dict[int, tuple[float, float, float]]]:
     tracks: dict[str, dict[int, tuple[float, float, float]]] = defaultdict(dict)
     for actor in (actor for scene in scenes for actor in scene["actors"]):
         tracks[actor["actor_id"]] |= {p["t_ns"]: (p["x_m"], p["y_m"], p["yaw_rad"] or 0.0) for p in actor["path"] or []}
     return tracks
 
 
-def _columns(
-    track: Sequence[tuple[int, tuple[float, float, float]]], start: int, origin: tuple[float, ...]
+def _columns_of_differences(
+    track: Sequence[tuple[int, tuple[float, float, float]]], start_ns: int, origin: tuple[float, ...]
 ) -> list[list[int]]:
     if not track:
         return [[], [], [], []]
     x, y, yaw = np.array([place for _, place in track]).T
-    t = np.array([centiseconds(t_ns, start) for t_ns, _ in track])
-    columns = (t, (x - origin[0]) * _CM, (y - origin[1]) * _CM, np.unwrap(yaw) * 100)
+    t = np.array([centiseconds(t_ns, start_ns) for t_ns, _ in track])
+    columns = (t, (x - origin[0]) * _CM_PER_M, (y - origin[1]) * _CM_PER_M, np.unwrap(yaw) * 100)
     return [np.diff(np.rint(c).astype(np.int64), prepend=0).tolist() for c in columns]
 
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 import numpy as np
 import shapely
 
-from drivelint.report.html.plan_view import corners
-from drivelint.report.html.svg import Axis, axis_that_decides, num
+from drivelint.report.html.plan_view import box_corners_m
+from drivelint.report.html.svg import Axis, axis_for_deciding_values, svg_number
 from drivelint.result.text import brief_id, ego_name, number
 
 if TYPE_CHECKING:
@@ -19,14 +19,14 @@ if TYPE_CHECKING:
 WIDTH: Final = 600
 LEFT, RIGHT = 46.0, WIDTH - 8.0
 _HEIGHT, _HEAD, _FOOT = 46.0, 17.0, 18.0  # of a strip, of the text above it, of the time axis
-_HOLE_NS: Final = 1_000_000_000
-_LEAST: Final = 3
+_MOST_JOINED_NS: Final = 1_000_000_000
+_LEAST_VALUES: Final = 3
 """The least number of values for which a strip is drawn."""
-_CHAR: Final = 6.6
+_CHAR_WIDTH: Final = 6.6
 """The greatest average width of a character above a strip, over all fonts of the page."""
 
 
-class Series(NamedTuple):
+class StripLine(NamedTuple):
     """One line of a strip; `kind`: ego, met (the other actor) or limit. At a value of None the line is interrupted."""
 
     kind: str
@@ -44,41 +44,41 @@ def strips(scene: Row, finding: Row, course: Row | None, observes: str | None, s
     ego = scene["actors"][0]
     way = ego["path"] or []
     met = next((a for a in scene["actors"][1:] if a["actor_id"] == finding["object_id"] and a["path"]), None)
-    if len(way) < _LEAST:
+    if len(way) < _LEAST_VALUES:
         return None
     t = [point["t_ns"] for point in way]
     x = Axis(t[0], t[-1], LEFT, RIGHT)
     who = ([("met", met)] if met else []) + [("ego", ego)]  # drawn in this order
-    drawn: list[tuple[str, str, list[Series]]] = [
-        (title, unit, [_series(kind, actor, column) for kind, actor in who])
+    drawn: list[tuple[str, str, list[StripLine]]] = [
+        (title, unit, [_line_of_actor(kind, actor, column) for kind, actor in who])
         for title, unit, column in (
             ("speed", "m/s", "speed_mps"),
             ("acceleration", "m/s2", "accel_mps2"),
             ("offset from the lane's centre, left positive", "m", "d_m"),
         )
     ]
-    measured = course is not None and sum(value is not None for value in course["observed"]) >= _LEAST
+    measured = course is not None and sum(value is not None for value in course["observed"]) >= _LEAST_VALUES
     is_gap = measured and finding["unit"] == "m"
-    if met and not is_gap and (gap := gap_series(ego, met)) is not None:
+    if met and not is_gap and (gap := box_distance_line(ego, met)) is not None:
         drawn.append(("distance from box to box", "m", [gap]))
     if measured and course is not None:
         lines = [
-            Series("limit", "required", course["t_ns"], course["required"]),
-            Series("ego", "observed", course["t_ns"], course["observed"]),
+            StripLine("limit", "required", course["t_ns"], course["required"]),
+            StripLine("ego", "observed", course["t_ns"], course["observed"]),
         ]
         drawn.append((observes or "what the rule measures", finding["unit"] or "", lines))
-    kept = [each for each in drawn if any(sum(v is not None for v in line.values) >= _LEAST for line in each[2])]
+    kept = [each for each in drawn if any(sum(v is not None for v in line.values) >= _LEAST_VALUES for line in each[2])]
     found = [
         _strip(n, *each, finding["t_worst_ns"], x=x, course=course if each[2][0].kind == "limit" else None)
         for n, each in enumerate(kept)
     ]
     height = len(found) * (_HEIGHT + _HEAD) + _FOOT
     return {
-        "height": num(height),
-        "bottom": num(height - _FOOT),
+        "height": svg_number(height),
+        "bottom": svg_number(height - _FOOT),
         "strips": found,
-        "t_ticks": _seconds(x, start_ns).ticks(9),
-        "at": num(x.at(finding["t_worst_ns"])),
+        "t_ticks": _axis_in_seconds(x, start_ns).ticks(9),
+        "at": svg_number(x.at(finding["t_worst_ns"])),
         "t0": round((t[0] - start_ns) / 1e7),
         "t1": round((t[-1] - start_ns) / 1e7),
         "words": "; ".join(f"{each['title']} {each['range']}" for each in found),
@@ -87,61 +87,63 @@ def strips(scene: Row, finding: Row, course: Row | None, observes: str | None, s
     }
 
 
-def _seconds(x: Axis, start_ns: int) -> Axis:
+def _axis_in_seconds(x: Axis, start_ns: int) -> Axis:
     return Axis((x.low - start_ns) / 1e9, (x.high - start_ns) / 1e9, x.start, x.end)
 
 
-def _series(kind: str, actor: Row, column: str) -> Series:
+def _line_of_actor(kind: str, actor: Row, column: str) -> StripLine:
     short = brief_id(actor["actor_id"])
     name = ego_name(short) if kind == "ego" else f"object {short}"
-    return Series(kind, name, [point["t_ns"] for point in actor["path"]], [point[column] for point in actor["path"]])
+    return StripLine(kind, name, [point["t_ns"] for point in actor["path"]], [point[column] for point in actor["path"]])
 
 
-def gap_series(ego: Row, met: Row) -> Series | None:
+def box_distance_line(ego: Row, met: Row) -> StripLine | None:
     """Return the distance between two boxes at the times that both paths contain; None if a box's size is unknown."""
     if any(actor[side] is None for actor in (ego, met) for side in ("length_m", "width_m")):
         return None
     ways = [{point["t_ns"]: actor | point for point in actor["path"]} for actor in (ego, met)]
     t = sorted(ways[0].keys() & ways[1].keys())
-    a, b = (shapely.polygons(np.array([corners(way[at]) for at in t])) if t else np.array([]) for way in ways)
-    return Series("ego", "distance", t, shapely.distance(a, b).tolist())
+    a, b = (shapely.polygons(np.array([box_corners_m(way[at]) for at in t])) if t else np.array([]) for way in ways)
+    return StripLine("ego", "distance", t, shapely.distance(a, b).tolist())
 
 
 def _strip(
-    n: int, title: str, unit: str, lines: Sequence[Series], worst_ns: int, *, x: Axis, course: Row | None
+    n: int, title: str, unit: str, lines: Sequence[StripLine], worst_ns: int, *, x: Axis, course: Row | None
 ) -> dict[str, Any]:
     """Return one strip: its frame, the axis of values, the lines, and the extreme values that the frame cuts off."""
     top = n * (_HEIGHT + _HEAD) + _HEAD
-    inside = [v for line in lines for t, v in zip(line.t_ns, line.values, strict=True) if v is not None and _in(x, t)]
+    inside = [
+        v for line in lines for t, v in zip(line.t_ns, line.values, strict=True) if v is not None and _is_on_axis(x, t)
+    ]
     inside = inside or [v for line in lines for v in line.values if v is not None]
-    y, cut = axis_that_decides(inside, _deciding(lines, course, worst_ns), top + _HEIGHT, top)
+    y, cut = axis_for_deciding_values(inside, _deciding_values(lines, course, worst_ns), top + _HEIGHT, top)
     cut_off = f"line cut off: the value goes {' and '.join(f'to {number(v, unit)}' for v in cut)}" if cut else ""
-    at_worst = _at_worst(lines, worst_ns)
+    at_worst = _values_at_worst_text(lines, worst_ns)
     words = f"{title}, {unit} {f'({cut_off}) ' if cut else ''}{at_worst}"
-    beside = len(words) * _CHAR <= RIGHT - LEFT
+    beside = len(words) * _CHAR_WIDTH <= RIGHT - LEFT
     return {
         "title": title,
         "unit": unit,
-        "top": num(top),
-        "label_y": num(top - 5),
-        "value_y": num(top - 5 if beside else top + 11),  # below the title if the line has no room for both
-        "height": num(_HEIGHT),
-        "bottom": num(top + _HEIGHT),
-        "zero": num(y.at(0.0)) if y.low < 0 < y.high else "",
+        "top": svg_number(top),
+        "label_y": svg_number(top - 5),
+        "value_y": svg_number(top - 5 if beside else top + 11),  # below the title if the line has no room for both
+        "height": svg_number(_HEIGHT),
+        "bottom": svg_number(top + _HEIGHT),
+        "zero": svg_number(y.at(0.0)) if y.low < 0 < y.high else "",
         "ticks": y.ticks(4),
-        "lines": [(line.kind, _path(line, x, y)) for line in lines],
+        "lines": [(line.kind, _line_path(line, x, y)) for line in lines],
         "at_worst": at_worst,
         "cut": cut_off,
         "range": f"from {number(min(inside), unit)} to {number(max(inside), unit)}",
-        "spans": [] if course is None else _failing(course, x),
+        "spans": [] if course is None else _failing_spans(course, x),
     }
 
 
-def _in(x: Axis, t_ns: int) -> bool:
+def _is_on_axis(x: Axis, t_ns: int) -> bool:
     return x.low <= t_ns <= x.high
 
 
-def _deciding(lines: Sequence[Series], course: Row | None, worst_ns: int) -> list[float]:
+def _deciding_values(lines: Sequence[StripLine], course: Row | None, worst_ns: int) -> list[float]:
     """Return the values that decide whether a rule was kept: the values at the worst step, and the required values that were not met."""
     if course is None:
         return []
@@ -150,7 +152,7 @@ def _deciding(lines: Sequence[Series], course: Row | None, worst_ns: int) -> lis
     return [value for value in (*(line.values[at] for line in lines), *limits) if value is not None]
 
 
-def _at_worst(lines: Sequence[Series], worst_ns: int) -> str:
+def _values_at_worst_text(lines: Sequence[StripLine], worst_ns: int) -> str:
     """Return the values at the worst step in words, without the unit, which the strip's title contains."""
     told = []
     for line in lines:
@@ -161,25 +163,27 @@ def _at_worst(lines: Sequence[Series], worst_ns: int) -> str:
     return ", ".join(reversed(told))
 
 
-def _failing(course: Row, x: Axis) -> list[tuple[str, str]]:
+def _failing_spans(course: Row, x: Axis) -> list[tuple[str, str]]:
     """Return the periods in which the rule was not kept, each as position and width."""
     runs: list[list[int]] = []
     for t, kept in zip(course["t_ns"], course["holds"], strict=True):
-        if kept is False and runs and t - runs[-1][1] <= _HOLE_NS and runs[-1][2]:
+        if kept is False and runs and t - runs[-1][1] <= _MOST_JOINED_NS and runs[-1][2]:
             runs[-1][1] = t
         elif kept is False:
             runs.append([t, t, 1])
         elif runs:
             runs[-1][2] = 0
     spans = [(max(x.at(a), LEFT), min(x.at(b), RIGHT)) for a, b, _ in runs if a <= x.high and b >= x.low]
-    return [(num(a), num(max(b - a, 2.0))) for a, b in spans]
+    return [(svg_number(a), svg_number(max(b - a, 2.0))) for a, b in spans]
 
 
-def _path(line: Series, x: Axis, y: Axis) -> str:
+def _line_path(line: StripLine, x: Axis, y: Axis) -> str:
     """Return the SVG path through the values, interrupted where a value is None or more than a second is missing."""
     parts, last = [], None
     for t, value in zip(line.t_ns, line.values, strict=True):
         if value is not None:
-            parts.append(f"{'M' if last is None or t - last > _HOLE_NS else 'L'}{num(x.at(t))},{num(y.at(value))}")
+            parts.append(
+                f"{'M' if last is None or t - last > _MOST_JOINED_NS else 'L'}{svg_number(x.at(t))},{svg_number(y.at(value))}"
+            )
         last = t if value is not None else None
     return "".join(parts)

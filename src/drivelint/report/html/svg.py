@@ -19,7 +19,7 @@ _LEAST_SPAN_SHARE: Final = 0.01
 """The distance between the deciding values counts as at least this share of the axis."""
 
 
-def num(value: float) -> str:
+def svg_number(value: float) -> str:
     """Return a number with at most one decimal."""
     if value == (whole := int(value)):
         return str(whole)
@@ -27,14 +27,14 @@ def num(value: float) -> str:
     return "0" if text == "-0" else text
 
 
-def polyline(points: NDArray[np.float64]) -> str:
+def polyline_path(points: NDArray[np.float64]) -> str:
     """Return the path data of an open line through points of shape (n, 2)."""
-    return "M" + " ".join([f"{num(x)},{num(y)}" for x, y in points.tolist()])
+    return "M" + " ".join([f"{svg_number(x)},{svg_number(y)}" for x, y in points.tolist()])
 
 
-def polygon(points: NDArray[np.float64]) -> str:
+def polygon_path(points: NDArray[np.float64]) -> str:
     """Return the path data of a closed ring through points of shape (n, 2)."""
-    return polyline(points) + "Z"
+    return polyline_path(points) + "Z"
 
 
 def percent(value: float) -> str:
@@ -61,7 +61,7 @@ class Axis(NamedTuple):
         step = round_step((self.high - self.low) / max_ticks) if self.high > self.low else 1.0
         first, last = math.ceil(self.low / step - 1e-9), math.floor(self.high / step + 1e-9)
         digits = max(0, -math.floor(math.log10(step) + 1e-9))
-        return [(num(self.at(k * step)), f"{k * step:.{digits}f}") for k in range(first, last + 1)]
+        return [(svg_number(self.at(k * step)), f"{k * step:.{digits}f}") for k in range(first, last + 1)]
 
 
 def axis_around(values: Iterable[float], start: float, end: float, room: float = 0.06) -> Axis:
@@ -72,7 +72,7 @@ def axis_around(values: Iterable[float], start: float, end: float, room: float =
     return Axis(low - pad, high + pad, start, end)
 
 
-def axis_that_decides(
+def axis_for_deciding_values(
     values: Iterable[float], deciding: Iterable[float], start: float, end: float
 ) -> tuple[Axis, list[float]]:
     """Return an axis on which the `deciding` values are distinguishable, and the least and greatest value if the axis cuts them off.

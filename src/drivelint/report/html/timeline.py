@@ -19,11 +19,11 @@ if TYPE_CHECKING:
 
     from drivelint.result.text import Row
 
-_ORDER: Final = ("fail", "error", "unknown", "pass", "not_applicable")
-_LAYERS: Final = ("pass", "unknown", "error", "fail")  # the most important verdict is drawn last
-_TICKS: Final = (1, 2, 5, 10, 20, 30, 60, 120, 300, 600, 1200, 1800, 3600)
+_VERDICT_ORDER: Final = ("fail", "error", "unknown", "pass", "not_applicable")
+_VERDICT_LAYERS: Final = ("pass", "unknown", "error", "fail")  # the most important verdict is drawn last
+_TICK_STEPS_S: Final = (1, 2, 5, 10, 20, 30, 60, 120, 300, 600, 1200, 1800, 3600)
 _MOST_TICKS: Final = 9
-_THIN: Final = 0.35  # percent: a shorter period is drawn as a mark
+_LEAST_BAND_PERCENT: Final = 0.35  # percent: a shorter period is drawn as a mark
 
 
 class TimelineRow(NamedTuple):
@@ -84,7 +84,7 @@ class TimeAxis(NamedTuple):
 
     def tick_step_s(self) -> int:
         """Return the time between two ticks in seconds."""
-        return next((s for s in _TICKS if self.duration_s / s <= _MOST_TICKS), _TICKS[-1])
+        return next((s for s in _TICK_STEPS_S if self.duration_s / s <= _MOST_TICKS), _TICK_STEPS_S[-1])
 
     def ticks(self) -> list[tuple[str, str]]:
         """Return positions and labels of the axis."""
@@ -93,16 +93,21 @@ class TimeAxis(NamedTuple):
 
 
 def timelines(
-    drive: Row, verdicts: Iterable[Row], findings: Sequence[Row], rules: Mapping[str, Row], anchors: Mapping[str, str]
+    drive: Row,
+    verdicts: Iterable[Row],
+    findings: Sequence[Row],
+    rules: Mapping[str, Row],
+    filter_key_of_anchor: Mapping[str, str],
 ) -> list[Timeline]:
     """Return a timeline for each ego of one drive, in the order of the verdicts.
 
-    `anchors`: the anchors of the findings on the page, each with its key for the page's filter by gate status ('' without a gate).
+    `filter_key_of_anchor`: the anchors of the findings on the page, each with its key for the page's filter by gate status ('' without a
+    gate).
     """
     clock = TimeAxis(drive["t_start_ns"] or 0, max(drive["duration_s"] or 0.0, 1e-3))
     found = group_rows(findings, lambda row: row["ego_id"])
     return [
-        _timeline(told, found.get(ego, []), rules, anchors, clock)
+        _timeline(told, found.get(ego, []), rules, filter_key_of_anchor, clock)
         for ego, told in group_rows(verdicts, lambda row: row["ego_id"]).items()
     ]
 
@@ -111,7 +116,7 @@ def _timeline(
     verdicts: Sequence[Row],
     findings: Sequence[Row],
     rules: Mapping[str, Row],
-    anchors: Mapping[str, str],
+    filter_key_of_anchor: Mapping[str, str],
     clock: TimeAxis,
 ) -> Timeline:
     """Return the timeline of one ego."""
@@ -122,18 +127,20 @@ def _timeline(
     for key, told in group_rows(verdicts, of).items():
         rule_id, profile = key
         rule, href = rules[rule_id], "#" + anchor("rule", rule_id)
-        worst = min((row["verdict"] for row in told), key=_ORDER.index)
+        worst = min((row["verdict"] for row in told), key=_VERDICT_ORDER.index)
         if worst == "not_applicable" or all(_is_unknown_for_lack_of_data(row) for row in told):
             reason = verdict_reason(told[0])
             folded.setdefault((worst, reason.kind), {}).setdefault((rule["title"], href), set()).add(reason)
             continue
-        marks = [_finding(row, anchors, clock) for row in found.get(key, [])]
-        near = [_near(row, clock) for row in told if row["near_miss"]]
-        stands = sorted({anchors.get(anchor("finding", row["finding_id"]), "") for row in found.get(key, [])})
+        marks = [_finding_mark(row, filter_key_of_anchor, clock) for row in found.get(key, [])]
+        near = [_near_miss_mark(row, clock) for row in told if row["near_miss"]]
+        stands = sorted(
+            {filter_key_of_anchor.get(anchor("finding", row["finding_id"]), "") for row in found.get(key, [])}
+        )
         keys = " ".join((worst, "near" if near else "", rule["severity"], rule["pack"], *stands))
         rows.append(TimelineRow(rule_id, rule["title"], profile, worst, keys, _bands(told, clock), marks + near))
-    rows.sort(key=lambda lane: (_ORDER.index(lane.verdict), SEVERITIES.index(rules[lane.rule_id]["severity"])))
-    order = sorted(folded.items(), key=lambda item: (_ORDER.index(item[0][0]), -len(item[1]), item[0][1]))
+    rows.sort(key=lambda lane: (_VERDICT_ORDER.index(lane.verdict), SEVERITIES.index(rules[lane.rule_id]["severity"])))
+    order = sorted(folded.items(), key=lambda item: (_VERDICT_ORDER.index(item[0][0]), -len(item[1]), item[0][1]))
     return Timeline(
         ego,
         anchor("grid", verdicts[0]["drive_id"], ego),
@@ -141,13 +148,13 @@ def _timeline(
         clock.ticks(),
         rows,
         [FoldedRules(*key, why) for key, why in order],
-        {verdict: sum(lane.verdict == verdict for lane in rows) for verdict in _ORDER},
+        {verdict: sum(lane.verdict == verdict for lane in rows) for verdict in _VERDICT_ORDER},
     )
 
 
 def empty_timeline(ego_id: str) -> Timeline:
     """Return the timeline of an ego without verdicts."""
-    return Timeline(ego_id, "", "0", [], [], [], dict.fromkeys(_ORDER, 0))
+    return Timeline(ego_id, "", "0", [], [], [], dict.fromkeys(_VERDICT_ORDER, 0))
 
 
 def separate_shared_rules(ego_timelines: Sequence[Timeline]) -> tuple[list[FoldedRules], list[Timeline]]:
@@ -161,14 +168,16 @@ def separate_shared_rules(ego_timelines: Sequence[Timeline]) -> tuple[list[Folde
         }
     common = {key: why for key, why in common.items() if why}
 
-    def rest(t: Timeline) -> list[FoldedRules]:
+    def unshared_rules(t: Timeline) -> list[FoldedRules]:
         left = [
             f._replace(reasons={rule: why for rule, why in f.reasons.items() if rule not in common.get(f[:2], {})})
             for f in t.folded
         ]
         return [f for f in left if f.reasons]
 
-    return [FoldedRules(*key, why) for key, why in common.items()], [t._replace(folded=rest(t)) for t in ego_timelines]
+    return [FoldedRules(*key, why) for key, why in common.items()], [
+        t._replace(folded=unshared_rules(t)) for t in ego_timelines
+    ]
 
 
 def _is_unknown_for_lack_of_data(verdict: Row) -> bool:
@@ -177,24 +186,24 @@ def _is_unknown_for_lack_of_data(verdict: Row) -> bool:
     return bool(is_unknown and can_be_provided(verdict["reason_code"]))
 
 
-def _bands(stretches: Sequence[Row], clock: TimeAxis) -> list[dict[str, str]]:
+def _bands(verdicts: Sequence[Row], clock: TimeAxis) -> list[dict[str, str]]:
     """Return the judged periods as bands by verdict; touching periods of one verdict become one band."""
     bands = []
-    for verdict in _LAYERS:
+    for verdict in _VERDICT_LAYERS:
         spans: list[tuple[float, float, set[VerdictReason]]] = []
-        rows = [row for row in stretches if row["verdict"] == verdict]
-        for (start, end), reason in sorted((_span(row, clock), verdict_reason(row)) for row in rows):
+        rows = [row for row in verdicts if row["verdict"] == verdict]
+        for (start, end), reason in sorted((_judged_span(row, clock), verdict_reason(row)) for row in rows):
             if spans and start <= spans[-1][1]:
                 spans[-1] = (spans[-1][0], max(spans[-1][1], end), spans[-1][2] | {reason})
             else:
                 spans.append((start, end, {reason}))
         for start, end, reasons in spans:
             why = "" if verdict in {"pass", "fail"} else f": {summarise_reasons(reasons)}"
-            bands.append({"verdict": verdict, **_extent(start, end), "title": f"{verdict}{why}"})
+            bands.append({"verdict": verdict, **_position_and_width(start, end), "title": f"{verdict}{why}"})
     return bands
 
 
-def _span(row: Row, clock: TimeAxis) -> tuple[float, float]:
+def _judged_span(row: Row, clock: TimeAxis) -> tuple[float, float]:
     """Return start and end of the judged period in percent of the drive.
 
     Without a period, both are the reference time; without that, they are 0 and 100.
@@ -204,22 +213,22 @@ def _span(row: Row, clock: TimeAxis) -> tuple[float, float]:
     return clock.at(row["t_start_ns"]), clock.at(row["t_end_ns"])
 
 
-def _finding(row: Row, anchors: Collection[str], clock: TimeAxis) -> dict[str, str]:
+def _finding_mark(row: Row, anchors: Collection[str], clock: TimeAxis) -> dict[str, str]:
     place = anchor("finding", row["finding_id"])
     start, end = clock.at(row["t_start_ns"]), clock.at(row["t_end_ns"])
     href = f"#{place}" if place in anchors else ""
-    return {"kind": "fail", **_extent(start, end), "href": href, "title": _title(row, clock)}
+    return {"kind": "fail", **_position_and_width(start, end), "href": href, "title": _mark_title(row, clock)}
 
 
-def _near(row: Row, clock: TimeAxis) -> dict[str, str]:
+def _near_miss_mark(row: Row, clock: TimeAxis) -> dict[str, str]:
     at = clock.at(row["t_worst_ns"])
-    return {"kind": "near", **_extent(at, at), "title": f"near miss, {_title(row, clock)}"}
+    return {"kind": "near", **_position_and_width(at, at), "title": f"near miss, {_mark_title(row, clock)}"}
 
 
-def _extent(start: float, end: float) -> dict[str, str]:
-    return {"x": percent(start), "w": percent(end - start) if end - start > _THIN else ""}
+def _position_and_width(start: float, end: float) -> dict[str, str]:
+    return {"x": percent(start), "w": percent(end - start) if end - start > _LEAST_BAND_PERCENT else ""}
 
 
-def _title(row: Row, clock: TimeAxis) -> str:
+def _mark_title(row: Row, clock: TimeAxis) -> str:
     margin = "" if row["margin"] is None else f", margin {number(row['margin'], row['unit'])}"
     return f"{seconds(row['t_worst_ns'], clock.start_ns)}{margin}"

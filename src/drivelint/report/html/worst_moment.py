@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from urllib.parse import quote
 
 from drivelint.catalogue.header import CONTACT
-from drivelint.report.html.contact import before_contact
+from drivelint.report.html.contact import speeds_before_contact
 from drivelint.report.html.incidents import incident_key
 from drivelint.report.html.replay import centiseconds
 from drivelint.report.html.strips import strips
-from drivelint.result.text import utc_at, went_wrong
+from drivelint.result.text import breach_title, utc_at
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -21,10 +21,10 @@ if TYPE_CHECKING:
     from drivelint.report.html.incidents import FindingLine, Key
     from drivelint.result.text import Row
 
-_ALSO: Final = 4
+_MOST_OTHER_TITLES: Final = 4
 
 
-class Evidence(NamedTuple):
+class MomentEvidence(NamedTuple):
     """The recordings around the findings: scenes and their plan views by moment, rows of the table `course` by finding."""
 
     scenes: Mapping[Key, Row]
@@ -33,7 +33,7 @@ class Evidence(NamedTuple):
 
 
 def worst_moment(
-    lines: Sequence[FindingLine], evidence: Evidence, drives: Mapping[str, Row], folder: Path | None
+    lines: Sequence[FindingLine], evidence: MomentEvidence, drives: Mapping[str, Row], folder: Path | None
 ) -> dict[str, Any] | None:
     """Return the worst moment with everything that the page shows about it; None if `lines` is empty.
 
@@ -61,14 +61,17 @@ def worst_moment(
         "strips": None
         if scene is None
         else strips(scene, row, evidence.courses.get(finding_key(row)), line.rule["observes"], start_ns),
-        "before": before_contact(scene, row, start_ns) if touched and scene is not None else None,
+        "before": speeds_before_contact(scene, row, start_ns) if touched and scene is not None else None,
         "kinds": {} if scene is None else {actor["actor_id"]: actor["actor_class"] for actor in scene["actors"]},
         "also": [
-            (how, list(dict.fromkeys(title(each.rule) for each in along if each.kind == kind))[:_ALSO])
-            for kind, how, title in (("fail", "also", went_wrong), ("near", "also only just kept", itemgetter("title")))
+            (how, list(dict.fromkeys(title(each.rule) for each in along if each.kind == kind))[:_MOST_OTHER_TITLES])
+            for kind, how, title in (
+                ("fail", "also", breach_title),
+                ("near", "also only just kept", itemgetter("title")),
+            )
         ],
         "commands": _commands(row),
-        "files": _files(row, folder),
+        "files": _links_to_files(row, folder),
     }
 
 
@@ -78,18 +81,18 @@ def finding_key(row: Row) -> tuple[Any, ...]:
     return (row.get("finding_id"), *told)
 
 
-def _name(row: Row) -> str:
+def _explain_argument(row: Row) -> str:
     """Return the argument that the command `explain` accepts for a finding or near miss."""
     return row.get("finding_id") or f"{row['rule_id']}@{row['drive_id']}"
 
 
 def _commands(row: Row) -> list[list[str]]:
     """Return the commands that explain a finding, each in parts, for the folder of a result."""
-    explain = ["drivelint explain", shlex.quote(_name(row)), "--in ."]
+    explain = ["drivelint explain", shlex.quote(_explain_argument(row)), "--in ."]
     return [explain, ["drivelint report .", f"--incident {row['finding_id']}"]] if "finding_id" in row else [explain]
 
 
-def _files(row: Row, folder: Path | None) -> list[tuple[str, str]]:
+def _links_to_files(row: Row, folder: Path | None) -> list[tuple[str, str]]:
     """Return the files beside the page that are about a finding, each as description and link."""
     if folder is None:
         return []
