@@ -119,7 +119,7 @@ def _geo_frame(root: etree._Element, quality: MapQuality) -> GeoFrame | None:
     if not reference:
         return None
     x, y, turn, scale = (
-        float(default) if more is None else safe_xml.number(more.findtext(name) or default)
+        float(default) if more is None else safe_xml.number_or_nan(more.findtext(name) or default)
         for name, default in (("xTranslation", "0"), ("yTranslation", "0"), ("zRotation", "0"), ("scaling", "1"))
     )
     if not (math.isfinite(x) and math.isfinite(y)) or (turn, scale) != (0.0, 1.0):

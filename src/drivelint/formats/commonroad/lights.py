@@ -66,11 +66,11 @@ def _unroll_cycle(light: etree._Element, first_step: float, last_step: float) ->
     if not colours:
         raise _UnreadableCycleError("it has no cycle")
     durations = np.array(
-        [safe_xml.number(e.findtext("duration")) for e in light.iterfind("cycle/cycleElement")], np.float64
+        [safe_xml.number_or_nan(e.findtext("duration")) for e in light.iterfind("cycle/cycleElement")], np.float64
     )
     if not (durations >= _MIN_PHASE_STEPS).all():
         raise _UnreadableCycleError("a phase of its cycle has no duration")
-    offset = safe_xml.number(_child_text(light, "timeOffset") or "0")
+    offset = safe_xml.number_or_nan(_child_text(light, "timeOffset") or "0")
     if not math.isfinite(offset):
         raise _UnreadableCycleError("its time offset is not a number")
     ends = np.cumsum(durations)

@@ -72,7 +72,7 @@ def read(probe: Probe) -> Recording:
     fast = extract_trajectories(content)
     rest, fast_columns = fast or (content, [])
     root = safe_xml.parse(rest, str(path), TraceError)
-    step_s = safe_xml.number(root.get("timeStepSize"))
+    step_s = safe_xml.number_or_nan(root.get("timeStepSize"))
     if not step_s > 0.0:
         raise TraceError(
             f"{path}: timeStepSize is {root.get('timeStepSize')!r}: a scenario needs a positive number of seconds"
@@ -164,7 +164,7 @@ def _state_columns(
     """Return the columns of an obstacle, (n,) each. Errors: `TraceError` for a state without an exact time."""
     states = [*obstacle.findall("initialState"), *obstacle.findall("trajectory/state")]
     columns = {
-        name: np.array([safe_xml.number(state.findtext(place)) for state in states], np.float64)
+        name: np.array([safe_xml.number_or_nan(state.findtext(place)) for state in states], np.float64)
         for name, place in _PATH_BY_COLUMN.items()
     }
     trajectory = obstacle.find("trajectory")

@@ -62,7 +62,7 @@ def read_shape(obstacle: etree._Element) -> ObstacleShape:
         return _rectangle(parts[0], parts[0])
     if len(parts) == 1 and parts[0].tag == "circle":
         # the box is the square around the circle
-        size = 2.0 * safe_xml.number(parts[0].findtext("radius"))
+        size = 2.0 * safe_xml.number_or_nan(parts[0].findtext("radius"))
         return ObstacleShape(size, size, centre_m=_centre(parts[0]))
     if len(parts) == 1 and (truck := parts[0].find("truckShape")) is not None:
         # the recorded position is that of the truck; how far the trailer extends depends on the hitch angle
@@ -78,7 +78,7 @@ def _rectangle(size: etree._Element | None, origin: etree._Element) -> ObstacleS
     """Return a box. `size`: the element with length and width; `origin`: the element that states where the shape's origin lies."""
     if size is None:
         return ObstacleShape(ahead_m=math.nan, no_box=_NO_SHAPE)
-    length, width = (safe_xml.number(size.findtext(name)) for name in ("length", "width"))
+    length, width = (safe_xml.number_or_nan(size.findtext(name)) for name in ("length", "width"))
     shift = _child_number(origin, "originXShift")
     if abs(shift) > length / 2:
         shift = math.nan
@@ -104,7 +104,7 @@ def _bounding_box_centre(polygon: etree._Element) -> tuple[float, float]:
 def _child_number(parent: etree._Element, name: str) -> float:
     """Return the number of a child element, 0 without one; NaN if it is not a number."""
     text = parent.findtext(name)
-    return 0.0 if text is None else safe_xml.number(text)
+    return 0.0 if text is None else safe_xml.number_or_nan(text)
 
 
 def box_offsets(shape: ObstacleShape, yaw_rad: Floats) -> Floats:

@@ -231,7 +231,9 @@ def stop_line_stations(
 def points(parent: etree._Element | None) -> Floats:
     """Return the points (n, 2) below an element. Errors: `ValueError` with the line of a point without possible x and y."""
     found = [] if parent is None else list(parent.iterfind(".//point"))
-    both = np.array([[safe_xml.number(p.findtext(axis)) for axis in "xy"] for p in found], np.float64).reshape(-1, 2)
+    both = np.array([[safe_xml.number_or_nan(p.findtext(axis)) for axis in "xy"] for p in found], np.float64).reshape(
+        -1, 2
+    )
     bad = np.flatnonzero(~(np.abs(both) < FARTHEST_M).all(axis=1))
     if len(bad):
         raise ValueError(f"the point in line {found[bad[0]].sourceline} has impossible values of x and y")
@@ -239,7 +241,7 @@ def points(parent: etree._Element | None) -> Floats:
 
 
 def _finite_number(text: str | None) -> float | None:
-    value = safe_xml.number(text)
+    value = safe_xml.number_or_nan(text)
     return value if math.isfinite(value) else None
 
 
