@@ -138,7 +138,7 @@ class AuditDifference:
         added = f" ({self.of_new_drives} in drives that the base does not contain)" if self.of_new_drives else ""
         return f"{self.event_counts['new']} new{added}, {counts_sentence(self.event_counts, self.worse, self.fixed)}"
 
-    def rows_of(self, standing: str) -> str:
+    def rows_sentence(self, standing: str) -> str:
         """Return a sentence that explains why a standing has more rows than findings; '' if it does not."""
         return rows_sentence(self.counts[standing], self.event_counts[standing], is_of_profiles=self.has_profiles)
 

@@ -90,9 +90,9 @@ def gate_lines(result: Result) -> Iterator[str]:
         yield from (f"  {text}" for text in descriptions.waiver_warnings(result.gate))
 
 
-def write_report(dest: str, to: str) -> tuple[str, Audit]:
+def write_report(dest: str, report_format: str) -> tuple[str, Audit]:
     """Write a report in one of `FORMATS` into the audit; return its file name, and the audit. Errors: as `open_audits`; `OutputError`."""
-    name, render = REPORT_FORMATS[to]
+    name, render = REPORT_FORMATS[report_format]
     with open_audits(dest) as (con, audit, _):
         audit.results.write(name, render(_result_of_audit(con, audit)))
     return name, audit

@@ -48,8 +48,8 @@ _HERE: Final = Path(__file__).parent
 
 def write_fleet_page(
     dest: str,
-    to: str,
-    by: Sequence[str],
+    report_format: str,
+    tags: Sequence[str],
     baseline: str | None,
     *,
     most_drives: int | None = DEFAULT_N_DRIVES,
@@ -58,17 +58,17 @@ def write_fleet_page(
 ) -> tuple[str, Audit]:
     """Write the fleet page into an audit, and with HTML also pages of its worst drives. Return the fleet page's name, and the audit.
 
-    `by`: tags by which rates are divided. `most_drives`: number of drives that get their own page; None: all drives. `most_moments`:
+    `tags`: tags by which rates are divided. `most_drives`: number of drives that get their own page; None: all drives. `most_moments`:
     number of these drives whose moments are drawn; None: the default of `moment_pages`. Errors: `UsageError` for an audit or tag that does
     not exist; `OutputError`.
     """
     with open_audits(dest, baseline) as (con, audit, base):
-        fleet = fleet_content(con, audit, base, by)
-        if to == "html":
+        fleet = fleet_content(con, audit, base, tags)
+        if report_format == "html":
             _write_html(con, fleet, most_drives, most_moments, progress or Silent())
         else:
-            audit.results.write(_FILE_NAMES[to], markdown(fleet))
-    return _FILE_NAMES[to], audit
+            audit.results.write(_FILE_NAMES[report_format], markdown(fleet))
+    return _FILE_NAMES[report_format], audit
 
 
 def _write_html(

@@ -88,8 +88,8 @@ def _raise_pending_interrupt() -> None:
     """Do nothing: Python raises a pending interrupt where a function begins."""
 
 
-def read_within_limits(read_file: Callable[[], T], name: str, n_bytes: int, kind: type[DriveLintError]) -> T:
-    """Return the result of `read_file` for a file of `n_bytes`. Errors: `kind`, with `name`, the exceeded limit and the module."""
+def read_within_limits(read_file: Callable[[], T], name: str, n_bytes: int, error_class: type[DriveLintError]) -> T:
+    """Return the result of `read_file` for a file of `n_bytes`. Errors: `error_class`, with `name`, the exceeded limit and the module."""
     watch = _ReadingWatch(n_bytes)
     try:
         try:
@@ -103,7 +103,7 @@ def read_within_limits(read_file: Callable[[], T], name: str, n_bytes: int, kind
             file.relative_to(_PACKAGE) for file in files if file.is_relative_to(_PACKAGE) and file != Path(__file__)
         ]
         place = inner[-1].with_suffix("").as_posix() if inner else "the end"
-        raise kind(
+        raise error_class(
             f"{name}: reading took {watch.excess}, too much for a file of {n_bytes} bytes (in {place}): the file "
             "describes more than a drive or a road network contains: use a part of it"
         ) from None

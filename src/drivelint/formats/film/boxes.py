@@ -34,14 +34,14 @@ _FIELD_TREE: Final[FieldTree] = {
 }
 
 
-class Sightings(NamedTuple):
+class DistancesAhead(NamedTuple):
     """The numbers of the frames, ascending, and each actor's distance ahead in each frame (NaN: not detected, inf: distance unknown)."""
 
     frames: NDArray[np.int64]
     ahead_m: list[Floats]
 
 
-def read(path: Path, film: VideoMapping) -> Sightings:
+def read(path: Path, film: VideoMapping) -> DistancesAhead:
     """Return the distances ahead in every frame. Errors: `TraceError` without boxes, `UsageError` for a mapping that lacks a value."""
     if film.camera is None:
         raise UsageError(
@@ -65,7 +65,7 @@ def read(path: Path, film: VideoMapping) -> Sightings:
             boxes.append((t_ns[items.parent], names, items.columns["bbox.size_x"].astype(np.float64)))
     if not times:
         raise TraceError(f"{path}: no {BOXES_MESSAGE_TYPE} messages: this mapping reads the boxes of a film")
-    return _sightings(path, film, film.camera.focal_px, np.concatenate(times), boxes)
+    return _distances_ahead(path, film, film.camera.focal_px, np.concatenate(times), boxes)
 
 
 def _boxes_message_type(channel: Channel, schema: Schema) -> str | None:
@@ -73,9 +73,9 @@ def _boxes_message_type(channel: Channel, schema: Schema) -> str | None:
     return BOXES_MESSAGE_TYPE if is_read else None
 
 
-def _sightings(
+def _distances_ahead(
     path: Path, film: VideoMapping, focal_px: float, t_ns: Times, boxes: list[tuple[Times, list[str], Floats]]
-) -> Sightings:
+) -> DistancesAhead:
     """Return the distance of each actor per frame of a film, from the widths of its boxes: the smallest of several in a frame."""
     start = int(t_ns.min())
     numbers = _frame_numbers(t_ns, start, film)
@@ -90,7 +90,7 @@ def _sightings(
     if not any(np.isfinite(each).any() for each in ahead):
         wanted = ", ".join(str(actor.box) for actor in film.actor)
         raise TraceError(f"{path}: no box has an id that the mapping names ({wanted}): correct the ids in the mapping")
-    return Sightings(whole, ahead)
+    return DistancesAhead(whole, ahead)
 
 
 def _frame_numbers(t_ns: Times, start: int, film: VideoMapping) -> NDArray[np.int64]:

@@ -16,7 +16,7 @@ from drivelint.drive.trace import ACTOR_CLASSES, ASSUMED_MOTION, ASSUMED_SIZE, Q
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats.film import boxes
 from drivelint.formats.film import mapping as video_mapping
-from drivelint.formats.film.boxes import Sightings
+from drivelint.formats.film.boxes import DistancesAhead
 from drivelint.formats.tables.mapping import TextLayout
 from drivelint.formats.tables.sheets import CsvSheet, ParquetSheet, describe_places
 
@@ -72,7 +72,7 @@ def read(probe: Probe) -> Recording:
     if probe.head.startswith(b"\x89MCAP"):
         detections = boxes.read(path, film)
     else:
-        detections = _sightings_in_table(path, stem, film, findings, is_parquet=probe.head.startswith(b"PAR1"))
+        detections = _distances_in_table(path, stem, film, findings, is_parquet=probe.head.startswith(b"PAR1"))
     judged = detections.frames % film.frames.every == 0
     frames = detections.frames[judged]
     if not len(frames):
@@ -96,9 +96,9 @@ def _needed_columns(film: VideoMapping) -> list[str]:
     return [film.frames.column, *(actor.ahead for actor in film.actor if actor.ahead is not None)]
 
 
-def _sightings_in_table(
+def _distances_in_table(
     path: Path, name: str, film: VideoMapping, findings: list[QualityFinding], *, is_parquet: bool
-) -> Sightings:
+) -> DistancesAhead:
     sheet = ParquetSheet(path) if is_parquet else CsvSheet(path, TextLayout(null_values=film.frames.not_detected))
     columns = _needed_columns(film)
     if missing := [column for column in columns if column not in sheet.names]:
@@ -136,7 +136,7 @@ def _sightings_in_table(
             "no actor has a position in these frames"
         )
         findings.append(QualityFinding("malformed_row", "warning", message, n))
-    return Sightings(whole, ahead)
+    return DistancesAhead(whole, ahead)
 
 
 def _states(

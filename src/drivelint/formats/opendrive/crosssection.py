@@ -19,8 +19,8 @@ MAX_SPACING_M = 5.0  # the largest distance between two points
 MIN_SIDEWAYS_STEP_M = 0.01  # a larger step in an edge is kept as a step
 MAX_POINTS = 100_000  # per strip: 100 km in steps of a metre
 MAX_EDGE_OFFSET_M = 1000.0  # no lane lies further from its reference line
-_SNAP_M = 1e-3  # break points closer than this count as one
-_INSIDE_M = 1e-6  # a record applies to a section if it begins no further inside than this
+_SAME_STATION_M = 1e-3  # break points closer than this count as one
+_INSIDE_TOLERANCE_M = 1e-6  # a record applies to a section if it begins no further inside than this
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +48,11 @@ class EdgeEvaluator:
     def edges(self, s: Floats, at: Floats | None = None) -> LaneEdges:
         """Return the edges at stations `s` (n,), ascending. `at`: the stations at which records and geometries are looked up."""
         if at is None:
-            at = np.clip(s + _INSIDE_M, self.strip.start_m + _INSIDE_M, self.strip.end_m - _INSIDE_M)
+            at = np.clip(
+                s + _INSIDE_TOLERANCE_M,
+                self.strip.start_m + _INSIDE_TOLERANCE_M,
+                self.strip.end_m - _INSIDE_TOLERANCE_M,
+            )
         line = self.road.plan.evaluate(s, at)
         centre = self.road.offset.evaluate(s, at)
         left, right = (
@@ -90,8 +94,8 @@ class EdgeEvaluator:
         stations = np.concatenate(
             [self.road.plan.s, self.road.offset.start, *(p.start for p in profiles if p is not None)]
         )
-        stations = np.unique(stations[(stations > start + _SNAP_M) & (stations < end - _SNAP_M)])
-        apart = np.diff(stations, prepend=-np.inf) > _SNAP_M
+        stations = np.unique(stations[(stations > start + _SAME_STATION_M) & (stations < end - _SAME_STATION_M)])
+        apart = np.diff(stations, prepend=-np.inf) > _SAME_STATION_M
         return np.concatenate([[start], stations[apart], [end]])
 
     def sideways_steps(self, break_stations: Floats) -> tuple[Floats, Floats]:
@@ -99,13 +103,16 @@ class EdgeEvaluator:
         inner = break_stations[1:-1]
         if not len(inner):
             return inner, inner
-        before, after = self.edges(inner, inner - 2 * _INSIDE_M), self.edges(inner, inner + _INSIDE_M)
+        before, after = (
+            self.edges(inner, inner - 2 * _INSIDE_TOLERANCE_M),
+            self.edges(inner, inner + _INSIDE_TOLERANCE_M),
+        )
         step = np.hypot(before.x - after.x, before.y - after.y).max(axis=0)
         return inner[step > MIN_SIDEWAYS_STEP_M], step[step > MIN_SIDEWAYS_STEP_M]
 
 
 def sample_stations(evaluator: EdgeEvaluator, break_stations: Floats) -> Floats:
-    """Return stations, breaks included, at most SPACING_M apart and with chords within CHORD_TOLERANCE_M of every edge."""
+    """Return stations, breaks included, at most MAX_SPACING_M apart and with chords within CHORD_TOLERANCE_M of every edge."""
     s = _divide_intervals(break_stations, np.ceil(np.diff(break_stations) / MAX_SPACING_M - 1e-9))
     for _ in range(10):
         parts = _n_parts_of_intervals(evaluator, s)
@@ -139,4 +146,4 @@ def _n_parts_of_intervals(evaluator: EdgeEvaluator, s: Floats) -> Floats:
     by_chord = np.where(off > CHORD_TOLERANCE_M, np.ceil(np.sqrt(off / CHORD_TOLERANCE_M)), 1.0)
     by_length = np.ceil(np.sqrt(square.max(axis=0)) / MAX_SPACING_M - 1e-3)
     # a step in an edge, which no chord follows, would be cut without end
-    return np.where(np.diff(s) > 2 * _SNAP_M, np.clip(np.maximum(by_chord, by_length), 1.0, 16.0), 1.0)
+    return np.where(np.diff(s) > 2 * _SAME_STATION_M, np.clip(np.maximum(by_chord, by_length), 1.0, 16.0), 1.0)

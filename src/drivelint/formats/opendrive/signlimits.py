@@ -84,7 +84,7 @@ def _sign_rows(
         if row["kind"] in LIMIT_END_KINDS:
             posts.setdefault(row["lanelet_id"], []).append(row["lane_s_m"])
     todo = [
-        _SignStretch(row["lanelet_id"], row["lane_s_m"], _limit_of_sign_mps(row))
+        _SignStretch(row["lanelet_id"], row["lane_s_m"], _sign_limit_mps(row))
         for row in signals
         if row["kind"] in LIMIT_BEGIN_KINDS
     ]
@@ -143,7 +143,7 @@ def _is_contradiction(sign: Mapping[str, Any], lane: Mapping[str, Any]) -> bool:
     return common > _MIN_SPAN_M and not same
 
 
-def _limit_of_sign_mps(row: Mapping[str, Any]) -> float | None:
+def _sign_limit_mps(row: Mapping[str, Any]) -> float | None:
     """Return the limit on a sign (m/s); None: it has no number or no unit, or it changes."""
     unit = SPEED_UNITS_MPS.get(row["unit"] or "")
     return None if unit is None or row["value"] is None or row["dynamic"] else float(row["value"]) * unit
