@@ -37,10 +37,10 @@ def expand_traces(traces: Sequence[str], *, map_path: Path | None = None) -> lis
     """Return the traces that files, globs and folders name, sorted, each file once.
 
     A path that exists is taken literally, even if its name contains `[`, `*` or `?`. A folder that is one drive (`folders.FOLDER_KINDS`:
-    canonical tables, rosbag2, Argoverse 2, 123D) is returned itself. Any other folder is searched, with its subfolders, for drive folders,
-    for files of MCAP, Parquet, CSV, OSI, ScenarioNet and SUMO's FCD, and for CommonRoad scenarios with obstacles. Files that an earlier
-    check or audit wrote there are left out. Unreadable subfolders, links to folders elsewhere and dead links are returned, too: `read_trace`
-    reports why they cannot be judged.
+    canonical tables, rosbag2, Argoverse 2, 123D) is returned itself. Any other folder is searched, with its subfolders, for drive
+    folders, for files of MCAP, Parquet, CSV, OSI, ScenarioNet and SUMO's FCD, and for CommonRoad scenarios with obstacles. Files that an
+    earlier check or audit wrote there are left out. Unreadable subfolders, links to folders elsewhere and dead links are returned, too:
+    `read_trace` reports why they cannot be judged.
     `map_path`: the map, which a glob may also find. It is left out if its suffix is in `MAP_SUFFIXES` and there are other traces.
     A CommonRoad scenario is both log and map, and is kept.
     Errors: `UsageError` for a URI or an empty name, `TraceError` for a name that matches nothing.
