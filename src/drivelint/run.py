@@ -287,7 +287,7 @@ def named_logs(settings: CheckOptions) -> tuple[list[Path], list[RefusedLog]]:
     Errors: `TraceError` for such a name without `out`; `UsageError` for a name in a manifest that is not one log.
     """
     try:
-        paths = sorted_logs(expand_traces(settings.traces, but=settings.map))
+        paths = sorted_logs(expand_traces(settings.traces, map_path=settings.map))
     except TraceError:
         for name in settings.traces if settings.out is not None else ():
             try:

@@ -108,7 +108,7 @@ def test_the_pages_of_drives_lie_in_the_bucket_and_an_earlier_reports_are_remove
     judged(drives, "s3://fleet/paged", sources="s3://fleet/data/fleet.csv", road="s3://fleet/data/ring.xodr")
     results = open_store("s3://fleet/paged")
     for most, due in ((None, N_DRIVES), (1, 1), (0, 0)):
-        page.write("s3://fleet/paged", "html", (), None, most_drives=most)
+        page.write_fleet_page("s3://fleet/paged", "html", (), None, most_drives=most)
         told = json.loads(results.read("drives/pages.json") or b"{}").get("written_by_drivelint", [])
         there = set(results.names("drives"))
         assert len(told) == due

@@ -17,7 +17,7 @@ from drivelint.audit.text import summary_text
 from drivelint.audit.unpacked import n_results, views_of_all
 from drivelint.errors import ExitCode
 from drivelint.fleet_report import page
-from drivelint.fleet_report.audit_views import open_audits, opened_both
+from drivelint.fleet_report.audit_views import open_audits, open_two_audits
 from drivelint.fleet_report.difference import difference
 from drivelint.report.progress import Silent
 from tests.audit import fleet
@@ -54,12 +54,12 @@ def test_sql_answers_and_says_how_much_is_there(interrupted: tuple[Path, int]) -
 
 def test_report_and_diff_show_what_is_there(interrupted: tuple[Path, int], tmp_path: Path) -> None:
     out, n = interrupted
-    name, audit = page.write(str(out), "markdown", (), None)
+    name, audit = page.write_fleet_page(str(out), "markdown", (), None)
     text = (out / name).read_text(encoding="utf-8")
     assert f"{n} of {n} drives were judged, of {N_DRIVES} that were asked for" in text
     assert f"{n} of {N_DRIVES} drives have a result" in text
     assert audit.warning
-    with opened_both(str(out), str(out)) as (con, earlier, later):
+    with open_two_audits(str(out), str(out)) as (con, earlier, later):
         found = difference(con, later, earlier, 5)
     assert found.comparison.drives_both == n
     assert sum(found.verdicts[0].values()) >= n

@@ -14,7 +14,7 @@ import pytest
 from drivelint.audit.ask import ask
 from drivelint.audit.run import merge
 from drivelint.errors import UsageError
-from drivelint.fleet_report.audit_views import open_audits, opened_both
+from drivelint.fleet_report.audit_views import open_audits, open_two_audits
 from drivelint.report.progress import Silent
 from drivelint.result.names import MANIFEST
 from tests.audit import fleet
@@ -89,7 +89,7 @@ def test_a_changed_file_is_named(ended: Path, copy: Path, change: Callable[[Path
     for sides in ((ended, copy), (copy, ended)):
         with (
             pytest.raises(UsageError, match=f"{name}: was changed since drivelint audit wrote it"),
-            opened_both(*map(str, sides)),
+            open_two_audits(*map(str, sides)),
         ):
             pass
     with pytest.raises(UsageError, match=name), open_audits(str(copy)):
@@ -219,7 +219,7 @@ def test_an_ended_audit_without_a_readable_list_is_refused(ended: Path, copy: Pa
         open_audits(str(copy)),
     ):
         pass
-    with pytest.raises(UsageError, match="has ended"), opened_both(str(ended), str(copy)):
+    with pytest.raises(UsageError, match="has ended"), open_two_audits(str(ended), str(copy)):
         pass
     with pytest.raises(UsageError, match="has ended"):
         ask(str(copy), "FROM findings", "json")

@@ -24,7 +24,7 @@ from drivelint.audit.unpacked import SUMMARY_FILE
 from drivelint.errors import ExitCode
 from drivelint.fleet_report import page
 from drivelint.fleet_report.audit_views import open_audits
-from drivelint.fleet_report.content import content
+from drivelint.fleet_report.content import fleet_content
 from drivelint.report.progress import Silent
 from tests.audit import fleet
 from tests.audit.here import InThisProcess, judged
@@ -204,7 +204,7 @@ def test_the_distance_of_the_summary_is_that_of_the_page(tmp_path: Path, ego: st
     few.manifest.write_text(f"log,ego\nlogs/drive-00000.parquet,0\nlogs/copy.parquet,{ego}\n", encoding="utf-8")
     counted = judged(few, tmp_path / "out")
     with open_audits(str(tmp_path / "out")) as (con, out, _):
-        page = content(con, out, None, ())
+        page = fleet_content(con, out, None, ())
         ways = {
             row[0]: row[1]
             for row in con.sql("SELECT e.ego_id, e.km FROM (SELECT unnest(exposure) AS e FROM drives)").fetchall()
@@ -272,7 +272,7 @@ def test_copies_are_told_and_counted_once(tmp_path: Path) -> None:
         assert getattr(counted, name) == getattr(alone, name), name
     assert counted.findings == {"critical": len(few.planted)}
     with open_audits(str(tmp_path / "out")) as (con, out, _):
-        page = content(con, out, None, ())
+        page = fleet_content(con, out, None, ())
     assert sum(each["findings"] for each in page.severities.values()) == len(few.planted)
     assert (page.totals["drives"], page.totals["copies"]) == (10, 2)
 
@@ -291,7 +291,7 @@ def test_a_refused_log_counts_once_whatever_its_copies_are_called(tmp_path: Path
     assert [Path(name).name for name in lines[3].strip().split(": a copy of ")] == [damaged[1].name, damaged[0].name]
     assert "not judged: 1 drive" in lines
     with open_audits(str(tmp_path / "out")) as (con, out, _):
-        assert content(con, out, None, ()).n_not_judged == 1
+        assert fleet_content(con, out, None, ()).n_not_judged == 1
 
 
 @pytest.mark.slow
@@ -332,7 +332,7 @@ def test_lossy_logs_and_those_off_their_map_are_named(audited: tuple[Path, int])
     results = LocalFolder(out)
     seal(results, [AUDIT_FILE, RULES_FILE], results.read(SUMMARY_FILE) or b"")
     for kind in ("markdown", "html"):
-        name, _ = page.write(str(out), kind, (), None)
+        name, _ = page.write_fleet_page(str(out), kind, (), None)
         text = (out / name).read_text(encoding="utf-8").replace("`", "").replace("&#45;", "-")
         assert f"4 of the judged drives have logs with lost parts: {', '.join(lossy)} and 1 more." in text
         assert f"1 of the judged drives does not fit its map: {off_map}." in text

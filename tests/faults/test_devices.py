@@ -27,7 +27,7 @@ from drivelint.formats import read_trace
 from drivelint.formats.files import expand_traces, identify
 from drivelint.formats.film import mapping as film_mapping
 from drivelint.formats.map_registry import read_source
-from drivelint.formats.search import why_not_here
+from drivelint.formats.search import why_unreadable
 from drivelint.formats.tables import mapping
 from drivelint.gate import waivers
 from drivelint.watch.sources.growing_file import GrowingFile
@@ -81,7 +81,7 @@ def test_a_name_that_no_file_can_have() -> None:
     with pytest.raises(UsageError, match="neither a file nor a shipped mapping"):
         mapping.load(LONG)
     assert not film_mapping.is_video_mapping(LONG)
-    assert why_not_here(Path(LONG)) is None
+    assert why_unreadable(Path(LONG)) is None
     with pytest.raises(OSError, match="too long") as met:
         Path(LONG).stat()
     said, code = of_the_machine(met.value) or ("", ExitCode.OK)

@@ -15,7 +15,7 @@ from drivelint.fleet.coverage import coverage
 from drivelint.fleet.distinct_logs import COUNTED_PREFIX, create_counted_views
 from drivelint.fleet.missing_signals import missing_signals
 from drivelint.fleet.rates import rates
-from drivelint.fleet_report.audit_views import BASE, Audit
+from drivelint.fleet_report.audit_views import BASE_PREFIX, Audit
 from drivelint.fleet_report.difference import difference
 from drivelint.fleet_report.difference_text import to_text
 from drivelint.sql.statements import statement
@@ -112,7 +112,7 @@ def compared(base: list[Any], new: list[Any]) -> Any:
     """Return the difference of audits of these drives, of which each has one finding per ego."""
     con = duckdb.connect()
     sides = []
-    for of, drives in ((BASE, base), ("", new)):
+    for of, drives in ((BASE_PREFIX, base), ("", new)):
         egos = [(row["drive_id"], ego["ego_id"]) for row in drives for ego in row["exposure"]]
         findings = [found(name, ego_id=ego, finding_id=f"{name}-{ego}") for name, ego in egos]
         add(con, drives, [said(name, "fail", ego_id=ego) for name, ego in egos], findings, of)

@@ -190,7 +190,7 @@ def test_a_drive_that_cannot_be_judged_any_more_is_listed_though_it_had_no_findi
     )
     assert compared(base, base)["no_more_judged"] == []
     for kind in ("markdown", "html"):
-        name, _ = page.write(str(new), kind, (), str(base))
+        name, _ = page.write_fleet_page(str(new), kind, (), str(base))
         assert "udged in the baseline, but not in this audit:" in (new / name).read_text(encoding="utf-8")
 
 

@@ -179,8 +179,8 @@ def test_a_report_that_ends_early_leaves_a_list_of_all_that_is_there(
         raise RuntimeError
 
     monkeypatch.setattr(drive_pages, "pages", broken)
-    monkeypatch.setattr(drive_pages, "choose", lambda *_: [drive_pages.page_name("new")])
-    monkeypatch.setattr(moment_pages, "chosen_drives", lambda *_: [])
+    monkeypatch.setattr(drive_pages, "choose_drives", lambda *_: [drive_pages.page_name("new")])
+    monkeypatch.setattr(moment_pages, "worst_drives", lambda *_: [])
     with pytest.raises(RuntimeError):
         ran("report", own_ten)
     monkeypatch.undo()
@@ -215,11 +215,11 @@ class Counted:
 
 def made(audit: Path, most: int, counted: Counted | None = None) -> dict[str, bytes]:
     with open_audits(str(audit)) as (con, told, _):
-        found = content_.content(con, told, None, ())
+        found = content_.fleet_content(con, told, None, ())
         through: Any = con
         if counted is not None:
             counted.con, through = con, counted
-        drive_pages.choose(through, most)
+        drive_pages.choose_drives(through, most)
         return dict(drive_pages.pages(through, told, found.rules))
 
 
@@ -248,8 +248,8 @@ def test_a_page_tells_what_was_lost_what_is_only_possible_and_what_could_not_be_
         )
         con.register("receipts", RECEIPT_SCHEMA.empty_table())
         audit = Audit("out", LocalFolder(Path("out")), {"settings": {}}, Standing("d"))
-        told = content_.content(con, audit, None, ())
-        assert drive_pages.choose(con, None) == [drive_pages.page_name("a"), drive_pages.page_name("b")]
+        told = content_.fleet_content(con, audit, None, ())
+        assert drive_pages.choose_drives(con, None) == [drive_pages.page_name("a"), drive_pages.page_name("b")]
         made = dict(drive_pages.pages(con, audit, told.rules))
     lossy, whole = (parsed_bytes(made[drive_pages.page_name(key)]) for key in "ab")
     assert "Lossy: parts of the log were lost" in words(lossy.find(".//header"))
@@ -276,8 +276,8 @@ def test_an_overtake_under_two_profiles_counts_once_as_on_the_fleet_page() -> No
         )
         con.register("receipts", RECEIPT_SCHEMA.empty_table())
         audit = Audit("out", LocalFolder(Path("out")), {"settings": {}}, Standing("d"))
-        told = content_.content(con, audit, None, ())
-        drive_pages.choose(con, None)
+        told = content_.fleet_content(con, audit, None, ())
+        drive_pages.choose_drives(con, None)
         ((_, made),) = drive_pages.pages(con, audit, told.rules)
     page = parsed_bytes(made)
     assert [row["critical"] for row in told.worst] == [1]

@@ -148,7 +148,7 @@ def test_a_signal_is_advised_in_the_formats_that_lack_it() -> None:
                 con, [row], [said("a", "unknown", rule_id="a-room", reason_code="missing_indicator")], [], [needs]
             )
             (each,) = missing_signals(con).signals
-        return page._provide(each)
+        return page._advice_on_signal(each)
 
     assert fleet("commonroad") != fleet("mapped")
     assert "mapping" not in fleet("commonroad")
@@ -164,7 +164,7 @@ def test_a_signal_that_decides_nothing_alone_is_not_told_with_zeros() -> None:
         audits.add_rows(con, drives, [said("a", "unknown", rule_id="a-room", reason_code="missing_map")], [], [needs])
         con.register("receipts", RECEIPT_SCHEMA.empty_table())
         audit = Audit("out", LocalFolder(Path("out")), {"settings": {}}, Standing("d"))
-        text = page.markdown(content_.content(con, audit, None, ())).decode()
+        text = page.markdown(content_.fleet_content(con, audit, None, ())).decode()
     assert "no judgement by itself, 1 judgement together with other signals" in text
     assert "at most 0" not in text
 

@@ -113,7 +113,7 @@ def test_a_changed_log_has_no_moments(audited: Path, tmp_path: Path) -> None:
 
 def test_other_findings_are_no_moments_of_these(own: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """As of another version of the program: positions of one judgement do not illustrate the verdicts of another."""
-    judged_again = moment_pages._judged_again
+    judged_again = moment_pages._check_again
 
     def with_fewer(drive: Any, audit: Any) -> Any:
         from dataclasses import replace
@@ -121,14 +121,14 @@ def test_other_findings_are_no_moments_of_these(own: Path, monkeypatch: pytest.M
         result = judged_again(drive, audit)
         return replace(result, findings=result.findings.slice(1))
 
-    monkeypatch.setattr(moment_pages, "_judged_again", with_fewer)
+    monkeypatch.setattr(moment_pages, "_check_again", with_fewer)
     assert ran("report", own).code == 0
     assert not list(own.glob("drives/*-moments.html"))
     assert "this version of drivelint gives other findings" in page_of(own, "collision").text_content()
 
 
 def test_long_drives_are_left_out_unless_they_are_asked_for(own: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(moment_pages, "MOST_STATES", 100)
+    monkeypatch.setattr(moment_pages, "DEFAULT_MAX_STATES", 100)
     assert ran("report", own).code == 0
     assert not list(own.glob("drives/*-moments.html"))
     assert ran("report", own, "--moments", 2).code == 0

@@ -74,7 +74,7 @@ def test_audits_without_a_common_drive_are_told_as_such(disjoint: AuditDifferenc
 
 def test_their_rates_gate_unless_findings_are_asked_for(disjoint: AuditDifference) -> None:
     def code(asked: str | None) -> ExitCode:
-        return difference_text.exit_code(disjoint, difference_text.least_severity(disjoint, asked))
+        return difference_text.exit_code(disjoint, difference_text.gating_severity(disjoint, asked))
 
     assert code(None) == ExitCode.FAILED
     assert code("critical") == ExitCode.FAILED
@@ -83,16 +83,16 @@ def test_their_rates_gate_unless_findings_are_asked_for(disjoint: AuditDifferenc
     said = "overtake per occasion 7.79 times, overtake per 100 km 8.50 times"
     assert told["code"] == 1
     assert told["why"].startswith(f"rates at or above severity critical are higher than chance explains: {said}; ")
-    assert difference_text.since(disjoint).endswith(f"differ by more than chance explains: {said}")
+    assert difference_text.changes_sentence(disjoint).endswith(f"differ by more than chance explains: {said}")
 
 
 def test_a_headline_names_rates_also_if_some_drives_are_in_both(disjoint: AuditDifference) -> None:
     shared = replace(disjoint, comparison=disjoint.comparison._replace(drives_both=1))
-    assert difference_text.since(shared).startswith(
+    assert difference_text.changes_sentence(shared).startswith(
         "rates that differ by more than chance explains: overtake per occasion 7.79 times, overtake per 100 km 8.50 times; 17 new"
     )
     other = [replace(each, profile=name) for each in disjoint.rates for name in ("a", "b", "c", "d")]
-    assert "d] per occasion" not in (told := difference_text.since(replace(shared, rates=other)))
+    assert "d] per occasion" not in (told := difference_text.changes_sentence(replace(shared, rates=other)))
     assert "overtake [c] per occasion 7.79 times and 1 more rule; 17 new" in told
 
 
@@ -136,7 +136,7 @@ def test_findings_that_the_newer_audit_did_not_look_at_are_no_pass() -> None:
 def test_findings_of_added_drives_are_told_apart() -> None:
     told = compared(base_also=("shared",), new_also=("shared",))
     assert told.headline.startswith("17 new (17 in drives that the base does not contain), ")
-    assert difference_text.least_severity(told, None) == "critical"
+    assert difference_text.gating_severity(told, None) == "critical"
 
 
 @pytest.mark.ci
@@ -185,4 +185,4 @@ def test_a_rate_of_which_the_base_has_no_event_has_no_ratio() -> None:
             return rates(con)
 
     (change,) = rate_changes(told(0), told(1))
-    assert [difference_text.times(each) for each in change.tests] == ["none before"] * 2
+    assert [difference_text.ratio_text(each) for each in change.tests] == ["none before"] * 2

@@ -166,7 +166,7 @@ def test_the_same_audit_gives_the_same_bytes(filled: lake.Lake) -> None:
     made = []
     for _ in range(2):
         with open_audits(str(filled.folder)) as (con, audit, _base):
-            found = content_.content(con, audit, None, ["release"])
+            found = content_.fleet_content(con, audit, None, ["release"])
         made.append((page.html(found), page.markdown(found)))
     assert made[0] == made[1]
 

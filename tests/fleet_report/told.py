@@ -35,7 +35,7 @@ class Told:
             audits.add_rows(con, drives, verdicts, findings, [ROOM, CONTACT])
             con.register("receipts", RECEIPT_SCHEMA.empty_table())
             audit = Audit("out", LocalFolder(Path("out")), {"settings": settings}, Standing("d"))
-            self.content = content_.content(con, audit, None, by)
+            self.content = content_.fleet_content(con, audit, None, by)
         self.markdown = page.markdown(self.content).decode()
         self.html: Any = html.fromstring(page.html(self.content))
         (header,) = self.html.findall(".//header")

@@ -35,9 +35,9 @@ def test_the_map_beside_the_logs_is_no_log_but_a_scenario_that_is_both_is(tmp_pa
     for name in ("a.mcap", "road.xodr", "scenario.xml"):
         (tmp_path / name).write_text("x")
     every = str(tmp_path / "*")
-    assert names(expand_traces([every], but=tmp_path / "road.xodr")) == ["a.mcap", "scenario.xml"]
-    assert names(expand_traces([every], but=tmp_path / "scenario.xml")) == ["a.mcap", "road.xodr", "scenario.xml"]
-    assert names(expand_traces([str(tmp_path / "road.xodr")], but=tmp_path / "road.xodr")) == ["road.xodr"]
+    assert names(expand_traces([every], map_path=tmp_path / "road.xodr")) == ["a.mcap", "scenario.xml"]
+    assert names(expand_traces([every], map_path=tmp_path / "scenario.xml")) == ["a.mcap", "road.xodr", "scenario.xml"]
+    assert names(expand_traces([str(tmp_path / "road.xodr")], map_path=tmp_path / "road.xodr")) == ["road.xodr"]
 
 
 def test_a_folder_of_sumo_has_its_logs_and_not_its_maps(tmp_path: Path) -> None:

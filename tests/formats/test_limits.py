@@ -37,17 +37,17 @@ def test_reading_that_takes_too_much_is_a_sentence(
     monkeypatch.setattr(limits, "BASE_CPU_S", 0.2 if read is for_ever else 60.0)
     monkeypatch.setattr(limits, "BASE_MEMORY_BYTES", 64 << 20 if read is growing else 2 << 30)
     with pytest.raises(TraceError, match=f"^log: reading took more than {why}, too much for a file of 5 bytes"):
-        limits.bounded(read, "log", 5, TraceError)
+        limits.read_within_limits(read, "log", 5, TraceError)
 
 
 def test_an_interrupt_meets_nobody_else(monkeypatch: pytest.MonkeyPatch) -> None:
     """Neither another thread, nor what follows, whenever it comes."""
     monkeypatch.setattr(limits, "BASE_CPU_S", -1.0)
-    monkeypatch.setattr(limits, "_LOOK_S", 0.0001)
+    monkeypatch.setattr(limits, "_LOOK_INTERVAL_S", 0.0001)
     ends = set()
     for _ in range(300):
         try:
-            ends.add(limits.bounded(lambda: sum(range(500)), "log", 5, TraceError))
+            ends.add(limits.read_within_limits(lambda: sum(range(500)), "log", 5, TraceError))
         except TraceError:
             ends.add(0)
     assert ends <= {0, sum(range(500))}

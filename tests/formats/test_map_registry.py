@@ -85,7 +85,7 @@ def test_a_doctype_is_refused(doctype: str) -> None:
 
 
 def test_a_file_that_is_too_large_is_refused_before_it_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(registry, "MAX_BYTES", 100)
+    monkeypatch.setattr(registry, "MAX_MAP_BYTES", 100)
     (tmp_path / "some.xodr").write_text(xodr())
     with pytest.raises(MapError, match="but at most 100 are read"):
         read_source(tmp_path / "some.xodr")

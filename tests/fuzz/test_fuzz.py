@@ -111,7 +111,7 @@ def test_a_table_that_does_not_say_that_it_has_no_checksums_is_a_bug(
     whole = bench.whole_content("csv", cars)
     path = cars.written(tmp_path / "a", {"cars.csv": cars.files["cars.csv"].replace(b",3.0000,", b",3.0001,", 1)})
     assert traces.read_case(path, cars, whole, rewritten=False)[0] == "unprotected"
-    monkeypatch.setattr("drivelint.formats.registry.UNPROTECTED", QualityFinding("gap", "info", "x"))
+    monkeypatch.setattr("drivelint.formats.registry.UNPROTECTED_FINDING", QualityFinding("gap", "info", "x"))
     assert traces.read_case(path, cars, whole, rewritten=False)[0] == "unsaid"
 
 

@@ -231,7 +231,9 @@ def test_the_reader_of_the_format_guide_reads(tmp_path: Path, monkeypatch: pytes
     spec.loader.exec_module(module)
 
     monkeypatch.setitem(sys.modules, "drivelint.formats.jsonlines", module)
-    monkeypatch.setattr(registry, "READERS", (*registry.READERS[:-1], "jsonlines", registry.READERS[-1]))
+    monkeypatch.setattr(
+        registry, "READER_MODULES", (*registry.READER_MODULES[:-1], "jsonlines", registry.READER_MODULES[-1])
+    )
     states = [
         {"t_s": k / 10, "id": actor, "x": k + 10.0 * actor, "y": 0.0, "heading": 0.0, "kind": "car"}
         for k in range(20)

@@ -16,7 +16,7 @@ from drivelint.drive.conditions import CONDITION_VALUES
 from drivelint.drive.trace import IngestOptions
 from drivelint.errors import ExitCode, TraceError, UsageError
 from drivelint.formats import read_trace
-from drivelint.formats.registry import FIXED_BEGINNINGS
+from drivelint.formats.registry import FIRST_BYTES_BY_SUFFIX
 from drivelint.inspect import InspectRequest, exit_code, inspect, to_json
 from drivelint.inspect.model import Content, Inspection, json_schema
 from drivelint.inspect.text import render
@@ -267,7 +267,7 @@ def test_a_file_that_does_not_begin_as_its_suffix_says_is_no_table(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A byte order mark before the fixed beginning is no fault."""
-    monkeypatch.setitem(FIXED_BEGINNINGS, ".trk", b"#TRK")
+    monkeypatch.setitem(FIRST_BYTES_BY_SUFFIX, ".trk", b"#TRK")
     found = {}
     for name, text in (("bare", "a,b\n1,2\n"), ("marked", "\ufeff#TRK,b\n1,2\n")):
         (tmp_path / f"{name}.trk").write_text(text, encoding="utf-8")

@@ -12,7 +12,7 @@ import pyarrow.parquet as pq
 from drivelint.audit.driver import empty_rows
 from drivelint.audit.summary import summed
 from drivelint.audit.worker import TABLES, said_of_rows
-from drivelint.fleet_report.audit_views import opened_packed
+from drivelint.fleet_report.audit_views import open_packed_audit
 from drivelint.pack.audits.statement import statement
 from drivelint.pack.signature import envelope, private_key
 from tests.audit import fleet
@@ -91,7 +91,7 @@ def follow_rows(pack: Path) -> None:
 
 def follow_tables(pack: Path) -> None:
     """Let the summary and the hashes in `evidence.json` say what the changed tables say."""
-    with opened_packed(pack / AUDIT) as (con, _):
+    with open_packed_audit(pack / AUDIT) as (con, _):
         counted = summed(con, 0)
     change_json(pack / AUDIT / "summary.json", lambda told: told.update(counted.plain()))
     change_evidence(pack, lambda _told: None)

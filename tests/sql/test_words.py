@@ -117,7 +117,7 @@ def test_what_is_said_elsewhere_are_words_of_the_vocabularies() -> None:
     turns = [*names["arrows"].values(), *names["directions"].values(), *map_kinds.TURNS.values()]
     assert {turn for each in turns for turn in each} == known["turn"]
     assert {*map_kinds.SIGN_KINDS.values(), *map_kinds.LIGHT_KINDS.values()} <= known["sign_kind"]
-    assert {*network.DRIVABLE, *map_kinds.DRIVABLE, *map_kinds.LANE_KINDS.values()} <= known["lane_type"]
+    assert {*network.DRIVABLE_LANE_TYPES, *map_kinds.DRIVABLE, *map_kinds.LANE_KINDS.values()} <= known["lane_type"]
     assert set(map_kinds.LANE_CHANGES.values()) == known["lanes_changed"]
     assert set(map_kinds._MARKINGS.values()) <= known["marking"]
 

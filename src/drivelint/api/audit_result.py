@@ -14,7 +14,7 @@ from drivelint.errors import UsageError
 from drivelint.fleet import rates
 from drivelint.fleet.distinct_logs import create_counted_views
 from drivelint.fleet_report import gated
-from drivelint.fleet_report.audit_views import destination, is_audit, open_audits
+from drivelint.fleet_report.audit_views import is_audit, open_audits, path_or_url
 from drivelint.phrases import listed
 from drivelint.report.outcome import headline
 from drivelint.report.outputs import REPORT_FORMATS
@@ -45,7 +45,7 @@ class AuditResult(TableSet):
     @typed
     def __init__(self, folder: AnyPath) -> None:
         """Open a folder that `audit --out` wrote. Errors: `DriveLintError` for a folder without an audit."""
-        self._dest = destination(Path(folder))
+        self._dest = path_or_url(Path(folder))
         if not is_audit(self._dest):
             raise UsageError(f"{folder}: no audit is here: name the folder that drivelint audit --out wrote")
         self._result = gated.audit_result(self._dest)

@@ -59,7 +59,7 @@ def drives(sources: Sequence[str], options: DriveInput) -> Iterator[AuditDrive]:
         else:
             logs.append(source)
     if logs:
-        for path in expand_traces(logs, but=options.map):
+        for path in expand_traces(logs, map_path=options.map):
             if not is_utf8(str(path)):
                 raise UsageError(f"{path}: its name is not UTF-8, which results need: rename it")
             yield AuditDrive(str(path), options)

@@ -134,7 +134,7 @@ def audit(
     gate = None
     if not in_parts:
         day, file = option_values.parse_today(today), find_settings()
-        gate = GateInputs.from_files(baseline, waivers, file, day, Path(out), load=gated.load)
+        gate = GateInputs.from_files(baseline, waivers, file, day, Path(out), load=gated.load_check_or_audit)
     request = AuditRequest(
         sources=tuple(sources),
         **drive,
@@ -172,7 +172,7 @@ def audit(
     code, told, why = counted.exit_code(fail_on, strict=strict), list[str](), ""
     if gate is not None or min_judged is not None:
         result = gated.apply_gate(out, gate)
-        code, told = gated.exit_code(result, counted), list(gated.lines(result))
+        code, told = gated.exit_code(result, counted), list(gated.gate_lines(result))
         why = gated.exit_reason(result, code)
     typer.echo(inert(summary_text(counted, out, code, told, fail_on=fail_on, why=why)))
     if pack is not None:

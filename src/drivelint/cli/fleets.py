@@ -32,8 +32,8 @@ def report_audit(
 ) -> None:
     """Write a report of an audit into its folder, and print the name of the file."""
     from drivelint.fleet_report import gated, page
-    from drivelint.fleet_report.audit_views import destination
-    from drivelint.fleet_report.drive_pages import MOST_DRIVES
+    from drivelint.fleet_report.audit_views import path_or_url
+    from drivelint.fleet_report.drive_pages import DEFAULT_N_DRIVES
 
     if to not in (*page.FORMATS, *gated.FORMATS):
         known = listed([*page.FORMATS, *gated.FORMATS])
@@ -50,11 +50,13 @@ def report_audit(
         return
     if (drive_pages is not None or moments is not None) and to != "html":
         raise UsageError("--drive-pages and --moments are for --to html: the other formats are one file")
-    most = MOST_DRIVES if drive_pages is None else option_values.parse_number_or_all("--drive-pages", drive_pages)
-    base = None if baseline is None else destination(baseline)
+    most = DEFAULT_N_DRIVES if drive_pages is None else option_values.parse_number_or_all("--drive-pages", drive_pages)
+    base = None if baseline is None else path_or_url(baseline)
     with progress(quiet) as listener:
         name, audit = run_interruptible(
-            lambda: page.write(dest, to, tuple(by), base, most_drives=most, most_moments=moments, progress=listener)
+            lambda: page.write_fleet_page(
+                dest, to, tuple(by), base, most_drives=most, most_moments=moments, progress=listener
+            )
         )
     _warn(audit)
     typer.echo(inert_line(f"{dest.rstrip('/')}/{name}"))
@@ -63,20 +65,20 @@ def report_audit(
 def diff_audits(base: str, new: str, format_: str, fail_on: str | None, rows: Path | None) -> None:
     """Print the difference of two audits, and exit with its exit code."""
     from drivelint.fleet_report import difference_text
-    from drivelint.fleet_report.audit_views import opened_both
-    from drivelint.fleet_report.difference import difference, write_rows
+    from drivelint.fleet_report.audit_views import open_two_audits
+    from drivelint.fleet_report.difference import difference, write_finding_rows
     from drivelint.gate.descriptions import MAX_LINES
 
-    most = difference_text.JSON_ENTRIES if format_ == "json" else MAX_LINES
+    most = difference_text.MAX_JSON_FINDINGS if format_ == "json" else MAX_LINES
 
     def compared() -> None:
-        with opened_both(base, new) as (con, earlier, later):
+        with open_two_audits(base, new) as (con, earlier, later):
             for audit in (earlier, later):
                 _warn(audit)
             found = difference(con, later, earlier, most)
             if rows is not None:
-                write_rows(con, rows)
-        least = difference_text.least_severity(found, fail_on)
+                write_finding_rows(con, rows)
+        least = difference_text.gating_severity(found, fail_on)
         if format_ == "json":
             typer.echo(inert_json(difference_text.to_json(found, least)))
         elif format_ == "markdown":
@@ -103,10 +105,10 @@ def what_if(
 
     Exit codes: 0 the answer is complete; 4 some or all verdicts need a new audit; 2 usage error.
     """
-    from drivelint.fleet_report.audit_views import destination
+    from drivelint.fleet_report.audit_views import path_or_url
     from drivelint.fleet_report.what_if import to_json, to_text, what_if_in_audit
 
-    asked = run_interruptible(lambda: what_if_in_audit(destination(dest), setting, by))
+    asked = run_interruptible(lambda: what_if_in_audit(path_or_url(dest), setting, by))
     typer.echo(inert_json(to_json(asked)) if format_ == "json" else inert(to_text(asked)))
     raise typer.Exit(int(asked.exit_code))
 
@@ -121,13 +123,13 @@ def trend(
 
     Exit codes: 0; 2 usage error; 4 an audit has not ended, or no rule has a rate to compare. Findings do not change the exit code.
     """
-    from drivelint.fleet_report.audit_views import destination
+    from drivelint.fleet_report.audit_views import path_or_url
     from drivelint.fleet_report.trend import audit_trend, to_json, to_text
 
     def warn(warning: str) -> None:
         typer.echo(f"drivelint: {inert_line(warning)}", err=True)
 
-    found = run_interruptible(lambda: audit_trend([destination(Path(dest)) for dest in dests], warn))
+    found = run_interruptible(lambda: audit_trend([path_or_url(Path(dest)) for dest in dests], warn))
     if format_ == "json":
         typer.echo(inert_json(to_json(found)))
     elif format_ == "markdown":

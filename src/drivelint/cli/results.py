@@ -90,11 +90,11 @@ def report(
     and braking second by second. It states what each party did by the same rules, how sure the finding is, and what the recording
     lacks. To write it, the log is judged again.
     """
-    from drivelint.fleet_report.audit_views import destination, is_audit
+    from drivelint.fleet_report.audit_views import is_audit, path_or_url
 
     of_the_sheet = pdf or trace is not None or map_ is not None
     of_an_audit = bool(by) or baseline is not None or drive_pages is not None or moments is not None
-    if is_audit(dest := destination(folder)):
+    if is_audit(dest := path_or_url(folder)):
         if incident is not None or of_the_sheet or base_url is not None:
             raise UsageError(
                 f"{dest} is an audit: --incident, --pdf, --trace, --map and --base-url are only for a check"
@@ -140,10 +140,10 @@ def diff(
     but findings of BASE are unknown or were not looked for in NEW, or a run has not ended. For two audits without a common drive, and
     without --fail-on: 1 if the rate of a stable rule rose by more than chance explains, 0 if no rate did, 4 if no rule has a rate in both.
     """
-    from drivelint.fleet_report.audit_views import destination, is_audit
+    from drivelint.fleet_report.audit_views import is_audit, path_or_url
 
-    if is_audit(destination(base)) or is_audit(destination(new)):
-        fleets.diff_audits(destination(base), destination(new), format_, fail_on, rows)
+    if is_audit(path_or_url(base)) or is_audit(path_or_url(new)):
+        fleets.diff_audits(path_or_url(base), path_or_url(new), format_, fail_on, rows)
     elif rows is not None:
         raise UsageError("--rows is only for two audits: for two checks, --format json contains all findings")
     else:

@@ -8,7 +8,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import MapError
-from drivelint.formats.map_registry import READERS, read_source, root_element_name
+from drivelint.formats.map_registry import READERS_BY_ROOT, read_source, root_element_name
 from drivelint.phrases import listed
 from drivelint.road.geo_reference import reference_of, same_reference
 
@@ -86,4 +86,4 @@ def _is_map(file: Path) -> bool:
     if suffix == ".json":
         return _LANES_OF_ARGOVERSE in file.read_bytes()
     with file.open("rb") as content:
-        return (root_element_name(content.read(_HEAD_BYTES)) or "").lower() in READERS
+        return (root_element_name(content.read(_HEAD_BYTES)) or "").lower() in READERS_BY_ROOT

@@ -27,11 +27,11 @@ if TYPE_CHECKING:
     from drivelint.audit.store import ResultStore
     from drivelint.audit.unpacked import Standing
 
-BASE: Final = "base_"
+BASE_PREFIX: Final = "base_"
 """The prefix of the earlier audit's views; the views of the other audit have no prefix."""
 
 
-_WHOLE: Final = "whole_"
+_ALL_LOGS_PREFIX: Final = "whole_"
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ class Audit:
         return self.standing.warning and f"{self.dest}: {self.standing.warning}"
 
 
-def destination(path: Path) -> str:
+def path_or_url(path: Path) -> str:
     """Return the place of results, a URL or a path, as text."""
     return as_url(path) or str(path)
 
@@ -83,57 +83,61 @@ def is_audit(dest: str) -> bool:
 
 @contextmanager
 def open_audits(dest: str, base: str | None = None) -> Iterator[tuple[duckdb.DuckDBPyConnection, Audit, Audit | None]]:
-    """Open an audit, and optionally an earlier one, whose views have the prefix `BASE`.
+    """Open an audit, and optionally an earlier one, whose views have the prefix `BASE_PREFIX`.
 
     Errors: `UsageError` if there is no audit, or if its files were changed.
     """
     with database() as con, TemporaryDirectory(prefix="drivelint-views-") as home:
-        audit = _open(con, dest, Path(home) / "new", "")
-        yield con, audit, None if base is None else _open(con, base, Path(home) / "base", BASE)
+        audit = _open_audit(con, dest, Path(home) / "new", "")
+        yield con, audit, None if base is None else _open_audit(con, base, Path(home) / "base", BASE_PREFIX)
 
 
 @contextmanager
-def opened_without(dest: str, sha256s: Sequence[str]) -> Iterator[tuple[duckdb.DuckDBPyConnection, Audit, int]]:
+def open_audit_without_logs(
+    dest: str, sha256s: Sequence[str]
+) -> Iterator[tuple[duckdb.DuckDBPyConnection, Audit, int]]:
     """Open an audit without the logs that have one of these hashes; also yield how many of its drives are left out.
 
     Errors: as `open_audits`.
     """
     with database() as con, TemporaryDirectory(prefix="drivelint-views-") as home:
-        audit = _open(con, dest, Path(home) / "new", _WHOLE)
+        audit = _open_audit(con, dest, Path(home) / "new", _ALL_LOGS_PREFIX)
         con.register("left_out_log", pa.table({"sha256": pa.array(sha256s, pa.string())}))
         con.execute(
-            f"CREATE TEMP TABLE own_key AS SELECT key FROM {_WHOLE}drives ANTI JOIN left_out_log USING (sha256)"
+            f"CREATE TEMP TABLE own_key AS SELECT key FROM {_ALL_LOGS_PREFIX}drives ANTI JOIN left_out_log USING (sha256)"
         )
         for table in (*TABLES, "receipts"):
-            con.execute(f"CREATE TEMP VIEW {table} AS FROM {_WHOLE}{table} SEMI JOIN own_key USING (key)")
-        con.execute(f"CREATE TEMP VIEW rules AS FROM {_WHOLE}rules")
-        (n,) = con.execute(f"SELECT count(*) FROM {_WHOLE}drives ANTI JOIN own_key USING (key)").fetchall()[0]
+            con.execute(f"CREATE TEMP VIEW {table} AS FROM {_ALL_LOGS_PREFIX}{table} SEMI JOIN own_key USING (key)")
+        con.execute(f"CREATE TEMP VIEW rules AS FROM {_ALL_LOGS_PREFIX}rules")
+        (n,) = con.execute(f"SELECT count(*) FROM {_ALL_LOGS_PREFIX}drives ANTI JOIN own_key USING (key)").fetchall()[0]
         yield con, audit, n
 
 
 @contextmanager
-def opened_packed(folder: Path) -> Iterator[tuple[duckdb.DuckDBPyConnection, Audit]]:
+def open_packed_audit(folder: Path) -> Iterator[tuple[duckdb.DuckDBPyConnection, Audit]]:
     """Open the audit in an evidence pack. Changed files are not detected here, because `verify` checks them itself. Errors: as
     `open_audits`."""
     with database() as con, TemporaryDirectory(prefix="drivelint-views-") as home:
-        yield con, _open(con, str(folder), Path(home) / "new", "", is_packed=True)
+        yield con, _open_audit(con, str(folder), Path(home) / "new", "", is_packed=True)
 
 
 @contextmanager
-def opened_both(base: str, new: str) -> Iterator[tuple[duckdb.DuckDBPyConnection, Audit, Audit]]:
-    """Open two audits; the views of the earlier one have the prefix `BASE`. Errors: as `open_audits`."""
+def open_two_audits(base: str, new: str) -> Iterator[tuple[duckdb.DuckDBPyConnection, Audit, Audit]]:
+    """Open two audits; the views of the earlier one have the prefix `BASE_PREFIX`. Errors: as `open_audits`."""
     with open_audits(new, base) as (con, later, earlier):
         if earlier is None:
             raise UsageError(f"{base}: no audit is here")
         yield con, earlier, later
 
 
-def _open(con: duckdb.DuckDBPyConnection, dest: str, home: Path, prefix: str, *, is_packed: bool = False) -> Audit:
-    home.mkdir()
+def _open_audit(
+    con: duckdb.DuckDBPyConnection, dest: str, views_folder: Path, views_prefix: str, *, is_packed: bool = False
+) -> Audit:
+    views_folder.mkdir()
     results = open_store(dest)
     told = told_of(results, dest)
     if told is None:
         raise UsageError(f"{dest}: no audit is here: name the folder that audit --out wrote")
     if not is_packed:
-        require_as_written(results, home, dest)
-    return Audit(dest, results, told, views_of_all(con, results, home, prefix))
+        require_as_written(results, views_folder, dest)
+    return Audit(dest, results, told, views_of_all(con, results, views_folder, views_prefix))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 from drivelint.fleet.rates import rates
 from drivelint.fleet.situations import MEASURED_SITUATIONS, bound_tag, value_of
-from drivelint.fleet_report.figures import log_axis
+from drivelint.fleet_report.figures import logarithmic_axis
 from drivelint.result.counts import SEVERITIES
 from drivelint.sql.statements import statement
 
@@ -15,14 +15,14 @@ if TYPE_CHECKING:
     import duckdb
 
     from drivelint.fleet.rates import Rate
-    from drivelint.fleet_report.figures import LogAxis
+    from drivelint.fleet_report.figures import LogarithmicAxis
 
 MAX_VALUES: Final = 12
 MAX_RULES: Final = 12
 _SHOWN_PREFIX: Final = "shown_"
 
 
-class RuleByTag(NamedTuple):
+class RuleRatesByTag(NamedTuple):
     """The rates of one rule and profile, one per value of the tag. The rate of drives without the tag is last."""
 
     rule_id: str
@@ -39,8 +39,8 @@ class RatesByTag:
     """
 
     tag: str
-    rules: list[RuleByTag]
-    axis: LogAxis
+    rules: list[RuleRatesByTag]
+    axis: LogarithmicAxis
     n_values_left_out: int
     n_rules_left_out: int
     n_findings_left_out: int
@@ -63,7 +63,7 @@ def rates_by_tag(con: duckdb.DuckDBPyConnection, tag: str) -> RatesByTag:
     by_rule: dict[tuple[str, str | None], list[Rate]] = {}
     for rate in rates(con, tag, of=of):
         by_rule.setdefault((rate.rule_id, rate.profile), []).append(rate)
-    found = [RuleByTag(*name, sorted(told, key=lambda r: r.tag_value is None)) for name, told in by_rule.items()]
+    found = [RuleRatesByTag(*name, sorted(told, key=lambda r: r.tag_value is None)) for name, told in by_rule.items()]
     severity = dict(con.execute("SELECT rule_id, severity FROM rules").fetchall())
     found = sorted(
         (each for each in found if _n_findings(each)),
@@ -78,12 +78,12 @@ def rates_by_tag(con: duckdb.DuckDBPyConnection, tag: str) -> RatesByTag:
     return RatesByTag(
         tag,
         found[:MAX_RULES],
-        log_axis(rate.per_100km for each in found[:MAX_RULES] for rate in each.rates),
+        logarithmic_axis(rate.per_100km for each in found[:MAX_RULES] for rate in each.rates),
         max(0, n_values - MAX_VALUES),
         len(left),
         sum(map(_n_findings, left)),
     )
 
 
-def _n_findings(rule: RuleByTag) -> int:
+def _n_findings(rule: RuleRatesByTag) -> int:
     return sum(rate.findings + rate.findings_of_unknown for rate in rule.rates)

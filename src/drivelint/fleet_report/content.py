@@ -15,10 +15,10 @@ from drivelint.fleet.rates import Rate, rates
 from drivelint.fleet_report.by_tag import RatesByTag, rates_by_tag
 from drivelint.fleet_report.difference import AuditDifference, difference, verdict_counts
 from drivelint.fleet_report.drive_command import check_command
-from drivelint.fleet_report.figures import LogAxis, log_axis
+from drivelint.fleet_report.figures import LogarithmicAxis, logarithmic_axis
 from drivelint.fleet_report.places import FindingMap, finding_map
-from drivelint.fleet_report.rows import gravest_first, options_column, ranked, rows
-from drivelint.fleet_report.worst_value import WorstValue, worst_value
+from drivelint.fleet_report.rows import options_column_sql, query_rows, ranked_drives_sql, severity_order_sql
+from drivelint.fleet_report.worst_value import WorstTagValue, worst_tag_value
 from drivelint.phrases import plural
 from drivelint.result.certainty import LEAST_KEEPING_SHARE
 from drivelint.result.counts import SEVERITIES
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 MAX_DRIVES: Final = 50
 """Largest number of drives in a table."""
-MAX_CHANGES: Final = 50
+MAX_FINDINGS_PER_STANDING: Final = 50
 """Largest number of findings per standing (new, fixed, …) in the comparison with a baseline."""
 
 
@@ -57,7 +57,7 @@ class FleetContent:
     verdicts: dict[str, int]
     rules: dict[str, Row]
     rates: list[Rate]
-    axis: LogAxis
+    axis: LogarithmicAxis
     worst: list[Row]
     n_drives_with_findings: int
     n_without_rate: int
@@ -65,7 +65,7 @@ class FleetContent:
     not_judged: list[Row]
     lossy: LogList
     off_map: LogList
-    worst_value: WorstValue | None
+    worst_value: WorstTagValue | None
     by_tag: list[RatesByTag]
     coverage: Coverage
     undecided: SignalGaps
@@ -73,7 +73,7 @@ class FleetContent:
     baseline: AuditDifference | None
 
     @property
-    def keys(self) -> list[str | None]:
+    def drive_keys(self) -> list[str | None]:
         """The keys of the drives that the page names; None for drives that only the baseline has."""
         since = [] if self.baseline is None else [e.new_key for of in self.baseline.entries.values() for e in of]
         return [*(row["key"] for row in self.worst), *(row["key"] for row in self.not_judged), *since]
@@ -126,55 +126,57 @@ class FleetContent:
         return "pass", "No finding"
 
 
-def content(con: duckdb.DuckDBPyConnection, audit: Audit, base: Audit | None, by: Sequence[str]) -> FleetContent:
-    """Return the content of the page about an audit from `open_audits`. Errors: `UsageError` for a tag in `by` that no drive has."""
+def fleet_content(
+    con: duckdb.DuckDBPyConnection, audit: Audit, base: Audit | None, tags: Sequence[str]
+) -> FleetContent:
+    """Return the content of the page about an audit from `open_audits`. Errors: `UsageError` for a tag in `tags` that no drive has."""
     share = str(LEAST_KEEPING_SHARE)
     create_counted_views(con)
     event = statement("fleet/event", of=COUNTED_PREFIX, least_share=share)
     (totals,) = con.execute(statement("fleet/totals")).to_arrow_table().to_pylist()
     (touched,) = con.execute(statement("audit/contacts", event=event)).fetchall()
-    worst = rows(
+    worst = query_rows(
         con,
         "worst",
         {"most": MAX_DRIVES},
         least_share=share,
-        ranked=ranked(),
+        ranked=ranked_drives_sql(),
         event=event,
-        gravest_first=gravest_first(),
-        options=options_column(con),
+        gravest_first=severity_order_sql(),
+        options=options_column_sql(con),
     )
     for row in worst:
         row["command"] = check_command(row["log"], row["options"], audit.settings, row["drive_id"])
         row["explain"] = shlex.join(["drivelint", "explain", row["finding_id"], "--in", f"drives/{row['drive_id']}"])
         row["tags"] = dict(row["tags"] or ())
     rules = {row["rule_id"]: row for row in con.execute("FROM rules ORDER BY ALL").to_arrow_table().to_pylist()}
-    found = sorted(rates(con), key=lambda rate: _gravest_first(rate, rules))
-    (with_findings,) = rows(con, "with_findings", subject=subject())
+    found = sorted(rates(con), key=lambda rate: _sort_key_by_severity(rate, rules))
+    (with_findings,) = query_rows(con, "with_findings", subject=subject())
     return FleetContent(
         audit=audit,
         totals=totals,
-        severities={row["severity"]: row for row in rows(con, "severities", event=event)},
+        severities={row["severity"]: row for row in query_rows(con, "severities", event=event)},
         verdicts=verdict_counts(con, COUNTED_PREFIX),
         rules=rules,
         rates=found,
-        axis=log_axis(rate.per_100km for rate in found if rate.findings),
+        axis=logarithmic_axis(rate.per_100km for rate in found if rate.findings),
         worst=worst,
         n_drives_with_findings=with_findings["drives"],
         n_without_rate=with_findings["without_rate"],
         contacts=touched,
-        not_judged=rows(con, "not_judged", {"most": MAX_DRIVES}),
+        not_judged=query_rows(con, "not_judged", {"most": MAX_DRIVES}),
         lossy=logs_that_are(con, "lossy"),
         off_map=logs_that_are(con, "off_map"),
-        worst_value=worst_value(con, found),
-        by_tag=[rates_by_tag(con, tag) for tag in dict.fromkeys(by)],
+        worst_value=worst_tag_value(con, found),
+        by_tag=[rates_by_tag(con, tag) for tag in dict.fromkeys(tags)],
         coverage=coverage(con),
         undecided=missing_signals(con),
         places=finding_map(con),
-        baseline=None if base is None else difference(con, audit, base, MAX_CHANGES),
+        baseline=None if base is None else difference(con, audit, base, MAX_FINDINGS_PER_STANDING),
     )
 
 
-def _gravest_first(rate: Rate, rules: dict[str, Row]) -> tuple[Any, ...]:
+def _sort_key_by_severity(rate: Rate, rules: dict[str, Row]) -> tuple[Any, ...]:
     rule = rules[rate.rule_id]
     severity = SEVERITIES.index(rule["severity"]), CONTACT not in rule["tags"]
     n = rate.findings + rate.findings_of_unknown

@@ -12,8 +12,8 @@ from drivelint.errors import UsageError
 from drivelint.fleet.compare import INTERVAL_TOLERANCE_S, compare
 from drivelint.fleet.distinct_logs import create_counted_views
 from drivelint.fleet.rate_change import RateChange, RateTest, compare_rates
-from drivelint.fleet_report.audit_views import BASE
-from drivelint.fleet_report.rows import counted_ids, rows
+from drivelint.fleet_report.audit_views import BASE_PREFIX
+from drivelint.fleet_report.rows import counted_finding_ids_sql, query_rows
 from drivelint.gate.descriptions import DIFF_STATUS_TITLES, counts_sentence
 from drivelint.result.counts import SEVERITIES, VERDICTS, rows_and_findings_sentence
 from drivelint.result.gate import DIFF_STATUSES, ComparedFinding
@@ -29,9 +29,9 @@ if TYPE_CHECKING:
     from drivelint.fleet_report.rows import Row
 
 NOTHING_IN_COMMON: Final = "the two audits have no drive in common: findings cannot be matched"
-NEAREST: Final = 5
+MIN_SHOWN_TESTS: Final = 5
 """The smallest number of shown tests of rates, even if fewer tests report a difference."""
-_WHY: Final = {
+_REASON_TEXTS: Final = {
     "drive_not_checked": "the drive was not checked",
     "drive_not_judged": "the drive could not be judged",
     "rule_not_run": "the rule was not run",
@@ -55,7 +55,7 @@ _VERDICT_SENTENCES: Final = {
 """Verdict of the other audit -> the verdict as text, if the rule was judged there."""
 
 
-class Entry(NamedTuple):
+class FindingEntry(NamedTuple):
     """A finding in the difference of two audits. `causes`: what else is known to differ; `causes_not_known`: what may differ but is not
     known.
 
@@ -69,7 +69,7 @@ class Entry(NamedTuple):
     new_key: str | None
 
 
-class NoMoreJudged(NamedTuple):
+class DriveNoMoreJudged(NamedTuple):
     """A drive that the base judged and the newer audit could not judge. `log`, `new_key`: in the newer audit. `base_log`: in the base.
     `reason`: why it could not be judged."""
 
@@ -118,13 +118,13 @@ class AuditDifference:
     gating: dict[str, int]
     gone_by_severity: dict[str, int]
     verdicts: tuple[dict[str, int], dict[str, int]]
-    entries: dict[str, list[Entry]]
+    entries: dict[str, list[FindingEntry]]
     causes: dict[tuple[str, ...], Counter[str]]
     causes_not_known: Counter[str]
     comparison: Comparison
     base_only: list[str]
     new_only: list[str]
-    no_more_judged: list[NoMoreJudged]
+    no_more_judged: list[DriveNoMoreJudged]
     new_unknowns: list[NewUnknowns]
     rates: list[RateChange]
     gating_rules: dict[str, str]
@@ -138,7 +138,7 @@ class AuditDifference:
         added = f" ({self.of_new_drives} in drives that the base does not contain)" if self.of_new_drives else ""
         return f"{self.event_counts['new']} new{added}, {counts_sentence(self.event_counts, self.worse, self.fixed)}"
 
-    def rows_of(self, standing: str) -> str:
+    def rows_sentence(self, standing: str) -> str:
         """Return a sentence that explains why a standing has more rows than findings; '' if it does not."""
         return rows_and_findings_sentence(
             self.counts[standing], self.event_counts[standing], has_profile_repeats=self.has_profiles
@@ -152,16 +152,16 @@ class AuditDifference:
 
     def n_failing(self, fail_on: str) -> int:
         """Return the number of new findings of stable rules at or above a severity."""
-        return _at_or_above(self.gating, fail_on)
+        return _count_at_or_above(self.gating, fail_on)
 
     def n_gone_unfixed(self, fail_on: str) -> int:
         """Return the number of findings of the base audit that are missing in the new audit without being fixed.
 
         Only findings of stable rules at or above a severity count.
         """
-        return _at_or_above(self.gone_by_severity, fail_on)
+        return _count_at_or_above(self.gone_by_severity, fail_on)
 
-    def risen_rates(self, fail_on: str) -> list[tuple[RateChange, RateTest]]:
+    def risen_rate_tests(self, fail_on: str) -> list[tuple[RateChange, RateTest]]:
         """Return the tests that report a higher rate of a stable rule at or above a severity."""
         severe = () if fail_on == "never" else SEVERITIES[: SEVERITIES.index(fail_on) + 1]
         return [
@@ -188,22 +188,22 @@ class AuditDifference:
 
     @property
     def shown_tests(self) -> list[tuple[RateChange, RateTest]]:
-        """The tests that report a difference; if these are fewer than `NEAREST`, also the next ones by p-value."""
-        return self.tested[: max(NEAREST, sum(test.is_significant for _, test in self.tested))]
+        """The tests that report a difference; if these are fewer than `MIN_SHOWN_TESTS`, also the next ones by p-value."""
+        return self.tested[: max(MIN_SHOWN_TESTS, sum(test.is_significant for _, test in self.tested))]
 
 
-def _at_or_above(counts: dict[str, int], least: str) -> int:
-    severe = () if least == "never" else SEVERITIES[: SEVERITIES.index(least) + 1]
+def _count_at_or_above(counts: dict[str, int], least_severity: str) -> int:
+    severe = () if least_severity == "never" else SEVERITIES[: SEVERITIES.index(least_severity) + 1]
     return sum(counts[severity] for severity in severe)
 
 
 def difference(con: duckdb.DuckDBPyConnection, new: Audit, base: Audit, max_entries: int) -> AuditDifference:
     """Return the difference of the audits from `open_audits`, with at most `max_entries` findings per standing."""
-    sides = {"base": create_counted_views(con, BASE), "new": create_counted_views(con)}
+    sides = {"base": create_counted_views(con, BASE_PREFIX), "new": create_counted_views(con)}
     comparison = compare(con, base=sides["base"], new=sides["new"], tools=(base.version, new.version))
-    counted = {f"{side}_counted": counted_ids(of) for side, of in sides.items()}
-    (gating,) = rows(con, "gating", None, **sides, **counted)
-    only = [rows(con, "lone_drives", {"most": max_entries}, of=sides[side], side=side) for side in sides]
+    counted = {f"{side}_counted": counted_finding_ids_sql(of) for side, of in sides.items()}
+    (gating,) = query_rows(con, "gating", None, **sides, **counted)
+    only = [query_rows(con, "lone_drives", {"most": max_entries}, of=sides[side], side=side) for side in sides]
     causes: dict[tuple[str, ...], Counter[str]] = {}
     not_known: Counter[str] = Counter()
     for each in comparison.differences:
@@ -229,20 +229,20 @@ def difference(con: duckdb.DuckDBPyConnection, new: Audit, base: Audit, max_entr
         comparison=comparison,
         base_only=[row["log"] for row in only[0]],
         new_only=[row["log"] for row in only[1]],
-        no_more_judged=[NoMoreJudged(**row) for row in rows(con, "no_more_judged", None, **sides)],
-        new_unknowns=[NewUnknowns(**row) for row in rows(con, "opened", None, **sides)],
-        rates=compare_rates(con, base=BASE, new=""),
+        no_more_judged=[DriveNoMoreJudged(**row) for row in query_rows(con, "no_more_judged", None, **sides)],
+        new_unknowns=[NewUnknowns(**row) for row in query_rows(con, "opened", None, **sides)],
+        rates=compare_rates(con, base=BASE_PREFIX, new=""),
         gating_rules=dict(con.execute("SELECT rule_id, severity FROM rules WHERE status = 'stable'").fetchall()),
     )
 
 
-def verdict_counts(con: duckdb.DuckDBPyConnection, of: str) -> dict[str, int]:
+def verdict_counts(con: duckdb.DuckDBPyConnection, view_prefix: str) -> dict[str, int]:
     """Return verdict -> number of rows, including zeros."""
-    found = {row["verdict"]: row["n"] for row in rows(con, "verdicts", of=of)}
+    found = {row["verdict"]: row["n"] for row in query_rows(con, "verdicts", of=view_prefix)}
     return {verdict: found.get(verdict, 0) for verdict in VERDICTS}
 
 
-def write_rows(con: duckdb.DuckDBPyConnection, path: Path) -> None:
+def write_finding_rows(con: duckdb.DuckDBPyConnection, path: Path) -> None:
     """Write one row per finding of either audit as Parquet. `difference` must run before. Errors: `UsageError` if the file cannot be
     written."""
     entries = statement("fleet_report/all_entries")
@@ -252,29 +252,33 @@ def write_rows(con: duckdb.DuckDBPyConnection, path: Path) -> None:
         raise UsageError(f"--rows {path}: cannot be written: {' '.join(str(error).split())[:200]}") from error
 
 
-def _entries(con: duckdb.DuckDBPyConnection, sides: dict[str, str], standing: str, max_entries: int) -> list[Entry]:
-    entry_rows = rows(con, "entries", {"standing": standing, "most": max_entries}, **sides)
+def _entries(
+    con: duckdb.DuckDBPyConnection, prefix_by_side: dict[str, str], standing: str, max_entries: int
+) -> list[FindingEntry]:
+    entry_rows = query_rows(con, "entries", {"standing": standing, "most": max_entries}, **prefix_by_side)
     return [
-        Entry(_finding(row), row["log"], tuple(row["causes"]), tuple(row["causes_not_known"]), row["new_key"])
+        FindingEntry(
+            _compared_finding(row), row["log"], tuple(row["causes"]), tuple(row["causes_not_known"]), row["new_key"]
+        )
         for row in entry_rows
     ]
 
 
-def _finding(row: Row) -> ComparedFinding:
+def _compared_finding(row: Row) -> ComparedFinding:
     same = (
         "standing", "finding_id", "base_id", "drive_id", "ego_id", "rule_id", "profile", "object_id", "severity", "stable", "margin",
         "base_margin", "unit", "there", "worse",
     )  # fmt: skip
-    return ComparedFinding(**{name: row[name] for name in same}, t_s=round(row["t_s"], 3), why=_why(row))
+    return ComparedFinding(**{name: row[name] for name in same}, t_s=round(row["t_s"], 3), why=_change_or_reason(row))
 
 
-def _why(row: Row) -> str:
+def _change_or_reason(row: Row) -> str:
     """Return how a finding changed, or why the other audit does not have the finding."""
     if row["standing"] != "changed":
-        return _VERDICT_SENTENCES[row["there"]] if row["why_code"] == "judged" else _WHY[row["why_code"]]
+        return _VERDICT_SENTENCES[row["there"]] if row["why_code"] == "judged" else _REASON_TEXTS[row["why_code"]]
     if row["is_part"]:
         whole, part = (
-            ("base_id", "finding_id") if _length(row, "base_") > _length(row, "") else ("finding_id", "base_id")
+            ("base_id", "finding_id") if _duration_s(row, "base_") > _duration_s(row, "") else ("finding_id", "base_id")
         )
         return f"{row[part]} is a part of {row[whole]}"
     notes = []
@@ -289,5 +293,5 @@ def _why(row: Row) -> str:
     return "; ".join(notes)
 
 
-def _length(row: Row, of: str) -> float:
-    return float(row[f"{of}to_s"] - row[f"{of}from_s"])
+def _duration_s(row: Row, column_prefix: str) -> float:
+    return float(row[f"{column_prefix}to_s"] - row[f"{column_prefix}from_s"])

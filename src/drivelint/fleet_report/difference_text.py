@@ -9,7 +9,7 @@ import msgspec
 
 from drivelint.errors import ExitCode
 from drivelint.fleet_report.difference import NOTHING_IN_COMMON
-from drivelint.fleet_report.figures import figure, interval, share
+from drivelint.fleet_report.figures import figure, percent_with_interval, rate_with_interval
 from drivelint.gate.descriptions import DIFF_STATUS_TITLES, MAX_LINES, exit_sentence, finding_line
 from drivelint.phrases import one_line, plural
 from drivelint.report.markdown import escape_markdown, markdown_code
@@ -26,9 +26,9 @@ if TYPE_CHECKING:
 
 AUDIT_DIFF_SCHEMA: Final = 1
 """Version of the JSON format: raised when a key is removed or changes its meaning."""
-_MOST_RISEN_RATES: Final = 3
+_MAX_LISTED_RATES: Final = 3
 """A sentence lists at most this many rates that have risen."""
-JSON_ENTRIES: Final = 1_000
+MAX_JSON_FINDINGS: Final = 1_000
 """Largest number of findings per standing in the JSON."""
 
 
@@ -37,10 +37,10 @@ def rate_name(of: RateChange | RuleCoverage | Trend) -> str:
     return of.rule_id if of.profile is None else f"{of.rule_id} [{of.profile}]"
 
 
-def least_severity(difference: AuditDifference, fail_on: str | None) -> str | None:
+def gating_severity(difference: AuditDifference, fail_on: str | None) -> str | None:
     """Return the severity that gates: the requested one, else the audit's own; None if none was requested and the audits have no common
     drive."""
-    return fail_on or (None if difference.is_disjoint else _own_severity(difference))
+    return fail_on or (None if difference.is_disjoint else _default_gating_severity(difference))
 
 
 def exit_code(difference: AuditDifference, fail_on: str | None) -> ExitCode:
@@ -50,7 +50,7 @@ def exit_code(difference: AuditDifference, fail_on: str | None) -> ExitCode:
     `fail_on` None: the two audits have no common drive. Then significantly higher rates gate instead of findings.
     """
     if fail_on is None:
-        if difference.risen_rates(_own_severity(difference)):
+        if difference.risen_rate_tests(_default_gating_severity(difference)):
             return ExitCode.FAILED
         return ExitCode.OK if difference.has_rates and not _warnings(difference) else ExitCode.NOT_JUDGED
     if difference.n_failing(fail_on):
@@ -58,7 +58,7 @@ def exit_code(difference: AuditDifference, fail_on: str | None) -> ExitCode:
     return ExitCode.NOT_JUDGED if difference.n_gone_unfixed(fail_on) or _warnings(difference) else ExitCode.OK
 
 
-def _own_severity(difference: AuditDifference) -> str:
+def _default_gating_severity(difference: AuditDifference) -> str:
     """Return the severity from which on findings of the newer audit gate."""
     return str(difference.new.audit_json.get("fail_on", "critical"))
 
@@ -67,14 +67,14 @@ def _warnings(difference: AuditDifference) -> list[str]:
     return [audit.warning for audit in (difference.base, difference.new) if audit.warning]
 
 
-def _exit(difference: AuditDifference, fail_on: str | None) -> str:
+def _exit_line(difference: AuditDifference, fail_on: str | None) -> str:
     """Return one line with the exit code, its reason, and how many drives were not judged any more."""
     n = len(difference.no_more_judged)
     less = f"; judged less than the baseline: {plural(n, 'drive')} of the baseline not judged" if n else ""
-    return f"{_code_and_reason(difference, fail_on)}{less}"
+    return f"{_exit_code_and_reason(difference, fail_on)}{less}"
 
 
-def _code_and_reason(difference: AuditDifference, fail_on: str | None) -> str:
+def _exit_code_and_reason(difference: AuditDifference, fail_on: str | None) -> str:
     if fail_on is None:
         return (
             f"exit {int(exit_code(difference, None))}: {_rates_sentence(difference)}; with --fail-on SEVERITY, "
@@ -90,12 +90,12 @@ def _code_and_reason(difference: AuditDifference, fail_on: str | None) -> str:
 
 def _rates_sentence(difference: AuditDifference) -> str:
     """Return a phrase about the comparison of rates of two audits without a common drive."""
-    least = _own_severity(difference)
-    if risen := difference.risen_rates(least):
+    least = _default_gating_severity(difference)
+    if risen := difference.risen_rate_tests(least):
         rates_text = ", ".join(
-            f"{rate_name(change)} per {test.per} {times(test)}" for change, test in risen[:_MOST_RISEN_RATES]
+            f"{rate_name(change)} per {test.per} {ratio_text(test)}" for change, test in risen[:_MAX_LISTED_RATES]
         )
-        more = f" and {len(risen) - _MOST_RISEN_RATES} more" if len(risen) > _MOST_RISEN_RATES else ""
+        more = f" and {len(risen) - _MAX_LISTED_RATES} more" if len(risen) > _MAX_LISTED_RATES else ""
         return f"rates at or above severity {least} are higher than chance explains: {rates_text}{more}"
     if warnings := _warnings(difference):
         return f"no rate at or above severity {least} is higher than chance explains so far, but {warnings[0]}"
@@ -104,21 +104,21 @@ def _rates_sentence(difference: AuditDifference) -> str:
     return f"no rate at or above severity {least} is higher than chance explains ({NOTHING_IN_COMMON})"
 
 
-def since(difference: AuditDifference) -> str:
+def changes_sentence(difference: AuditDifference) -> str:
     """Return one sentence about the changes since the base, for a headline."""
     significant = [each for each in difference.tested if each[1].is_significant]
-    rate_texts = [f"{rate_name(change)} per {test.per} {times(test)}" for change, test in significant]
-    if len(rate_texts) > _MOST_RISEN_RATES:  # then the nearest test of each rule
+    rate_texts = [f"{rate_name(change)} per {test.per} {ratio_text(test)}" for change, test in significant]
+    if len(rate_texts) > _MAX_LISTED_RATES:  # then the nearest test of each rule
         nearest = {
             rate_name(change): text for (change, _), text in reversed(list(zip(significant, rate_texts, strict=True)))
         }
         rate_texts = sorted(nearest.values(), key=rate_texts.index)
     more = (
-        f" and {plural(len(rate_texts) - _MOST_RISEN_RATES, 'more rule')}"
-        if len(rate_texts) > _MOST_RISEN_RATES
+        f" and {plural(len(rate_texts) - _MAX_LISTED_RATES, 'more rule')}"
+        if len(rate_texts) > _MAX_LISTED_RATES
         else ""
     )
-    differ = f"rates that differ by more than chance explains: {', '.join(rate_texts[:_MOST_RISEN_RATES])}{more}"
+    differ = f"rates that differ by more than chance explains: {', '.join(rate_texts[:_MAX_LISTED_RATES])}{more}"
     if not difference.is_disjoint:
         return f"{differ}; {difference.headline}" if rate_texts else difference.headline
     return (
@@ -128,25 +128,25 @@ def since(difference: AuditDifference) -> str:
     )
 
 
-def rate_line(of: tuple[RateChange, RateTest]) -> str:
+def rate_line(change_and_test: tuple[RateChange, RateTest]) -> str:
     """Return one line with both rates of a test, their ratio, and the p-values."""
-    change, test = of
-    was, now = rate_sides(test)
+    change, test = change_and_test
+    was, now = both_rate_texts(test)
     name = f"{rate_name(change)} per {test.per}"
-    return f"{name}: {was}, now {now}: {times(test)}, p {figure(test.p_value)}, corrected {figure(test.corrected)}"
+    return f"{name}: {was}, now {now}: {ratio_text(test)}, p {figure(test.p_value)}, corrected {figure(test.corrected)}"
 
 
-def times(test: RateTest) -> str:
+def ratio_text(test: RateTest) -> str:
     """Return the ratio of the later rate to the earlier one as text."""
     return "none before" if test.ratio == math.inf else f"{figure(test.ratio)} times"
 
 
-def rate_sides(test: RateTest) -> list[str]:
+def both_rate_texts(test: RateTest) -> list[str]:
     """Return both rates of a test as text, the earlier first."""
     if test.per == "occasion":
         told = zip(test.events, test.of, test.rates, strict=True)
-        return [f"{n} of {of:.0f}, {share(rate)}" for n, of, rate in told]
-    return [interval(rate) for rate in test.rates]
+        return [f"{n} of {of:.0f}, {percent_with_interval(rate)}" for n, of, rate in told]
+    return [rate_with_interval(rate) for rate in test.rates]
 
 
 def to_text(difference: AuditDifference, fail_on: str | None, *, markdown: bool = False) -> str:
@@ -158,18 +158,18 @@ def to_text(difference: AuditDifference, fail_on: str | None, *, markdown: bool 
         "code": markdown_code,
     }
     name = f"templates/difference.{'md' if markdown else 'txt'}.j2"
-    text = text_template(__file__, name, None if markdown else _one_line, **filters).render(
+    text = text_template(__file__, name, None if markdown else _text_on_one_line, **filters).render(
         diff=difference,
         verdicts=VERDICTS,
         titles=DIFF_STATUS_TITLES,
         words={standing: NOT_FIXED_WORDS.get(standing, standing) for standing in DIFF_STATUS_TITLES},
         most=MAX_LINES,
-        exit=_exit(difference, fail_on),
+        exit=_exit_line(difference, fail_on),
     )
     return text.rstrip("\n")
 
 
-def _one_line(value: Any) -> Any:
+def _text_on_one_line(value: Any) -> Any:
     return one_line(value) if isinstance(value, str) and "\n" in value else value
 
 
@@ -177,7 +177,10 @@ def to_json(difference: AuditDifference, fail_on: str | None) -> str:
     """Return a difference as JSON: all counts, the first entries of each standing, and how many entries are left out."""
     content = {
         "audit_diff_schema": AUDIT_DIFF_SCHEMA,
-        "exit": {"code": int(exit_code(difference, fail_on)), "why": _exit(difference, fail_on).partition(": ")[2]},
+        "exit": {
+            "code": int(exit_code(difference, fail_on)),
+            "why": _exit_line(difference, fail_on).partition(": ")[2],
+        },
         "warnings": _warnings(difference),
         "fail_on": fail_on,
         "base_name": difference.base.name,
@@ -206,7 +209,7 @@ def to_json(difference: AuditDifference, fail_on: str | None) -> str:
         "no_more_judged": [each._asdict() for each in difference.no_more_judged],
         "opened": [each._asdict() for each in difference.new_unknowns],
         "rates": [
-            _rate_change(each)
+            _rate_change_json(each)
             for each in difference.rates
             if each.p_value is not None or each.occasion_p_value is not None
         ],
@@ -214,7 +217,7 @@ def to_json(difference: AuditDifference, fail_on: str | None) -> str:
     return msgspec.json.format(msgspec.json.encode(replace_non_finite(msgspec.to_builtins(content))), indent=2).decode()
 
 
-def _rate_change(change: RateChange) -> dict[str, Any]:
+def _rate_change_json(change: RateChange) -> dict[str, Any]:
     content: dict[str, Any] = {"rule_id": change.rule_id, "profile": change.profile}
     for side, rate in (("base", change.base), ("new", change.new)):
         content[side] = rate and {

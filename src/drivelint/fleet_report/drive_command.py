@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 _OPTION_OF_FIELD: Final = {"sensor_range_m": "--sensor-range"}
-_DEFAULTS: Final = {each.name: each.default for each in fields(DriveInput)}
+_DEFAULT_BY_FIELD: Final = {each.name: each.default for each in fields(DriveInput)}
 _OPTION_OF_SETTING: Final = {
     "rules": "--rules",
     "ignore": "--ignore",
@@ -30,25 +30,25 @@ def check_command(log: str, options: str | None, settings: Mapping[str, Any], dr
     `options`: the drive's options (`DriveInput`) as JSON. `settings`: the audit's settings. `check` only reads local files: for a log in an
     object store, the command has the file name of a local copy.
     """
-    parts = [["drivelint", "check"], [_local(log)]]
+    parts = [["drivelint", "check"], [_name_of_local_copy(log)]]
     for name, value in json.loads(options or "{}").items():
-        parts += _words(name, value)
+        parts += _option_words(name, value)
     for name, option in _OPTION_OF_SETTING.items():
         parts += [[option, str(value)] for value in settings.get(name, ())]
     parts.append(["--out", f"drives/{drive_id}"])
     return [shlex.join(words) for words in parts]
 
 
-def _words(name: str, value: Any) -> list[list[str]]:
-    if name not in _DEFAULTS or value in (None, _DEFAULTS[name], []):
+def _option_words(name: str, value: Any) -> list[list[str]]:
+    if name not in _DEFAULT_BY_FIELD or value in (None, _DEFAULT_BY_FIELD[name], []):
         return []
     option = _OPTION_OF_FIELD.get(name, f"--{name.replace('_', '-')}")
     if name == "env":
         return [[option, each] for each in value]
     if isinstance(value, list):  # with '=', because a negative number looks like an option
         return [[f"{option}={','.join(f'{each:.12g}' for each in value)}"]]
-    return [[option, _local(str(value)) if name in {"map", "map_dir", "mapping"} else str(value)]]
+    return [[option, _name_of_local_copy(str(value)) if name in {"map", "map_dir", "mapping"} else str(value)]]
 
 
-def _local(name: str) -> str:
+def _name_of_local_copy(name: str) -> str:
     return name.rpartition("/")[2] if is_url(name) else name

@@ -17,7 +17,13 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 from drivelint.audit.bucket import is_url
 from drivelint.fleet_report import figures
 from drivelint.fleet_report.drive_command import check_command
-from drivelint.fleet_report.rows import gravest_first, one_per_event, options_column, ranked, rows
+from drivelint.fleet_report.rows import (
+    finding_per_event_sql,
+    options_column_sql,
+    query_rows,
+    ranked_drives_sql,
+    severity_order_sql,
+)
 from drivelint.phrases import plural
 from drivelint.reasons.signals import DEFAULT_REMEDY, remedy
 from drivelint.report.html.anchors import anchor
@@ -37,15 +43,15 @@ if TYPE_CHECKING:
     from drivelint.fleet_report.rows import Row
 
 FOLDER: Final = "drives"
-MOST_DRIVES: Final = 100
+DEFAULT_N_DRIVES: Final = 100
 """Default number of drives that get a page."""
 MAX_FINDINGS: Final = 200
 """Largest number of findings on a page."""
 MAX_NOTES: Final = 40
 """Largest number of reasons for unknown verdicts on a page, and of notes on the data."""
-_AT_A_TIME: Final = 100
-_PLAIN: Final = re.compile(r"[0-9a-f]{64}")
-_FILE: Final = re.compile(rf"{_PLAIN.pattern}(-moments)?\.html")
+_DRIVES_AT_A_TIME: Final = 100
+_SHA256: Final = re.compile(r"[0-9a-f]{64}")
+_PAGE_FILE_NAME: Final = re.compile(rf"{_SHA256.pattern}(-moments)?\.html")
 _HERE: Final = Path(__file__).parent
 
 
@@ -56,33 +62,37 @@ class MomentsLink(NamedTuple):
     reason: str
 
 
-NO_MOMENTS: Final[Mapping[str, MomentsLink]] = MappingProxyType({})
+NO_MOMENTS_LINKS: Final[Mapping[str, MomentsLink]] = MappingProxyType({})
 
 
-def page_name(key: str) -> str:
+def page_name(drive_key: str) -> str:
     """Return the file name of a drive's page. A key that is not a SHA-256 may contain anything, so its hash is used instead."""
-    plain = key if _PLAIN.fullmatch(key) else hashlib.sha256(key.encode("utf-8", "surrogatepass")).hexdigest()
+    plain = (
+        drive_key
+        if _SHA256.fullmatch(drive_key)
+        else hashlib.sha256(drive_key.encode("utf-8", "surrogatepass")).hexdigest()
+    )
     return f"{FOLDER}/{plain}.html"
 
 
 def is_page_name(name: str) -> bool:
     """Return whether a name is that of a drive's page, or of the page with its moments."""
     folder, _, file = name.rpartition("/")
-    return folder == FOLDER and _FILE.fullmatch(file) is not None
+    return folder == FOLDER and _PAGE_FILE_NAME.fullmatch(file) is not None
 
 
-def choose(con: duckdb.DuckDBPyConnection, max_drives: int | None) -> list[str]:
-    """Choose the drives that get a page, and return the names of the pages. `content` must run before.
+def choose_drives(con: duckdb.DuckDBPyConnection, max_drives: int | None) -> list[str]:
+    """Choose the drives that get a page, and return the names of the pages. `fleet_content` must run before.
 
     `max_drives`: the number of drives with findings, the worst first; None: all drives of the audit.
     """
-    con.execute(statement("fleet_report/page_drives", ranked=ranked()), {"most": max_drives})
+    con.execute(statement("fleet_report/page_drives", ranked=ranked_drives_sql()), {"most": max_drives})
     return [page_name(key) for (key,) in con.execute("SELECT key FROM page_drive ORDER BY no").fetchall()]
 
 
-def links(con: duckdb.DuckDBPyConnection, keys: Iterable[str | None]) -> dict[str, str]:
+def page_urls(con: duckdb.DuckDBPyConnection, drive_keys: Iterable[str | None]) -> dict[str, str]:
     """Return key -> relative URL of the page, for those of the given drives that have a page."""
-    asked = sorted({key for key in keys if key is not None})
+    asked = sorted({key for key in drive_keys if key is not None})
     found = con.execute("SELECT key FROM page_drive WHERE list_contains($keys, key) ORDER BY no", {"keys": asked})
     return {key: page_name(key) for (key,) in found.fetchall()}
 
@@ -91,15 +101,17 @@ def pages(
     con: duckdb.DuckDBPyConnection,
     audit: Audit,
     rules: Mapping[str, Row],
-    moments: Mapping[str, MomentsLink] = NO_MOMENTS,
+    moments: Mapping[str, MomentsLink] = NO_MOMENTS_LINKS,
 ) -> Iterator[tuple[str, bytes]]:
     """Yield the name and content of each chosen drive's page.
 
     `rules`: rule_id -> row of the table `rule`. `moments`: key of a drive -> the page with its moments.
     """
-    con.execute(statement("fleet_report/page_facts", options=options_column(con)))
+    con.execute(statement("fleet_report/page_facts", options=options_column_sql(con)))
     con.execute(
-        statement("fleet_report/page_findings", gravest_first=gravest_first(), event=one_per_event("paged_")),
+        statement(
+            "fleet_report/page_findings", gravest_first=severity_order_sql(), event=finding_per_event_sql("paged_")
+        ),
         {"most": MAX_FINDINGS},
     )
     con.execute(statement("fleet_report/page_verdicts"))
@@ -113,19 +125,19 @@ def pages(
         "verdicts": VERDICTS,
         "max_notes": MAX_NOTES,
     }
-    for first in range(1, n_pages + 1, _AT_A_TIME):
-        for told in _page_values(con, audit, first, first + _AT_A_TIME - 1):
+    for first in range(1, n_pages + 1, _DRIVES_AT_A_TIME):
+        for told in _template_values(con, audit, first, first + _DRIVES_AT_A_TIME - 1):
             key = told["drive"]["key"]
             values = same | told | {"moments": moments.get(key)}
             yield page_name(key), template.render(values).encode("utf-8", "replace")
 
 
-def _page_values(con: duckdb.DuckDBPyConnection, audit: Audit, first: int, last: int) -> Iterator[Row]:
+def _template_values(con: duckdb.DuckDBPyConnection, audit: Audit, first: int, last: int) -> Iterator[Row]:
     """Yield the values of the template for each drive with a number from `first` to `last`."""
     bound = {"first": first, "last": last}
-    facts = rows(con, "page_some", bound, table="page_facts", order="no")
-    findings = rows(con, "page_some", bound, table="page_finding", order="no, nth")
-    parts = (findings, rows(con, "page_counts", bound), rows(con, "page_undecided", bound))
+    facts = query_rows(con, "page_some", bound, table="page_facts", order="no")
+    findings = query_rows(con, "page_some", bound, table="page_finding", order="no, nth")
+    parts = (findings, query_rows(con, "page_counts", bound), query_rows(con, "page_undecided", bound))
     by_drive = [group_rows(part, lambda row: row["no"]) for part in parts]
     for drive in facts:
         yield _page_content(audit, drive, *(part.get(drive["no"], []) for part in by_drive))

@@ -27,14 +27,14 @@ def figure(value: float | None) -> str:
     return f"{value:.{digits}f}" if digits < 8 else f"{value:.2e}"
 
 
-def interval(estimate: Estimate) -> str:
+def rate_with_interval(estimate: Estimate) -> str:
     """Return a rate with the bounds of its interval as text; a dash if the rate is not known."""
     if estimate.rate is None:
         return NO_VALUE
     return f"{figure(estimate.rate)} ({figure(estimate.low)} to {figure(estimate.high)})"
 
 
-def least_rate(rate: Rate) -> tuple[str, str] | None:
+def lower_bound_texts(rate: Rate) -> tuple[str, str] | None:
     """Return a lower bound and an explanation, to show instead of a rate of 0 that leaves findings out; None: for any other rate.
 
     The drives with these findings were not completely judged, so they do not count for the rate. A rate of 0 would look as if nothing had
@@ -44,18 +44,18 @@ def least_rate(rate: Rate) -> tuple[str, str] | None:
         return None
     return (
         f"at least {figure(rate.at_least_per_100km)}",
-        f"over all km; fully judged: {interval(rate.per_100km)}",
+        f"over all km; fully judged: {rate_with_interval(rate.per_100km)}",
     )
 
 
-def share(estimate: Estimate) -> str:
+def percent_with_interval(estimate: Estimate) -> str:
     """Return a share and its interval in percent as text; a dash if the share is not known."""
     if estimate.rate is None:
         return NO_VALUE
     return f"{figure(100 * estimate.rate)} % ({figure(100 * estimate.low)} to {figure(100 * estimate.high)})"
 
 
-class LogAxis(NamedTuple):
+class LogarithmicAxis(NamedTuple):
     """A logarithmic axis of rates, from 10^`low` at 0 % to 10^`high` at 100 %."""
 
     low: int
@@ -66,7 +66,7 @@ class LogAxis(NamedTuple):
         """The first and the last value of the axis as text."""
         return f"{10.0**self.low:g} to {10.0**self.high:g}"
 
-    def at(self, value: float) -> float:
+    def percent_at(self, value: float) -> float:
         """Return the position of a rate on the axis in percent; a rate of 0 is at the left end."""
         if value <= 0:
             return 0.0
@@ -76,15 +76,15 @@ class LogAxis(NamedTuple):
         """Return the position and width of an interval's bar, and the position of the rate; None: the rate is not known."""
         if estimate.rate is None:
             return None
-        low, high = self.at(estimate.low), self.at(estimate.high)
-        return {"x": percent(low), "w": percent(max(0.5, high - low)), "rate": percent(self.at(estimate.rate))}
+        low, high = self.percent_at(estimate.low), self.percent_at(estimate.high)
+        return {"x": percent(low), "w": percent(max(0.5, high - low)), "rate": percent(self.percent_at(estimate.rate))}
 
 
-def log_axis(estimates: Iterable[Estimate]) -> LogAxis:
+def logarithmic_axis(estimates: Iterable[Estimate]) -> LogarithmicAxis:
     """Return an axis that includes these rates and the finite bounds of their intervals."""
     known = [each for each in estimates if each.rate is not None]
     ends = [end for each in known for end in (each.low, each.rate, each.high) if end and math.isfinite(end)]
     if not ends:
-        return LogAxis(-1, 1)
+        return LogarithmicAxis(-1, 1)
     low, high = math.floor(math.log10(min(ends))), math.ceil(math.log10(max(ends)))
-    return LogAxis(low, max(high, low + 1))
+    return LogarithmicAxis(low, max(high, low + 1))

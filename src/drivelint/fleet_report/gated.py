@@ -17,7 +17,7 @@ from drivelint.audit.sealed import seal
 from drivelint.audit.unpacked import SUMMARY_FILE
 from drivelint.errors import ExitCode
 from drivelint.fleet.distinct_logs import create_counted_views
-from drivelint.fleet_report.audit_views import destination, is_audit, open_audits
+from drivelint.fleet_report.audit_views import is_audit, open_audits, path_or_url
 from drivelint.gate import descriptions
 from drivelint.report.outcome import headline
 from drivelint.report.outputs import REPORT_FORMATS
@@ -42,19 +42,19 @@ if TYPE_CHECKING:
 
 FORMATS: Final = ("junit", "sarif")
 """The formats of reports that both a check and an audit can write."""
-_WEIGHT: Final = (ExitCode.USAGE, ExitCode.FAILED, ExitCode.NOT_JUDGED, ExitCode.LOSSY, ExitCode.OK)
+_EXIT_CODES_BY_PRECEDENCE: Final = (ExitCode.USAGE, ExitCode.FAILED, ExitCode.NOT_JUDGED, ExitCode.LOSSY, ExitCode.OK)
 """Exit codes in the order of precedence."""
 
 
 def audit_result(dest: str) -> Result:
     """Return an audit as the result of a check, with its gate. Errors: as `open_audits`."""
     with open_audits(dest) as (con, audit, _):
-        return _result(con, audit)
+        return _result_of_audit(con, audit)
 
 
-def load(path: Path) -> Result:
+def load_check_or_audit(path: Path) -> Result:
     """Return the result that `check --out` or `audit --out` wrote to `path`. Errors: `UsageError`."""
-    dest = destination(path)
+    dest = path_or_url(path)
     return audit_result(dest) if is_audit(dest) else load_result(path)
 
 
@@ -62,7 +62,7 @@ def apply_gate(dest: str, inputs: GateInputs | None) -> Result:
     """Compare an audit that has ended with its baseline and waivers. Write `gate.json` into the audit, and return the result with its
     gate."""
     with open_audits(dest) as (con, audit, _):
-        result = _result(con, audit)
+        result = _result_of_audit(con, audit)
         result = result if inputs is None else inputs.apply_to(result)
         if result.gate is not None:
             audit.results.write(GATE_FILE, gate.render(result.gate))
@@ -73,7 +73,7 @@ def apply_gate(dest: str, inputs: GateInputs | None) -> Result:
 def exit_code(result: Result, summary: AuditSummary) -> ExitCode:
     """Return the exit code with the higher precedence: from the gated findings, or from the audit's summary."""
     other_exit = replace(summary, failed={}).exit_code("never", strict=result.strict)
-    return min((exit_status(result).code, other_exit), key=_WEIGHT.index)
+    return min((exit_status(result).code, other_exit), key=_EXIT_CODES_BY_PRECEDENCE.index)
 
 
 def exit_reason(result: Result, code: ExitCode) -> str:
@@ -82,7 +82,7 @@ def exit_reason(result: Result, code: ExitCode) -> str:
     return status.why if status.code is code else ""
 
 
-def lines(result: Result) -> Iterator[str]:
+def gate_lines(result: Result) -> Iterator[str]:
     """Yield lines about the gate: the findings by standing, the reason for the exit code, and doubtful waivers."""
     yield f"gate: {headline(result).sentence}"
     yield f"  {exit_status(result).why}"
@@ -90,15 +90,15 @@ def lines(result: Result) -> Iterator[str]:
         yield from (f"  {text}" for text in descriptions.waiver_warnings(result.gate))
 
 
-def write_report(dest: str, to: str) -> tuple[str, Audit]:
+def write_report(dest: str, report_format: str) -> tuple[str, Audit]:
     """Write a report in one of `FORMATS` into the audit; return its file name, and the audit. Errors: as `open_audits`; `OutputError`."""
-    name, render = REPORT_FORMATS[to]
+    name, render = REPORT_FORMATS[report_format]
     with open_audits(dest) as (con, audit, _):
-        audit.results.write(name, render(_result(con, audit)))
+        audit.results.write(name, render(_result_of_audit(con, audit)))
     return name, audit
 
 
-def _result(con: duckdb.DuckDBPyConnection, audit: Audit) -> Result:
+def _result_of_audit(con: duckdb.DuckDBPyConnection, audit: Audit) -> Result:
     counted = create_counted_views(con)
     orders = {"verdicts": ORDER_OF_VERDICTS, "findings": ORDER_OF_FINDINGS}
     rows = {
@@ -115,12 +115,12 @@ def _result(con: duckdb.DuckDBPyConnection, audit: Audit) -> Result:
         fail_on=audit.audit_json["fail_on"],
         strict=audit.audit_json.get("strict", False),  # older audits lack both keys
         min_judged=audit.audit_json.get("min_judged"),
-        gate=_gate(audit.results),
+        gate=_stored_gate(audit.results),
         run_options=RunRequest.from_options(CheckOptions(()), here),
     )
 
 
-def _gate(results: ResultStore) -> gate.Gate | None:
+def _stored_gate(results: ResultStore) -> gate.Gate | None:
     """Return the gate that the audit's last run stored; None: it stored none."""
     content = results.read(GATE_FILE)
     if content is None:

@@ -16,7 +16,7 @@ from drivelint.audit.bucket import is_url
 from drivelint.drive.trace import DriveInput
 from drivelint.errors import DriveLintError
 from drivelint.fleet_report.drive_pages import page_name
-from drivelint.fleet_report.rows import options_column, rows
+from drivelint.fleet_report.rows import options_column_sql, query_rows
 from drivelint.report import html
 from drivelint.report.progress import Silent
 
@@ -30,14 +30,14 @@ if TYPE_CHECKING:
     from drivelint.report.progress import Progress
     from drivelint.result.model import Result
 
-MOST_DRIVES: Final = 3
+DEFAULT_N_DRIVES: Final = 3
 """Number of drives whose moments are drawn by default."""
-MOST_STATES: Final = 200_000
+DEFAULT_MAX_STATES: Final = 200_000
 """By default, drives with more actor states are left out: to judge them again takes longer than a person waits for a page."""
-_SETTINGS: Final = ("rules", "ignore", "profiles", "params", "rules_dirs")
+_SETTING_NAMES: Final = ("rules", "ignore", "profiles", "params", "rules_dirs")
 
 
-class Moments(NamedTuple):
+class MomentsPage(NamedTuple):
     """The page with the moments of a drive. `content`: empty if there is none, for this `reason`."""
 
     key: str
@@ -46,46 +46,46 @@ class Moments(NamedTuple):
     reason: str
 
 
-def chosen_drives(con: duckdb.DuckDBPyConnection, n: int | None) -> list[Row]:
-    """Return the worst drives that have a page and findings, after `drive_pages.choose`.
+def worst_drives(con: duckdb.DuckDBPyConnection, n: int | None) -> list[Row]:
+    """Return the worst drives that have a page and findings, after `drive_pages.choose_drives`.
 
-    `n`: number of drives; None: `MOST_DRIVES`, without drives of more than `MOST_STATES` states.
+    `n`: number of drives; None: `DEFAULT_N_DRIVES`, without drives of more than `DEFAULT_MAX_STATES` states.
     """
-    bound = {"most": MOST_DRIVES if n is None else n, "most_states": MOST_STATES if n is None else None}
-    return rows(con, "moment_drives", bound, options=options_column(con))
+    bound = {"most": DEFAULT_N_DRIVES if n is None else n, "most_states": DEFAULT_MAX_STATES if n is None else None}
+    return query_rows(con, "moment_drives", bound, options=options_column_sql(con))
 
 
-def moments(drives: Sequence[Row], audit: Audit, progress: Progress) -> Iterator[Moments]:
+def pages_with_moments(drives: Sequence[Row], audit: Audit, progress: Progress) -> Iterator[MomentsPage]:
     """Judge these drives again, one by one; yield the moments of each."""
     if drives:
         progress.stage("drawing moments", len(drives))
     for drive in drives:
         progress.doing(drive["drive_id"])
-        yield _moments(drive, audit)
+        yield _page_with_moments(drive, audit)
         progress.advance()
 
 
-def _moments(drive: Row, audit: Audit) -> Moments:
+def _page_with_moments(drive: Row, audit: Audit) -> MomentsPage:
     reason, content = "", b""
     try:
-        result = _judged_again(drive, audit)
-        if reason := _difference(result, drive):
+        result = _check_again(drive, audit)
+        if reason := _difference_from_audit(result, drive):
             reason = f"{reason}: audit the drives again, or check this one alone"
         else:
             content = html.render(result, in_result_folder=False)
     except (DriveLintError, OSError, msgspec.MsgspecError) as error:
         reason = str(error)
-    return Moments(drive["key"], moments_name(drive["key"]), content, reason)
+    return MomentsPage(drive["key"], moments_page_name(drive["key"]), content, reason)
 
 
-def _judged_again(drive: Row, audit: Audit) -> Result:
+def _check_again(drive: Row, audit: Audit) -> Result:
     """Check a drive by the settings of its audit. Errors: `DriveLintError`."""
     if is_url(drive["log"]):
         raise DriveLintError("the log is in an object store: copy it, and check the copy")
     if not Path(drive["log"]).exists():
         raise DriveLintError(f"the log is not at {drive['log']} any more")
     options = msgspec.json.decode(drive["options"] or "{}", type=DriveInput, dec_hook=lambda kind, value: kind(value))
-    rules, ignore, profiles, params, rules_dirs = (tuple(audit.settings.get(name, ())) for name in _SETTINGS)
+    rules, ignore, profiles, params, rules_dirs = (tuple(audit.settings.get(name, ())) for name in _SETTING_NAMES)
     request = run.CheckOptions(
         (drive["log"],),
         **{name: getattr(options, name) for name in options.__dataclass_fields__},
@@ -101,7 +101,7 @@ def _judged_again(drive: Row, audit: Audit) -> Result:
     return run.check(request, Silent())
 
 
-def _difference(result: Result, drive: Row) -> str:
+def _difference_from_audit(result: Result, drive: Row) -> str:
     """Return how a drive that was judged again differs from its result in the audit; empty: in nothing that counts."""
     (row,) = result.drives.to_pylist()
     if row["sha256"] != drive["sha256"]:
@@ -113,6 +113,6 @@ def _difference(result: Result, drive: Row) -> str:
     return ""
 
 
-def moments_name(key: str) -> str:
+def moments_page_name(drive_key: str) -> str:
     """Return the name of the page with a drive's moments."""
-    return page_name(key).removesuffix(".html") + "-moments.html"
+    return page_name(drive_key).removesuffix(".html") + "-moments.html"

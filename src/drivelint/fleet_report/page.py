@@ -11,9 +11,9 @@ from drivelint.audit.bucket import is_url
 from drivelint.fleet.coverage import STANDINGS
 from drivelint.fleet_report import drive_pages, figures, moment_pages, page_files
 from drivelint.fleet_report.audit_views import open_audits
-from drivelint.fleet_report.content import FleetContent, content
-from drivelint.fleet_report.difference_text import rate_line, rate_name, rate_sides, since, times
-from drivelint.fleet_report.drive_pages import MOST_DRIVES
+from drivelint.fleet_report.content import FleetContent, fleet_content
+from drivelint.fleet_report.difference_text import both_rate_texts, changes_sentence, rate_line, rate_name, ratio_text
+from drivelint.fleet_report.drive_pages import DEFAULT_N_DRIVES
 from drivelint.gate.descriptions import DIFF_STATUS_TITLES, finding_line
 from drivelint.phrases import plural
 from drivelint.reasons.signals import DEFAULT_REMEDY, how_to_provide, remedy
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 FORMATS: Final = ("html", "markdown")
 NO_LINKS: Final[Mapping[str, str]] = MappingProxyType({})
-_FILES: Final = {"html": "fleet.html", "markdown": "fleet.md"}
+_FILE_NAMES: Final = {"html": "fleet.html", "markdown": "fleet.md"}
 _STANDING_TITLES: Final = {
     "never_decided": "Never decided: no verdict passed or failed, some are unknown",
     "never_triggered": "Never triggered: the situations of these rules did not occur",
@@ -46,29 +46,29 @@ _STANDING_TITLES: Final = {
 _HERE: Final = Path(__file__).parent
 
 
-def write(
+def write_fleet_page(
     dest: str,
-    to: str,
-    by: Sequence[str],
+    report_format: str,
+    tags: Sequence[str],
     baseline: str | None,
     *,
-    most_drives: int | None = MOST_DRIVES,
+    most_drives: int | None = DEFAULT_N_DRIVES,
     most_moments: int | None = None,
     progress: Progress | None = None,
 ) -> tuple[str, Audit]:
     """Write the fleet page into an audit, and with HTML also pages of its worst drives. Return the fleet page's name, and the audit.
 
-    `by`: tags by which rates are divided. `most_drives`: number of drives that get their own page; None: all drives. `most_moments`:
+    `tags`: tags by which rates are divided. `most_drives`: number of drives that get their own page; None: all drives. `most_moments`:
     number of these drives whose moments are drawn; None: the default of `moment_pages`. Errors: `UsageError` for an audit or tag that does
     not exist; `OutputError`.
     """
     with open_audits(dest, baseline) as (con, audit, base):
-        fleet = content(con, audit, base, by)
-        if to == "html":
+        fleet = fleet_content(con, audit, base, tags)
+        if report_format == "html":
             _write_html(con, fleet, most_drives, most_moments, progress or Silent())
         else:
-            audit.results.write(_FILES[to], markdown(fleet))
-    return _FILES[to], audit
+            audit.results.write(_FILE_NAMES[report_format], markdown(fleet))
+    return _FILE_NAMES[report_format], audit
 
 
 def _write_html(
@@ -80,13 +80,13 @@ def _write_html(
 ) -> None:
     """Write the moments and pages of drives, then the fleet page that links to them."""
     results = fleet.audit.results
-    names = drive_pages.choose(con, most_drives)
-    drives = moment_pages.chosen_drives(con, most_moments)
-    with page_files.listed(
-        results, [*names, *(moment_pages.moments_name(drive["key"]) for drive in drives)]
+    names = drive_pages.choose_drives(con, most_drives)
+    drives = moment_pages.worst_drives(con, most_moments)
+    with page_files.maintain_page_list(
+        results, [*names, *(moment_pages.moments_page_name(drive["key"]) for drive in drives)]
     ) as written:
         links: dict[str, drive_pages.MomentsLink] = {}
-        for moments in moment_pages.moments(drives, fleet.audit, progress):
+        for moments in moment_pages.pages_with_moments(drives, fleet.audit, progress):
             if moments.content:
                 results.write(moments.name, moments.content)
             else:
@@ -94,12 +94,12 @@ def _write_html(
             links[moments.key] = drive_pages.MomentsLink(moments.name if moments.content else None, moments.reason)
         for name, page in drive_pages.pages(con, fleet.audit, fleet.rules, links):
             results.write(name, page)
-        results.write(_FILES["html"], html(fleet, drive_pages.links(con, fleet.keys)))
+        results.write(_FILE_NAMES["html"], html(fleet, drive_pages.page_urls(con, fleet.drive_keys)))
 
 
 def html(fleet: FleetContent, links: Mapping[str, str] = NO_LINKS) -> bytes:
     """Return the page as HTML in UTF-8. The same audit gives the same bytes. `links`: key of a drive -> relative URL of its page."""
-    text = _environment().get_template("fleet.html.j2").render(_words(fleet), links=links)
+    text = _environment().get_template("fleet.html.j2").render(_template_values(fleet), links=links)
     return text.encode("utf-8", "replace")
 
 
@@ -107,11 +107,11 @@ def markdown(fleet: FleetContent) -> bytes:
     """Return the page as Markdown in UTF-8, without pictures."""
     text = text_template(
         __file__, "templates/fleet.md.j2", **_FILTERS, escaped=escape_markdown, code=markdown_code
-    ).render(_words(fleet))
+    ).render(_template_values(fleet))
     return text.encode("utf-8", "replace")
 
 
-def _words(fleet: FleetContent) -> dict[str, Any]:
+def _template_values(fleet: FleetContent) -> dict[str, Any]:
     """Return the values for the templates."""
     assert set(_STANDING_TITLES) == set(STANDINGS) - {"decided"}  # noqa: S101 - a standing without a title would be left out
     return {
@@ -133,7 +133,7 @@ def _note_beside_rate(rate: Rate) -> str:
     return f", at least {figures.figure(least)} over all km" if least else ", no lower bound over all km"
 
 
-def _provide(missing_signal: MissingSignal) -> str:
+def _advice_on_signal(missing_signal: MissingSignal) -> str:
     """Return advice how to provide a signal in the formats of the logs that lack it."""
     formats_by_text: dict[str, list[str]] = {}
     for log_format in missing_signal.formats:
@@ -143,7 +143,7 @@ def _provide(missing_signal: MissingSignal) -> str:
     )
 
 
-def _mend(undecided: Undecided) -> str:
+def _remedy_with_example(undecided: Undecided) -> str:
     """Return the remedy for a reason of unknown verdicts, with the text of one verdict as an example."""
     advice = remedy(undecided.reason_code, None, "mapped")
     example = f"{undecided.rule_id}: {undecided.reason}"
@@ -152,18 +152,18 @@ def _mend(undecided: Undecided) -> str:
 
 _FILTERS: Final[dict[str, Any]] = {
     "figure": figures.figure,
-    "least_rate": figures.least_rate,
-    "interval": figures.interval,
-    "share": figures.share,
+    "least_rate": figures.lower_bound_texts,
+    "interval": figures.rate_with_interval,
+    "share": figures.percent_with_interval,
     "finding_line": finding_line,
     "rate_name": rate_name,
-    "rate_sides": rate_sides,
+    "rate_sides": both_rate_texts,
     "rate_line": rate_line,
-    "since": since,
-    "times": times,
+    "since": changes_sentence,
+    "times": ratio_text,
     "beside": _note_beside_rate,
-    "provide": _provide,
-    "mend": _mend,
+    "provide": _advice_on_signal,
+    "mend": _remedy_with_example,
     "plural": plural,
 }
 

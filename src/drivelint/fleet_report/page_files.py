@@ -15,39 +15,39 @@ if TYPE_CHECKING:
     from drivelint.audit.store import ResultStore
 
 LIST_FILE: Final = f"{FOLDER}/pages.json"
-_KEY: Final = "written_by_drivelint"
+_JSON_KEY: Final = "written_by_drivelint"
 
 
 @contextmanager
-def listed(results: ResultStore, names: Collection[str]) -> Iterator[set[str]]:
+def maintain_page_list(results: ResultStore, names: Collection[str]) -> Iterator[set[str]]:
     """List the pages in `pages.json`; after the block, remove the pages of an earlier report that are not among `names`.
 
     Yields the set of the names: a caller that does not write one of the pages discards its name. During the block, the list also has the
     earlier pages: if this report is killed, the next one knows all of them. Files that are not listed are never removed.
     Errors: `OutputError`.
     """
-    earlier = _listed(results)
+    earlier = _pages_of_earlier_report(results)
     if earlier or names:
-        _write(results, {*earlier, *names})
+        _write_page_list(results, {*earlier, *names})
     written = set(names)
     yield written
     if gone := earlier - written:
         results.delete(sorted(gone))
     if written:
-        _write(results, written)
+        _write_page_list(results, written)
     elif earlier or names:
         results.delete([LIST_FILE])
 
 
-def _listed(results: ResultStore) -> set[str]:
+def _pages_of_earlier_report(results: ResultStore) -> set[str]:
     """Return the pages of an earlier report. Other names in the list are ignored, because no foreign file may be removed."""
     try:
         told = msgspec.json.decode(results.read(LIST_FILE) or b"{}", type=dict[str, list[str]])
     except msgspec.MsgspecError:
         return set()
-    return {name for name in told.get(_KEY, ()) if is_page_name(name)}
+    return {name for name in told.get(_JSON_KEY, ()) if is_page_name(name)}
 
 
-def _write(results: ResultStore, names: Collection[str]) -> None:
-    content = msgspec.json.format(msgspec.json.encode({_KEY: sorted(names)}), indent=1)
+def _write_page_list(results: ResultStore, names: Collection[str]) -> None:
+    content = msgspec.json.format(msgspec.json.encode({_JSON_KEY: sorted(names)}), indent=1)
     results.write(LIST_FILE, content + b"\n")

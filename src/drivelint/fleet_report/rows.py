@@ -14,35 +14,41 @@ if TYPE_CHECKING:
     Row = dict[str, Any]
 
 
-def rows(con: duckdb.DuckDBPyConnection, name: str, bound: Row | None = None, **fragments: str) -> list[Row]:
-    """Return the rows of a statement. `bound`: its parameters."""
+def query_rows(
+    con: duckdb.DuckDBPyConnection, statement_name: str, parameters: Row | None = None, **fragments: str
+) -> list[Row]:
+    """Return the rows of a statement of `queries/fleet_report`."""
     found: list[Row] = (
-        con.execute(statement(f"fleet_report/{name}", **fragments), bound or {}).to_arrow_table().to_pylist()
+        con.execute(statement(f"fleet_report/{statement_name}", **fragments), parameters or {})
+        .to_arrow_table()
+        .to_pylist()
     )
     return found
 
 
-def ranked() -> str:
+def ranked_drives_sql() -> str:
     """Return the SELECT of the drives with findings, the worst drives first."""
-    return statement("fleet_report/ranked", least_share=str(LEAST_KEEPING_SHARE), event=one_per_event(COUNTED_PREFIX))
+    return statement(
+        "fleet_report/ranked", least_share=str(LEAST_KEEPING_SHARE), event=finding_per_event_sql(COUNTED_PREFIX)
+    )
 
 
-def one_per_event(of: str) -> str:
-    """Return the SELECT of one finding per event. `of`: prefix of the table `findings`."""
-    return statement("fleet/event", of=of, least_share=str(LEAST_KEEPING_SHARE))
+def finding_per_event_sql(view_prefix: str) -> str:
+    """Return the SELECT of one finding per event. `view_prefix`: prefix of the table `findings`."""
+    return statement("fleet/event", of=view_prefix, least_share=str(LEAST_KEEPING_SHARE))
 
 
-def counted_ids(of: str) -> str:
+def counted_finding_ids_sql(view_prefix: str) -> str:
     """Return the SELECT of the id of the finding that is counted for the event of each finding."""
-    return statement("fleet_report/counted_id", of=of, least_share=str(LEAST_KEEPING_SHARE))
+    return statement("fleet_report/counted_id", of=view_prefix, least_share=str(LEAST_KEEPING_SHARE))
 
 
-def gravest_first() -> str:
+def severity_order_sql() -> str:
     """Return the ORDER BY expressions that sort the findings `f` of the rules `r` from most to least severe."""
     return statement("fleet_report/gravest_first", least_share=str(LEAST_KEEPING_SHARE))
 
 
-def options_column(con: duckdb.DuckDBPyConnection) -> str:
+def options_column_sql(con: duckdb.DuckDBPyConnection) -> str:
     """Return the SQL of a drive's options in its receipt `r`; receipts of older audits lack this column."""
     columns = {row[0] for row in con.execute("DESCRIBE receipts").fetchall()}
     return "r.options" if "options" in columns else "NULL"

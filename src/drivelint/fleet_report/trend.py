@@ -11,10 +11,10 @@ from drivelint.errors import ExitCode, UsageError
 from drivelint.fleet.distinct_logs import COUNTED_PREFIX, create_counted_views
 from drivelint.fleet.rates import rates
 from drivelint.fleet.trend import Trend, trends
-from drivelint.fleet_report.audit_views import opened_without
+from drivelint.fleet_report.audit_views import open_audit_without_logs
 from drivelint.fleet_report.difference_text import rate_name
 from drivelint.fleet_report.figures import figure
-from drivelint.fleet_report.rows import one_per_event, rows
+from drivelint.fleet_report.rows import finding_per_event_sql, query_rows
 from drivelint.phrases import one_line, plural
 from drivelint.report.markdown import escape_markdown, markdown_code
 from drivelint.result.counts import SEVERITIES
@@ -59,7 +59,7 @@ class AuditTrend:
     n_tests: int
 
     @property
-    def called_trends(self) -> list[Trend]:
+    def significant_trends(self) -> list[Trend]:
         """The rules whose rate rises or falls by more than chance explains."""
         return [each for each in self.trends if each.is_significant]
 
@@ -68,7 +68,7 @@ class AuditTrend:
         """What the tests found, in one sentence."""
         if not self.n_tests:
             return "no rule has a finding and a rate in two of the audits: there is nothing to compare"
-        parts = [f"{rate_name(each)} {direction(each)}" for each in self.called_trends]
+        parts = [f"{rate_name(each)} {direction(each)}" for each in self.significant_trends]
         changes = ", ".join(parts) if parts else "no rate rises or falls"
         return f"{changes} by more than chance explains ({plural(self.n_tests, 'test')}, Holm's correction)"
 
@@ -89,10 +89,10 @@ def audit_trend(dests: Sequence[str], warn: Callable[[str], None]) -> AuditTrend
     rates_by_audit: list[list[Rate]] = []
     known: list[str] = []
     for dest in dests:
-        with opened_without(dest, known) as (con, audit, n_left_out):
+        with open_audit_without_logs(dest, known) as (con, audit, n_left_out):
             if audit.warning:
                 warn(audit.warning)
-            totals.append(_totals(con, audit.name, n_left_out, audit.warning))
+            totals.append(_audit_totals(con, audit.name, n_left_out, audit.warning))
             rates_by_audit.append(rates(con))
             hashes = con.execute("SELECT DISTINCT sha256 FROM drives WHERE sha256 IS NOT NULL ORDER BY ALL").fetchall()
             known += [sha256 for (sha256,) in hashes]
@@ -102,7 +102,7 @@ def audit_trend(dests: Sequence[str], warn: Callable[[str], None]) -> AuditTrend
     ]
     return AuditTrend(
         totals,
-        sorted(with_findings, key=_nearest_first),
+        sorted(with_findings, key=_sort_key_by_p_value),
         len(found) - len(with_findings),
         sum(each.corrected is not None for each in found),
     )
@@ -113,17 +113,18 @@ def direction(trend: Trend) -> str:
     return "rises" if trend.is_rising else "falls"
 
 
-def _totals(con: duckdb.DuckDBPyConnection, name: str, n_left_out: int, warning: str) -> AuditTotals:
+def _audit_totals(con: duckdb.DuckDBPyConnection, name: str, n_left_out: int, warning: str) -> AuditTotals:
     create_counted_views(con)
     (of,) = con.execute(statement("fleet/totals")).to_arrow_table().to_pylist()
     by_severity = {
-        row["severity"]: row["findings"] for row in rows(con, "severities", event=one_per_event(COUNTED_PREFIX))
+        row["severity"]: row["findings"]
+        for row in query_rows(con, "severities", event=finding_per_event_sql(COUNTED_PREFIX))
     }
     findings = {severity: by_severity.get(severity, 0) for severity in SEVERITIES}
     return AuditTotals(name, of["drives"], of["judged"], of["km"], of["hours"], findings, n_left_out, warning)
 
 
-def _nearest_first(trend: Trend) -> tuple[bool, float, int, str, str]:
+def _sort_key_by_p_value(trend: Trend) -> tuple[bool, float, int, str, str]:
     chance = trend.p_value
     return chance is None, chance or 0.0, -trend.n_findings, trend.rule_id, trend.profile or ""
 
@@ -155,12 +156,12 @@ def to_text(trend: AuditTrend, *, markdown: bool = False) -> str:
         "code": markdown_code,
     }
     name = f"templates/trend.{'md' if markdown else 'txt'}.j2"
-    table = None if markdown else _text_table(trend)
+    table = None if markdown else _text_tables(trend)
     text = text_template(__file__, name, None, **filters).render(trend=trend, severities=SEVERITIES, table=table)
     return text.rstrip("\n")
 
 
-def _text_table(trend: AuditTrend) -> dict[str, list[str]]:
+def _text_tables(trend: AuditTrend) -> dict[str, list[str]]:
     """Return the lines of both tables of the text, with columns of equal width."""
     head = ["audit", "drives", "judged", "km", "hours", *SEVERITIES]
     counts = [
@@ -176,10 +177,10 @@ def _text_table(trend: AuditTrend) -> dict[str, list[str]]:
     ]
     names = ["rule", *(one_line(of.name) for of in trend.audits), "trend"]
     lines = [[rate_name(each), *map(rate_text, each.rates), trend_text(each)] for each in trend.trends]
-    return {"audits": _aligned([head, *counts]), "rules": _aligned([names, *lines])}
+    return {"audits": _aligned_lines([head, *counts]), "rules": _aligned_lines([names, *lines])}
 
 
-def _aligned(cells: list[list[str]]) -> list[str]:
+def _aligned_lines(cells: list[list[str]]) -> list[str]:
     """Return one line per row: the first column on the left, the others on the right."""
     widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
     return [

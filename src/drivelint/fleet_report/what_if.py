@@ -28,9 +28,9 @@ if TYPE_CHECKING:
 
 WHAT_IF_SCHEMA: Final = 1
 """Version of the JSON format: raised when a key is removed or changes its meaning."""
-MAX_VALUES: Final = 50
+MAX_TEXT_LINES: Final = 50
 """Largest number of tag values, and of verdicts, in the text; the JSON has all values."""
-MAX_FLIPPED: Final = 10_000
+MAX_FLIPPED_VERDICTS: Final = 10_000
 """Largest number of changed verdicts in the JSON."""
 
 
@@ -72,19 +72,19 @@ def what_if_in_audit(dest: str, setting: str, tag: str | None) -> AuditWhatIf:
         if version != rule.version:
             why = "the rule has changed since the audit: its stored verdicts cannot be used for the present rule"
             return AuditWhatIf(audit, setting, old_value, tag, WhatIf(rule_id, param, float(value), why))
-        by_tag = _answer(con, rule, param, value, tag)
+        by_tag = _what_if_or_refusal(con, rule, param, value, tag)
         if by_tag.needs_check:
             return AuditWhatIf(audit, setting, old_value, tag, by_tag)
-        found = by_tag if tag is None else _answer(con, rule, param, value, None)
-        return AuditWhatIf(audit, setting, old_value, tag, found, flipped(con, MAX_FLIPPED), by_tag.verdicts)
+        found = by_tag if tag is None else _what_if_or_refusal(con, rule, param, value, None)
+        return AuditWhatIf(audit, setting, old_value, tag, found, flipped(con, MAX_FLIPPED_VERDICTS), by_tag.verdicts)
 
 
-def _answer(
-    con: duckdb.DuckDBPyConnection, rule: Rule, param: str, value: float | str | bool, by: str | None
+def _what_if_or_refusal(
+    con: duckdb.DuckDBPyConnection, rule: Rule, param: str, value: float | str | bool, tag: str | None
 ) -> WhatIf:
     if isinstance(value, bool | str):
         return WhatIf(rule.id, param, 0.0, f"{param} is no number")
-    return what_if(con, rule, param, float(value), by)
+    return what_if(con, rule, param, float(value), tag)
 
 
 def _version_and_value(con: duckdb.DuckDBPyConnection, rule_id: str, param: str) -> tuple[str, str]:
@@ -107,29 +107,29 @@ def to_text(analysis: AuditWhatIf) -> str:
     if analysis.audit.warning:
         lines.append(analysis.audit.warning)
     if answer.needs_check:
-        return "\n".join([*lines, f"needs a new audit: {answer.needs_check}", _command(analysis)])
+        return "\n".join([*lines, f"needs a new audit: {answer.needs_check}", _advice_on_new_audit(analysis)])
     total, flips = sum(each.n for each in answer.verdicts), sum(each.n for each in answer.flips)
-    words = ", ".join(f"{n} {was} -> {becomes}" for (was, becomes), n in _totals(answer.flips))
+    words = ", ".join(f"{n} {was} -> {becomes}" for (was, becomes), n in _counts_by_change(answer.flips))
     lines.append(f"{flips} of {total} verdicts change{f': {words}' if words else ''}")
     if answer.not_known:
         lines.append(
             f"{plural(answer.not_known, 'verdict')} {'needs' if answer.not_known == 1 else 'need'} a new audit: the stored value may be "
             "only a bound of the observed value"
         )
-    lines += _table(analysis)
+    lines += _lines_by_tag_value(analysis)
     lines += _flipped_verdict_lines(analysis.flipped, flips + answer.not_known)
     lines.append(
         "Findings are not predicted: one verdict may have several findings, and the beginning and end of each depend on every step."
     )
-    return "\n".join([*lines, _command(analysis)] if answer.not_known else lines)
+    return "\n".join([*lines, _advice_on_new_audit(analysis)] if answer.not_known else lines)
 
 
-def _totals(flips: Iterable[Flip]) -> list[tuple[tuple[str, str | None], int]]:
+def _counts_by_change(flips: Iterable[Flip]) -> list[tuple[tuple[str, str | None], int]]:
     pairs = sorted((each.was, each.becomes or "", each.n) for each in flips)
     return [(key, sum(n for *_, n in group)) for key, group in groupby(pairs, key=lambda pair: pair[:2])]
 
 
-def _table(analysis: AuditWhatIf) -> list[str]:
+def _lines_by_tag_value(analysis: AuditWhatIf) -> list[str]:
     """Return a line per value of the tag and profile, with the changes of its verdicts."""
     flips_by_group: dict[tuple[str, str], list[Flip]] = {}
     for each in sorted(
@@ -140,18 +140,18 @@ def _table(analysis: AuditWhatIf) -> list[str]:
         flips_by_group.setdefault((value, each.profile or ""), []).append(each)
     width = max((len(" ".join(key).strip()) for key in flips_by_group), default=0)
     lines = []
-    for key, flips in list(flips_by_group.items())[:MAX_VALUES]:
-        said = [f"{each.n} {_becomes(each)}" for each in flips]
+    for key, flips in list(flips_by_group.items())[:MAX_TEXT_LINES]:
+        said = [f"{each.n} {_change_text(each)}" for each in flips]
         lines.append(one_line(f"  {' '.join(key).strip():{width}}  {', '.join(said)}"))
-    if len(flips_by_group) > MAX_VALUES:
-        lines.append(f"  ... and {len(flips_by_group) - MAX_VALUES} more: --format json contains all")
+    if len(flips_by_group) > MAX_TEXT_LINES:
+        lines.append(f"  ... and {len(flips_by_group) - MAX_TEXT_LINES} more: --format json contains all")
     return lines
 
 
 def _flipped_verdict_lines(verdicts: Sequence[Flipped], n: int) -> list[str]:
     """Return one line with the log for each changed verdict. `n`: the number of all changed verdicts."""
     lines = ["verdicts that change:"] if verdicts else []
-    for each in verdicts[:MAX_VALUES]:
+    for each in verdicts[:MAX_TEXT_LINES]:
         whom = f" for object {each.object_id}" if each.object_id else ""
         profile = f" [{each.profile}]" if each.profile else ""
         lines.append(
@@ -159,18 +159,18 @@ def _flipped_verdict_lines(verdicts: Sequence[Flipped], n: int) -> list[str]:
                 f"  {each.log}: {ego_name(each.ego_id)}{whom}{profile}: {each.was} -> {each.becomes or 'needs a new audit'}"
             )
         )
-    if n > MAX_VALUES:
-        lines.append(f"  ... and {n - MAX_VALUES} more: --format json contains the first {MAX_FLIPPED:,}")
+    if n > MAX_TEXT_LINES:
+        lines.append(f"  ... and {n - MAX_TEXT_LINES} more: --format json contains the first {MAX_FLIPPED_VERDICTS:,}")
     return lines
 
 
-def _becomes(flip: Flip) -> str:
+def _change_text(flip: Flip) -> str:
     if flip.becomes is None:
         return f"{flip.was} -> needs a new audit"
     return f"stay {flip.was}" if flip.becomes == flip.was else f"{flip.was} -> {flip.becomes}"
 
 
-def _command(analysis: AuditWhatIf) -> str:
+def _advice_on_new_audit(analysis: AuditWhatIf) -> str:
     return (
         f"for the complete answer: drivelint audit SOURCE --param {analysis.setting} --out OTHER, then "
         f"drivelint diff {analysis.audit.dest} OTHER"

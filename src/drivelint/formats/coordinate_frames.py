@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
     from drivelint.arrays import Times
 
-FIXED_FRAMES: Final = ("map", "world", "odom")
+FIXED_FRAME_NAMES: Final = ("map", "world", "odom")
 """The names that the fixed frame may have, best first. By REP 105, `map` does not drift and `odom` does."""
-MAX_HOLE_NS: Final = 500_000_000
+MAX_INTERPOLATION_NS: Final = 500_000_000
 """Transforms further apart are not interpolated: in 0.5 s, a car at 20 m/s that turns at 0.5 rad/s deviates from the chord by 0.3 m."""
 
 
@@ -40,11 +40,11 @@ class Poses(NamedTuple):
 
     def compose(self, inner: Poses) -> Poses:
         """Return the poses `inner`, given relative to these poses, in the frame in which these poses are given."""
-        return Poses(self.place + rotated(self.turn, inner.place), _product(self.turn, inner.turn))
+        return Poses(self.place + rotated(self.turn, inner.place), _quaternion_products(self.turn, inner.turn))
 
 
 @dataclass
-class _Edge:
+class _Transform:
     """The poses of a frame in its parent frame: at ascending times, or one for all times (`static`)."""
 
     parent: str
@@ -57,40 +57,40 @@ class _Edge:
 class TransformTree:
     """The transforms of a log. `ambiguous`: frames with several parents."""
 
-    edges: dict[str, _Edge] = field(default_factory=dict)
+    transforms: dict[str, _Transform] = field(default_factory=dict)
     ambiguous: set[str] = field(default_factory=set)
 
     def add(self, child: str, parent: str, t_ns: Times, poses: Poses, *, static: bool) -> None:
         """Add transforms of a frame. A second parent makes the frame ambiguous. Of several static transforms, the last applies."""
-        known_edge = self.edges.get(child)
-        if known_edge is not None and known_edge.parent != parent:
+        known_transform = self.transforms.get(child)
+        if known_transform is not None and known_transform.parent != parent:
             self.ambiguous.add(child)
             return
-        if known_edge is not None:
-            t_ns = np.concatenate([known_edge.t_ns, t_ns])
-            poses = Poses(*map(np.concatenate, zip(known_edge.poses, poses, strict=True)))
-            static = static and known_edge.static
+        if known_transform is not None:
+            t_ns = np.concatenate([known_transform.t_ns, t_ns])
+            poses = Poses(*map(np.concatenate, zip(known_transform.poses, poses, strict=True)))
+            static = static and known_transform.static
         t_ns, last = np.unique(t_ns[::-1], return_index=True)
         last = len(poses.place) - 1 - last
-        self.edges[child] = _Edge(parent, static, t_ns, Poses(*(column[last] for column in poses)))
+        self.transforms[child] = _Transform(parent, static, t_ns, Poses(*(column[last] for column in poses)))
 
-    def chain(self, frame: str, fixed: str) -> list[_Edge] | None:
+    def chain(self, frame: str, fixed: str) -> list[_Transform] | None:
         """Return the transforms from a frame up to the fixed frame; None if no chain leads there."""
-        edges: list[_Edge] = []
+        transforms: list[_Transform] = []
         while frame != fixed:
-            edge = self.edges.get(frame)
-            if edge is None or frame in self.ambiguous or len(edges) > len(self.edges):
+            transform = self.transforms.get(frame)
+            if transform is None or frame in self.ambiguous or len(transforms) > len(self.transforms):
                 return None
-            edges.append(edge)
-            frame = edge.parent
-        return edges
+            transforms.append(transform)
+            frame = transform.parent
+        return transforms
 
     def root(self, frame: str) -> str:
         """Return the topmost frame above a frame."""
-        for _ in range(len(self.edges) + 1):
-            if frame not in self.edges or frame in self.ambiguous:
+        for _ in range(len(self.transforms) + 1):
+            if frame not in self.transforms or frame in self.ambiguous:
                 break
-            frame = self.edges[frame].parent
+            frame = self.transforms[frame].parent
         return frame
 
     def frame_poses(self, fixed: str, frame: str, t_ns: Times) -> Poses:
@@ -100,21 +100,21 @@ class TransformTree:
         if chain is None:
             return Poses(np.full((n, 3), np.nan), np.full((n, 4), np.nan))
         found = Poses(np.zeros((n, 3)), np.tile([0.0, 0.0, 0.0, 1.0], (n, 1)))
-        for edge in chain:
-            found = _at(edge, t_ns).compose(found)
+        for transform in chain:
+            found = _poses_at(transform, t_ns).compose(found)
         return found
 
 
-def fixed_frame(frames: TransformTree, used: Iterable[str]) -> str:
-    """Return the fixed frame for poses in the frames `used` (names as recorded, the most important first).
+def fixed_frame(frames: TransformTree, frame_names: Iterable[str]) -> str:
+    """Return the fixed frame for poses in the frames `frame_names` (names as recorded, the most important first).
 
-    This is the first of `FIXED_FRAMES` to which a chain leads from any of them, else the topmost frame above the first of them.
+    This is the first of `FIXED_FRAME_NAMES` to which a chain leads from any of them, else the topmost frame above the first of them.
     """
-    names = [clean_frame_name(name) for name in used]
-    for candidate in FIXED_FRAMES:
+    names = [clean_frame_name(name) for name in frame_names]
+    for candidate in FIXED_FRAME_NAMES:
         if any(frames.chain(name, candidate) is not None for name in names):
             return candidate
-    return frames.root(names[0]) if names else FIXED_FRAMES[0]
+    return frames.root(names[0]) if names else FIXED_FRAME_NAMES[0]
 
 
 def clean_frame_name(name: str) -> str:
@@ -132,12 +132,12 @@ def unit_quaternions(turn: Vectors) -> Vectors:
 def rotated(turn: Vectors, vectors: Vectors) -> Vectors:
     """Return vectors rotated by quaternions."""
     axis, w = turn[:, :3], turn[:, 3:]
-    twice = 2.0 * _cross(axis, vectors)
-    result: Vectors = vectors + w * twice + _cross(axis, twice)
+    twice = 2.0 * _cross_products(axis, vectors)
+    result: Vectors = vectors + w * twice + _cross_products(axis, twice)
     return result
 
 
-def _cross(a: Vectors, b: Vectors) -> Vectors:
+def _cross_products(a: Vectors, b: Vectors) -> Vectors:
     """Return the cross products of the rows, in a third of the time of `numpy.cross`."""
     result = np.empty_like(b)
     for k, (i, j) in enumerate(((1, 2), (2, 0), (0, 1))):
@@ -145,23 +145,28 @@ def _cross(a: Vectors, b: Vectors) -> Vectors:
     return result
 
 
-def _product(a: Vectors, b: Vectors) -> Vectors:
+def _quaternion_products(a: Vectors, b: Vectors) -> Vectors:
     av, aw, bv, bw = a[:, :3], a[:, 3:], b[:, :3], b[:, 3:]
-    return np.concatenate([aw * bv + bw * av + _cross(av, bv), aw * bw - (av * bv).sum(axis=1, keepdims=True)], axis=1)
+    return np.concatenate(
+        [aw * bv + bw * av + _cross_products(av, bv), aw * bw - (av * bv).sum(axis=1, keepdims=True)], axis=1
+    )
 
 
-def _at(edge: _Edge, t_ns: Times) -> Poses:
-    """Interpolate a transform: places linearly, rotations along the shorter arc. NaN outside its times and in gaps over `MAX_HOLE_NS`."""
-    if edge.static:
-        return Poses(*(np.repeat(column[-1:], len(t_ns), axis=0) for column in edge.poses))
-    after = np.clip(np.searchsorted(edge.t_ns, t_ns), 0, len(edge.t_ns) - 1)
-    exact = edge.t_ns[after] == t_ns
+def _poses_at(transform: _Transform, t_ns: Times) -> Poses:
+    """Interpolate a transform: places linearly, rotations along the shorter arc.
+
+    NaN outside its times and in gaps over `MAX_INTERPOLATION_NS`.
+    """
+    if transform.static:
+        return Poses(*(np.repeat(column[-1:], len(t_ns), axis=0) for column in transform.poses))
+    after = np.clip(np.searchsorted(transform.t_ns, t_ns), 0, len(transform.t_ns) - 1)
+    exact = transform.t_ns[after] == t_ns
     before = np.where(exact, after, np.maximum(after - 1, 0))
-    span = edge.t_ns[after] - edge.t_ns[before]
-    inside = exact | ((edge.t_ns[before] < t_ns) & (t_ns < edge.t_ns[after]) & (span <= MAX_HOLE_NS))
-    share = np.where(span > 0, (t_ns - edge.t_ns[before]) / np.maximum(span, 1), 0.0)[:, None]
-    first, second = edge.poses.turn[before], edge.poses.turn[after]
+    span = transform.t_ns[after] - transform.t_ns[before]
+    inside = exact | ((transform.t_ns[before] < t_ns) & (t_ns < transform.t_ns[after]) & (span <= MAX_INTERPOLATION_NS))
+    share = np.where(span > 0, (t_ns - transform.t_ns[before]) / np.maximum(span, 1), 0.0)[:, None]
+    first, second = transform.poses.turn[before], transform.poses.turn[after]
     near = np.where((first * second).sum(axis=1, keepdims=True) < 0.0, -second, second)
-    place = edge.poses.place[before] * (1.0 - share) + edge.poses.place[after] * share
+    place = transform.poses.place[before] * (1.0 - share) + transform.poses.place[after] * share
     turn = unit_quaternions(first * (1.0 - share) + near * share)
     return Poses(np.where(inside[:, None], place, np.nan), np.where(inside[:, None], turn, np.nan))

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from drivelint.drive.trace import Identity
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats.folders import drive_files, drive_folders, is_drive_folder
-from drivelint.formats.search import folder_tree, is_pipe_or_device, why_not_here
+from drivelint.formats.search import folder_tree, is_pipe_or_device, why_unreadable
 from drivelint.own_files import OwnFiles
 from drivelint.phrases import escape_invisible
 
@@ -29,46 +29,46 @@ MAP_SUFFIXES = frozenset({".xodr", ".osm"})
 """Suffixes of maps that no log format uses."""
 _SEARCHED_SUFFIXES = TRACE_SUFFIXES | {".xml"}
 _HEAD_BYTES = 4096
-SCENARIO_LISTS = frozenset({"dataset_summary.pkl", "dataset_mapping.pkl"})
+SCENARIO_INDEX_FILES = frozenset({"dataset_summary.pkl", "dataset_mapping.pkl"})
 """Index files that ScenarioNet writes beside its scenarios."""
 
 
-def expand_traces(traces: Sequence[str], *, but: Path | None = None) -> list[Path]:
+def expand_traces(traces: Sequence[str], *, map_path: Path | None = None) -> list[Path]:
     """Return the traces that files, globs and folders name, sorted, each file once.
 
-    A path that exists is taken literally, even if its name contains `[`, `*` or `?`. A folder that is one drive (`folders.KINDS`: canonical
-    tables, rosbag2, Argoverse 2, 123D) is returned itself. Any other folder is searched, with its subfolders, for drive folders, for files
-    of MCAP, Parquet, CSV, OSI, ScenarioNet and SUMO's FCD, and for CommonRoad scenarios with obstacles. Files that an earlier check or
-    audit wrote there are left out. Unreadable subfolders, links to folders elsewhere and dead links are returned, too: `read_trace` reports
-    why they cannot be judged.
-    `but`: the map, which a glob may find beside the logs. It is left out if its suffix is in `MAP_SUFFIXES` and there are other traces.
+    A path that exists is taken literally, even if its name contains `[`, `*` or `?`. A folder that is one drive (`folders.FOLDER_KINDS`:
+    canonical tables, rosbag2, Argoverse 2, 123D) is returned itself. Any other folder is searched, with its subfolders, for drive
+    folders, for files of MCAP, Parquet, CSV, OSI, ScenarioNet and SUMO's FCD, and for CommonRoad scenarios with obstacles. Files that an
+    earlier check or audit wrote there are left out. Unreadable subfolders, links to folders elsewhere and dead links are returned, too:
+    `read_trace` reports why they cannot be judged.
+    `map_path`: the map, which a glob may also find. It is left out if its suffix is in `MAP_SUFFIXES` and there are other traces.
     A CommonRoad scenario is both log and map, and is kept.
     Errors: `UsageError` for a URI or an empty name, `TraceError` for a name that matches nothing.
     """
     trace_by_key: dict[Path, Path] = {}
     for text in traces:
-        for path in _matches(text):
+        for path in _traces_of_name(text):
             trace_by_key.setdefault(path.resolve(), path)
-    if but is not None and but.suffix.lower() in MAP_SUFFIXES and len(trace_by_key) > 1:
-        trace_by_key.pop(but.resolve(), None)
-    if not SCENARIO_LISTS.issuperset(path.name for path in trace_by_key.values()):
-        trace_by_key = {key: path for key, path in trace_by_key.items() if path.name not in SCENARIO_LISTS}
+    if map_path is not None and map_path.suffix.lower() in MAP_SUFFIXES and len(trace_by_key) > 1:
+        trace_by_key.pop(map_path.resolve(), None)
+    if not SCENARIO_INDEX_FILES.issuperset(path.name for path in trace_by_key.values()):
+        trace_by_key = {key: path for key, path in trace_by_key.items() if path.name not in SCENARIO_INDEX_FILES}
     return [trace_by_key[key] for key in sorted(trace_by_key, key=str)]
 
 
-def _matches(text: str) -> list[Path]:
+def _traces_of_name(text: str) -> list[Path]:
     if not text.strip():
         raise UsageError("an empty trace name was given: give a file, a glob or a folder")
     path = Path(text)
     if _exists(path):
-        return _inside(path)
+        return _traces_in_path(path)
     if re.match(r"[A-Za-z][A-Za-z0-9+.-]+://", text):
         raise UsageError(f"{text}: URIs are not supported: copy the log to this machine and give the path of the file")
     matches = [Path(match) for match in sorted(glob(text, recursive=True))]  # noqa: PTH207 (Path.glob refuses absolute patterns)
     if not matches:
         what = "no file matches this pattern" if re.search(r"[*?\[]", text) else "no such file or folder"
         raise TraceError(f"{text}: {what}: check the path")
-    return [file for match in matches for file in _inside(match)]
+    return [file for match in matches for file in _traces_in_path(match)]
 
 
 def _exists(path: Path) -> bool:
@@ -78,9 +78,9 @@ def _exists(path: Path) -> bool:
         return False
 
 
-def _inside(path: Path) -> list[Path]:
+def _traces_in_path(path: Path) -> list[Path]:
     """Return the logs of a folder, and the paths in it that may contain logs but cannot be searched. Reading such a path reports why."""
-    if not path.is_dir() or why_not_here(path) is not None or is_drive_folder(path):
+    if not path.is_dir() or why_unreadable(path) is not None or is_drive_folder(path):
         return [path]
     content = folder_tree(path, _SEARCHED_SUFFIXES)
     drives = drive_folders([*content.folders, *content.links])
@@ -132,12 +132,12 @@ def file_states(path: Path) -> list[tuple[str, int, int]]:
     try:
         return [(file.name, found.st_size, found.st_mtime_ns) for file in drive_files(path) for found in [file.stat()]]
     except OSError as error:
-        raise _unreadable(path, error) from error
+        raise _unreadable_error(path, error) from error
 
 
-def _unreadable(path: Path, error: OSError) -> TraceError:
+def _unreadable_error(path: Path, error: OSError) -> TraceError:
     file = Path(error.filename or path)
-    return TraceError(f"{file}: {why_not_here(file) or f'cannot be read: {error.strerror or error}'}")
+    return TraceError(f"{file}: {why_unreadable(file) or f'cannot be read: {error.strerror or error}'}")
 
 
 def identify(path: Path) -> Identity:
@@ -145,7 +145,7 @@ def identify(path: Path) -> Identity:
 
     Errors: `TraceError` if it cannot be read.
     """
-    if (why := why_not_here(path)) is not None:
+    if (why := why_unreadable(path)) is not None:
         raise TraceError(f"{path}: {why}")
     try:
         if path.is_dir():
@@ -156,7 +156,7 @@ def identify(path: Path) -> Identity:
         else:
             digest = _sha256(path)
     except OSError as error:
-        raise _unreadable(path, error) from error
+        raise _unreadable_error(path, error) from error
     whole = os.path.abspath(path)  # noqa: PTH100 (resolve would name the target of a link)
     if not is_utf8(whole):
         raise TraceError(f"{escape_invisible(whole)}: its name is not UTF-8, which the result files require: rename it")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from drivelint.formats.mcap.bag_folder import METADATA_FILE, is_bag
-from drivelint.formats.search import why_not_here
+from drivelint.formats.search import why_unreadable
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -30,7 +30,7 @@ class FolderKind(NamedTuple):
     files: tuple[str, ...]
 
 
-KINDS: Final = (
+FOLDER_KINDS: Final = (
     FolderKind("canonical", ("actor_state.parquet",), CANONICAL_FILES),
     FolderKind("bag", (METADATA_FILE,), (METADATA_FILE,)),  # its other files are those that the metadata lists
     FolderKind(
@@ -56,8 +56,8 @@ KINDS: Final = (
 
 def folder_kind(path: Path) -> str | None:
     """Return the kind of a folder that is one drive; None for any other folder."""
-    for kind in KINDS:
-        if all(_first_file(path, mark) for mark in kind.marks) and (kind.name != "bag" or is_bag(path)):
+    for kind in FOLDER_KINDS:
+        if all(_first_matching_file(path, mark) for mark in kind.marks) and (kind.name != "bag" or is_bag(path)):
             return kind.name
     return None
 
@@ -74,7 +74,7 @@ def is_drive_folder(path: Path) -> bool:
 
 def drive_folders(folders: Iterable[Path]) -> list[Path]:
     """Return the given folders that are one drive each."""
-    return [folder for folder in folders if why_not_here(folder) is None and is_drive_folder(folder)]
+    return [folder for folder in folders if why_unreadable(folder) is None and is_drive_folder(folder)]
 
 
 def drive_files(path: Path) -> list[Path]:
@@ -89,15 +89,15 @@ def drive_files(path: Path) -> list[Path]:
             path / METADATA_FILE,
             *(path / file.name for file in mcap_files(path) if (path / file.name).is_file()),
         ]
-    patterns = next((known.files for known in KINDS if known.name == kind), ())
-    return [file for pattern in patterns for file in _files(path, pattern)]
+    patterns = next((known.files for known in FOLDER_KINDS if known.name == kind), ())
+    return [file for pattern in patterns for file in _matching_files(path, pattern)]
 
 
-def _files(path: Path, pattern: str) -> Iterator[Path]:
+def _matching_files(path: Path, pattern: str) -> Iterator[Path]:
     """Return the files that match a pattern. Dead links are included: reading them fails."""
     files = sorted(path.glob(pattern)) if "*" in pattern else [path / pattern]
     return (file for file in files if file.is_file() or (file.is_symlink() and not file.exists()))
 
 
-def _first_file(path: Path, pattern: str) -> Path | None:
-    return next(_files(path, pattern), None)
+def _first_matching_file(path: Path, pattern: str) -> Path | None:
+    return next(_matching_files(path, pattern), None)

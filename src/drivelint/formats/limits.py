@@ -29,7 +29,7 @@ the slowest readers for real files."""
 BASE_MEMORY_BYTES: Final = 2 << 30
 MEMORY_BYTES_PER_FILE_BYTE: Final = 64
 """The limit of memory in bytes is `BASE_MEMORY_BYTES` plus this per byte of the file."""
-_LOOK_S: Final = 0.1
+_LOOK_INTERVAL_S: Final = 0.1
 _PACKAGE: Final = Path(__file__).parents[1]
 
 
@@ -38,11 +38,11 @@ def memory_limit_bytes(n_bytes: int) -> int:
     return BASE_MEMORY_BYTES + n_bytes * MEMORY_BYTES_PER_FILE_BYTE
 
 
-class _BeyondError(BaseException):
+class _LimitExceededError(BaseException):
     """Interrupts reading. It is no `Exception`, because readers catch exceptions as signs of a damaged file."""
 
 
-class _Watch:
+class _ReadingWatch:
     """Measures the CPU time of the thread that created it and the growth of the process's memory; interrupts that thread at a limit.
 
     The measuring runs in a thread of its own.
@@ -57,17 +57,17 @@ class _Watch:
 
     def begin(self) -> None:
         """Start measuring."""
-        threading.Thread(target=self._look, daemon=True, name="limits of reading").start()
+        threading.Thread(target=self._watch_until_end, daemon=True, name="limits of reading").start()
 
     def end(self) -> None:
         """Stop measuring. A pending interrupt is raised before this returns."""
         self._over.set()
         with self._lock:
             pass
-        _noticed()
+        _raise_pending_interrupt()
 
-    def _look(self) -> None:
-        while not self._over.wait(_LOOK_S):
+    def _watch_until_end(self) -> None:
+        while not self._over.wait(_LOOK_INTERVAL_S):
             if self._work.seconds() > self.seconds:
                 excess = f"more than {self.seconds:.0f} s of computing"
             elif resident_bytes() - self._before > self.bytes:
@@ -79,31 +79,31 @@ class _Watch:
                     self.excess = excess
                     report_not_repeatable(f"reading took {excess}")
                     ctypes.pythonapi.PyThreadState_SetAsyncExc(
-                        ctypes.c_ulong(self._reader), ctypes.py_object(_BeyondError)
+                        ctypes.c_ulong(self._reader), ctypes.py_object(_LimitExceededError)
                     )
             return
 
 
-def _noticed() -> None:
+def _raise_pending_interrupt() -> None:
     """Do nothing: Python raises a pending interrupt where a function begins."""
 
 
-def bounded(read_file: Callable[[], T], name: str, n_bytes: int, kind: type[DriveLintError]) -> T:
-    """Return the result of `read_file` for a file of `n_bytes`. Errors: `kind`, with `name`, the exceeded limit and the module."""
-    watch = _Watch(n_bytes)
+def read_within_limits(read_file: Callable[[], T], name: str, n_bytes: int, error_class: type[DriveLintError]) -> T:
+    """Return the result of `read_file` for a file of `n_bytes`. Errors: `error_class`, with `name`, the exceeded limit and the module."""
+    watch = _ReadingWatch(n_bytes)
     try:
         try:
             watch.begin()
             return read_file()
         finally:
             watch.end()
-    except _BeyondError as error:
+    except _LimitExceededError as error:
         files = [Path(each.filename) for each in traceback.extract_tb(error.__traceback__)]
         inner = [
             file.relative_to(_PACKAGE) for file in files if file.is_relative_to(_PACKAGE) and file != Path(__file__)
         ]
         place = inner[-1].with_suffix("").as_posix() if inner else "the end"
-        raise kind(
+        raise error_class(
             f"{name}: reading took {watch.excess}, too much for a file of {n_bytes} bytes (in {place}): the file "
             "describes more than a drive or a road network contains: use a part of it"
         ) from None

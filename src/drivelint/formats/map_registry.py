@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 from drivelint.errors import MapError, UsageError
 from drivelint.formats import limits
 from drivelint.formats.files import is_utf8
-from drivelint.formats.limits import bounded
-from drivelint.formats.probe import wrapping
+from drivelint.formats.limits import read_within_limits
+from drivelint.formats.probe import wrapping_and_remedy
 from drivelint.formats.search import is_pipe_or_device
 from drivelint.phrases import escape_invisible
 from drivelint.road.ground import BYTES_PER_SQUARE, SQUARE_M, ground_squares
@@ -21,19 +21,21 @@ from drivelint.road.tree_parts import CrowdedPlaceError
 if TYPE_CHECKING:
     from pathlib import Path
 
-MAX_BYTES = 512 * 2**20  # a city with 2,000 km of lanes takes about 200 MB: a larger file is a mistake or an attack
+MAX_MAP_BYTES = 512 * 2**20  # a city with 2,000 km of lanes takes about 200 MB: a larger file is a mistake or an attack
 
 # the first byte of a map from an OSI trace: the tag of lane_boundary, lane, reference_line, logical_lane_boundary or logical_lane
-OSI_TAGS = (b"\x4a", b"\x52", b"\x8a", b"\x92", b"\x9a")
-_SKIP = re.compile(r"\s*(?:<\?.*?\?>|<!--.*?-->|<!DOCTYPE[^\[>]*(?:\[.*?\]\s*)?>)", re.DOTALL | re.IGNORECASE)
-_ROOT = re.compile(r"\s*<(?:[\w.-]+:)?([A-Za-z_][\w.-]*)")
-_LOOKS = {
+OSI_MAP_FIRST_BYTES = (b"\x4a", b"\x52", b"\x8a", b"\x92", b"\x9a")
+_XML_PROLOG_PART = re.compile(
+    r"\s*(?:<\?.*?\?>|<!--.*?-->|<!DOCTYPE[^\[>]*(?:\[.*?\]\s*)?>)", re.DOTALL | re.IGNORECASE
+)
+_ROOT_TAG = re.compile(r"\s*<(?:[\w.-]+:)?([A-Za-z_][\w.-]*)")
+_UNSUPPORTED_ROOTS = {
     "openscenario": "an OpenSCENARIO scenario, not its road network",
     "html": "an HTML page, as a failed download leaves behind",
 }
 
 
-READERS = {
+READERS_BY_ROOT = {
     "opendrive": "opendrive.reader",
     "commonroad": "commonroad.lanelets",
     "osm": "lanelet2.reader",
@@ -50,18 +52,18 @@ def read_source(path: Path) -> MapSource:
         size = path.stat().st_size
         if is_pipe_or_device(path):
             raise MapError(f"map {path}: a pipe or a device: write its output to a file, and give that file")
-        content = path.read_bytes() if size <= MAX_BYTES else b""
+        content = path.read_bytes() if size <= MAX_MAP_BYTES else b""
     except FileNotFoundError:
         raise MapError(f"map {path} does not exist: give the path of an OpenDRIVE file with --map") from None
     except OSError as error:
         raise MapError(
             f"map {path} cannot be read ({error.strerror or error}): give a readable OpenDRIVE file with --map"
         ) from error
-    if size > MAX_BYTES:
-        raise _too_large(str(path), size)
+    if size > MAX_MAP_BYTES:
+        raise _too_large_error(str(path), size)
     if not content:
         raise MapError(f"map {path} is empty: give the complete file")
-    if (told := wrapping(content)) is not None:
+    if (told := wrapping_and_remedy(content)) is not None:
         raise MapError(f"map {path}: {told}")
     if not is_utf8(path.name):
         raise MapError(
@@ -70,8 +72,8 @@ def read_source(path: Path) -> MapSource:
     return MapSource(path.name, content)
 
 
-def _too_large(name: str, size: int) -> MapError:
-    return MapError(f"map {name} has {size} bytes, but at most {MAX_BYTES} are read: use a smaller extract")
+def _too_large_error(name: str, size: int) -> MapError:
+    return MapError(f"map {name} has {size} bytes, but at most {MAX_MAP_BYTES} are read: use a smaller extract")
 
 
 def load_map(
@@ -92,26 +94,26 @@ def load_map(
         raise UsageError(f"handedness {handedness!r} is not known: use auto, lht or rht")
     if not all(math.isfinite(v) for v in offset):
         raise UsageError(f"map offset {offset} is not two finite numbers of metres")
-    if len(source.content) > MAX_BYTES:
-        raise _too_large(source.name, len(source.content))
+    if len(source.content) > MAX_MAP_BYTES:
+        raise _too_large_error(source.name, len(source.content))
     side = None if handedness == "auto" else handedness
     request = MapOptions((float(offset[0]), float(offset[1])), side, voted_handedness, origin)
 
     def read() -> MapTables:
         tables: MapTables
         try:
-            tables = import_module(f"drivelint.formats.{_reader(source)}").read(source, request)
+            tables = import_module(f"drivelint.formats.{_reader_module(source)}").read(source, request)
         except CrowdedPlaceError as error:
             raise MapError(
                 f"map {source.name}: {error}, more than in any road network: give a map without duplicates"
             ) from None
-        _refuse_endless_ground(source, tables)
+        _refuse_too_large_ground(source, tables)
         return tables
 
-    return bounded(read, f"map {source.name}", len(source.content), MapError)
+    return read_within_limits(read, f"map {source.name}", len(source.content), MapError)
 
 
-def _refuse_endless_ground(source: MapSource, tables: MapTables) -> None:
+def _refuse_too_large_ground(source: MapSource, tables: MapTables) -> None:
     """Raise `MapError` if the grid squares under the lanes would take more memory in the database than reading the file may take."""
     squares, most = ground_squares(tables.tables["lane_point"]), limits.memory_limit_bytes(len(source.content))
     if squares * BYTES_PER_SQUARE > most:
@@ -123,8 +125,8 @@ def _refuse_endless_ground(source: MapSource, tables: MapTables) -> None:
         )
 
 
-def _reader(source: MapSource) -> str:
-    if source.content[:1] in OSI_TAGS:
+def _reader_module(source: MapSource) -> str:
+    if source.content[:1] in OSI_MAP_FIRST_BYTES:
         return "osi.map_lanes"
     for beginning, reader in READERS_BY_BEGINNING.items():
         if source.content.startswith(beginning):
@@ -133,13 +135,13 @@ def _reader(source: MapSource) -> str:
     if root is None:
         shown = source.content[:24]
         raise MapError(f"map {source.name} is not XML (it begins with {shown!r}): give an OpenDRIVE file (.xodr)")
-    if root.lower() not in READERS:
-        looks = _LOOKS.get(root.lower(), f"XML with the root element <{root}>")
+    if root.lower() not in READERS_BY_ROOT:
+        looks = _UNSUPPORTED_ROOTS.get(root.lower(), f"XML with the root element <{root}>")
         raise MapError(
             f"map {source.name} looks like {looks}; supported: OpenDRIVE (root element <OpenDRIVE>), "
             "CommonRoad (<commonRoad>), Lanelet2 (<osm>), SUMO networks (<net>) and maps of 123D (Arrow)"
         )
-    return READERS[root.lower()]
+    return READERS_BY_ROOT[root.lower()]
 
 
 def root_element_name(content: bytes) -> str | None:
@@ -148,7 +150,7 @@ def root_element_name(content: bytes) -> str | None:
     encoding = "utf-16" if head[:2] in {b"\xff\xfe", b"\xfe\xff"} else "utf-8"
     text = head.decode(encoding, errors="replace").lstrip("\ufeff")
     at = 0
-    while skipped := _SKIP.match(text, at):
+    while skipped := _XML_PROLOG_PART.match(text, at):
         at = skipped.end()
-    found = _ROOT.match(text, at)
+    found = _ROOT_TAG.match(text, at)
     return found.group(1) if found else None

@@ -22,7 +22,7 @@ WRAPPINGS: Final = {
 """First bytes of a file that replaces the real file (an archive or a pointer) -> its kind, and the remedy."""
 
 
-def wrapping(head: bytes) -> str | None:
+def wrapping_and_remedy(head: bytes) -> str | None:
     """Return the kind of a file with these first bytes, and the remedy, if it is an archive or a pointer; else None."""
     return next((told for magic, told in WRAPPINGS.items() if head.startswith(magic)), None)
 

@@ -10,11 +10,11 @@ from drivelint.drive.trace import QualityFinding
 from drivelint.errors import ChangedLogError, TraceError, UsageError
 from drivelint.formats.files import file_states, identify
 from drivelint.formats.folders import is_drive_folder
-from drivelint.formats.limits import bounded
+from drivelint.formats.limits import read_within_limits
 from drivelint.formats.mcap.bag_folder import METADATA_FILE, is_bag
 from drivelint.formats.osi.trace_file import is_osi_trace
-from drivelint.formats.probe import HEAD_BYTES, Probe, Reader, wrapping
-from drivelint.formats.search import why_not_followed, why_not_here
+from drivelint.formats.probe import HEAD_BYTES, Probe, Reader, wrapping_and_remedy
+from drivelint.formats.search import why_not_followed, why_unreadable
 from drivelint.formats.tables.mapping import refuse_if_none
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from drivelint.drive.trace import IngestOptions, Trace
 
-READERS: Final = (
+READER_MODULES: Final = (
     "film.reader",
     "tables.canonical",
     "d123.reader",
@@ -37,9 +37,9 @@ READERS: Final = (
     "tables.mapped_table",  # last: it accepts any text without markup
 )
 """The modules of the readers. The first that accepts a file reads it; the later ones are not imported."""
-FIXED_BEGINNINGS: Final = {".mcap": b"\x89MCAP", ".parquet": b"PAR1", ".pkl": b"\x80"}
+FIRST_BYTES_BY_SUFFIX: Final = {".mcap": b"\x89MCAP", ".parquet": b"PAR1", ".pkl": b"\x80"}
 """Suffix -> the first bytes that a file with this suffix must have, after any byte order mark. Other files are refused as damaged."""
-UNPROTECTED: Final = QualityFinding(
+UNPROTECTED_FINDING: Final = QualityFinding(
     "unprotected", "info", "checksums do not cover the whole log: damage may remain undetected"
 )
 """The finding of every log that is not MCAP. The MCAP reader adds its own finding, for chunks without a CRC."""
@@ -47,11 +47,11 @@ UNPROTECTED: Final = QualityFinding(
 
 def readers() -> Iterator[Reader]:
     """Yield the readers in the order in which they are tried; each is imported only when it is reached."""
-    for name in READERS:
+    for name in READER_MODULES:
         yield cast("Reader", import_module(f"drivelint.formats.{name}"))
 
 
-def format_words(name: str) -> tuple[str, str] | None:
+def format_title_and_ego(name: str) -> tuple[str, str] | None:
     """Return a format's title, and how its ego is determined. `name`: its name in `data_log.format`. None for the name of a mapping."""
     return next((reader.formats[name] for reader in readers() if name in reader.formats), None)
 
@@ -66,10 +66,10 @@ def read_trace(path: Path, options: IngestOptions) -> Trace:
     probe = _probe(path, options)
     before = file_states(path)
     n_bytes = sum(size for _, size, _ in before)
-    return bounded(lambda: _read(probe, before), str(path), n_bytes, TraceError)
+    return read_within_limits(lambda: _read_unchanged_log(probe, before), str(path), n_bytes, TraceError)
 
 
-def _read(probe: Probe, before: list[tuple[str, int, int]]) -> Trace:
+def _read_unchanged_log(probe: Probe, before: list[tuple[str, int, int]]) -> Trace:
     """Read a log. Errors: as `read_trace`, and `ChangedLogError` if the states of its files differ from `before`."""
     path, options = probe.path, probe.options
     identity = identify(path)
@@ -77,8 +77,8 @@ def _read(probe: Probe, before: list[tuple[str, int, int]]) -> Trace:
         recording = reader.read(probe)
         if file_states(path) != before:  # the hash may be that of other content
             raise ChangedLogError(f"{path}: the log changed while it was read: check it again when it is complete")
-        if "osi-mcap" not in reader.formats and not probe.head.startswith(FIXED_BEGINNINGS[".mcap"]):
-            recording.findings.append(UNPROTECTED)
+        if "osi-mcap" not in reader.formats and not probe.head.startswith(FIRST_BYTES_BY_SUFFIX[".mcap"]):
+            recording.findings.append(UNPROTECTED_FINDING)
         if options.mapping is not None and not reader.takes_mapping:
             refuse_if_none(options.mapping)
             recording.notes.append(
@@ -117,7 +117,7 @@ def may_be_mapped_table(path: Path, options: IngestOptions) -> bool:
 
 
 def _probe(path: Path, options: IngestOptions) -> Probe:
-    if (why := why_not_here(path)) is not None:
+    if (why := why_unreadable(path)) is not None:
         raise TraceError(f"{path}: {why}")
     if path.is_dir():
         if not is_drive_folder(path):
@@ -138,7 +138,7 @@ def _probe(path: Path, options: IngestOptions) -> Probe:
         raise TraceError(f"{path}: the file is empty (0 bytes): record or copy it again")
     if path.name == METADATA_FILE and is_bag(path.parent):
         raise TraceError(f"{path}: it describes a bag: give the bag's folder, {path.parent}")
-    if (told := wrapping(head)) is not None:
+    if (told := wrapping_and_remedy(head)) is not None:
         raise TraceError(f"{path}: {told}")
     suffix = path.suffix.lower()
     if suffix == ".osi" and not is_osi_trace(head, path.stat().st_size):
@@ -146,7 +146,7 @@ def _probe(path: Path, options: IngestOptions) -> Probe:
             f"{path}: not an OSI trace: it should begin with a message's length and the message, and begins {head[:32]!r} at "
             "byte 0: copy it again"
         )
-    magic = FIXED_BEGINNINGS.get(suffix)
+    magic = FIRST_BYTES_BY_SUFFIX.get(suffix)
     if magic is not None and not head.removeprefix(codecs.BOM_UTF8).startswith(magic):
         raise TraceError(
             f"{path}: not {suffix[1:]}: it should begin {magic!r} and begins {head[:32]!r} at byte 0: copy it again"

@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
     from drivelint.arrays import Floats, Indices, Mask, Times
 
-REACH_M: Final = 0.5
+MAX_OUTSIDE_BOX_M: Final = 0.5
 """How far the centre of a rider may lie outside the ridden vehicle's box: annotators draw both boxes from few lidar points."""
-LEVEL_M: Final = 2.0
+MAX_HEIGHT_DIFFERENCE_M: Final = 2.0
 """The largest difference in height between the centres of a rider and the ridden vehicle."""
-_SIZES: Final = ("length_m", "width_m", "height_m")
+_SIZE_COLUMNS: Final = ("length_m", "width_m", "height_m")
 
 
 def join_riders(
@@ -34,7 +34,7 @@ def join_riders(
     the box.
     """
     inside = np.zeros(len(t_ns), np.bool_)
-    on, under = _on_and_under(t_ns, actor, rider, ridden, boxes)
+    on, under = _riders_and_vehicles(t_ns, actor, rider, ridden, boxes)
     if not len(on):
         return inside, []
     order = np.lexsort((actor[on], under))
@@ -42,7 +42,7 @@ def join_riders(
     first = np.flatnonzero(np.r_[True, under[1:] != under[:-1]])
     keeper, thing = on[first], under[first]
     low, high = _extents(on, under, boxes)
-    size = np.stack([boxes[name] for name in _SIZES])
+    size = np.stack([boxes[name] for name in _SIZE_COLUMNS])
     low = np.fmin(np.fmin.reduceat(low, first, axis=1), -size[:, thing] / 2)
     high = np.fmax(np.fmax.reduceat(high, first, axis=1), size[:, thing] / 2)
     ahead, left, up = (low + high) / 2
@@ -50,7 +50,7 @@ def join_riders(
     for name, values in (("x_m", dx), ("y_m", dy), ("z_m", up), ("yaw_rad", np.zeros(len(thing)))):
         boxes[name][keeper] = boxes[name][thing] + values
     riders = np.unique(actor[keeper]).tolist()
-    for name, values in zip(_SIZES, high - low, strict=True):
+    for name, values in zip(_SIZE_COLUMNS, high - low, strict=True):
         for number in riders:  # one size for all times: the two boxes jitter against each other
             own = actor[keeper] == number
             boxes[name][keeper[own]] = np.median(values[own])
@@ -59,7 +59,7 @@ def join_riders(
     return inside, riders
 
 
-def _on_and_under(
+def _riders_and_vehicles(
     t_ns: Times, actor: NDArray[np.int32], rider: Mask, ridden: Mask, boxes: dict[str, Floats]
 ) -> tuple[Indices, Indices]:
     """Return the rows of riders who are on a vehicle, each once, and for each the row of that vehicle."""
@@ -81,14 +81,14 @@ def _on_and_under(
 
 
 def _is_over(on: Indices, under: Indices, boxes: dict[str, Floats]) -> Mask:
-    """Return for pairs of rows whether the centre of the box `on` is over the box `under`, or within `REACH_M` beside it."""
-    dx, dy = _relative(on, under, boxes)
-    half_length, half_width = (boxes[name][under] / 2 + REACH_M for name in _SIZES[:2])
-    level = np.abs(boxes["z_m"][on] - boxes["z_m"][under]) <= LEVEL_M
+    """Return for pairs of rows whether the centre of the box `on` is over the box `under`, or within `MAX_OUTSIDE_BOX_M` beside it."""
+    dx, dy = _relative_position(on, under, boxes)
+    half_length, half_width = (boxes[name][under] / 2 + MAX_OUTSIDE_BOX_M for name in _SIZE_COLUMNS[:2])
+    level = np.abs(boxes["z_m"][on] - boxes["z_m"][under]) <= MAX_HEIGHT_DIFFERENCE_M
     return (np.abs(dx) <= half_length) & (np.abs(dy) <= half_width) & level
 
 
-def _relative(on: Indices, under: Indices, boxes: dict[str, Floats]) -> tuple[Floats, Floats]:
+def _relative_position(on: Indices, under: Indices, boxes: dict[str, Floats]) -> tuple[Floats, Floats]:
     x, y = boxes["x_m"], boxes["y_m"]
     return turned(x[on] - x[under], y[on] - y[under], -boxes["yaw_rad"][under])
 
@@ -97,7 +97,7 @@ def _extents(on: Indices, under: Indices, boxes: dict[str, Floats]) -> tuple[Flo
     """Return the lower and upper ends (3, n) of the boxes `on` along the axes of the boxes `under`, from the centres of these (m)."""
     angle = boxes["yaw_rad"][on] - boxes["yaw_rad"][under]
     cos, sin = np.abs(np.cos(angle)), np.abs(np.sin(angle))
-    length, width, height = (boxes[name][on] for name in _SIZES)
+    length, width, height = (boxes[name][on] for name in _SIZE_COLUMNS)
     half = np.stack([length * cos + width * sin, length * sin + width * cos, height]) / 2
-    middle = np.stack([*_relative(on, under, boxes), boxes["z_m"][on] - boxes["z_m"][under]])
+    middle = np.stack([*_relative_position(on, under, boxes), boxes["z_m"][on] - boxes["z_m"][under]])
     return middle - half, middle + half

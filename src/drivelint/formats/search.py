@@ -13,11 +13,11 @@ if TYPE_CHECKING:
     from collections.abc import Collection
     from pathlib import Path
 
-_POINTER: Final = ".dvc"
+_POINTER_SUFFIX: Final = ".dvc"
 """The suffix that DVC appends to the name of a log or a folder, for the small file that it keeps in place of it."""
 
 
-class Tree(NamedTuple):
+class FolderTree(NamedTuple):
     """The content of a folder at any depth, in order of names: folders, files, links to folders elsewhere, and unreadable paths."""
 
     folders: list[Path]
@@ -26,9 +26,9 @@ class Tree(NamedTuple):
     unreadable: list[Path]
 
 
-def folder_tree(root: Path, suffixes: Collection[str]) -> Tree:
+def folder_tree(root: Path, suffixes: Collection[str]) -> FolderTree:
     """Return the files below a folder. A missing file is listed only if its suffix is one of `suffixes`, or empty, as for a folder."""
-    content = Tree([], [], [], [])
+    content = FolderTree([], [], [], [])
     waiting = [root]
     inside = root.resolve()
     while waiting:
@@ -49,7 +49,7 @@ def folder_tree(root: Path, suffixes: Collection[str]) -> Tree:
                     content.links.append(path)
             elif path.is_file():
                 content.files.append(path)
-                if _is_pointer(path) and _may_be_log(path.with_suffix(""), suffixes):
+                if _is_lone_dvc_pointer(path) and _may_be_log(path.with_suffix(""), suffixes):
                     content.unreadable.append(path)
             elif entry.is_symlink() and not path.exists() and _may_be_log(path, suffixes):
                 content.unreadable.append(path)
@@ -58,11 +58,11 @@ def folder_tree(root: Path, suffixes: Collection[str]) -> Tree:
     return content
 
 
-def why_not_here(path: Path) -> str | None:
+def why_unreadable(path: Path) -> str | None:
     """Return why a path that may be a log cannot be read, and the remedy; None if it can be read or does not exist."""
     if os.path.islink(path) and not path.exists():  # noqa: PTH114 - no error for an invalid name, as in a damaged bag
         return f"a dead link to {path.readlink()}: the target is missing: fetch or mount it (git annex get, dvc pull)"
-    if _is_pointer(path) and path.is_file():
+    if _is_lone_dvc_pointer(path) and path.is_file():
         return "a pointer of DVC without its file: fetch the file with dvc pull"
     if is_pipe_or_device(path):
         return "a pipe or a device, but a log is read more than once: write its output to a file, and give that file"
@@ -87,8 +87,8 @@ def why_not_followed(path: Path) -> str | None:
     return f"a link to the folder {path.readlink()}, which the search does not follow: give that folder, too"
 
 
-def _is_pointer(path: Path) -> bool:
-    return path.suffix == _POINTER and path.name != _POINTER and not path.with_suffix("").exists()
+def _is_lone_dvc_pointer(path: Path) -> bool:
+    return path.suffix == _POINTER_SUFFIX and path.name != _POINTER_SUFFIX and not path.with_suffix("").exists()
 
 
 def _may_be_log(path: Path, suffixes: Collection[str]) -> bool:

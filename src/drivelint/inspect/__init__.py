@@ -18,8 +18,8 @@ from drivelint.engine.memory import DEFAULT_MEMORY, Memory
 from drivelint.engine.session import JudgingSession
 from drivelint.errors import ExitCode, MapError, TraceError, UsageError
 from drivelint.formats import expand_traces, read_trace
-from drivelint.formats.registry import format_words, may_be_mapped_table
-from drivelint.formats.search import why_not_here
+from drivelint.formats.registry import format_title_and_ego, may_be_mapped_table
+from drivelint.formats.search import why_unreadable
 from drivelint.inspect import advice, model, tracks
 from drivelint.inspect.content import content, size_bytes
 from drivelint.phrases import listed
@@ -67,14 +67,14 @@ def inspect(request: InspectRequest) -> model.Inspection:
         )
     (path,) = paths
     options = request.ingest_options(need_ego=False)
-    name, size = path.resolve().name, 0 if why_not_here(path) else size_bytes(path)
+    name, size = path.resolve().name, 0 if why_unreadable(path) else size_bytes(path)
     try:
         trace = read_trace(path, options)
     except TraceError as error:
         unread = model.File(name=name, bytes=size)
         return model.Inspection(file=unread, content=_content_of_unread(path, options), problem=str(error))
     log = trace.tables["data_log"].to_pylist()[0]
-    mapping = None if format_words(log["format"]) else request.mapping or log["format"]
+    mapping = None if format_title_and_ego(log["format"]) else request.mapping or log["format"]
     return model.Inspection(
         file=msgspec.convert({**log, "name": name, "bytes": size}, model.File),
         content=content(path, mapping, list(trace.notes), has_reader=True),
@@ -227,7 +227,7 @@ def _ego_source(trace: Trace, ego_option: str | None) -> str:
     if "ego_assumed" in said:
         return "assumed: the first vehicle of the file, as the mapping says (--ego ID to choose another)"
     log_format = trace.tables["data_log"]["format"][0].as_py()
-    words = format_words(log_format)
+    words = format_title_and_ego(log_format)
     return words[1] if words else f"named by the mapping {log_format}"
 
 

@@ -11,7 +11,7 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from drivelint.formats.registry import format_words
+from drivelint.formats.registry import format_title_and_ego
 from drivelint.formats.tables.mapping import GROUP_PLACEHOLDER
 from drivelint.phrases import listed, plural
 from drivelint.result.counts import group_rows
@@ -72,7 +72,7 @@ def _title(inspection: model.Inspection) -> Text:
     file = inspection.file
     about = [_size(file.bytes)]
     if file.format is not None:
-        words = format_words(file.format)
+        words = format_title_and_ego(file.format)
         about.insert(0, words[0] if words else f"a table, read through the mapping {file.format}")
     return Text(file.name, style="bold").append(f"  {', '.join(about)}", style="default")
 

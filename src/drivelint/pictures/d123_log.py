@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple, Self
 import numpy as np
 import pyarrow as pa
 
-from drivelint.formats.d123.arrow_files import path_of
+from drivelint.formats.d123.arrow_files import file_path
 from drivelint.pictures.frames import EncodedImage, FrameError, FramePlace
 
 if TYPE_CHECKING:
@@ -106,7 +106,7 @@ class D123FrameSource:
 def _open_camera_file(folder: Path, name: str) -> _CameraFile:
     """Open a camera's file and read the times of its frames, without the frames."""
     # opened by Python, so that a receipt of the run knows the file
-    with path_of(folder, name).open("rb") as file:
+    with file_path(folder, name).open("rb") as file:
         source = pa.BufferReader(pa.py_buffer(mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)))
     column = pa.ipc.open_file(source).schema.get_field_index(f"{name}.timestamp_us")
     if column < 0:

@@ -60,9 +60,9 @@ def how_to_provide(signal: str, log_format: str, advice: str | None = None) -> s
     """Return how to provide a signal in a log of this format. `advice`: the advice of the reason why it is missing."""
     if signal == "registration" and advice:
         return advice  # the reason shows that the map is not the problem
-    from drivelint.formats.registry import format_words  # loads the readers, which the catalogue does not need
+    from drivelint.formats.registry import format_title_and_ego  # loads the readers, which the catalogue does not need
 
-    name = "mapped" if format_words(log_format) is None else log_format
+    name = "mapped" if format_title_and_ego(log_format) is None else log_format
     # a signal that the format cannot contain can be added to the Parquet tables of a converted log
     tables = TEXTS["where"]["canonical-parquet"].items()
     where = {key: f"drivelint convert --to parquet, and in its tables {table}" for key, table in tables}

@@ -82,9 +82,9 @@ def test_a_tilted_box_faces_where_its_front_points(tmp_path: Path) -> None:
     assert states(read(folder), "a")[0]["yaw_rad"] == pytest.approx(1.0, abs=1e-9)
 
 
-@pytest.mark.parametrize("enumeration", sorted(facts.LABELS))
+@pytest.mark.parametrize("enumeration", sorted(facts.LABELS_BY_ENUMERATION))
 def test_every_label_is_a_class(tmp_path: Path, enumeration: str) -> None:
-    labels = facts.LABELS[enumeration]
+    labels = facts.LABELS_BY_ENUMERATION[enumeration]
     assert sorted(number for number, _ in labels.values()) == list(range(len(labels)))
     boxes = [Box(name, 9.0 * number, 40.0, label=number) for name, (number, _) in labels.items()]
     frames = [Frame(t, boxes) for t in times(3)]

@@ -42,20 +42,20 @@ FORECASTING_CLASSES: Final = {
     "static": "object", "background": "object", "construction": "object", "riderless_bicycle": "object", "unknown": None,
 }  # fmt: skip
 """`object_type` of a track -> actor class; None: any class is possible."""
-RIDERS: Final = ("BICYCLIST", "MOTORCYCLIST", "WHEELED_RIDER")
-RIDDEN: Final = ("BICYCLE", "MOTORCYCLE", "WHEELED_DEVICE", "WHEELCHAIR")
+RIDER_CATEGORIES: Final = ("BICYCLIST", "MOTORCYCLIST", "WHEELED_RIDER")
+RIDDEN_CATEGORIES: Final = ("BICYCLE", "MOTORCYCLE", "WHEELED_DEVICE", "WHEELCHAIR")
 
 
-def class_codes(words: pa.Array, classes: dict[str, str | None]) -> tuple[Codes, list[str]]:
-    """Return the index into `ACTOR_CLASSES` of each word (-1: not known), and a note on words that `classes` does not contain, if any."""
+def class_codes(categories: pa.Array, class_by_category: dict[str, str | None]) -> tuple[Codes, list[str]]:
+    """Return the index into `ACTOR_CLASSES` of each category (-1: not known), and a note on categories that have no entry, if any."""
     foreign: list[str] = []
 
     def code_of(word: str) -> int:
-        if word not in classes:
+        if word not in class_by_category:
             foreign.append(word)
-        name = classes.get(word)
+        name = class_by_category.get(word)
         return -1 if name is None else ACTOR_CLASSES.index(name)
 
-    codes = coded(words, code_of)
+    codes = coded(categories, code_of)
     note = f"categories that Argoverse does not define, so the class is not known: {listed(sorted(foreign))}"
     return codes, [note] if foreign else []

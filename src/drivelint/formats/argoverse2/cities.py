@@ -21,18 +21,18 @@ ORIGINS: Final = {
     "WDC": (18, 323459.9997, 4306469.9870),  # Washington: 38.889377, -77.0355047439081
 }
 """City -> the zone of UTM north, and easting and northing of its origin in metres (comments: latitude and longitude as published)."""
-_CODES: Final = {
+_CODE_BY_CITY_NAME: Final = {
     "austin": "ATX", "dearborn": "DTW", "detroit": "DTW", "miami": "MIA", "palo-alto": "PAO", "pittsburgh": "PIT",
     "washington-dc": "WDC",
 }  # fmt: skip
 """Cities as the motion forecasting dataset names them -> their codes."""
-_IN_FILE_NAME: Final = re.compile(r"____([A-Z]{3})_city_")
+_CITY_IN_FILE_NAME: Final = re.compile(r"____([A-Z]{3})_city_")
 
 
 def frame_of_city(name: str) -> GeoFrame | None:
     """Return the coordinate frame of a city, given by its code or name; None if Argoverse does not have the city."""
     word = name.strip()
-    origin = ORIGINS.get(_CODES.get(word.lower().replace("_", "-").replace(" ", "-"), word))
+    origin = ORIGINS.get(_CODE_BY_CITY_NAME.get(word.lower().replace("_", "-").replace(" ", "-"), word))
     if origin is None:
         return None
     zone, x_m, y_m = origin
@@ -41,5 +41,5 @@ def frame_of_city(name: str) -> GeoFrame | None:
 
 def frame_by_file_name(name: str) -> GeoFrame | None:
     """Return the coordinate frame of the city in the file name of a sensor log's map; None if the name contains no city."""
-    found = _IN_FILE_NAME.search(name)
+    found = _CITY_IN_FILE_NAME.search(name)
     return None if found is None else frame_of_city(found[1])

@@ -41,13 +41,13 @@ EGO_ID: Final = "AV"
 SENSOR_RANGE_M: Final = 50.0
 """Not documented. In published scenarios, the density of tracks is constant up to about 50 m from the vehicle, and lower beyond."""
 STEP_NS: Final = 100_000_000
-_MAP: Final = "log_map_archive_*.json"
-_TIME: Final = "timestep"
-_NUMBERS: Final = {
+_MAP_FILE_PATTERN: Final = "log_map_archive_*.json"
+_TIME_COLUMN: Final = "timestep"
+_STATE_COLUMN_BY_COLUMN: Final = {
     "position_x": "x_m", "position_y": "y_m", "heading": "yaw_rad", "velocity_x": "vx_mps", "velocity_y": "vy_mps",
 }  # fmt: skip
-_REQUIRED: Final = ("track_id", "object_type", _TIME, *_NUMBERS)
-_CLOCK: Final = ("start_timestamp", "end_timestamp", "num_timestamps")
+_REQUIRED_COLUMNS: Final = ("track_id", "object_type", _TIME_COLUMN, *_STATE_COLUMN_BY_COLUMN)
+_CLOCK_COLUMNS: Final = ("start_timestamp", "end_timestamp", "num_timestamps")
 
 
 def accepts(probe: Probe) -> bool:
@@ -56,44 +56,44 @@ def accepts(probe: Probe) -> bool:
         return folder_kind(probe.path) == NAME
     if probe.options.mapping is not None or not probe.head.startswith(b"PAR1"):
         return False
-    return set(_REQUIRED) <= set(parquet.schema(probe.path).names)
+    return set(_REQUIRED_COLUMNS) <= set(parquet.schema(probe.path).names)
 
 
 def read(probe: Probe) -> Recording:
     """Read a scenario. Errors: `TraceError` for a damaged file, missing columns, or several scenarios in one file or folder."""
-    path = _scenario(probe.path)
-    rows = _rows(path)
-    step, timed = cells.integers(path, rows, _TIME)
-    t_ns = _times(path, rows, step)
-    usable, findings, lost_times = cells.without_nameless(path, rows, "track_id", t_ns, timed)
+    path = _scenario_file(probe.path)
+    rows = _scenario_table(path)
+    step, timed = cells.integer_column(path, rows, _TIME_COLUMN)
+    t_ns = _times_of_rows(path, rows, step)
+    usable, findings, lost_times = cells.rows_with_track_and_time(path, rows, "track_id", t_ns, timed)
     rows, t_ns = rows.filter(pa.array(usable)), t_ns[usable]
-    ids = pc.dictionary_encode(cells.cast(path, rows, "track_id", pa.string()))
-    classes, notes = class_codes(cells.cast(path, rows, "object_type", pa.string()), FORECASTING_CLASSES)
-    raw = cells.numbers(path, rows, _NUMBERS)
+    ids = pc.dictionary_encode(cells.cast_column(path, rows, "track_id", pa.string()))
+    classes, notes = class_codes(cells.cast_column(path, rows, "object_type", pa.string()), FORECASTING_CLASSES)
+    raw = cells.number_columns(path, rows, _STATE_COLUMN_BY_COLUMN)
     odd = np.zeros(len(rows), np.bool_)
     numbers = {}
     for name, values in raw.items():
         wrong = ~np.isfinite(values)
         odd |= wrong & rows[name].is_valid().to_numpy(zero_copy_only=False)
-        numbers[_NUMBERS[name]] = np.where(wrong, np.nan, values)
+        numbers[_STATE_COLUMN_BY_COLUMN[name]] = np.where(wrong, np.nan, values)
     states = States(
         ids.dictionary.to_pylist(), ids.indices.to_numpy().astype(np.int32), t_ns, numbers,
         {"actor_class": classes}, odd,
     )  # fmt: skip
-    _place_ego(states)
+    _move_ego_to_box_centre(states)
     recording = Recording(NAME, states, ego_ids=[EGO_ID], findings=findings, lost_times=lost_times, notes=notes)
     if EGO_ID in states.ids:
-        recording.findings.append(vehicle.assumed_size(EGO_ID))
+        recording.findings.append(vehicle.assumed_size_finding(EGO_ID))
     recording.sensor_range_m = SENSOR_RANGE_M
     recording.conditions["nation"] = NATION
-    city = [word for word in _distinct(path, rows, "city") if word]
+    city = [word for word in _distinct_texts(path, rows, "city") if word]
     if len(city) == 1 and (frame := frame_of_city(city[0])):
         recording.geo_reference, recording.geo_offset = frame.reference, (frame.x_m, frame.y_m, 0.0)
     _add_map(recording, probe.path)
     return recording
 
 
-def _scenario(path: Path) -> Path:
+def _scenario_file(path: Path) -> Path:
     if not path.is_dir():
         return path
     files = sorted(path.glob("scenario_*.parquet"))
@@ -104,38 +104,38 @@ def _scenario(path: Path) -> Path:
     return files[0]
 
 
-def _rows(path: Path) -> pa.Table:
+def _scenario_table(path: Path) -> pa.Table:
     has = parquet.schema(path).names
-    if missing := [name for name in _REQUIRED if name not in has]:
+    if missing := [name for name in _REQUIRED_COLUMNS if name not in has]:
         raise TraceError(
-            f"{path}: no column {', '.join(missing)}: a scenario needs {', '.join(_REQUIRED)}: get it again"
+            f"{path}: no column {', '.join(missing)}: a scenario needs {', '.join(_REQUIRED_COLUMNS)}: get it again"
         )
-    optional = [name for name in (*_CLOCK, "city", "scenario_id") if name in has]
-    rows = parquet.table(path, [*_REQUIRED, *optional])
-    if len(names := _distinct(path, rows, "scenario_id")) > 1:
+    optional = [name for name in (*_CLOCK_COLUMNS, "city", "scenario_id") if name in has]
+    rows = parquet.table(path, [*_REQUIRED_COLUMNS, *optional])
+    if len(names := _distinct_texts(path, rows, "scenario_id")) > 1:
         raise TraceError(f"{path}: has {len(names)} scenarios: write one file per scenario")
     return rows
 
 
-def _distinct(path: Path, rows: pa.Table, name: str) -> list[str | None]:
+def _distinct_texts(path: Path, rows: pa.Table, name: str) -> list[str | None]:
     if name not in rows.schema.names:
         return []
-    found: list[str | None] = pc.unique(cells.cast(path, rows, name, pa.string())).to_pylist()
+    found: list[str | None] = pc.unique(cells.cast_column(path, rows, name, pa.string())).to_pylist()
     return found
 
 
-def _times(path: Path, rows: pa.Table, step: Times) -> Times:
+def _times_of_rows(path: Path, rows: pa.Table, step: Times) -> Times:
     """Return the time of each row: steps evenly spaced from the first to the last time stamp; without time stamps, at 10 Hz from 0."""
-    if not set(_CLOCK) <= set(rows.schema.names) or not len(rows):
+    if not set(_CLOCK_COLUMNS) <= set(rows.schema.names) or not len(rows):
         return step * STEP_NS
-    start, end, n = (values[0] for values in cells.numbers(path, rows, _CLOCK).values())
+    start, end, n = (values[0] for values in cells.number_columns(path, rows, _CLOCK_COLUMNS).values())
     if not (end > start and n > 1):
         return step * STEP_NS
     spacing: Times = np.round(step * ((end - start) / (n - 1))).astype(np.int64)
     return int(start) + spacing
 
 
-def _place_ego(states: States) -> None:
+def _move_ego_to_box_centre(states: States) -> None:
     """Move the ego from its rear axle to its box centre, and set its class and size, in place.
 
     The velocity remains that of the axle: along the heading, both points have the same velocity.
@@ -144,13 +144,13 @@ def _place_ego(states: States) -> None:
     states.codes["actor_class"][ego_rows] = ACTOR_CLASSES.index("car")
     numbers = states.numbers
     x, y, yaw = (numbers[name][ego_rows] for name in ("x_m", "y_m", "yaw_rad"))
-    numbers["x_m"][ego_rows], numbers["y_m"][ego_rows] = vehicle.box_places(x, y, yaw)
-    for name, size in zip(("length_m", "width_m", "height_m"), vehicle.SIZE_M, strict=True):
+    numbers["x_m"][ego_rows], numbers["y_m"][ego_rows] = vehicle.box_centres(x, y, yaw)
+    for name, size in zip(("length_m", "width_m", "height_m"), vehicle.BOX_SIZE_M, strict=True):
         numbers[name] = np.where(ego_rows, size, np.nan)
 
 
 def _add_map(recording: Recording, path: Path) -> None:
-    files = sorted((path if path.is_dir() else path.parent).glob(_MAP))
+    files = sorted((path if path.is_dir() else path.parent).glob(_MAP_FILE_PATTERN))
     if not path.is_dir():
         name = path.name.removeprefix("scenario_").removesuffix(".parquet")
         own = [file for file in files if name in file.name]
@@ -166,4 +166,4 @@ def _add_map(recording: Recording, path: Path) -> None:
         except OSError as error:
             raise TraceError(f"{files[0]}: cannot be read: {error.strerror or error}") from error
     else:
-        recording.notes.append(f"its map is missing: {_MAP}")
+        recording.notes.append(f"its map is missing: {_MAP_FILE_PATTERN}")

@@ -39,22 +39,22 @@ if TYPE_CHECKING:
     from drivelint.arrays import Floats
     from drivelint.road.map_reader import MapOptions, MapSource, MapTables
 
-_KINDS: Final = {"VEHICLE": ("driving", True), "BUS": ("bus", True), "BIKE": ("biking", False)}
-_LINES: Final = {
+_LANE_TYPE_AND_DRIVABLE: Final = {"VEHICLE": ("driving", True), "BUS": ("bus", True), "BIKE": ("biking", False)}
+_MARKING_BY_LINE: Final = {
     "SOLID": "solid", "DASHED": "broken", "DOUBLE_SOLID": "solid_solid", "DOUBLE_DASH": "broken_broken",
     "SOLID_DASH": "solid_broken", "DASH_SOLID": "broken_solid",
 }  # fmt: skip
 _COLOURS: Final = {"WHITE": "white", "YELLOW": "yellow", "BLUE": "blue"}
 _SIDES: Final = ("left", "right")
-_UNREADABLE: Final = (KeyError, TypeError, ValueError, AttributeError, OverflowError)
+_PARSE_ERRORS: Final = (KeyError, TypeError, ValueError, AttributeError, OverflowError)
 """The errors that reading an invalid part of the file raises."""
-_COMMON_GROUND_M2: Final = 1.0
+_MIN_OVERLAP_M2: Final = 1.0
 """Lanes inside intersections that overlap by more than this area are in one junction."""
-_LEVEL_M: Final = 3.0
+_MAX_LEVEL_DIFFERENCE_M: Final = 3.0
 """Lanes whose heights differ by more are on different levels."""
 
 
-class _Segment(NamedTuple):
+class _LaneSegment(NamedTuple):
     """A lane segment: its bounds (n, 3) in metres, its other values as in the file, and other lanes by their ids."""
 
     left: Floats
@@ -70,25 +70,25 @@ class _Segment(NamedTuple):
 
 def read(source: MapSource, request: MapOptions) -> MapTables:
     """Return the map's tables. Errors: `MapError` if the file is not a map of Argoverse 2, or no lane can be built."""
-    archive = _archive(source)
+    archive = _map_json(source)
     quality = MapQuality()
-    segments = _segments(archive["lane_segments"], quality)
-    _report_words(segments.values(), quality)
-    _report_cut(segments, quality)
-    lanes = build_lanes((_lane(name, segments) for name in segments), request.offset, quality)
+    segments = _lane_segments(archive["lane_segments"], quality)
+    _report_unread_types(segments.values(), quality)
+    _report_missing_lanes(segments, quality)
+    lanes = build_lanes((_bounded_lane(name, segments) for name in segments), request.offset, quality)
     if not lanes:
         first = next((row["message"] for row in quality.rows), "it has no lane segment")
         raise MapError(f"map {source.name} has no lane that can be built: {first}")
     for lane in lanes:
         segment, line = segments[lane.lanelet_id], lane.line
         left, right = (
-            _heights(segment.left, line.left - request.offset),
-            _heights(segment.right, line.right - request.offset),
+            _heights_at(segment.left, line.left - request.offset),
+            _heights_at(segment.right, line.right - request.offset),
         )
         lane.z = (left + right) / 2
-    _name_junctions(lanes, segments)
+    _set_junctions(lanes, segments)
     side = choose_side([("option", request.side), ("lanes", side_driven_on(lanes)), ("attribute", "rht")], quality)
-    walks = _walks(archive.get("pedestrian_crossings", {}), quality)
+    walks = _crossing_lanes(archive.get("pedestrian_crossings", {}), quality)
     furniture = {"traffic_signal": [], "stop_line": [], "crossing": crossings(walks, lanes, request.offset, quality)}
     geo = frame_by_file_name(source.name)
     return map_from_bounds(
@@ -96,7 +96,7 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     )
 
 
-def _archive(source: MapSource) -> dict[str, Any]:
+def _map_json(source: MapSource) -> dict[str, Any]:
     try:
         archive = json.loads(source.content)
     except (ValueError, RecursionError) as error:
@@ -109,33 +109,33 @@ def _archive(source: MapSource) -> dict[str, Any]:
     return dict(archive)
 
 
-def _segments(records: Mapping[str, Any], quality: MapQuality) -> dict[str, _Segment]:
+def _lane_segments(records: Mapping[str, Any], quality: MapQuality) -> dict[str, _LaneSegment]:
     """Return the lane segments by their ids; segments that cannot be read are reported."""
-    segments: dict[str, _Segment] = {}
+    segments: dict[str, _LaneSegment] = {}
     for key, segment in records.items():
         try:
-            name = _name(segment["id"])
+            name = _id_text(segment["id"])
             if name in segments:
                 raise ValueError("another segment has the same id")
-            segments[name] = _segment(segment)
-        except _UNREADABLE as error:
-            quality.add("invalid_lane", "error", key, f"lane segment {key} is left out: {_why(error)}")
+            segments[name] = _lane_segment(segment)
+        except _PARSE_ERRORS as error:
+            quality.add("invalid_lane", "error", key, f"lane segment {key} is left out: {_error_text(error)}")
     return segments
 
 
-def _why(error: Exception) -> str:
+def _error_text(error: Exception) -> str:
     return f"it has no {error}" if isinstance(error, KeyError) else str(error)
 
 
-def _segment(record: Mapping[str, Any]) -> _Segment:
-    """Return a segment. Errors: those of `_UNREADABLE`."""
-    left, right = (None if (number := record[f"{side}_neighbor_id"]) is None else _name(number) for side in _SIDES)
-    return _Segment(
-        left=_points(record["left_lane_boundary"]),
-        right=_points(record["right_lane_boundary"]),
+def _lane_segment(record: Mapping[str, Any]) -> _LaneSegment:
+    """Return a segment. Errors: those of `_PARSE_ERRORS`."""
+    left, right = (None if (number := record[f"{side}_neighbor_id"]) is None else _id_text(number) for side in _SIDES)
+    return _LaneSegment(
+        left=_line_points(record["left_lane_boundary"]),
+        right=_line_points(record["right_lane_boundary"]),
         lane_type=str(record["lane_type"]),
         is_intersection=bool(record["is_intersection"]),
-        successors=tuple(map(_name, record["successors"])),
+        successors=tuple(map(_id_text, record["successors"])),
         left_id=left,
         right_id=right,
         left_mark=str(record["left_lane_mark_type"]),
@@ -143,52 +143,53 @@ def _segment(record: Mapping[str, Any]) -> _Segment:
     )
 
 
-def _name(number: Any) -> str:
+def _id_text(number: Any) -> str:
     return str(int(number))
 
 
-def _points(line: Any) -> Floats:
-    """Return the points (n, 3) of a line; a height that is not given is NaN. Errors: those of `_UNREADABLE`."""
+def _line_points(line: Any) -> Floats:
+    """Return the points (n, 3) of a line; a height that is not given is NaN. Errors: those of `_PARSE_ERRORS`."""
     rows = [(point["x"], point["y"], point.get("z", np.nan)) for point in line]
     if len(rows) < 2:
         raise ValueError("a line has fewer than two points")
     return np.array(rows, np.float64).reshape(-1, 3)
 
 
-def _lane(name: str, segments: Mapping[str, _Segment]) -> BoundedLane:
-    segment = segments[name]
-    kind, drivable = _KINDS.get(segment.lane_type, ("none", False))
+def _bounded_lane(segment_id: str, segments: Mapping[str, _LaneSegment]) -> BoundedLane:
+    segment = segments[segment_id]
+    kind, drivable = _LANE_TYPE_AND_DRIVABLE.get(segment.lane_type, ("none", False))
     lane = BoundedLane(
-        name, segment.left[:, :2], segment.right[:, :2], kind, drivable,
+        segment_id, segment.left[:, :2], segment.right[:, :2], kind, drivable,
         successors=tuple(to for to in segment.successors if to in segments),
         marks=(_mark("left", segment.left_mark), _mark("right", segment.right_mark)),
     )  # fmt: skip
     if other := segments.get(segment.left_id or ""):
-        lane.left_id, lane.left_against = segment.left_id, _is_against(segment.left, other.right, other.left)
+        lane.left_id, lane.left_against = segment.left_id, _runs_against(segment.left, other.right, other.left)
     if other := segments.get(segment.right_id or ""):
-        lane.right_id, lane.right_against = segment.right_id, _is_against(segment.right, other.left, other.right)
+        lane.right_id, lane.right_against = segment.right_id, _runs_against(segment.right, other.left, other.right)
     return lane
 
 
-def _is_against(bound: Floats, with_it: Floats, against: Floats) -> bool:
-    """Return whether a neighbour is driven the other way: the bound's ends are nearer to those of `against` than to those of `with_it`."""
+def _runs_against(bound: Floats, bound_if_same_way: Floats, bound_if_opposite: Floats) -> bool:
+    """Return whether a neighbour is driven the other way: the ends of `bound` are nearer to those of `bound_if_opposite`."""
     ends = bound[[0, -1], :2]
     to_with, to_against = (
-        float(np.hypot(*(ends - line).T).sum()) for line in (with_it[[0, -1], :2], against[[-1, 0], :2])
+        float(np.hypot(*(ends - line).T).sum())
+        for line in (bound_if_same_way[[0, -1], :2], bound_if_opposite[[-1, 0], :2])
     )
     return to_against < to_with
 
 
 def _mark(side: str, word: str) -> Mark:
     line, _, colour = word.rpartition("_")
-    return Mark(side, 0.0, 1.0, "none" if word == "NONE" else _LINES.get(line), color=_COLOURS.get(colour))
+    return Mark(side, 0.0, 1.0, "none" if word == "NONE" else _MARKING_BY_LINE.get(line), color=_COLOURS.get(colour))
 
 
-def _report_words(segments: Iterable[_Segment], quality: MapQuality) -> None:
+def _report_unread_types(segments: Iterable[_LaneSegment], quality: MapQuality) -> None:
     """Report the types of lanes and markings that are not read."""
     words = Counter[str]()
     for segment in segments:
-        words.update([segment.lane_type] if segment.lane_type not in _KINDS else [])
+        words.update([segment.lane_type] if segment.lane_type not in _LANE_TYPE_AND_DRIVABLE else [])
         marks = (segment.left_mark, segment.right_mark)
         words.update(word for word in marks if word != "UNKNOWN" and _mark("", word).marking is None)
     if words:
@@ -197,7 +198,7 @@ def _report_words(segments: Iterable[_Segment], quality: MapQuality) -> None:
         quality.add("unknown_word", "info", None, message, words.total())
 
 
-def _report_cut(segments: Mapping[str, _Segment], quality: MapQuality) -> None:
+def _report_missing_lanes(segments: Mapping[str, _LaneSegment], quality: MapQuality) -> None:
     """Report how many successors and neighbours of lanes are missing because the map is cut out of a larger one."""
     behind = sum(to not in segments for segment in segments.values() for to in segment.successors)
     beside = sum(
@@ -210,13 +211,13 @@ def _report_cut(segments: Mapping[str, _Segment], quality: MapQuality) -> None:
         quality.add("missing_link", "info", None, message, behind + beside)
 
 
-def _heights(bound: Floats, points: Floats) -> Floats:
+def _heights_at(bound: Floats, points: Floats) -> Floats:
     """Return the heights of a bound (n, 3) at points on it (m, 2)."""
     along = shapely.line_locate_point(shapely.LineString(bound[:, :2]), shapely.points(points))
     return np.asarray(np.interp(along, stations(bound), bound[:, 2]), np.float64)
 
 
-def _name_junctions(lanes: Sequence[BoundedLane], segments: Mapping[str, _Segment]) -> None:
+def _set_junctions(lanes: Sequence[BoundedLane], segments: Mapping[str, _LaneSegment]) -> None:
     """Set the junction of each lane inside an intersection.
 
     Lanes are in one junction if they begin or end at the same lane, follow each other, lie side by side, or overlap.
@@ -229,14 +230,14 @@ def _name_junctions(lanes: Sequence[BoundedLane], segments: Mapping[str, _Segmen
             name = parent[name]
         return name
 
-    for group in (*_links(lanes, inside), *_overlaps(list(inside.values()))):
+    for group in (*_connected_lane_groups(lanes, inside), *_overlapping_lane_pairs(list(inside.values()))):
         names = sorted({root(name) for name in group}, key=int)
         parent.update(dict.fromkeys(names[1:], names[0]))
     for name, lane in inside.items():
         lane.junction_id = f"j{root(name)}"
 
 
-def _links(lanes: Sequence[BoundedLane], inside: Mapping[str, BoundedLane]) -> list[list[str]]:
+def _connected_lane_groups(lanes: Sequence[BoundedLane], inside: Mapping[str, BoundedLane]) -> list[list[str]]:
     """Return groups of lanes inside intersections that share a predecessor or a successor, follow each other, or lie side by side."""
     groups = [[to for to in (lane.lanelet_id, *lane.successors) if to in inside] for lane in lanes]
     before: dict[str, list[str]] = defaultdict(list)
@@ -247,7 +248,7 @@ def _links(lanes: Sequence[BoundedLane], inside: Mapping[str, BoundedLane]) -> l
     return [group for group in (*groups, *before.values()) if len(group) > 1]
 
 
-def _overlaps(lanes: Sequence[BoundedLane]) -> list[list[str]]:
+def _overlapping_lane_pairs(lanes: Sequence[BoundedLane]) -> list[list[str]]:
     """Return pairs of lanes that overlap on the same level."""
     if not lanes:
         return []
@@ -259,7 +260,10 @@ def _overlaps(lanes: Sequence[BoundedLane]) -> list[list[str]]:
             continue
         a, b = lanes[i], lanes[j]
         apart = max(np.nanmin(a.z) - np.nanmax(b.z), np.nanmin(b.z) - np.nanmax(a.z)) if _have_heights(a, b) else 0.0
-        if apart <= _LEVEL_M and shapely.area(shapely.intersection(areas[i], areas[j])) > _COMMON_GROUND_M2:
+        if (
+            apart <= _MAX_LEVEL_DIFFERENCE_M
+            and shapely.area(shapely.intersection(areas[i], areas[j])) > _MIN_OVERLAP_M2
+        ):
             overlaps.append([a.lanelet_id, b.lanelet_id])
     return overlaps
 
@@ -268,15 +272,15 @@ def _have_heights(*lanes: BoundedLane) -> bool:
     return all(np.isfinite(lane.z).any() for lane in lanes)
 
 
-def _walks(records: Mapping[str, Any], quality: MapQuality) -> list[BoundedLane]:
+def _crossing_lanes(records: Mapping[str, Any], quality: MapQuality) -> list[BoundedLane]:
     """Return the pedestrian crossings as lanes for people on foot, bounded by the two edges."""
     crossings = []
     for key, crossing in records.items():
         try:
-            first, second = (_points(crossing[edge])[:, :2] for edge in ("edge1", "edge2"))
-            name = _name(crossing["id"])
-        except _UNREADABLE as error:
-            quality.add("invalid_lane", "error", key, f"crossing {key} is left out: {_why(error)}")
+            first, second = (_line_points(crossing[edge])[:, :2] for edge in ("edge1", "edge2"))
+            name = _id_text(crossing["id"])
+        except _PARSE_ERRORS as error:
+            quality.add("invalid_lane", "error", key, f"crossing {key} is left out: {_error_text(error)}")
             continue
         if float((first[-1] - first[0]) @ (second[-1] - second[0])) < 0.0:
             second = second[::-1]

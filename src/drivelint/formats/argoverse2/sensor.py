@@ -22,7 +22,13 @@ import pyarrow.compute as pc
 from drivelint.drive.trace import QualityFinding, Recording, States
 from drivelint.errors import TraceError
 from drivelint.formats.argoverse2 import cells, vehicle
-from drivelint.formats.argoverse2.categories import EGO_CATEGORY, RIDDEN, RIDERS, SENSOR_CLASSES, class_codes
+from drivelint.formats.argoverse2.categories import (
+    EGO_CATEGORY,
+    RIDDEN_CATEGORIES,
+    RIDER_CATEGORIES,
+    SENSOR_CLASSES,
+    class_codes,
+)
 from drivelint.formats.argoverse2.cities import NATION, frame_by_file_name
 from drivelint.formats.coordinate_frames import Poses, unit_quaternions
 from drivelint.formats.folders import folder_kind
@@ -45,10 +51,10 @@ POSES_FILE: Final = "city_SE3_egovehicle.feather"
 SENSOR_RANGE_M: Final = 150.0
 """The range up to which the dataset's benchmarks take the annotations as complete, on the drivable area and within 5 m of it (av2-api,
 `DetectionCfg.max_range_m`). Boxes further away are kept."""
-_PLACE: Final = ("tx_m", "ty_m", "tz_m")
-_TURN: Final = ("qx", "qy", "qz", "qw")
-_SIZE: Final = ("length_m", "width_m", "height_m")
-_TIME: Final = "timestamp_ns"
+_PLACE_COLUMNS: Final = ("tx_m", "ty_m", "tz_m")
+_QUATERNION_COLUMNS: Final = ("qx", "qy", "qz", "qw")
+_SIZE_COLUMNS: Final = ("length_m", "width_m", "height_m")
+_TIME_COLUMN: Final = "timestamp_ns"
 
 
 def accepts(probe: Probe) -> bool:
@@ -58,10 +64,12 @@ def accepts(probe: Probe) -> bool:
 
 def read(probe: Probe) -> Recording:
     """Read a log. Errors: `TraceError` for damaged files, missing columns, and a log without annotations."""
-    file, notes = _annotations(probe.path)
-    rows = ipc.table(file, (_TIME, "track_uuid", "category", *_SIZE, *_PLACE, *_TURN))
-    t_ns, timed = cells.integers(file, rows, _TIME)
-    usable, findings, lost_times = cells.without_nameless(file, rows, "track_uuid", t_ns, timed)
+    file, notes = _annotation_file(probe.path)
+    rows = ipc.table(
+        file, (_TIME_COLUMN, "track_uuid", "category", *_SIZE_COLUMNS, *_PLACE_COLUMNS, *_QUATERNION_COLUMNS)
+    )
+    t_ns, timed = cells.integer_column(file, rows, _TIME_COLUMN)
+    usable, findings, lost_times = cells.rows_with_track_and_time(file, rows, "track_uuid", t_ns, timed)
     rows, t_ns = rows.filter(pa.array(usable)), t_ns[usable]
     steps, step = np.unique(t_ns, return_inverse=True)
     if not len(steps):
@@ -69,9 +77,12 @@ def read(probe: Probe) -> Recording:
             f"{file}: no annotations: the actors around the vehicle are not known: use a log with annotations"
         )
     rear_axle = _poses_at(probe.path / POSES_FILE, steps)
-    findings += [vehicle.assumed_size(EGO_ID), *_unplaced(steps, rear_axle, np.bincount(step, minlength=len(steps)))]
+    findings += [
+        vehicle.assumed_size_finding(EGO_ID),
+        *_findings_on_missing_poses(steps, rear_axle, np.bincount(step, minlength=len(steps))),
+    ]
     others, more = _annotated_states(file, rows, t_ns, Poses(*(column[step] for column in rear_axle)))
-    ego = _ego(steps, vehicle.box_poses(rear_axle), others.ids)
+    ego = _ego_states(steps, vehicle.box_poses(rear_axle), others.ids)
     recording = Recording(
         NAME, States.concatenate([ego, others]), ego_ids=[EGO_ID], findings=findings, lost_times=lost_times
     )
@@ -82,7 +93,7 @@ def read(probe: Probe) -> Recording:
     return recording
 
 
-def _annotations(folder: Path) -> tuple[Path, list[str]]:
+def _annotation_file(folder: Path) -> tuple[Path, list[str]]:
     """Return the annotation file to read (`annotations.feather`, else the first by name), and a note on other annotation files."""
     files = sorted(folder.glob("annotations*.feather"))
     first = next((file for file in files if file.name == "annotations.feather"), files[0])
@@ -92,9 +103,11 @@ def _annotations(folder: Path) -> tuple[Path, list[str]]:
 
 def _poses_at(path: Path, t_ns: Times) -> Poses:
     """Return the poses at these times (ascending); NaN for a time that no pose has exactly, or that two different poses have."""
-    rows = ipc.table(path, (_TIME, *_PLACE, *_TURN))
-    stamps, timed = cells.integers(path, rows, _TIME)
-    values = np.stack(list(cells.numbers(path, rows, (*_PLACE, *_TURN)).values()), axis=1)[timed]
+    rows = ipc.table(path, (_TIME_COLUMN, *_PLACE_COLUMNS, *_QUATERNION_COLUMNS))
+    stamps, timed = cells.integer_column(path, rows, _TIME_COLUMN)
+    values = np.stack(list(cells.number_columns(path, rows, (*_PLACE_COLUMNS, *_QUATERNION_COLUMNS)).values()), axis=1)[
+        timed
+    ]
     order = np.argsort(stamps[timed], kind="stable")
     stamps, values = stamps[timed][order], values[order]
     known, at = np.isin(t_ns, stamps), np.searchsorted(stamps, t_ns)
@@ -106,7 +119,7 @@ def _poses_at(path: Path, t_ns: Times) -> Poses:
     return Poses(found[:, :3], unit_quaternions(found[:, 3:]))
 
 
-def _unplaced(steps: Times, rear_axle: Poses, n_boxes: Indices) -> list[QualityFinding]:
+def _findings_on_missing_poses(steps: Times, rear_axle: Poses, n_boxes: Indices) -> list[QualityFinding]:
     """Return the finding on time stamps without a pose: the annotated actors and the ego are present there, but not placed."""
     missing = np.isnan(rear_axle.place[:, 0]) | np.isnan(rear_axle.turn[:, 0])
     if not missing.any():
@@ -121,21 +134,23 @@ def _unplaced(steps: Times, rear_axle: Poses, n_boxes: Indices) -> list[QualityF
 
 def _annotated_states(path: Path, rows: pa.Table, t_ns: Times, rear_axle: Poses) -> tuple[States, list[str]]:
     """Return the annotated boxes as states, and notes. `rear_axle`: the recording vehicle's pose for each box."""
-    category = cells.cast(path, rows, "category", pa.string())
+    category = cells.cast_column(path, rows, "category", pa.string())
     classes, notes = class_codes(category, SENSOR_CLASSES)
-    is_ego = _is_any(category, [EGO_CATEGORY])
-    ids = pc.dictionary_encode(cells.cast(path, rows, "track_uuid", pa.string()))
+    is_ego = _is_one_of(category, [EGO_CATEGORY])
+    ids = pc.dictionary_encode(cells.cast_column(path, rows, "track_uuid", pa.string()))
     actor = ids.indices.to_numpy().astype(np.int32)
-    raw = cells.numbers(path, rows, (*_PLACE, *_TURN, *_SIZE))
+    raw = cells.number_columns(path, rows, (*_PLACE_COLUMNS, *_QUATERNION_COLUMNS, *_SIZE_COLUMNS))
     odd = np.zeros(len(rows), np.bool_)
     for name, values in raw.items():
         wrong = ~np.isfinite(values)
         odd |= wrong & rows[name].is_valid().to_numpy(zero_copy_only=False)
         raw[name] = np.where(wrong, np.nan, values)
-    place, turn = (np.stack([raw[name] for name in names], axis=1) for names in (_PLACE, _TURN))
+    place, turn = (np.stack([raw[name] for name in names], axis=1) for names in (_PLACE_COLUMNS, _QUATERNION_COLUMNS))
     poses = rear_axle.compose(Poses(place, unit_quaternions(turn)))
-    boxes = _columns(poses) | {name: raw[name] for name in _SIZE}
-    inside, riders = join_riders(t_ns, actor, _is_any(category, RIDERS), _is_any(category, RIDDEN), boxes)
+    boxes = _pose_columns(poses) | {name: raw[name] for name in _SIZE_COLUMNS}
+    inside, riders = join_riders(
+        t_ns, actor, _is_one_of(category, RIDER_CATEGORIES), _is_one_of(category, RIDDEN_CATEGORIES), boxes
+    )
     names = ids.dictionary.to_pylist()
     if riders:
         who = listed([names[i] for i in riders])
@@ -146,19 +161,21 @@ def _annotated_states(path: Path, rows: pa.Table, t_ns: Times, rear_axle: Poses)
     return states.take(~is_ego & ~inside), notes
 
 
-def _is_any(words: pa.Array, of: Iterable[str]) -> Mask:
-    found = pc.is_in(words, value_set=pa.array(list(of), pa.string()))
+def _is_one_of(categories: pa.Array, wanted_categories: Iterable[str]) -> Mask:
+    found = pc.is_in(categories, value_set=pa.array(list(wanted_categories), pa.string()))
     return np.asarray(found.to_numpy(zero_copy_only=False), np.bool_)
 
 
-def _columns(poses: Poses) -> dict[str, Floats]:
+def _pose_columns(poses: Poses) -> dict[str, Floats]:
     x, y, z = poses.place.T.copy()
     return {"x_m": x, "y_m": y, "z_m": z, "yaw_rad": poses.yaw}
 
 
-def _ego(steps: Times, poses: Poses, ids: list[str]) -> States:
+def _ego_states(steps: Times, poses: Poses, ids: list[str]) -> States:
     n = len(steps)
-    numbers = _columns(poses) | {name: np.full(n, size) for name, size in zip(_SIZE, vehicle.SIZE_M, strict=True)}
+    numbers = _pose_columns(poses) | {
+        name: np.full(n, size) for name, size in zip(_SIZE_COLUMNS, vehicle.BOX_SIZE_M, strict=True)
+    }
     classes, _ = class_codes(pa.array([EGO_CATEGORY] * n), SENSOR_CLASSES)
     return States(ids, np.zeros(n, np.int32), steps, numbers, {"actor_class": classes}, np.zeros(n, np.bool_))
 

@@ -13,7 +13,7 @@ from drivelint.errors import MapError
 from drivelint.formats import safe_xml
 from drivelint.formats.commonroad.country import country_of
 from drivelint.formats.commonroad.signs import (
-    Signs,
+    MapSigns,
     points,
     read_signs,
     referenced_ids,
@@ -41,13 +41,21 @@ if TYPE_CHECKING:
 
     from drivelint.road.map_reader import MapOptions, MapSource, MapTables
 
-_KINDS = {
+_LANE_TYPE_BY_LANELET_TYPE = {
     "sidewalk": "sidewalk", "busLane": "bus", "bicycleLane": "biking", "exitRamp": "exit", "accessRamp": "entry",
     "shoulder": "shoulder", "border": "border", "parking": "parking", "restricted": "restricted",
 }  # fmt: skip
-_NOT_DRIVEN = frozenset({"sidewalk", "biking", "shoulder", "border", "parking", "restricted"})
-_ROADS = {"interstate": "motorway", "highway": "motorway", "country": "rural", "urban": "town"}
-_TYPES = {*_KINDS, *_ROADS, "crosswalk", "mainCarriageWay", "driveWay", "intersection", "busStop"}
+_UNDRIVABLE_LANE_TYPES = frozenset({"sidewalk", "biking", "shoulder", "border", "parking", "restricted"})
+_ROAD_TYPE_BY_LANELET_TYPE = {"interstate": "motorway", "highway": "motorway", "country": "rural", "urban": "town"}
+_READ_LANELET_TYPES = {
+    *_LANE_TYPE_BY_LANELET_TYPE,
+    *_ROAD_TYPE_BY_LANELET_TYPE,
+    "crosswalk",
+    "mainCarriageWay",
+    "driveWay",
+    "intersection",
+    "busStop",
+}
 _MARKINGS = {
     "solid": "solid", "broad_solid": "solid", "dashed": "broken", "broad_dashed": "broken", "curb": "curb",
     "lowered_curb": "curb", "solid_solid": "solid_solid", "dashed_dashed": "broken_broken", "no_marking": "none",
@@ -65,14 +73,14 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     for element in root.findall("lanelet"):
         try:
             kinds = [t.text or "" for t in element.findall("laneletType")]
-            (walks if "crosswalk" in kinds else built).append(_lane(element, kinds, signs))
+            (walks if "crosswalk" in kinds else built).append(_bounded_lane(element, kinds, signs))
         except (ValueError, KeyError) as error:
             name = element.get("id") or f"in line {element.sourceline}"
             quality.add("invalid_lane", "error", name, f"lanelet {name} is left out: {error}")
-    signs.report(root.findall("lanelet"), [light.get("id", "") for light in root.findall("trafficLight")])
-    _report_words(root, quality)
-    _remove_contradicted_towns(root, built, quality)
-    _junctions(root, built)
+    signs.report_problems(root.findall("lanelet"), [light.get("id", "") for light in root.findall("trafficLight")])
+    _report_unread_types(root, quality)
+    _remove_contradicted_road_types(root, built, quality)
+    _set_junctions(root, built)
     lanes = build_lanes(built, request.offset, quality)
     if not lanes:
         first = next((row["message"] for row in quality.rows), "it has no <lanelet>")
@@ -111,7 +119,7 @@ def _geo_frame(root: etree._Element, quality: MapQuality) -> GeoFrame | None:
     if not reference:
         return None
     x, y, turn, scale = (
-        float(default) if more is None else safe_xml.number(more.findtext(name) or default)
+        float(default) if more is None else safe_xml.number_or_nan(more.findtext(name) or default)
         for name, default in (("xTranslation", "0"), ("yTranslation", "0"), ("zRotation", "0"), ("scaling", "1"))
     )
     if not (math.isfinite(x) and math.isfinite(y)) or (turn, scale) != (0.0, 1.0):
@@ -121,14 +129,14 @@ def _geo_frame(root: etree._Element, quality: MapQuality) -> GeoFrame | None:
     return GeoFrame(reference, x, y)
 
 
-def _lane(element: etree._Element, kinds: Sequence[str], signs: Signs) -> BoundedLane:
-    kind = next((_KINDS[k] for k in kinds if k in _KINDS), "driving")
+def _bounded_lane(element: etree._Element, lanelet_types: Sequence[str], signs: MapSigns) -> BoundedLane:
+    kind = next((_LANE_TYPE_BY_LANELET_TYPE[k] for k in lanelet_types if k in _LANE_TYPE_BY_LANELET_TYPE), "driving")
     limit_mps, limit_source = signs.speed_limit(element)
     left, right = element.find("leftBound"), element.find("rightBound")
     lane = BoundedLane(
-        str(element.attrib["id"]), points(left), points(right), kind, kind not in _NOT_DRIVEN,
+        str(element.attrib["id"]), points(left), points(right), kind, kind not in _UNDRIVABLE_LANE_TYPES,
         bidirectional=len(element.findall("userOneWay")) == 0 and len(element.findall("userBidirectional")) > 0,
-        road_type=next((_ROADS[k] for k in kinds if k in _ROADS), None),
+        road_type=next((_ROAD_TYPE_BY_LANELET_TYPE[k] for k in lanelet_types if k in _ROAD_TYPE_BY_LANELET_TYPE), None),
         successors=tuple(referenced_ids(element, "successor")),
         marks=both_marks(_marking(left), _marking(right)),
         limits=() if limit_mps is None else ((0.0, 1.0, limit_mps),), limit_source=limit_source,
@@ -145,7 +153,7 @@ def _marking(bound: etree._Element | None) -> str | None:
     return _MARKINGS.get(said or "")
 
 
-def _remove_contradicted_towns(root: etree._Element, lanes: Sequence[BoundedLane], quality: MapQuality) -> None:
+def _remove_contradicted_road_types(root: etree._Element, lanes: Sequence[BoundedLane], quality: MapQuality) -> None:
     """Remove the road type `urban` in a scenario with the tag `highway`: converters write this type for every lanelet."""
     tags = {tag.tag for parent in root.findall("scenarioTags") for tag in parent}
     towns = [lane for lane in lanes if lane.road_type == "town"]
@@ -156,9 +164,12 @@ def _remove_contradicted_towns(root: etree._Element, lanes: Sequence[BoundedLane
         quality.add("road_type_contradicted", "warning", None, message, len(towns))
 
 
-def _report_words(root: etree._Element, quality: MapQuality) -> None:
+def _report_unread_types(root: etree._Element, quality: MapQuality) -> None:
     """Report the markings and lanelet types that are not read."""
-    for tag, known, what in (("lineMarking", _MARKINGS, "markings"), ("laneletType", _TYPES, "types of lanelets")):
+    for tag, known, what in (
+        ("lineMarking", _MARKINGS, "markings"),
+        ("laneletType", _READ_LANELET_TYPES, "types of lanelets"),
+    ):
         said = Counter((e.text or "").strip() for e in root.iterfind(f"lanelet//{tag}"))
         unread = {word: n for word, n in sorted(said.items()) if word not in known and word != "unknown"}
         if unread:
@@ -166,7 +177,7 @@ def _report_words(root: etree._Element, quality: MapQuality) -> None:
             quality.add("unknown_word", "info", None, f"{what} that are not read: {listed}", sum(unread.values()))
 
 
-def _junctions(root: etree._Element, lanes: Sequence[BoundedLane]) -> None:
+def _set_junctions(root: etree._Element, lanes: Sequence[BoundedLane]) -> None:
     """Set the junction of each lanelet that an intersection names as a successor, if another lanelet leads to it."""
     inside: dict[str, str] = {}
     for crossing in root.findall("intersection"):

@@ -34,20 +34,20 @@ if TYPE_CHECKING:
 
 formats: Final = {"commonroad": ("CommonRoad scenario", "named with --ego")}
 takes_mapping: Final = False
-_CLASSES = {
+_CLASS_BY_TYPE = {
     "car": "car", "taxi": "car", "truck": "truck", "bus": "bus", "motorcycle": "motorcycle", "bicycle": "bicycle",
     "pedestrian": "pedestrian", "priorityVehicle": "vehicle", "parkedVehicle": "vehicle", "train": "vehicle",
     "constructionZone": "object", "roadBoundary": "object", "pillar": "object", "building": "object",
     "median_strip": "object",
 }  # fmt: skip
-_FIELDS = {
+_PATH_BY_COLUMN = {
     "x_m": "position/point/x", "y_m": "position/point/y", "yaw_rad": "orientation/exact", "v": "velocity/exact",
     "a": "acceleration/exact", "slip": "slipAngle/exact", "yaw_rate": "yawRate/exact", "step": "time/exact",
 }  # fmt: skip
 """Column -> path of its element in a state."""
 _ALL_STATES: Final = "(initialState | trajectory/state)"
-_NOT_EXACT: Final = f"count({_ALL_STATES}//intervalStart | {_ALL_STATES}/position/*[not(self::point)])"
-_ROOT: Final = b"<commonRoad"
+_COUNT_OF_INEXACT_VALUES: Final = f"count({_ALL_STATES}//intervalStart | {_ALL_STATES}/position/*[not(self::point)])"
+_ROOT_TAG: Final = b"<commonRoad"
 _OBSTACLE: Final = re.compile(rb"<(dynamicO|staticO|o)bstacle[\s>]")
 _TAG: Final = re.compile(rb"<(/?)([A-Za-z][\w.-]*)>")
 _STATE: Final = re.compile(rb"<state>.*?</state>", re.DOTALL)
@@ -57,12 +57,12 @@ _TRAJECTORY: Final = re.compile(rb"<trajectory>(.*?)</trajectory>", re.DOTALL)
 
 def accepts(probe: Probe) -> bool:
     """Return whether the file has CommonRoad's root element."""
-    return _ROOT in probe.head
+    return _ROOT_TAG in probe.head
 
 
 def has_obstacles(path: Path, head: bytes) -> bool:
     """Return whether the file is a scenario with obstacles, not only a map."""
-    return _ROOT in head and _OBSTACLE.search(path.read_bytes()) is not None
+    return _ROOT_TAG in head and _OBSTACLE.search(path.read_bytes()) is not None
 
 
 def read(probe: Probe) -> Recording:
@@ -72,7 +72,7 @@ def read(probe: Probe) -> Recording:
     fast = extract_trajectories(content)
     rest, fast_columns = fast or (content, [])
     root = safe_xml.parse(rest, str(path), TraceError)
-    step_s = safe_xml.number(root.get("timeStepSize"))
+    step_s = safe_xml.number_or_nan(root.get("timeStepSize"))
     if not step_s > 0.0:
         raise TraceError(
             f"{path}: timeStepSize is {root.get('timeStepSize')!r}: a scenario needs a positive number of seconds"
@@ -85,15 +85,15 @@ def read(probe: Probe) -> Recording:
         twice = listed(sorted({i for i in ids if ids.count(i) > 1}))
         raise TraceError(f"{path}: two obstacles have the same id: {twice}")
     trajectories = dict(zip(root.iter("trajectory"), fast_columns, strict=True)) if fast else {}
-    parts = [_states(path, o, trajectories) for o in obstacles]
+    parts = [_state_columns(path, o, trajectories) for o in obstacles]
     last = max((int(part["step"].max()) for part in parts if len(part["step"])), default=0)
-    parts = [_standing(o, part, last) for o, part in zip(obstacles, parts, strict=True)]
+    parts = [_repeat_if_static(o, part, last) for o, part in zip(obstacles, parts, strict=True)]
     counts = [len(part["step"]) for part in parts]
     shapes = [read_shape(o) for o in obstacles]
     columns = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
     offsets = [box_offsets(shape, part["yaw_rad"]) for shape, part in zip(shapes, parts, strict=True)]
     heading = columns["yaw_rad"] + np.nan_to_num(columns["slip"])
-    words = [_CLASSES.get((o.findtext("type") or "").strip()) for o in obstacles]
+    words = [_CLASS_BY_TYPE.get((o.findtext("type") or "").strip()) for o in obstacles]
     classes = [ACTOR_CLASSES.index(word) if word else -1 for word in words]
     unknown = np.full(sum(counts), -1, np.int8)
     states = States(
@@ -110,7 +110,7 @@ def read(probe: Probe) -> Recording:
         {"actor_class": np.repeat(np.array(classes, np.int8), counts), "indicator": unknown, "brake_light": unknown},
         np.zeros(sum(counts), np.bool_),
     )  # fmt: skip
-    _to_box_centres(
+    _move_to_box_centres(
         states, columns["yaw_rate"], np.concatenate(offsets, axis=1), np.repeat([s.turn_rad for s in shapes], counts)
     )
     recording = Recording("commonroad", states, embedded_map=content if root.find("lanelet") is not None else None)
@@ -123,24 +123,24 @@ def read(probe: Probe) -> Recording:
         bool((np.isnan(o).any(axis=0) & ~np.isnan(part["yaw_rad"])).any())
         for o, part in zip(offsets, parts, strict=True)
     ]
-    recording.findings += [*shape_findings(ids, shapes, lost), *_unread(root, obstacles)]
+    recording.findings += [*shape_findings(ids, shapes, lost), *_findings_on_unread_parts(root, obstacles)]
     return recording
 
 
-def _to_box_centres(states: States, recorded_yaw_rate: Floats, offset: Floats, turn: Floats) -> None:
-    """Move the states, in place, from the shapes' origins to the box centres, by `offset` (2, n), and turn them by `turn` (n,)."""
+def _move_to_box_centres(states: States, recorded_yaw_rate: Floats, offset: Floats, turn_rad: Floats) -> None:
+    """Move the states, in place, from the shapes' origins to the box centres, by `offset` (2, n), and turn them by `turn_rad` (n,)."""
     log = states.numbers
     log["x_m"], log["y_m"] = states.place + offset
     if np.any(offset != 0.0):
         derived = yaw_rates(states, log["yaw_rad"])
         turning = np.where(np.isnan(recorded_yaw_rate), derived, recorded_yaw_rate)
         log["vx_mps"], log["vy_mps"] = velocity_of_centre(states.velocity, offset, turning)
-    log["yaw_rad"] = log["yaw_rad"] + turn
+    log["yaw_rad"] = log["yaw_rad"] + turn_rad
 
 
-def _unread(root: etree._Element, obstacles: Sequence[etree._Element]) -> list[QualityFinding]:
+def _findings_on_unread_parts(root: etree._Element, obstacles: Sequence[etree._Element]) -> list[QualityFinding]:
     """Return findings on values that are not read (areas and intervals), and on obstacles without states."""
-    uncertain = sum(int(float(str(o.xpath(_NOT_EXACT)))) for o in obstacles)
+    uncertain = sum(int(float(str(o.xpath(_COUNT_OF_INEXACT_VALUES)))) for o in obstacles)
     sets = [str(o.get("id")) for o in obstacles if o.find("occupancySet") is not None]
     still = [str(o.get("id")) for kind in ("environmentObstacle", "phantomObstacle") for o in root.findall(kind)]
     findings = []
@@ -158,20 +158,20 @@ def _unread(root: etree._Element, obstacles: Sequence[etree._Element]) -> list[Q
     return findings
 
 
-def _states(
+def _state_columns(
     path: Path, obstacle: etree._Element, trajectories: Mapping[etree._Element, Mapping[str, Floats]]
 ) -> dict[str, Floats]:
     """Return the columns of an obstacle, (n,) each. Errors: `TraceError` for a state without an exact time."""
     states = [*obstacle.findall("initialState"), *obstacle.findall("trajectory/state")]
     columns = {
-        name: np.array([safe_xml.number(state.findtext(place)) for state in states], np.float64)
-        for name, place in _FIELDS.items()
+        name: np.array([safe_xml.number_or_nan(state.findtext(place)) for state in states], np.float64)
+        for name, place in _PATH_BY_COLUMN.items()
     }
     trajectory = obstacle.find("trajectory")
     more = None if trajectory is None else trajectories.get(trajectory)
     if more is not None:
         nothing = np.full(len(next(iter(more.values()))), np.nan)
-        columns = {n: np.concatenate([values, more.get(_FIELDS[n], nothing)]) for n, values in columns.items()}
+        columns = {n: np.concatenate([values, more.get(_PATH_BY_COLUMN[n], nothing)]) for n, values in columns.items()}
     columns["step"] = np.trunc(columns["step"])
     if not np.isfinite(columns["step"]).all():
         raise TraceError(
@@ -180,14 +180,14 @@ def _states(
     return columns
 
 
-def _standing(obstacle: etree._Element, columns: dict[str, Floats], last: int) -> dict[str, Floats]:
+def _repeat_if_static(obstacle: etree._Element, columns: dict[str, Floats], last_step: int) -> dict[str, Floats]:
     """Return the columns of an obstacle; a static obstacle gets a state at every step of the scenario."""
     n = len(columns["step"])
     static = obstacle.tag == "staticObstacle" or obstacle.findtext("role") == "static"
     if static and n == 1:
-        columns = {name: np.repeat(values, last + 1) for name, values in columns.items()}
-        columns["step"] = np.arange(last + 1, dtype=np.float64)
-        columns["v"], columns["yaw_rate"] = np.zeros((2, last + 1))
+        columns = {name: np.repeat(values, last_step + 1) for name, values in columns.items()}
+        columns["step"] = np.arange(last_step + 1, dtype=np.float64)
+        columns["v"], columns["yaw_rate"] = np.zeros((2, last_step + 1))
     return columns
 
 
@@ -197,7 +197,7 @@ def extract_trajectories(content: bytes) -> tuple[bytes, list[dict[str, Floats]]
     Returns the file without the trajectories, and the numbers of each trajectory by element path. None if states differ in form.
     """
     first = _STATE.search(content)
-    shape = None if first is None else _shape(first[0])
+    shape = None if first is None else _state_pattern(first[0])
     if shape is None:
         return None
     pattern, places, n_tags = shape
@@ -219,7 +219,7 @@ def extract_trajectories(content: bytes) -> tuple[bytes, list[dict[str, Floats]]
     return rest, columns
 
 
-def _shape(state: bytes) -> tuple[re.Pattern[bytes], list[str], int] | None:
+def _state_pattern(state: bytes) -> tuple[re.Pattern[bytes], list[str], int] | None:
     """Return a pattern for states of this form, the element paths of its numbers, and its number of tags; None for an unsuitable form."""
     pattern, at, is_open = b"", 0, False
     places: list[str] = []

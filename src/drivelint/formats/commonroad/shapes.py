@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from drivelint.arrays import Floats
 
-READINGS_AGREE_M: Final = 0.01
+SAME_BOX_PLACE_M: Final = 0.01
 """Two interpretations of a box's place that differ by less agree: positions are accurate to a centimetre at best."""
 _POLYGON: Final = "a polygon"
 _TRAILER: Final = "a truck with its trailer"
@@ -62,14 +62,14 @@ def read_shape(obstacle: etree._Element) -> ObstacleShape:
         return _rectangle(parts[0], parts[0])
     if len(parts) == 1 and parts[0].tag == "circle":
         # the box is the square around the circle
-        size = 2.0 * safe_xml.number(parts[0].findtext("radius"))
+        size = 2.0 * safe_xml.number_or_nan(parts[0].findtext("radius"))
         return ObstacleShape(size, size, centre_m=_centre(parts[0]))
     if len(parts) == 1 and (truck := parts[0].find("truckShape")) is not None:
         # the recorded position is that of the truck; how far the trailer extends depends on the hitch angle
         ahead = _rectangle(truck.find("truckDims"), truck).ahead_m
         return ObstacleShape(ahead_m=ahead, no_box=_TRAILER)
     if len(parts) == 1 and parts[0].tag == "polygon":
-        return ObstacleShape(centre_m=_middle(parts[0]), no_box=_POLYGON)
+        return ObstacleShape(centre_m=_bounding_box_centre(parts[0]), no_box=_POLYGON)
     several = len(parts) > 1 or any(part.tag == "shapeGroup" for part in parts)
     return ObstacleShape(ahead_m=math.nan, no_box=_SEVERAL) if several else ObstacleShape(no_box=_NO_SHAPE)
 
@@ -78,44 +78,44 @@ def _rectangle(size: etree._Element | None, origin: etree._Element) -> ObstacleS
     """Return a box. `size`: the element with length and width; `origin`: the element that states where the shape's origin lies."""
     if size is None:
         return ObstacleShape(ahead_m=math.nan, no_box=_NO_SHAPE)
-    length, width = (safe_xml.number(size.findtext(name)) for name in ("length", "width"))
-    shift = _number(origin, "originXShift")
+    length, width = (safe_xml.number_or_nan(size.findtext(name)) for name in ("length", "width"))
+    shift = _child_number(origin, "originXShift")
     if abs(shift) > length / 2:
         shift = math.nan
-    return ObstacleShape(length, width, -shift, _centre(origin), _number(origin, "orientation"))
+    return ObstacleShape(length, width, -shift, _centre(origin), _child_number(origin, "orientation"))
 
 
 def _centre(element: etree._Element) -> tuple[float, float]:
     centre = element.find("center")
-    return (0.0, 0.0) if centre is None else (_number(centre, "x"), _number(centre, "y"))
+    return (0.0, 0.0) if centre is None else (_child_number(centre, "x"), _child_number(centre, "y"))
 
 
-def _middle(polygon: etree._Element) -> tuple[float, float]:
+def _bounding_box_centre(polygon: etree._Element) -> tuple[float, float]:
     """Return the centre of a polygon's bounding rectangle along the axes of its frame."""
-    corners = np.array([[_number(p, axis) for axis in "xy"] for p in polygon.iterfind("point")], np.float64).reshape(
-        -1, 2
-    )
+    corners = np.array(
+        [[_child_number(p, axis) for axis in "xy"] for p in polygon.iterfind("point")], np.float64
+    ).reshape(-1, 2)
     if not len(corners):
         return math.nan, math.nan
     x, y = (corners.min(axis=0) + corners.max(axis=0)) / 2
     return float(x), float(y)
 
 
-def _number(parent: etree._Element, name: str) -> float:
+def _child_number(parent: etree._Element, name: str) -> float:
     """Return the number of a child element, 0 without one; NaN if it is not a number."""
     text = parent.findtext(name)
-    return 0.0 if text is None else safe_xml.number(text)
+    return 0.0 if text is None else safe_xml.number_or_nan(text)
 
 
-def box_offsets(shape: ObstacleShape, yaw: Floats) -> Floats:
+def box_offsets(shape: ObstacleShape, yaw_rad: Floats) -> Floats:
     """Return the vectors (2, n) from the origin to the box centre in metres, for these headings (n,) of an obstacle; NaN: not known."""
-    n = len(yaw)
-    offset = lever_to_centre(np.full(n, shape.ahead_m), np.zeros(n), yaw)
+    n = len(yaw_rad)
+    offset = lever_to_centre(np.full(n, shape.ahead_m), np.zeros(n), yaw_rad)
     if shape.centre_m == (0.0, 0.0):
         return offset
     along_axes = np.tile(np.array(shape.centre_m)[:, None], (1, n))
-    along_obstacle = np.stack(turned(along_axes[0], along_axes[1], yaw))
-    agree = np.hypot(*(along_obstacle - along_axes)) <= READINGS_AGREE_M
+    along_obstacle = np.stack(turned(along_axes[0], along_axes[1], yaw_rad))
+    agree = np.hypot(*(along_obstacle - along_axes)) <= SAME_BOX_PLACE_M
     if shape.ahead_m != 0.0:
         agree[:] = False  # both offsets are given: it is not known whether one includes the other
     return offset + np.where(agree, along_axes, np.nan)

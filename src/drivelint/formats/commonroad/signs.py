@@ -31,15 +31,15 @@ if TYPE_CHECKING:
     from drivelint.road.tables import Rows
 
 
-_LISTS = {"USA": "us", "ESP": "es"}  # codes of other countries: StVO numbers
-_LIGHT = "1000001"
-_LIMITS = frozenset({"speed_limit", "speed_zone"})
-_AT_THE_END = frozenset({"traffic_light", "stop", "give_way"})  # these hold where the traffic of a lanelet waits
-_SPEEDS = _LIMITS | {"minimum_speed"}
-_STVO = re.compile(r"1?\d{3}(\.\d)?(-\d+)?")  # an StVO number: all those that limit the speed are known
-_FASTEST_MPS = 45.0  # 160 km/h: no sign allows more, so a greater number is not in m/s
+_CATALOGUE_BY_COUNTRY = {"USA": "us", "ESP": "es"}  # codes of other countries: StVO numbers
+_LIGHT_CODE = "1000001"
+_LIMIT_KINDS = frozenset({"speed_limit", "speed_zone"})
+_KINDS_AT_LANE_END = frozenset({"traffic_light", "stop", "give_way"})  # these hold where the traffic of a lanelet waits
+_SPEED_KINDS = _LIMIT_KINDS | {"minimum_speed"}
+_STVO_NUMBER = re.compile(r"1?\d{3}(\.\d)?(-\d+)?")  # an StVO number: all those that limit the speed are known
+_MAX_LIMIT_MPS = 45.0  # 160 km/h: no sign allows more, so a greater number is not in m/s
 # additional plates that give a direction or a reason; other plates restrict the sign above them
-_PLATES = frozenset({"1000", "1002", "1006", "1007", "1010", "1012"})
+_UNRESTRICTIVE_PLATES = frozenset({"1000", "1002", "1006", "1007", "1010", "1012"})
 
 
 class SignElement(NamedTuple):
@@ -51,7 +51,7 @@ class SignElement(NamedTuple):
 
 
 @dataclass
-class Signs:
+class MapSigns:
     """The signs of a map by their id; unreadable parts are rows of `quality`.
 
     `codes`: the catalogue of their codes, as in `traffic_signal`.
@@ -67,8 +67,8 @@ class Signs:
 
         None: the map gives no certain limit. If a lower limit holds only under the condition of a plate, the limit is not certain.
         """
-        own_limit = _number(lanelet.findtext("speedLimit"))
-        if own_limit is not None and (trouble := _implausible(own_limit)):
+        own_limit = _finite_number(lanelet.findtext("speedLimit"))
+        if own_limit is not None and (trouble := _why_implausible(own_limit)):
             name = lanelet.get("id")
             self.quality.add("invalid_speed", "warning", name, f"the limit of lanelet {name} is not used: {trouble}")
             own_limit = None
@@ -77,19 +77,21 @@ class Signs:
         for ref in referenced_ids(lanelet, "trafficSignRef"):
             on_post = self.elements.get(ref, [])
             found = [
-                e.value for e in on_post if e.kind in _LIMITS and e.value is not None and not _implausible(e.value)
+                e.value
+                for e in on_post
+                if e.kind in _LIMIT_KINDS and e.value is not None and not _why_implausible(e.value)
             ]
-            (perhaps if any(_restricts(e) for e in on_post) else sure).extend(found)
+            (perhaps if any(_is_restrictive_plate(e) for e in on_post) else sure).extend(found)
         least = min(sure, default=None)
         if perhaps and (least is None or min(perhaps) < least):
             least = None
         return least, "lane" if least is not None and least == own_limit else "sign"
 
-    def report(self, lanelets: Sequence[etree._Element], lights: Iterable[str]) -> None:
+    def report_problems(self, lanelets: Sequence[etree._Element], light_ids: Iterable[str]) -> None:
         """Report signs that are not read, references to missing signs or lights, and signs or lights without a lanelet."""
-        self._report_codes()
-        self._report_values()
-        known_ids = {*self.elements, *lights}
+        self._report_unknown_codes()
+        self._report_unusable_limits()
+        known_ids = {*self.elements, *light_ids}
         lost = Counter(ref for lanelet in lanelets for ref in signal_refs(lanelet) if ref not in known_ids)
         if lost:
             message = f"lanelets refer to signs or lights that the map does not contain: {_counts_text(lost)}"
@@ -99,9 +101,9 @@ class Signs:
             message = f"signs and lights to which no lanelet refers apply to no lane: {', '.join(idle)}"
             self.quality.add("signal_without_lane", "info", None, message, len(idle))
 
-    def _report_codes(self) -> None:
+    def _report_unknown_codes(self) -> None:
         unread = [e for on_post in self.elements.values() for e in on_post if e.kind is None]
-        numbered = Counter(e.code for e in unread if e.value is not None and not _STVO.fullmatch(e.code))
+        numbered = Counter(e.code for e in unread if e.value is not None and not _STVO_NUMBER.fullmatch(e.code))
         plain = Counter(e.code for e in unread) - numbered
         if numbered:
             message = (
@@ -113,30 +115,28 @@ class Signs:
             message = f"signs that no rule reads ({self.country}): {_counts_text(plain)}"
             self.quality.add("unknown_sign", "info", None, message, plain.total())
 
-    def _report_values(self) -> None:
+    def _report_unusable_limits(self) -> None:
         for name, on_post in self.elements.items():
             for element in on_post:
-                if element.kind not in _LIMITS:
+                if element.kind not in _LIMIT_KINDS:
                     continue
-                trouble = "it has no number" if element.value is None else _implausible(element.value)
-                if trouble is None and any(_restricts(e) for e in on_post):
-                    trouble = (
-                        f"it applies only as its plates state ({', '.join(e.code for e in on_post if _restricts(e))})"
-                    )
+                trouble = "it has no number" if element.value is None else _why_implausible(element.value)
+                if trouble is None and any(_is_restrictive_plate(e) for e in on_post):
+                    trouble = f"it applies only as its plates state ({', '.join(e.code for e in on_post if _is_restrictive_plate(e))})"
                 if trouble:
                     self.quality.add(
                         "invalid_speed", "warning", None, f"the limit of sign {name} is not used: {trouble}"
                     )
 
 
-def read_signs(root: etree._Element, country: str, quality: MapQuality) -> Signs:
+def read_signs(root: etree._Element, country: str, quality: MapQuality) -> MapSigns:
     """Return the signs of a map. `country`: the country in its name, by ISO 3166 (three letters)."""
-    signs = Signs(country or "no country", _LISTS.get(country, "de"), quality)
+    signs = MapSigns(country or "no country", _CATALOGUE_BY_COUNTRY.get(country, "de"), quality)
     for sign in root.findall("trafficSign"):
         on_post = []
         for part in sign.findall("trafficSignElement"):
             code = (part.findtext("trafficSignID") or "").strip()
-            values = [_number(v.text) for v in part.findall("additionalValue")]
+            values = [_finite_number(v.text) for v in part.findall("additionalValue")]
             kind = kind_of(signs.codes, code, "") or kind_of("de", code, "")
             on_post.append(SignElement(code, kind, next((v for v in values if v is not None), None)))
         signs.elements[sign.get("id", "")] = on_post
@@ -150,24 +150,26 @@ def referenced_ids(element: etree._Element, name: str) -> list[str]:
 
 def signal_refs(lanelet: etree._Element) -> list[str]:
     """Return the ids of the signs and lights to which a lanelet or its stop line refers."""
-    return list(dict.fromkeys(ref for each in (lanelet, *lanelet.findall("stopLine")) for ref in _own_refs(each)))
+    return list(
+        dict.fromkeys(ref for each in (lanelet, *lanelet.findall("stopLine")) for ref in _signal_refs_of_element(each))
+    )
 
 
-def _own_refs(element: etree._Element) -> list[str]:
+def _signal_refs_of_element(element: etree._Element) -> list[str]:
     return referenced_ids(element, "trafficSignRef") + referenced_ids(element, "trafficLightRef")
 
 
 def signal_rows(
     root: etree._Element,
-    signs: Signs,
+    signs: MapSigns,
     lanes: Sequence[BoundedLane],
     offset: tuple[float, float],
-    lines: Mapping[str, float],
+    stop_line_s_m: Mapping[str, float],
 ) -> Rows:
     """Return rows of `traffic_signal`: one for each pair of a sign or light and a lanelet that refers to it.
 
     A stop or give-way sign holds at the lanelet's stop line if the line refers to it. A light always holds at the stop line or, without a
-    line, at the lanelet's end: its own place may be beyond the junction. `lines`: lanelet -> station of its stop line.
+    line, at the lanelet's end: its own place may be beyond the junction. `stop_line_s_m`: lanelet -> station of its stop line.
     """
     by_id = {lane.lanelet_id: lane for lane in lanes}
     holds: dict[str, list[tuple[BoundedLane, float | None]]] = {}
@@ -175,22 +177,22 @@ def signal_rows(
         lane = by_id.get(lanelet.get("id", ""))
         if lane is None:
             continue
-        at_line = {ref for line in lanelet.findall("stopLine") for ref in _own_refs(line)}
+        at_line = {ref for line in lanelet.findall("stopLine") for ref in _signal_refs_of_element(line)}
         at_line |= set(referenced_ids(lanelet, "trafficLightRef"))
         for ref in signal_refs(lanelet):
-            holds.setdefault(ref, []).append((lane, lines.get(lane.lanelet_id) if ref in at_line else None))
+            holds.setdefault(ref, []).append((lane, stop_line_s_m.get(lane.lanelet_id) if ref in at_line else None))
     rows = []
     for element in [*root.findall("trafficSign"), *root.findall("trafficLight")]:
         light = element.tag == "trafficLight"
         name = element.get("id", "")
-        elements = [SignElement(_LIGHT, "traffic_light", None)] if light else signs.elements[name]
+        elements = [SignElement(_LIGHT_CODE, "traffic_light", None)] if light else signs.elements[name]
         place = points(element.find("position"))
         stands = place[0] + offset if len(place) else None
         turns = turns_of_direction((element.findtext("direction") or "").strip()) if light else None
         for lane, line_s_m in holds.get(name, ()):
             for part in elements:
-                s = _station(lane, part.kind, stands, line_s_m)
-                unit = "m/s" if part.kind in _SPEEDS and part.value is not None else None
+                s = _signal_station(lane, part.kind, stands, line_s_m)
+                unit = "m/s" if part.kind in _SPEED_KINDS and part.value is not None else None
                 where = stands if stands is not None else lane.line.centre[-1 if s > lane.line.length / 2 else 0]
                 rows.append(signal_row(
                     lane, s, where, signal_id=name, kind=part.kind, country=signs.codes, type=part.code, value=part.value,
@@ -199,15 +201,15 @@ def signal_rows(
     return sorted(rows, key=lambda r: (r["signal_id"], r["type"], r["lanelet_id"]))
 
 
-def _station(lane: BoundedLane, kind: str | None, stands: Floats | None, line_s_m: float | None) -> float:
+def _signal_station(lane: BoundedLane, kind: str | None, sign_place: Floats | None, line_s_m: float | None) -> float:
     """Return the station on a lanelet from which a sign or light applies: the stop line, its own position, or an end of the lanelet."""
-    if kind in _AT_THE_END and line_s_m is not None:
+    if kind in _KINDS_AT_LANE_END and line_s_m is not None:
         return line_s_m
     if kind == "traffic_light":
         return lane.line.length
-    if stands is not None:
-        return lane.line.station(stands)
-    return lane.line.length if kind in _AT_THE_END else 0.0
+    if sign_place is not None:
+        return lane.line.station(sign_place)
+    return lane.line.length if kind in _KINDS_AT_LANE_END else 0.0
 
 
 def stop_line_stations(
@@ -229,31 +231,33 @@ def stop_line_stations(
 def points(parent: etree._Element | None) -> Floats:
     """Return the points (n, 2) below an element. Errors: `ValueError` with the line of a point without possible x and y."""
     found = [] if parent is None else list(parent.iterfind(".//point"))
-    both = np.array([[safe_xml.number(p.findtext(axis)) for axis in "xy"] for p in found], np.float64).reshape(-1, 2)
+    both = np.array([[safe_xml.number_or_nan(p.findtext(axis)) for axis in "xy"] for p in found], np.float64).reshape(
+        -1, 2
+    )
     bad = np.flatnonzero(~(np.abs(both) < FARTHEST_M).all(axis=1))
     if len(bad):
         raise ValueError(f"the point in line {found[bad[0]].sourceline} has impossible values of x and y")
     return both
 
 
-def _number(text: str | None) -> float | None:
-    value = safe_xml.number(text)
+def _finite_number(text: str | None) -> float | None:
+    value = safe_xml.number_or_nan(text)
     return value if math.isfinite(value) else None
 
 
-def _implausible(limit_mps: float) -> str | None:
+def _why_implausible(limit_mps: float) -> str | None:
     """Return why a number cannot be a speed limit in m/s, or None if it can."""
     if limit_mps <= 0:
         return f"{limit_mps:g} m/s is not a speed limit"
-    if limit_mps > _FASTEST_MPS:
+    if limit_mps > _MAX_LIMIT_MPS:
         return f"{limit_mps:g} m/s is more than any sign allows: the value may be in km/h"
     return None
 
 
-def _restricts(element: SignElement) -> bool:
+def _is_restrictive_plate(element: SignElement) -> bool:
     """Return whether an additional plate (StVO, 1000 to 1099) restricts the time, place or vehicles of the sign above it."""
     number = element.code.partition("-")[0]
-    return element.kind is None and bool(re.fullmatch(r"10\d\d", number)) and number not in _PLATES
+    return element.kind is None and bool(re.fullmatch(r"10\d\d", number)) and number not in _UNRESTRICTIVE_PLATES
 
 
 def _counts_text(code_counts: Counter[str]) -> str:

@@ -37,7 +37,7 @@ class LogInfo(NamedTuple):
     version: str
 
 
-class Modality(NamedTuple):
+class ModalityFile(NamedTuple):
     """One file of a log: its columns by the part of their name after the dot, and its metadata."""
 
     path: Path
@@ -45,57 +45,57 @@ class Modality(NamedTuple):
     metadata: dict[str, Any]
 
     @property
-    def n(self) -> int:
+    def n_rows(self) -> int:
         """The number of rows."""
         return len(self.columns["timestamp_us"])
 
 
-def path_of(folder: Path, name: str) -> Path:
+def file_path(folder: Path, name: str) -> Path:
     """Return the path of a file of a log."""
     return folder / f"{name}.arrow"
 
 
-def modality(folder: Path, name: str, types: Mapping[str, pa.DataType]) -> Modality | None:
+def read_modality(folder: Path, name: str, types: Mapping[str, pa.DataType]) -> ModalityFile | None:
     """Return a file of a log with the given columns and `timestamp_us`; None if the log does not have the file.
 
     Errors: `TraceError` for a damaged file, a column that is missing or of another type, and a row without a time.
     """
-    path = path_of(folder, name)
+    path = file_path(folder, name)
     if not path.is_file():
         return None
     wanted = {"timestamp_us": pa.int64(), **types}
     rows = ipc.table(path, [f"{name}.{column}" for column in wanted])
-    columns = {column: _cast(path, rows, f"{name}.{column}", kind) for column, kind in wanted.items()}
+    columns = {column: _cast_column(path, rows, f"{name}.{column}", kind) for column, kind in wanted.items()}
     if columns["timestamp_us"].null_count:
         raise TraceError(f"{path}: {name}.timestamp_us has rows without a time: convert the log again")
-    return Modality(path, columns, metadata(path, rows.schema))
+    return ModalityFile(path, columns, schema_metadata(path, rows.schema))
 
 
 def sync_table(folder: Path) -> tuple[dict[str, pa.Array], LogInfo]:
     """Return the columns of the table of frames, and the metadata of the log.
 
     The columns are `timestamp_us` and, for each other file, the number of its row in the frame (NULL: the file has no row for it).
-    Errors: as `modality`, and for a version that is not read.
+    Errors: as `read_modality`, and for a version that is not read.
     """
-    path = path_of(folder, SYNC)
+    path = file_path(folder, SYNC)
     time = f"{SYNC}.timestamp_us"
     rows = ipc.table(path, [time, EGO_STATE], [BOXES, LIGHTS])
-    columns = {name.removeprefix(f"{SYNC}."): _cast(path, rows, name, pa.int64()) for name in rows.schema.names}
-    return columns, log_info(path, metadata(path, rows.schema))
+    columns = {name.removeprefix(f"{SYNC}."): _cast_column(path, rows, name, pa.int64()) for name in rows.schema.names}
+    return columns, log_info(path, schema_metadata(path, rows.schema))
 
 
 def log_info(path: Path | str, entries: Mapping[str, Any]) -> LogInfo:
     """Return data set, location and version of a log or map. Errors: `TraceError` for a version that is not read."""
     version, location = str(entries.get("version", "unknown")), entries.get("location")
-    if not facts.is_read(version):
+    if not facts.is_read_version(version):
         raise TraceError(
-            f"{path}: py123d {version} wrote the file, but only the versions {facts.VERSIONS[0]} to "
-            f"{facts.VERSIONS[-1]} are supported: convert the log again with one of these"
+            f"{path}: py123d {version} wrote the file, but only the versions {facts.READ_VERSIONS[0]} to "
+            f"{facts.READ_VERSIONS[-1]} are supported: convert the log again with one of these"
         )
     return LogInfo(str(entries.get("dataset", "")), None if location is None else str(location), version)
 
 
-def metadata(path: Path | str, schema: pa.Schema) -> dict[str, Any]:
+def schema_metadata(path: Path | str, schema: pa.Schema) -> dict[str, Any]:
     """Return the metadata of a schema. Errors: `TraceError` if they are missing or not readable."""
     packed = (schema.metadata or {}).get(METADATA_KEY)
     if packed is None:
@@ -108,13 +108,15 @@ def metadata(path: Path | str, schema: pa.Schema) -> dict[str, Any]:
         ) from error
 
 
-def _cast(path: Path, rows: pa.Table, name: str, kind: pa.DataType) -> pa.Array:
+def _cast_column(path: Path, rows: pa.Table, name: str, arrow_type: pa.DataType) -> pa.Array:
     column = rows[name]
-    if column.type != kind:
+    if column.type != arrow_type:
         try:
-            column = column.cast(kind)
+            column = column.cast(arrow_type)
         except pa.ArrowException as error:
-            raise TraceError(f"{path}: column {name!r} is {column.type}, not {kind}: convert the log again") from error
+            raise TraceError(
+                f"{path}: column {name!r} is {column.type}, not {arrow_type}: convert the log again"
+            ) from error
     return column.combine_chunks() if isinstance(column, pa.ChunkedArray) else column
 
 
@@ -139,6 +141,6 @@ def is_null(array: pa.Array) -> Mask:
     return np.asarray(pc.is_null(array).to_numpy(zero_copy_only=False), np.bool_)
 
 
-def lengths(array: pa.ListArray) -> NDArray[np.int64]:
+def list_lengths(array: pa.ListArray) -> NDArray[np.int64]:
     """Return the number of values of each list, -1: NULL."""
     return integers(pc.list_value_length(array))

@@ -11,7 +11,7 @@ import pyarrow.compute as pc
 from drivelint.drive.trace import SIZE_COLUMNS, STATE_COLUMNS, QualityFinding, States
 from drivelint.formats.coordinate_frames import Poses, unit_quaternions
 from drivelint.formats.d123 import facts
-from drivelint.formats.d123.arrow_files import BOXES, integers, is_null, lengths, modality, vectors
+from drivelint.formats.d123.arrow_files import BOXES, integers, is_null, list_lengths, read_modality, vectors
 from drivelint.formats.riders import join_riders
 from drivelint.phrases import listed
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from drivelint.arrays import Codes, Indices, Mask, Times
-    from drivelint.formats.d123.arrow_files import Modality
+    from drivelint.formats.d123.arrow_files import ModalityFile
 
 _COLUMNS: Final = {
     "bounding_box_se3": pa.list_(pa.list_(pa.float64(), 10)),  # centre, quaternion w x y z, length, width, height
@@ -27,7 +27,7 @@ _COLUMNS: Final = {
     "label": pa.list_(pa.int32()),
     "velocity_3d": pa.list_(pa.list_(pa.float64(), 3)),
 }
-SAME_MPS: Final = 1e-6
+SAME_VELOCITY_MPS: Final = 1e-6
 """A velocity this near to the mean velocity between the boxes before and after was computed from these boxes, not measured."""
 _LEAST_COMPARED_BOXES: Final = 20
 """With fewer boxes that have a box one frame before and after, velocities count as measured."""
@@ -35,14 +35,14 @@ _LEAST_SAME_VELOCITY_SHARE: Final = 0.99
 """If at least this share of the velocities is equal to the mean velocity, all were computed from the boxes."""
 
 
-def read_boxes(folder: Path) -> Modality | None:
-    """Return the file of boxes, or None if the log has none. Errors: as `modality`."""
-    return modality(folder, BOXES, _COLUMNS)
+def read_boxes(folder: Path) -> ModalityFile | None:
+    """Return the file of boxes, or None if the log has none. Errors: as `read_modality`."""
+    return read_modality(folder, BOXES, _COLUMNS)
 
 
-def malformed_rows(boxes: Modality) -> Mask:
+def malformed_rows(boxes: ModalityFile) -> Mask:
     """Return which rows are malformed: their lists differ in length, or a box has no track."""
-    counts = [lengths(boxes.columns[name]) for name in _COLUMNS]
+    counts = [list_lengths(boxes.columns[name]) for name in _COLUMNS]
     bad = np.any([n != counts[0] for n in counts[1:]], axis=0) | (counts[0] < 0)
     tokens = boxes.columns["track_token"]
     nameless = pc.fill_null(pc.equal(tokens.flatten(), ""), True)
@@ -53,13 +53,13 @@ def malformed_rows(boxes: Modality) -> Mask:
 
 
 def box_states(
-    boxes: Modality, rows: Indices, t_ns: Times, about: facts.Dataset
+    boxes: ModalityFile, rows: Indices, t_ns: Times, about: facts.DatasetFacts
 ) -> tuple[States, list[QualityFinding], list[str]]:
     """Return the boxes of these rows (none malformed) as states, with findings and notes. `t_ns`: the times of the rows (rows,)."""
-    columns = {name: _of_rows(boxes.columns[name], rows) for name in _COLUMNS}
-    frame = np.repeat(np.arange(len(rows)), lengths(columns["track_token"]))
+    columns = {name: _lists_of_rows(boxes.columns[name], rows) for name in _COLUMNS}
+    frame = np.repeat(np.arange(len(rows)), list_lengths(columns["track_token"]))
     flat = {name: lists.flatten() for name, lists in columns.items()}
-    labels, findings, is_ego = _classes(boxes, integers(flat["label"]))
+    labels, findings, is_ego = _class_codes(boxes, integers(flat["label"]))
     notes = []
     if is_ego.any():
         notes.append(
@@ -79,7 +79,7 @@ def box_states(
     numbers |= {"vx_mps": velocity[:, 0].copy(), "vy_mps": velocity[:, 1].copy()}
     numbers |= {name: np.where(box[:, 7 + k] > 0.0, box[:, 7 + k], np.nan) for k, name in enumerate(SIZE_COLUMNS)}
     riders, ridden = (
-        np.isin(integers(flat["label"]), numbers_of) for numbers_of in facts.rider_labels(_enumeration(boxes))
+        np.isin(integers(flat["label"]), numbers_of) for numbers_of in facts.rider_labels(_label_enumeration(boxes))
     )
     inside, on_something = join_riders(t_ns[frame], integers(tracks.indices).astype(np.int32), riders, ridden, numbers)
     states = States(
@@ -94,52 +94,54 @@ def box_states(
         who = listed([states.ids[i] for i in on_something])
         notes.append(f"each rider and the vehicle count as one road user, with a box around both: {who}")
     if not about.box_velocities_global:
-        _forget_velocities(states, np.ones(len(states), np.bool_))
+        _set_velocities_to_nan(states, np.ones(len(states), np.bool_))
         notes.append("velocities of boxes are not read: in this data set, 123D states them along the axes of the boxes")
     else:
-        findings += _without_untold_velocities(states, frame)
+        findings += _drop_unmeasured_velocities(states, frame)
     return (states.take(~inside) if inside.any() else states), findings, notes
 
 
-def _enumeration(boxes: Modality) -> str:
+def _label_enumeration(boxes: ModalityFile) -> str:
     """Return the enumeration of py123d to which the label numbers belong; '' if it is not known."""
     module, _, name = str(boxes.metadata.get("box_detection_label_class", "")).rpartition(".")
     return name if not module or module.startswith("py123d.") else ""
 
 
-def _of_rows(lists: pa.ListArray, rows: Indices) -> pa.ListArray:
+def _lists_of_rows(lists: pa.ListArray, rows: Indices) -> pa.ListArray:
     """Return the lists of these rows, without a copy if these are all rows in order."""
     if len(rows) == len(lists) and np.array_equal(rows, np.arange(len(lists))):
         return lists
     return lists.take(pa.array(rows))
 
 
-def _classes(boxes: Modality, numbers: Any) -> tuple[Codes, list[QualityFinding], Mask]:
+def _class_codes(boxes: ModalityFile, label_numbers: Any) -> tuple[Codes, list[QualityFinding], Mask]:
     """Return the class of each box, -1: not known; findings; and which boxes are the ego's own."""
     qualified = str(boxes.metadata.get("box_detection_label_class", ""))
-    enumeration = _enumeration(boxes)
-    codes, none_own = facts.label_classes(enumeration), np.zeros(len(numbers), np.bool_)
+    enumeration = _label_enumeration(boxes)
+    codes, none_own = facts.class_code_by_label(enumeration), np.zeros(len(label_numbers), np.bool_)
     if codes is None:
         message = (
-            f"the classes of {len(numbers)} boxes are not known: their labels are numbers of "
+            f"the classes of {len(label_numbers)} boxes are not known: their labels are numbers of "
             f"{qualified or 'an enumeration without a name'}"
         )
-        finding = [QualityFinding("unknown_label", "warning", message, len(numbers))] if len(numbers) else []
-        return np.full(len(numbers), -1, np.int8), finding, none_own
-    inside = (numbers >= 0) & (numbers < len(codes))
-    class_codes = np.where(inside, codes[np.where(inside, numbers, 0)], -2).astype(np.int8)
+        finding = (
+            [QualityFinding("unknown_label", "warning", message, len(label_numbers))] if len(label_numbers) else []
+        )
+        return np.full(len(label_numbers), -1, np.int8), finding, none_own
+    inside = (label_numbers >= 0) & (label_numbers < len(codes))
+    class_codes = np.where(inside, codes[np.where(inside, label_numbers, 0)], -2).astype(np.int8)
     unknown = class_codes == -2
     findings = []
     if unknown.any():
-        which = listed([str(n) if n >= 0 else "NULL" for n in np.unique(numbers[unknown]).tolist()])
+        which = listed([str(n) if n >= 0 else "NULL" for n in np.unique(label_numbers[unknown]).tolist()])
         message = f"labels that {enumeration} does not define ({which}) at {int(unknown.sum())} boxes: the classes of these are not known"
         findings.append(QualityFinding("unknown_label", "warning", message, int(unknown.sum())))
-    ego_number = facts.LABELS[enumeration].get(facts.EGO_LABEL, (-1, ""))[0]
-    own = (numbers == ego_number) & inside
+    ego_number = facts.LABELS_BY_ENUMERATION[enumeration].get(facts.EGO_LABEL, (-1, ""))[0]
+    own = (label_numbers == ego_number) & inside
     return np.maximum(class_codes, -1).astype(np.int8), findings, np.asarray(own, np.bool_)
 
 
-def _without_untold_velocities(states: States, frame: Indices) -> list[QualityFinding]:
+def _drop_unmeasured_velocities(states: States, frame: Indices) -> list[QualityFinding]:
     """Set velocities that were not measured to NaN, in place, and return findings on them.
 
     Converters write zero for "no velocity", in a whole log or for a track with a single box, and may compute velocities from the boxes
@@ -149,31 +151,31 @@ def _without_untold_velocities(states: States, frame: Indices) -> list[QualityFi
     zero = (v == 0.0).all(axis=0)
     counts = np.bincount(states.actor, minlength=len(states.ids))
     alone = zero & (counts[states.actor] == 1)
-    _forget_velocities(states, alone)
+    _set_velocities_to_nan(states, alone)
     has_velocity = ~np.isnan(v).any(axis=0) & ~alone
     if not has_velocity.any():
         return []
     if zero[has_velocity].all():
-        if not _moves(states):
+        if not _any_actor_moves(states):
             return []  # every recorded actor stands: zero is correct
         why = "velocity (0, 0, 0) of all {n} boxes, although they move: treated as not recorded"
-    elif _way_between_boxes(states, frame, has_velocity):
+    elif _has_derived_velocities(states, frame, has_velocity):
         why = (
             "velocities of {n} boxes were computed by the converter from the boxes before and after: they are not read"
         )
     else:
         return []
     findings = states.findings(has_velocity, "velocity_not_recorded", "info", why)
-    _forget_velocities(states, has_velocity)
+    _set_velocities_to_nan(states, has_velocity)
     return findings
 
 
-def _forget_velocities(states: States, rows: Mask) -> None:
+def _set_velocities_to_nan(states: States, rows: Mask) -> None:
     for name in ("vx_mps", "vy_mps"):
         states.numbers[name] = np.where(rows, np.nan, states.numbers[name])
 
 
-def _moves(states: States, least_m: float = 0.5) -> bool:
+def _any_actor_moves(states: States, least_m: float = 0.5) -> bool:
     """Return whether any actor moves by more than `least_m` in x or y."""
     n = len(states.ids)
     for values in states.place:
@@ -185,7 +187,7 @@ def _moves(states: States, least_m: float = 0.5) -> bool:
     return False
 
 
-def _way_between_boxes(states: States, frame: Indices, has_velocity: Mask) -> bool:
+def _has_derived_velocities(states: States, frame: Indices, has_velocity: Mask) -> bool:
     """Return whether nearly all velocities are the mean velocity from the box one frame before to the box one frame after."""
     order = np.lexsort((frame, states.actor))
     actor, at = states.actor[order], frame[order]
@@ -198,8 +200,8 @@ def _way_between_boxes(states: States, frame: Indices, has_velocity: Mask) -> bo
     with np.errstate(divide="ignore", invalid="ignore"):
         way = np.asarray((states.place[:, after] - states.place[:, before]) / span_s, np.float64)
     off = np.hypot(*(way - states.velocity[:, here]))
-    moving = np.hypot(*way) > SAME_MPS
+    moving = np.hypot(*way) > SAME_VELOCITY_MPS
     return bool(
         moving.any()
-        and (off[moving] <= SAME_MPS * (1.0 + np.hypot(*way[:, moving]))).mean() >= _LEAST_SAME_VELOCITY_SHARE
+        and (off[moving] <= SAME_VELOCITY_MPS * (1.0 + np.hypot(*way[:, moving]))).mean() >= _LEAST_SAME_VELOCITY_SHARE
     )

@@ -38,12 +38,12 @@ class Clock(NamedTuple):
         return [f"times count from {self.zero_us} us of the log: the data set does not document whether this is UTC"]
 
 
-def clock(folder: Path, columns: Iterable[pa.Array], *, utc: bool) -> Clock:
+def clock_from_times(folder: Path, time_columns: Iterable[pa.Array], *, utc: bool) -> Clock:
     """Return the clock of a log with these columns of times. Errors: `TraceError` for impossible times.
 
     drivelint treats times as large as those of UTC as UTC. Large times of another clock therefore count from the first time of the log.
     """
-    every = np.concatenate([integers(stamps) for stamps in columns])
+    every = np.concatenate([integers(stamps) for stamps in time_columns])
     low, high = int(every.min()), int(every.max())
     if max(-low, high) > _LATEST_US:
         raise TraceError(

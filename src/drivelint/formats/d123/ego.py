@@ -11,7 +11,7 @@ import pyarrow as pa
 from drivelint.drive.trace import ACTOR_CLASSES, ASSUMED_SIZE, SIZE_COLUMNS, STATE_COLUMNS, QualityFinding, States
 from drivelint.errors import TraceError
 from drivelint.formats.coordinate_frames import Poses, rotated, unit_quaternions
-from drivelint.formats.d123.arrow_files import EGO_STATE, is_null, modality, vectors
+from drivelint.formats.d123.arrow_files import EGO_STATE, is_null, read_modality, vectors
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -19,19 +19,19 @@ if TYPE_CHECKING:
 
     from drivelint.arrays import Floats, Indices, Mask, Times
     from drivelint.formats.d123 import facts
-    from drivelint.formats.d123.arrow_files import Modality
+    from drivelint.formats.d123.arrow_files import ModalityFile
 
 _COLUMNS: Final = {
     "imu_se3": pa.list_(pa.float64(), 7),  # place, quaternion w x y z
     "dynamic_state_se3": pa.list_(pa.float64(), 9),  # velocity, acceleration, angular velocity along the ego's axes
 }
 EGO_ID: Final = "ego"
-_TURNS_RAD: Final = 0.02
+_MIN_TURN_RAD: Final = 0.02
 _LEAST_COMPARED_POSES: Final = 20
 """With fewer poses that have a pose before and after, velocities count as measured."""
 _LEAST_SAME_VELOCITY_SHARE: Final = 0.99
 """If at least this share of the velocities is equal to the mean velocity, all were computed from the poses."""
-_SAME_MPS: Final = 1e-6
+_SAME_VELOCITY_MPS: Final = 1e-6
 
 
 class EgoBox(NamedTuple):
@@ -42,10 +42,10 @@ class EgoBox(NamedTuple):
     sizes: Floats
 
 
-def read_ego(folder: Path) -> Modality:
-    """Return the file of ego states. Errors: as `modality`, and `TraceError` if it is missing or has no row."""
-    found = modality(folder, EGO_STATE, _COLUMNS)
-    if found is None or not found.n:
+def read_ego(folder: Path) -> ModalityFile:
+    """Return the file of ego states. Errors: as `read_modality`, and `TraceError` if it is missing or has no row."""
+    found = read_modality(folder, EGO_STATE, _COLUMNS)
+    if found is None or not found.n_rows:
         raise TraceError(f"{folder / EGO_STATE}.arrow: the file has no state of the ego: convert the log again")
     return found
 
@@ -58,16 +58,18 @@ def ego_id(box_ids: Iterable[str]) -> str:
     return name
 
 
-def ego_box(ego: Modality, about: facts.Dataset, name: str, forward_m: float) -> tuple[EgoBox, list[QualityFinding]]:
+def ego_box(
+    ego: ModalityFile, about: facts.DatasetFacts, name: str, forward_m: float
+) -> tuple[EgoBox, list[QualityFinding]]:
     """Return the ego's box, and findings. Errors: `TraceError` for metadata that do not contain the box.
 
     `forward_m`: the user's option for how far the box centre is ahead, used if the metadata contradict themselves.
     """
     entries = ego.metadata
-    centre, axle = (_pose(ego, key) for key in ("center_to_imu_se3", "rear_axle_to_imu_se3"))
-    sizes = np.array([_length(entries.get(key)) for key in ("length", "width", "height")])
+    centre, axle = (_metadata_pose(ego, key) for key in ("center_to_imu_se3", "rear_axle_to_imu_se3"))
+    sizes = np.array([_length_or_nan(entries.get(key)) for key in ("length", "width", "height")])
     findings = []
-    wheel_base = _length(entries.get("wheel_base"))
+    wheel_base = _length_or_nan(entries.get("wheel_base"))
     if not math.isnan(wheel_base) and np.hypot(*(centre[:2] - axle[:2])) < 0.1 * wheel_base:
         # the centre of a box lies between the axles: one of the two poses is wrong
         sizes[:] = np.nan
@@ -84,7 +86,9 @@ def ego_box(ego: Modality, about: facts.Dataset, name: str, forward_m: float) ->
     return EgoBox(centre[:3], centre[[4, 5, 6, 3]], sizes), findings
 
 
-def ego_states(ego: Modality, rows: Indices, t_ns: Times, box: EgoBox, *, about: facts.Dataset, name: str) -> States:
+def ego_states(
+    ego: ModalityFile, rows: Indices, t_ns: Times, box: EgoBox, *, about: facts.DatasetFacts, name: str
+) -> States:
     """Return the states of the centre of the ego's box at these rows of the file. `t_ns`: their times (rows,)."""
     n = len(rows)
     poses, motion = vectors(ego.columns["imu_se3"]), vectors(ego.columns["dynamic_state_se3"])
@@ -102,7 +106,7 @@ def ego_states(ego: Modality, rows: Indices, t_ns: Times, box: EgoBox, *, about:
     return States([name], np.zeros(n, np.int32), t_ns, numbers, {"actor_class": kind}, np.asarray(odd, np.bool_))
 
 
-def _centre_velocity(ego: Modality, imu: Poses, motion: Floats, box: EgoBox) -> Floats:
+def _centre_velocity(ego: ModalityFile, imu: Poses, motion: Floats, box: EgoBox) -> Floats:
     """Return the velocity of the centre of the box along the map's axes, (n, 3), NaN: not known.
 
     The file records the velocity of the IMU and the turn rate. The velocity is not known if the converter computed it from the poses, or
@@ -114,19 +118,19 @@ def _centre_velocity(ego: Modality, imu: Poses, motion: Floats, box: EgoBox) -> 
     if not has_velocity.any():
         return unknown_velocity
     outward = rotated(imu.turn, velocity)
-    if _way_between_poses(ego, imu, outward, has_velocity):
+    if _has_derived_velocities(ego, imu, outward, has_velocity):
         return unknown_velocity
     still = has_velocity & (velocity == 0.0).all(axis=1)
     if still[has_velocity].all():
         return np.where(has_velocity[:, None], np.zeros_like(velocity), np.nan)
     yaw = np.unwrap(imu.yaw[np.isfinite(imu.yaw)])
-    if len(yaw) and np.ptp(yaw) > _TURNS_RAD and not (turning[has_velocity] != 0.0).any() and box.place[:2].any():
+    if len(yaw) and np.ptp(yaw) > _MIN_TURN_RAD and not (turning[has_velocity] != 0.0).any() and box.place[:2].any():
         return unknown_velocity
     swing = rotated(imu.turn, np.cross(turning, box.place))
     return np.where(has_velocity[:, None], outward + swing, np.nan)
 
 
-def _way_between_poses(ego: Modality, imu: Poses, velocity: Floats, has_velocity: Mask) -> bool:
+def _has_derived_velocities(ego: ModalityFile, imu: Poses, velocity: Floats, has_velocity: Mask) -> bool:
     """Return whether nearly all velocities are the mean velocity from the pose before to the pose after."""
     t_us = ego.columns["timestamp_us"].to_numpy(zero_copy_only=False)
     if len(t_us) - 2 < _LEAST_COMPARED_POSES:
@@ -135,13 +139,14 @@ def _way_between_poses(ego: Modality, imu: Poses, velocity: Floats, has_velocity
         way = (imu.place[2:] - imu.place[:-2]) / ((t_us[2:] - t_us[:-2]) * 1e-6)[:, None]
     off = np.linalg.norm(way - velocity[1:-1], axis=1)
     length = np.linalg.norm(way, axis=1)
-    moving = has_velocity[1:-1] & (length > _SAME_MPS) & np.isfinite(length)
+    moving = has_velocity[1:-1] & (length > _SAME_VELOCITY_MPS) & np.isfinite(length)
     return bool(
-        moving.any() and (off[moving] <= _SAME_MPS * (1.0 + length[moving])).mean() >= _LEAST_SAME_VELOCITY_SHARE
+        moving.any()
+        and (off[moving] <= _SAME_VELOCITY_MPS * (1.0 + length[moving])).mean() >= _LEAST_SAME_VELOCITY_SHARE
     )
 
 
-def _pose(ego: Modality, key: str) -> Floats:
+def _metadata_pose(ego: ModalityFile, key: str) -> Floats:
     """Return a pose of the metadata, (7,). Errors: `TraceError` if it is missing or invalid."""
     try:
         pose = np.array(ego.metadata.get(key), np.float64)
@@ -155,6 +160,6 @@ def _pose(ego: Modality, key: str) -> Floats:
     return pose
 
 
-def _length(value: Any) -> float:
+def _length_or_nan(value: Any) -> float:
     """Return a length in metres, NaN if the value is not a length."""
     return float(value) if isinstance(value, int | float) and 0.0 < value < math.inf else math.nan

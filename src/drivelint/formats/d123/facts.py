@@ -17,7 +17,7 @@ EGO_LABEL: Final = "EGO"
 """The label of the ego's own box."""
 
 
-class Dataset(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class DatasetFacts(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The facts about a data set; the defaults apply to an unknown data set.
 
     `sensor_range_m`: the range within which every actor is documented to be recorded.
@@ -53,11 +53,11 @@ class Dataset(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return None if nation is None else side_of_nation(nation)
 
 
-DATASETS: Final = {name: msgspec.convert(facts, Dataset) for name, facts in _FACTS["datasets"].items()}
-UNKNOWN_DATASET: Final = Dataset()
-VERSIONS: Final[tuple[str, ...]] = tuple(_FACTS["versions"]["read"])
-LAYERS: Final[dict[str, int]] = _FACTS["layers"]
-LABELS: Final[dict[str, dict[str, tuple[int, str]]]] = {
+FACTS_BY_DATASET: Final = {name: msgspec.convert(facts, DatasetFacts) for name, facts in _FACTS["datasets"].items()}
+UNKNOWN_DATASET: Final = DatasetFacts()
+READ_VERSIONS: Final[tuple[str, ...]] = tuple(_FACTS["versions"]["read"])
+LAYER_NUMBERS: Final[dict[str, int]] = _FACTS["layers"]
+LABELS_BY_ENUMERATION: Final[dict[str, dict[str, tuple[int, str]]]] = {
     name: {label: (number, word) for label, (number, word) in labels.items()}
     for name, labels in _FACTS["labels"].items()
 }
@@ -67,31 +67,33 @@ LANE_TYPES: Final[dict[int, tuple[str, str | None]]] = {
 }
 """Number -> our lane type and road type."""
 MARKINGS: Final[dict[int, str | None]] = {number: word or None for number, word in _FACTS["road_lines"].values()}
-LINE_NUMBERS: Final[dict[str, int]] = {name: number for name, (number, _) in _FACTS["road_lines"].items()}
-SIGNALLED: Final[int] = _FACTS["intersection_types"]["TRAFFIC_LIGHT"]
+ROAD_LINE_NUMBERS: Final[dict[str, int]] = {name: number for name, (number, _) in _FACTS["road_lines"].items()}
+SIGNALLED_INTERSECTION_TYPE: Final[int] = _FACTS["intersection_types"]["TRAFFIC_LIGHT"]
 """The type of an intersection with traffic lights."""
 
 
-def is_read(version: str) -> bool:
+def is_read_version(version: str) -> bool:
     """Return whether files of this version of py123d are read; only its first two numbers count."""
-    return ".".join(version.split(".")[:2]) in VERSIONS
+    return ".".join(version.split(".")[:2]) in READ_VERSIONS
 
 
-def dataset(name: str) -> Dataset:
+def dataset_facts(name: str) -> DatasetFacts:
     """Return the facts about a data set."""
-    return DATASETS.get(name, UNKNOWN_DATASET)
+    return FACTS_BY_DATASET.get(name, UNKNOWN_DATASET)
 
 
 def rider_labels(enumeration: str) -> tuple[list[int], list[int]]:
     """Return the label numbers of riders and of ridden vehicles; none if the data set has no separate boxes for them."""
     both = _FACTS["riders"].get(enumeration, {"riders": [], "ridden": []})
-    riders, ridden = ([LABELS[enumeration][name][0] for name in both[role]] for role in ("riders", "ridden"))
+    riders, ridden = (
+        [LABELS_BY_ENUMERATION[enumeration][name][0] for name in both[role]] for role in ("riders", "ridden")
+    )
     return riders, ridden
 
 
-def label_classes(enumeration: str) -> Codes | None:
+def class_code_by_label(enumeration: str) -> Codes | None:
     """Return label number -> index into `ACTOR_CLASSES` (-1: any class, -2: no such label); None for an unknown enumeration."""
-    labels = LABELS.get(enumeration)
+    labels = LABELS_BY_ENUMERATION.get(enumeration)
     if labels is None:
         return None
     codes = np.full(max(number for number, _ in labels.values()) + 1, -2, np.int8)
@@ -100,7 +102,7 @@ def label_classes(enumeration: str) -> Codes | None:
     return codes
 
 
-def light_codes() -> Codes:
+def light_state_codes() -> Codes:
     """Return number of the state -> index into `SIGNAL_STATES`, -1: unknown."""
     words = dict(_FACTS["light_states"].values())
     return np.array([SIGNAL_STATES.index(words[n]) if words[n] else -1 for n in range(len(words))], np.int8)

@@ -10,8 +10,8 @@ import numpy as np
 
 from drivelint.errors import MapError
 from drivelint.formats.d123 import facts
-from drivelint.formats.d123.map_furniture import crossing_rows, light_rows, report_unread, road_lines
-from drivelint.formats.d123.map_layers import Intersection, Lane, LaneGroup, Layers, points_of
+from drivelint.formats.d123.map_furniture import crossing_rows, light_rows, report_missing_content, road_lines
+from drivelint.formats.d123.map_layers import Intersection, Lane, LaneGroup, MapLayers, decode_points
 from drivelint.formats.d123.markings import lane_marks
 from drivelint.road.boundary_lanes import BoundedLane, build_lanes, map_from_bounds, side_driven_on
 from drivelint.road.driving_side import choose_side
@@ -26,27 +26,27 @@ if TYPE_CHECKING:
     from drivelint.road.boundary_lanes import Mark, SpeedLimitSpan
     from drivelint.road.map_reader import MapOptions, MapSource, MapTables
 
-_NOT_DRIVEN: Final = frozenset({"biking"})
-_MOST_POINTS: Final = 200  # of a bound, to find the direction of a lane
-_FASTEST_MPS: Final = 45.0  # 160 km/h: a higher limit is a mistake, or in another unit
+_UNDRIVABLE_LANE_TYPES: Final = frozenset({"biking"})
+_MAX_SAMPLED_POINTS: Final = 200  # of a bound, to find the direction of a lane
+_MAX_LIMIT_MPS: Final = 45.0  # 160 km/h: a higher limit is a mistake, or in another unit
 
 
 def read(source: MapSource, request: MapOptions) -> MapTables:
     """Return the map's tables. Errors: `MapError` for a file that is no map of 123D, a version that is not read, or a map without lanes."""
-    layers, quality = Layers.of_source(source), MapQuality()
-    about = facts.dataset(layers.info.dataset)
+    layers, quality = MapLayers.of_source(source), MapQuality()
+    about = facts.dataset_facts(layers.info.dataset)
     lanes = _lanes(layers, quality)
     bounds = {str(name): (lane.left_boundary, lane.right_boundary) for name, lane in lanes.items()}
     marks = lane_marks(bounds, road_lines(layers, quality), about)
     intersections = layers.features("INTERSECTION", Intersection, quality)
-    junctions = _junctions(lanes, layers.features("LANE_GROUP", LaneGroup, quality), intersections)
-    followers = _followers(lanes)
+    junctions = _intersection_by_lane(lanes, layers.features("LANE_GROUP", LaneGroup, quality), intersections)
+    followers = _successors_by_lane(lanes)
     bounded = [
-        _bounded(
+        _bounded_lane(
             name,
             lane,
             lanes=lanes,
-            followers=followers[name],
+            successors=followers[name],
             marks=marks[str(name)],
             junction=junctions.get(name),
             quality=quality,
@@ -66,24 +66,29 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     by_place = about.side_driven_on(layers.info.location)
     side = choose_side([("option", request.side), ("attribute", by_place), ("lanes", side_driven_on(built))], quality)
     signalled = {
-        name for name, number in junctions.items() if intersections[number].intersection_type == facts.SIGNALLED
+        name
+        for name, number in junctions.items()
+        if intersections[number].intersection_type == facts.SIGNALLED_INTERSECTION_TYPE
     }
     furniture = {
         "traffic_signal": light_rows(built, signalled | layers.light_lanes),
         "crossing": crossing_rows(layers, built, request.offset, quality),
     }
-    report_unread(layers, about, quality)
+    report_missing_content(layers, about, quality)
     return map_from_bounds(
         source, request, built, furniture, quality, kind="123d", side=side, nation=about.nation_of(layers.info.location)
     )
 
 
-def _lanes(layers: Layers, quality: MapQuality) -> dict[int, Lane]:
+def _lanes(layers: MapLayers, quality: MapQuality) -> dict[int, Lane]:
     """Return the lanes with their bounds as arrays, (n, 2) or (n, 3), in the order of the map."""
     lanes = {}
     for name, lane in layers.features("LANE", Lane, quality).items():
         try:
-            lane.left_boundary, lane.right_boundary = points_of(lane.left_boundary), points_of(lane.right_boundary)
+            lane.left_boundary, lane.right_boundary = (
+                decode_points(lane.left_boundary),
+                decode_points(lane.right_boundary),
+            )
         except ValueError as error:
             quality.add("invalid_lane", "error", str(name), f"lanelet {name} is left out: {error}")
             continue
@@ -91,7 +96,7 @@ def _lanes(layers: Layers, quality: MapQuality) -> dict[int, Lane]:
     return lanes
 
 
-def _junctions(
+def _intersection_by_lane(
     lanes: Mapping[int, Lane], groups: Mapping[int, LaneGroup], intersections: Mapping[int, Intersection]
 ) -> dict[int, int]:
     """Return lane -> the intersection to which its lane group belongs."""
@@ -110,7 +115,7 @@ def _junctions(
     return found
 
 
-def _followers(lanes: Mapping[int, Lane]) -> dict[int, set[str]]:
+def _successors_by_lane(lanes: Mapping[int, Lane]) -> dict[int, set[str]]:
     """Return lane -> its successors: the lanes that it names as such, and the lanes that name it as predecessor."""
     found: dict[int, set[str]] = defaultdict(set)
     for name, lane in lanes.items():
@@ -120,12 +125,12 @@ def _followers(lanes: Mapping[int, Lane]) -> dict[int, set[str]]:
     return found
 
 
-def _bounded(
-    name: int,
+def _bounded_lane(
+    lane_number: int,
     lane: Lane,
     *,
     lanes: Mapping[int, Lane],
-    followers: set[str],
+    successors: set[str],
     marks: tuple[Mark, ...],
     junction: int | None,
     quality: MapQuality,
@@ -133,27 +138,29 @@ def _bounded(
     """Return a lane in the form from which `build_lanes` builds it."""
     kind, road_type = facts.LANE_TYPES.get(lane.lane_type, ("driving", None))
     if lane.lane_type not in facts.LANE_TYPES:
-        message = f"type {lane.lane_type} of lanelet {name} is not known: it is treated as a lane for vehicles"
-        quality.add("unknown_word", "warning", str(name), message)
-    limits, limit_source = _limits(name, lane.speed_limit_mps, quality)
+        message = f"type {lane.lane_type} of lanelet {lane_number} is not known: it is treated as a lane for vehicles"
+        quality.add("unknown_word", "warning", str(lane_number), message)
+    limits, limit_source = _limit_spans_and_source(lane_number, lane.speed_limit_mps, quality)
     beside = [
         (None, None) if other is None or other not in lanes else (str(other), _runs_against(lane, lanes[other]))
         for other in (lane.left_lane_id, lane.right_lane_id)
     ]
     (left_id, left_against), (right_id, right_against) = beside
     return BoundedLane(
-        str(name), lane.left_boundary[:, :2], lane.right_boundary[:, :2], kind, kind not in _NOT_DRIVEN,
-        road_type=road_type, junction_id=None if junction is None else str(junction), successors=tuple(sorted(followers)),
+        str(lane_number), lane.left_boundary[:, :2], lane.right_boundary[:, :2], kind, kind not in _UNDRIVABLE_LANE_TYPES,
+        road_type=road_type, junction_id=None if junction is None else str(junction), successors=tuple(sorted(successors)),
         left_id=left_id, left_against=left_against, right_id=right_id, right_against=right_against,
         marks=marks, limits=limits, limit_source=limit_source,
     )  # fmt: skip
 
 
-def _limits(name: int, limit_mps: float | None, quality: MapQuality) -> tuple[tuple[SpeedLimitSpan, ...], str]:
+def _limit_spans_and_source(
+    name: int, limit_mps: float | None, quality: MapQuality
+) -> tuple[tuple[SpeedLimitSpan, ...], str]:
     """Return the limit of a lane, if the map has one, and its source."""
     if limit_mps is None or math.isnan(limit_mps):
         return (), "lane"
-    if 0.0 < limit_mps <= _FASTEST_MPS:
+    if 0.0 < limit_mps <= _MAX_LIMIT_MPS:
         return ((0.0, 1.0, limit_mps),), "lane"
     quality.add("invalid_speed", "warning", str(name), f"{limit_mps:g} m/s is not a speed limit: treated as unknown")
     return ((0.0, 1.0, None),), "unread"
@@ -161,22 +168,22 @@ def _limits(name: int, limit_mps: float | None, quality: MapQuality) -> tuple[tu
 
 def _runs_against(lane: Lane, neighbour: Lane) -> bool:
     """Return whether a neighbour is driven the other way, by the directions of both lanes where they are nearest to each other."""
-    (own, along), (its, its_along) = _pieces(lane), _pieces(neighbour)
+    (own, along), (its, its_along) = _piece_middles_and_directions(lane), _piece_middles_and_directions(neighbour)
     near = np.hypot(*(own[:, None] - its[None]).transpose(2, 0, 1))
     i, j = np.unravel_index(int(np.argmin(near)), near.shape)
     return bool(along[i] @ its_along[j] < 0.0)
 
 
-def _pieces(lane: Lane) -> tuple[Floats, Floats]:
+def _piece_middles_and_directions(lane: Lane) -> tuple[Floats, Floats]:
     """Return the middles (n, 2) and directions (n, 2) of the pieces of both bounds of a lane."""
-    lines = [bound[_sample(len(bound)), :2] for bound in (lane.left_boundary, lane.right_boundary)]
+    lines = [bound[_sample_indices(len(bound)), :2] for bound in (lane.left_boundary, lane.right_boundary)]
     middles = np.vstack([(line[1:] + line[:-1]) / 2.0 for line in lines])
     return middles, np.vstack([np.diff(line, axis=0) for line in lines])
 
 
-def _sample(n: int) -> Indices:
-    """Return the indices of at most `_MOST_POINTS` of n points, evenly spread, including the first and the last."""
-    return np.unique(np.linspace(0, n - 1, min(n, _MOST_POINTS)).astype(np.intp))
+def _sample_indices(n: int) -> Indices:
+    """Return the indices of at most `_MAX_SAMPLED_POINTS` of n points, evenly spread, including the first and the last."""
+    return np.unique(np.linspace(0, n - 1, min(n, _MAX_SAMPLED_POINTS)).astype(np.intp))
 
 
 def _set_heights(built: Sequence[BoundedLane], lanes: Mapping[int, Lane], offset: tuple[float, float]) -> None:

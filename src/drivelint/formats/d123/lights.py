@@ -11,7 +11,7 @@ from drivelint.arrays import spelled
 from drivelint.drive.lost_time import times_of_lost_rows
 from drivelint.drive.trace import SIGNAL_STATES, QualityFinding
 from drivelint.formats.d123 import facts
-from drivelint.formats.d123.arrow_files import LIGHTS, integers, lengths, modality
+from drivelint.formats.d123.arrow_files import LIGHTS, integers, list_lengths, read_modality
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from drivelint.arrays import Codes, Indices, Times
     from drivelint.drive.trace import LostTime
-    from drivelint.formats.d123.arrow_files import Modality
+    from drivelint.formats.d123.arrow_files import ModalityFile
 
 _COLUMNS: Final = {"lane_id": pa.list_(pa.int64()), "status": pa.list_(pa.int32())}
 
@@ -33,14 +33,14 @@ class LightStates(NamedTuple):
     lost_times: list[LostTime]
 
 
-def read_lights(folder: Path) -> Modality | None:
-    """Return the file of lights, or None if the log has none. Errors: as `modality`."""
-    return modality(folder, LIGHTS, _COLUMNS)
+def read_lights(folder: Path) -> ModalityFile | None:
+    """Return the file of lights, or None if the log has none. Errors: as `read_modality`."""
+    return read_modality(folder, LIGHTS, _COLUMNS)
 
 
-def light_states(lights: Modality, about: facts.Dataset, t_ns: Times) -> LightStates:
+def light_states(lights: ModalityFile, about: facts.DatasetFacts, t_ns: Times) -> LightStates:
     """Return the states of the lights. `t_ns`: the times of the rows of the file."""
-    counts = [lengths(lights.columns[name]) for name in _COLUMNS]
+    counts = [list_lengths(lights.columns[name]) for name in _COLUMNS]
     bad = (counts[0] != counts[1]) | (counts[0] < 0)
     findings, lost_times = [], []
     if bad.any():
@@ -52,7 +52,7 @@ def light_states(lights: Modality, about: facts.Dataset, t_ns: Times) -> LightSt
     good = pa.array(~bad)
     lane, status = (integers(lights.columns[name].filter(good).flatten()) for name in _COLUMNS)
     lanes, lane_index = np.unique(lane, return_inverse=True)
-    codes, unknown = _codes(status)
+    codes, unknown = _state_codes(status)
     findings += unknown
     if about.steady_for_flashing:
         codes, doubtful = _without_doubtful_colours(codes, lane_index, len(lanes))
@@ -67,9 +67,9 @@ def light_states(lights: Modality, about: facts.Dataset, t_ns: Times) -> LightSt
     return LightStates(rows, tuple(lanes.tolist()), findings, lost_times)
 
 
-def _codes(status: Indices) -> tuple[Codes, list[QualityFinding]]:
+def _state_codes(status: Indices) -> tuple[Codes, list[QualityFinding]]:
     """Return indices into `SIGNAL_STATES` (-1: unknown), and a finding on numbers that 123D does not have."""
-    codes = facts.light_codes()
+    codes = facts.light_state_codes()
     inside = (status >= 0) & (status < len(codes))
     if inside.all():
         return np.asarray(codes[status], np.int8), []

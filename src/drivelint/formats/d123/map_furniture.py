@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from drivelint.formats.d123 import facts
-from drivelint.formats.d123.map_layers import Line
+from drivelint.formats.d123.map_layers import RoadLineFeatures
 from drivelint.formats.d123.markings import RoadLine
 from drivelint.road.boundary_lanes import BoundedLane, crossings, signal_row
 from drivelint.road.quality import SIGNS_UNMAPPED
@@ -16,17 +16,17 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from drivelint.arrays import Floats
-    from drivelint.formats.d123.map_layers import Layers
+    from drivelint.formats.d123.map_layers import MapLayers
     from drivelint.road.quality import MapQuality
     from drivelint.road.tables import Rows
 
 _READ_LAYERS: Final = frozenset({"LANE", "LANE_GROUP", "INTERSECTION", "CROSSWALK", "ROAD_LINE"})
-_LEVEL_M: Final = 3.0  # a crossing so far above or below a lane is not on it
+_MAX_LEVEL_DIFFERENCE_M: Final = 3.0  # a crossing so far above or below a lane is not on it
 
 
-def road_lines(layers: Layers, quality: MapQuality) -> list[RoadLine]:
+def road_lines(layers: MapLayers, quality: MapQuality) -> list[RoadLine]:
     """Return the road lines in the order of the map."""
-    types = layers.features("ROAD_LINE", Line, quality)
+    types = layers.features("ROAD_LINE", RoadLineFeatures, quality)
     return [
         RoadLine(types[name].road_line_type, points)
         for name, points in layers.outlines("ROAD_LINE", quality).items()
@@ -51,43 +51,43 @@ def light_rows(lanes: Sequence[BoundedLane], light_lanes: set[int]) -> Rows:
 
 
 def crossing_rows(
-    layers: Layers, lanes: Sequence[BoundedLane], offset: tuple[float, float], quality: MapQuality
+    layers: MapLayers, lanes: Sequence[BoundedLane], offset: tuple[float, float], quality: MapQuality
 ) -> Rows:
     """Return the rows of `crossing`; lanes on another level than the crossing are left out."""
     outlines = layers.outlines("CROSSWALK", quality)
-    rows = crossings([_walk(name, ring) for name, ring in outlines.items()], lanes, offset, quality)
+    rows = crossings([_crossing_lane(name, ring) for name, ring in outlines.items()], lanes, offset, quality)
     by_id = {lane.lanelet_id: lane for lane in lanes}
     heights = {
         str(name): float(ring[:, 2].mean())
         for name, ring in outlines.items()
         if ring.shape[1] == 3 and layers.header.get("map_has_z")
     }
-    return [row for row in rows if _on_level(row, by_id[row["lanelet_id"]], heights.get(row["crossing_id"], np.nan))]
+    return [row for row in rows if _is_on_level(row, by_id[row["lanelet_id"]], heights.get(row["crossing_id"], np.nan))]
 
 
-def _walk(name: int, ring: Floats) -> BoundedLane:
+def _crossing_lane(name: int, ring: Floats) -> BoundedLane:
     """Return a crossing as a lane whose bounds are the two halves of the outline."""
     half = (len(ring) + 1) // 2
     return BoundedLane(str(name), ring[half - 1 :, :2][::-1], ring[:half, :2], "crossing")
 
 
-def _on_level(row: dict[str, Any], lane: BoundedLane, height_m: float) -> bool:
+def _is_on_level(row: dict[str, Any], lane: BoundedLane, height_m: float) -> bool:
     s = (row["s_start_m"] + row["s_end_m"]) / 2.0
-    return not abs(float(np.interp(s, lane.line.s, lane.z)) - height_m) >= _LEVEL_M
+    return not abs(float(np.interp(s, lane.line.s, lane.z)) - height_m) >= _MAX_LEVEL_DIFFERENCE_M
 
 
-def report_unread(layers: Layers, about: facts.Dataset, quality: MapQuality) -> None:
+def report_missing_content(layers: MapLayers, about: facts.DatasetFacts, quality: MapQuality) -> None:
     """Report the gaps of a map of 123D: missing signs, layers that are not read, and estimated bounds of lanes."""
     message = "a map of 123D has no signs: the right of way at a junction without a light is not known"
     quality.add(SIGNS_UNMAPPED, "info", None, message)
-    counts = {name: layers.count(name) for name in facts.LAYERS if name not in _READ_LAYERS}
+    counts = {name: layers.n_objects(name) for name in facts.LAYER_NUMBERS if name not in _READ_LAYERS}
     unread = [f"{n} of {name.lower().replace('_', ' ')}" for name, n in counts.items() if n]
     if unread:
         message = f"objects of layers that are not read: {', '.join(unread)}"
         quality.add("layers_unread", "info", None, message, sum(counts.values()))
-    if layers.unknown:
-        message = f"layers that 123D does not define: {', '.join(map(str, layers.unknown))}: their objects are not read"
-        quality.add("unknown_word", "warning", None, message, len(layers.unknown))
+    if layers.unknown_layer_numbers:
+        message = f"layers that 123D does not define: {', '.join(map(str, layers.unknown_layer_numbers))}: their objects are not read"
+        quality.add("unknown_word", "warning", None, message, len(layers.unknown_layer_numbers))
     if about.estimated_bounds:
         message = (
             f"the converter estimated bounds {about.estimated_bounds}: near such a bound, an actor that seems "

@@ -18,8 +18,17 @@ from drivelint.errors import TraceError
 from drivelint.formats.d123 import boxes as box_file
 from drivelint.formats.d123 import ego as ego_file
 from drivelint.formats.d123 import facts
-from drivelint.formats.d123.arrow_files import BOXES, EGO_STATE, LIGHTS, SYNC, integers, modality, path_of, sync_table
-from drivelint.formats.d123.clock import clock
+from drivelint.formats.d123.arrow_files import (
+    BOXES,
+    EGO_STATE,
+    LIGHTS,
+    SYNC,
+    file_path,
+    integers,
+    read_modality,
+    sync_table,
+)
+from drivelint.formats.d123.clock import clock_from_times
 from drivelint.formats.d123.lights import light_states, read_lights
 from drivelint.formats.d123.map_file import find_map
 from drivelint.formats.folders import folder_kind
@@ -31,7 +40,7 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
     from drivelint.arrays import Indices, Mask, Times
-    from drivelint.formats.d123.arrow_files import LogInfo, Modality
+    from drivelint.formats.d123.arrow_files import LogInfo, ModalityFile
     from drivelint.formats.d123.clock import Clock
     from drivelint.formats.probe import Probe
 
@@ -43,8 +52,10 @@ _NO_ROAD_USERS: Final = QualityFinding(
     "warning",
     f"the log has no {BOXES}.arrow: the actors around the ego are not recorded: rules about other actors are unknown",
 )
-_ROUNDED_US: Final = 10  # a difference in time in which no actor moves by a millimetre
-_MALFORMED: Final = "frames whose lists of boxes differ in length or lack a track, or that refer to missing rows"
+_TIME_ROUNDING_US: Final = 10  # a difference in time in which no actor moves by a millimetre
+_MALFORMED_FRAMES_TEXT: Final = (
+    "frames whose lists of boxes differ in length or lack a track, or that refer to missing rows"
+)
 
 
 def accepts(probe: Probe) -> bool:
@@ -60,20 +71,26 @@ def read(probe: Probe) -> Recording:
     """
     folder = probe.path
     sync, info = sync_table(folder)
-    about = facts.dataset(info.dataset)
+    about = facts.dataset_facts(info.dataset)
     ego, boxes, lights = ego_file.read_ego(folder), box_file.read_boxes(folder), read_lights(folder)
     files = [file.columns["timestamp_us"] for file in (ego, boxes, lights) if file is not None]
-    time = clock(folder, [sync["timestamp_us"], *files], utc=about.utc)
-    frames = _frames(folder, sync, ego, boxes)
-    recording = Recording(NAME, _NO_STATES, sensor_range_m=about.sensor_range_m, notes=[_origin(info), *time.notes])
+    time = clock_from_times(folder, [sync["timestamp_us"], *files], utc=about.utc)
+    frames = _usable_frame_rows(folder, sync, ego, boxes)
+    recording = Recording(
+        NAME, _NO_STATES, sensor_range_m=about.sensor_range_m, notes=[_origin_note(info), *time.notes]
+    )
     recording.notes += frames.notes
     if nation := about.nation_of(info.location):
         recording.conditions["nation"] = nation
     if frames.malformed.any():
         n = int(frames.malformed.sum())
-        recording.findings.append(QualityFinding("malformed_row", "warning", f"{_MALFORMED}: {n}: left out", n))
+        recording.findings.append(
+            QualityFinding("malformed_row", "warning", f"{_MALFORMED_FRAMES_TEXT}: {n}: left out", n)
+        )
         t_ns = time.nanoseconds(integers(sync["timestamp_us"]))
-        recording.lost_times += times_of_lost_rows(t_ns, np.ones(len(t_ns), np.bool_), frames.malformed, _MALFORMED)
+        recording.lost_times += times_of_lost_rows(
+            t_ns, np.ones(len(t_ns), np.bool_), frames.malformed, _MALFORMED_FRAMES_TEXT
+        )
     box_states: list[States] = []
     if boxes is None:
         recording.findings.append(_NO_ROAD_USERS)
@@ -105,15 +122,15 @@ def read(probe: Probe) -> Recording:
 def log_clock(folder: Path) -> Clock:
     """Return the clock with which `read` reads a log. Errors: as `read`."""
     sync, info = sync_table(folder)
-    files = [modality(folder, name, {}) for name in (EGO_STATE, BOXES, LIGHTS)]
+    files = [read_modality(folder, name, {}) for name in (EGO_STATE, BOXES, LIGHTS)]
     times = [file.columns["timestamp_us"] for file in files if file is not None]
-    return clock(folder, [sync["timestamp_us"], *times], utc=facts.dataset(info.dataset).utc)
+    return clock_from_times(folder, [sync["timestamp_us"], *times], utc=facts.dataset_facts(info.dataset).utc)
 
 
 _NO_STATES: Final = States([], np.zeros(0, np.int32), np.zeros(0, np.int64), {}, {}, np.zeros(0, np.bool_))
 
 
-class _Frames(NamedTuple):
+class _FrameRows(NamedTuple):
     """For each frame that is read, its row in the ego's file and in the file of boxes; which frames are malformed; and notes.
 
     `ego_us`: the time of each row in `ego_rows`.
@@ -126,49 +143,51 @@ class _Frames(NamedTuple):
     notes: list[str]
 
 
-def _frames(folder: Path, sync: Mapping[str, pa.Array], ego: Modality, boxes: Modality | None) -> _Frames:
+def _usable_frame_rows(
+    folder: Path, sync: Mapping[str, pa.Array], ego: ModalityFile, boxes: ModalityFile | None
+) -> _FrameRows:
     """Return the frames that have the ego and, if the log has boxes, boxes. Errors: `TraceError` if there is no such frame."""
     ego_rows = integers(sync[EGO_STATE])
     box_rows = integers(sync[BOXES]) if boxes is not None and BOXES in sync else np.full(len(ego_rows), -1)
-    whole, malformed = ego_rows >= 0, ego_rows >= ego.n
+    whole, malformed = ego_rows >= 0, ego_rows >= ego.n_rows
     notes = []
     if boxes is not None:
         if n := int((whole & (box_rows < 0)).sum()):
             notes.append(
                 f"{n} of {int(whole.sum())} frames have no boxes: they are not read, because the other actors are not known there"
             )
-        if n := boxes.n - len(np.unique(box_rows[(box_rows >= 0) & (box_rows < boxes.n)])):
-            notes.append(f"{n} of {boxes.n} rows of boxes belong to no frame of {SYNC}.arrow: they are not read")
+        if n := boxes.n_rows - len(np.unique(box_rows[(box_rows >= 0) & (box_rows < boxes.n_rows)])):
+            notes.append(f"{n} of {boxes.n_rows} rows of boxes belong to no frame of {SYNC}.arrow: they are not read")
         whole &= box_rows >= 0
-        malformed |= box_rows >= boxes.n
+        malformed |= box_rows >= boxes.n_rows
         bad_rows = np.append(box_file.malformed_rows(boxes), False)
         malformed |= bad_rows[np.where(malformed, -1, box_rows)]
     malformed &= whole
     chosen = np.flatnonzero(whole & ~malformed)
     if not len(chosen):
         raise TraceError(
-            f"{path_of(folder, SYNC)}: no frame has the ego and boxes that can be read: nothing can be judged: convert the log again"
+            f"{file_path(folder, SYNC)}: no frame has the ego and boxes that can be read: nothing can be judged: convert the log again"
         )
     ego_rows, box_rows = ego_rows[chosen], box_rows[chosen]
     moments = integers(ego.columns["timestamp_us"])
     ego_us = moments[ego_rows]
     if boxes is not None:
-        ego_rows, ego_us = _ego_at(integers(boxes.columns["timestamp_us"])[box_rows], moments, ego_rows)
-    return _Frames(ego_rows, ego_us, box_rows, np.asarray(malformed, np.bool_), notes)
+        ego_rows, ego_us = _nearest_ego_rows(integers(boxes.columns["timestamp_us"])[box_rows], moments, ego_rows)
+    return _FrameRows(ego_rows, ego_us, box_rows, np.asarray(malformed, np.bool_), notes)
 
 
-def _ego_at(box_us: Times, moments: Times, frames_own: Indices) -> tuple[Indices, Times]:
-    """Return for each time of boxes the ego's row nearest in time, and its time. `moments`: the times of all rows of the ego.
+def _nearest_ego_rows(box_us: Times, ego_us: Times, rows_of_frames: Indices) -> tuple[Indices, Times]:
+    """Return for each time of boxes the ego's row nearest in time, and its time. `ego_us`: the times of all rows of the ego.
 
-    The row that the frame itself names (`frames_own`) may be a later row: the first after the frame's time. Converters round times: the
+    The row that the frame itself names (`rows_of_frames`) may be a later row: the first after the frame's time. Converters round times: the
     ego's and the boxes' time may differ by a microsecond although both were recorded at one time.
     """
-    if (np.diff(moments) < 0).any():
-        return frames_own, moments[frames_own]
-    after = np.clip(np.searchsorted(moments, box_us), 1, max(len(moments) - 1, 1))
-    before, after = after - 1, np.minimum(after, len(moments) - 1)
-    rows = np.where(box_us - moments[before] <= moments[after] - box_us, before, after)
-    return rows, np.where(np.abs(moments[rows] - box_us) <= _ROUNDED_US, box_us, moments[rows])
+    if (np.diff(ego_us) < 0).any():
+        return rows_of_frames, ego_us[rows_of_frames]
+    after = np.clip(np.searchsorted(ego_us, box_us), 1, max(len(ego_us) - 1, 1))
+    before, after = after - 1, np.minimum(after, len(ego_us) - 1)
+    rows = np.where(box_us - ego_us[before] <= ego_us[after] - box_us, before, after)
+    return rows, np.where(np.abs(ego_us[rows] - box_us) <= _TIME_ROUNDING_US, box_us, ego_us[rows])
 
 
 def _ego_with_boxes(ego_states: States, box_states: list[States]) -> States:
@@ -181,6 +200,6 @@ def _ego_with_boxes(ego_states: States, box_states: list[States]) -> States:
     )
 
 
-def _origin(info: LogInfo) -> str:
+def _origin_note(info: LogInfo) -> str:
     place = "" if info.location is None else f", {info.location}"
     return f"data set {info.dataset or 'without a name'}{place}; written by py123d {info.version}"

@@ -27,21 +27,21 @@ if TYPE_CHECKING:
     from drivelint.formats.film.mapping import VideoMapping
     from drivelint.formats.protobuf.descriptors import FieldTree
 
-MESSAGE: Final = "vision_msgs/Detection2DArray"
-_TREE: Final[FieldTree] = {
+BOXES_MESSAGE_TYPE: Final = "vision_msgs/Detection2DArray"
+_FIELD_TREE: Final[FieldTree] = {
     "header": HEADER,
     "detections": {"bbox": {"size_x": None, "size_y": None}, "id": None, "tracking_id": None},
 }
 
 
-class Sightings(NamedTuple):
+class DistancesAhead(NamedTuple):
     """The numbers of the frames, ascending, and each actor's distance ahead in each frame (NaN: not detected, inf: distance unknown)."""
 
     frames: NDArray[np.int64]
     ahead_m: list[Floats]
 
 
-def read(path: Path, film: VideoMapping) -> Sightings:
+def read(path: Path, film: VideoMapping) -> DistancesAhead:
     """Return the distances ahead in every frame. Errors: `TraceError` without boxes, `UsageError` for a mapping that lacks a value."""
     if film.camera is None:
         raise UsageError(
@@ -53,8 +53,10 @@ def read(path: Path, film: VideoMapping) -> Sightings:
     boxes: list[tuple[Times, list[str], Floats]] = []
     for file in bag.mcap_files(path):
         container = Container(file)
-        for _, log_messages in message_batches(container, _kind):
-            table = cdr.Decoder(file, container.schemas[log_messages[0].channel.schema_id], _TREE).table(log_messages)
+        for _, log_messages in message_batches(container, _boxes_message_type):
+            table = cdr.Decoder(file, container.schemas[log_messages[0].channel.schema_id], _FIELD_TREE).table(
+                log_messages
+            )
             t_ns, _ = stamps(table, "header.stamp")
             items = table.children["detections"]
             ids = items.columns.get("id", items.columns.get("tracking_id"))
@@ -62,34 +64,34 @@ def read(path: Path, film: VideoMapping) -> Sightings:
             times.append(t_ns)
             boxes.append((t_ns[items.parent], names, items.columns["bbox.size_x"].astype(np.float64)))
     if not times:
-        raise TraceError(f"{path}: no {MESSAGE} messages: this mapping reads the boxes of a film")
-    return _sightings(path, film, film.camera.focal_px, np.concatenate(times), boxes)
+        raise TraceError(f"{path}: no {BOXES_MESSAGE_TYPE} messages: this mapping reads the boxes of a film")
+    return _distances_ahead(path, film, film.camera.focal_px, np.concatenate(times), boxes)
 
 
-def _kind(channel: Channel, schema: Schema) -> str | None:
-    is_read = channel.message_encoding == "cdr" and short_type_name(schema.name) == MESSAGE
-    return MESSAGE if is_read else None
+def _boxes_message_type(channel: Channel, schema: Schema) -> str | None:
+    is_read = channel.message_encoding == "cdr" and short_type_name(schema.name) == BOXES_MESSAGE_TYPE
+    return BOXES_MESSAGE_TYPE if is_read else None
 
 
-def _sightings(
+def _distances_ahead(
     path: Path, film: VideoMapping, focal_px: float, t_ns: Times, boxes: list[tuple[Times, list[str], Floats]]
-) -> Sightings:
+) -> DistancesAhead:
     """Return the distance of each actor per frame of a film, from the widths of its boxes: the smallest of several in a frame."""
     start = int(t_ns.min())
-    numbers = _frames(t_ns, start, film)
+    numbers = _frame_numbers(t_ns, start, film)
     whole = np.arange(0, int(numbers.max()) + 1)
     ahead = []
     for actor in film.actor:
         distance = np.full(len(whole), np.inf)
         for at_ns, names, width in boxes:
             mine = np.array([name == actor.box for name in names], np.bool_) & (width > 0)
-            np.minimum.at(distance, _frames(at_ns[mine], start, film), focal_px * actor.width / width[mine])
+            np.minimum.at(distance, _frame_numbers(at_ns[mine], start, film), focal_px * actor.width / width[mine])
         ahead.append(np.where(np.isfinite(distance), distance, np.nan))
     if not any(np.isfinite(each).any() for each in ahead):
         wanted = ", ".join(str(actor.box) for actor in film.actor)
         raise TraceError(f"{path}: no box has an id that the mapping names ({wanted}): correct the ids in the mapping")
-    return Sightings(whole, ahead)
+    return DistancesAhead(whole, ahead)
 
 
-def _frames(t_ns: Times, start: int, film: VideoMapping) -> NDArray[np.int64]:
+def _frame_numbers(t_ns: Times, start: int, film: VideoMapping) -> NDArray[np.int64]:
     return np.rint((t_ns - start) / 1e9 * film.frames.rate_hz).astype(np.int64)

@@ -16,7 +16,7 @@ from drivelint.drive.trace import ACTOR_CLASSES, ASSUMED_MOTION, ASSUMED_SIZE, Q
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats.film import boxes
 from drivelint.formats.film import mapping as video_mapping
-from drivelint.formats.film.boxes import Sightings
+from drivelint.formats.film.boxes import DistancesAhead
 from drivelint.formats.tables.mapping import TextLayout
 from drivelint.formats.tables.sheets import CsvSheet, ParquetSheet, describe_places
 
@@ -35,7 +35,7 @@ PULL_OUT_START_OVER_LINE_M: Final = 0.06
 """How far a corner of the ego is over the centre line in the first frame of pulling out: just over 0.05 m, which counts as over it."""
 PULL_OUT_END_REMAINING_M: Final = 0.11
 """How far the ego is from its offset of passing in the last frame of pulling out: just over 0.1 m, which does not count as settled."""
-MOST_FRAMES: Final = 10_000_000
+MAX_FRAME_NUMBER: Final = 10_000_000
 """46 hours at 60 frames a second: a larger number is not a frame number."""
 ROAD_EXTENSION_M: Final = 400.0
 """How far the road extends beyond the ego's path, at each end."""
@@ -49,7 +49,7 @@ def _matching_mapping(path: Path) -> str | None:
         return None
     for name in video_mapping.shipped_mappings():
         _, film = video_mapping.load(name)
-        if film.frames.every == 1 and set(_columns(film)) <= set(names):
+        if film.frames.every == 1 and set(_needed_columns(film)) <= set(names):
             return name
     return None
 
@@ -72,7 +72,7 @@ def read(probe: Probe) -> Recording:
     if probe.head.startswith(b"\x89MCAP"):
         detections = boxes.read(path, film)
     else:
-        detections = _table(path, stem, film, findings, is_parquet=probe.head.startswith(b"PAR1"))
+        detections = _distances_in_table(path, stem, film, findings, is_parquet=probe.head.startswith(b"PAR1"))
     judged = detections.frames % film.frames.every == 0
     frames = detections.frames[judged]
     if not len(frames):
@@ -86,19 +86,21 @@ def read(probe: Probe) -> Recording:
     findings.append(QualityFinding(ASSUMED_MOTION, "warning", message))
     findings.append(QualityFinding(ASSUMED_SIZE, "info", f"size from the mapping {stem!r}, not recorded"))
     recording = Recording(stem, states, ego_ids=[film.ego.id], findings=findings)
-    recording.embedded_map = _road(film, egos_x)
+    recording.embedded_map = _assumed_road_xml(film, egos_x)
     recording.sensor_range_m = film.sensor_range_m
     recording.notes = [f"read through the mapping {stem!r}: {assumed} are assumed"]
     return recording
 
 
-def _columns(film: VideoMapping) -> list[str]:
+def _needed_columns(film: VideoMapping) -> list[str]:
     return [film.frames.column, *(actor.ahead for actor in film.actor if actor.ahead is not None)]
 
 
-def _table(path: Path, name: str, film: VideoMapping, findings: list[QualityFinding], *, is_parquet: bool) -> Sightings:
+def _distances_in_table(
+    path: Path, name: str, film: VideoMapping, findings: list[QualityFinding], *, is_parquet: bool
+) -> DistancesAhead:
     sheet = ParquetSheet(path) if is_parquet else CsvSheet(path, TextLayout(null_values=film.frames.not_detected))
-    columns = _columns(film)
+    columns = _needed_columns(film)
     if missing := [column for column in columns if column not in sheet.names]:
         raise TraceError(
             f"{path}: no column {missing[0]!r}, which mapping {name!r} needs: it has {', '.join(sheet.names)}"
@@ -107,7 +109,7 @@ def _table(path: Path, name: str, film: VideoMapping, findings: list[QualityFind
         raise UsageError(f"mapping {name!r}: actor {unsaid[0]} has no 'ahead', the column with its distance")
     sheet.load(columns)
     number, bad = sheet.number(film.frames.column)
-    bad |= ~(np.abs(number) < MOST_FRAMES) | (number != np.floor(number))
+    bad |= ~(np.abs(number) < MAX_FRAME_NUMBER) | (number != np.floor(number))
     rows = np.flatnonzero(~bad)
     frames, first = np.unique(number[rows].astype(np.int64), return_index=True)
     if not len(frames):
@@ -134,7 +136,7 @@ def _table(path: Path, name: str, film: VideoMapping, findings: list[QualityFind
             "no actor has a position in these frames"
         )
         findings.append(QualityFinding("malformed_row", "warning", message, n))
-    return Sightings(whole, ahead)
+    return DistancesAhead(whole, ahead)
 
 
 def _states(
@@ -146,7 +148,7 @@ def _states(
     ego_x = film.ego.speed.mps * (t_ns - t_ns[0]) / 1e9
     ego_y = np.full(len(frames), middle)
     if film.stages is not None:
-        ego_y = -own * _across(film, film.stages, frames)
+        ego_y = -own * _ego_beyond_centre_line_m(film, film.stages, frames)
     front = ego_x + film.ego.length / 2
     tracks = [(t_ns, ego_x, ego_y, 0.0, film.ego.speed.mps)]
     for actor, distance in zip(film.actor, ahead, strict=True):
@@ -180,7 +182,7 @@ def _states(
     return states, (float(ego_x[0]), float(ego_x[-1]))
 
 
-def _across(film: VideoMapping, stages: OvertakeStages, frames: NDArray[np.int64]) -> Floats:
+def _ego_beyond_centre_line_m(film: VideoMapping, stages: OvertakeStages, frames: NDArray[np.int64]) -> Floats:
     """Return how far beyond the centre line the ego's middle is in each frame, so that the stages begin in the frames of the mapping.
 
     The path is linear from touching the line to just before the offset of passing, then constant, then linear from the first frame of the
@@ -206,9 +208,9 @@ def _across(film: VideoMapping, stages: OvertakeStages, frames: NDArray[np.int64
     return np.asarray(np.interp(frames.astype(np.float64), at, values), np.float64)
 
 
-def _road(film: VideoMapping, ego_x: tuple[float, float]) -> bytes:
+def _assumed_road_xml(film: VideoMapping, ego_x_range: tuple[float, float]) -> bytes:
     """Return the assumed road as OpenDRIVE: straight, with one lane each way; the ego drives along the reference line."""
-    start, length = ego_x[0] - ROAD_EXTENSION_M, ego_x[1] - ego_x[0] + 2 * ROAD_EXTENSION_M
+    start, length = ego_x_range[0] - ROAD_EXTENSION_M, ego_x_range[1] - ego_x_range[0] + 2 * ROAD_EXTENSION_M
     lane = (
         '<lane id="{}" type="driving" level="false"><link/><width sOffset="0" a="{}" b="0" c="0" d="0"/>'
         '<roadMark sOffset="0" type="solid" weight="standard" color="white" width="0.12" laneChange="none"/></lane>'

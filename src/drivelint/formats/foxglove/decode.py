@@ -30,31 +30,31 @@ if TYPE_CHECKING:
 SCENE: Final = "foxglove.SceneUpdate"
 TRANSFORM: Final = "foxglove.FrameTransform"
 TRANSFORMS: Final = "foxglove.FrameTransforms"
-_TIME: Final = {"seconds": None, "nanos": None, "sec": None, "nsec": None}
-_XYZ: Final = {"x": None, "y": None, "z": None}
-_TURN: Final = {**_XYZ, "w": None}
+_TIME_FIELDS: Final = {"seconds": None, "nanos": None, "sec": None, "nsec": None}
+_XYZ_FIELDS: Final = {"x": None, "y": None, "z": None}
+_QUATERNION_FIELDS: Final = {**_XYZ_FIELDS, "w": None}
 _TRANSFORM_FIELDS: Final = {
-    "timestamp": _TIME, "parent_frame_id": None, "child_frame_id": None, "translation": _XYZ, "rotation": _TURN,
+    "timestamp": _TIME_FIELDS, "parent_frame_id": None, "child_frame_id": None, "translation": _XYZ_FIELDS, "rotation": _QUATERNION_FIELDS,
 }  # fmt: skip
 FIELD_TREES: Final[dict[str, FieldTree]] = {
     SCENE: {
-        "deletions": {"timestamp": _TIME, "type": None, "id": None},
+        "deletions": {"timestamp": _TIME_FIELDS, "type": None, "id": None},
         "entities": {
-            "timestamp": _TIME,
+            "timestamp": _TIME_FIELDS,
             "frame_id": None,
             "id": None,
-            "lifetime": _TIME,
+            "lifetime": _TIME_FIELDS,
             "frame_locked": None,
             "metadata": {"key": None, "value": None},
-            "cubes": {"pose": {"position": _XYZ, "orientation": _TURN}, "size": _XYZ},
+            "cubes": {"pose": {"position": _XYZ_FIELDS, "orientation": _QUATERNION_FIELDS}, "size": _XYZ_FIELDS},
         },
     },
     TRANSFORM: _TRANSFORM_FIELDS,
     TRANSFORMS: {"transforms": _TRANSFORM_FIELDS},
 }
-_LISTS: Final = frozenset({"deletions", "entities", "metadata", "cubes", "transforms"})
-_WORDS: Final = frozenset({"id", "frame_id", "key", "value", "parent_frame_id", "child_frame_id"})
-_BLOCK: Final = 1 << 20
+_LIST_FIELDS: Final = frozenset({"deletions", "entities", "metadata", "cubes", "transforms"})
+_TEXT_FIELDS: Final = frozenset({"id", "frame_id", "key", "value", "parent_frame_id", "child_frame_id"})
+_MIN_BLOCK_BYTES: Final = 1 << 20
 
 
 def decoded_rows(path: Path, schema: Schema, log_messages: list[LogMessage]) -> pa.StructArray:
@@ -64,7 +64,7 @@ def decoded_rows(path: Path, schema: Schema, log_messages: list[LogMessage]) -> 
     """
     tree = FIELD_TREES[schema.name]
     if log_messages[0].channel.message_encoding == "json":
-        return decoded(path, log_messages, partial(_json_rows, pa.schema(_json_type(tree))))
+        return decoded(path, log_messages, partial(_json_rows, pa.schema(_json_fields(tree))))
     types = parse_schema(path, schema.name, schema.data)
     return decoded(path, log_messages, message_decoder(path, types, schema.name, tree))
 
@@ -73,7 +73,7 @@ def _json_rows(schema: pa.Schema, messages: list[bytes]) -> pa.StructArray:
     # JSON strings contain no raw line breaks, so each message can be put on one line
     lines = [message.replace(b"\n", b" ").replace(b"\r", b" ") for message in messages]
     parse = json.ParseOptions(explicit_schema=schema, unexpected_field_behavior="ignore")
-    block = json.ReadOptions(block_size=max(_BLOCK, 2 * max(map(len, lines)) + 2))
+    block = json.ReadOptions(block_size=max(_MIN_BLOCK_BYTES, 2 * max(map(len, lines)) + 2))
     text = b"\n".join(lines)
     text.decode()  # raises for invalid UTF-8, which the library would only notice when the texts are used
     table = json.read_json(pa.BufferReader(text), block, parse).combine_chunks()
@@ -83,13 +83,13 @@ def _json_rows(schema: pa.Schema, messages: list[bytes]) -> pa.StructArray:
     return pa.StructArray.from_arrays(columns, fields=list(schema))
 
 
-def _json_type(tree: FieldTree) -> list[pa.Field]:
+def _json_fields(tree: FieldTree) -> list[pa.Field]:
     fields = []
     for name, subtree in tree.items():
         if subtree is not None:
-            inner = pa.struct(_json_type(subtree))
-            kind = pa.list_(inner) if name in _LISTS else inner
-        elif name in _WORDS:
+            inner = pa.struct(_json_fields(subtree))
+            kind = pa.list_(inner) if name in _LIST_FIELDS else inner
+        elif name in _TEXT_FIELDS:
             kind = pa.string()
         else:
             kind = pa.bool_() if name == "frame_locked" else pa.float64()
@@ -99,13 +99,13 @@ def _json_type(tree: FieldTree) -> list[pa.Field]:
 
 def times(stamp: pa.Array) -> tuple[Times, Mask]:
     """Return times or durations in nanoseconds (0 if missing), and for each row whether it is present."""
-    whole, rest = (_first(stamp, names) for names in (("seconds", "sec"), ("nanos", "nsec")))
+    whole, rest = (_first_finite(stamp, names) for names in (("seconds", "sec"), ("nanos", "nsec")))
     seconds = np.floor(whole)
     t_ns = seconds.astype(np.int64) * 1_000_000_000 + np.rint((whole - seconds) * 1e9 + rest).astype(np.int64)
     return t_ns, stamp.is_valid().to_numpy(zero_copy_only=False)
 
 
-def _first(parent: pa.Array, names: tuple[str, ...]) -> Floats:
+def _first_finite(parent: pa.Array, names: tuple[str, ...]) -> Floats:
     """Return for each row the first finite member of `names`; 0 if there is none, because protobuf does not write zeros."""
     result = np.zeros(len(parent))
     for name in reversed(names):

@@ -20,14 +20,14 @@ if TYPE_CHECKING:
     from drivelint.arrays import Indices, Mask, Times
     from drivelint.drive.trace import Severity
 
-MAX_PERSISTED: Final = 20_000_000
+MAX_ADDED_STATES: Final = 20_000_000
 """If more states than this would be added, the log is refused: no log has so many road users that stand still."""
 STALE_NS: Final = 500_000_000
 """A moving entity is present but not placed if its last update is older than this."""
-_NEVER: Final = np.iinfo(np.int64).max
+_NEVER_NS: Final = np.iinfo(np.int64).max
 
 
-def with_persisted(
+def with_states_between_updates(
     rows: RecordedPoses, deletions: tuple[Times, list[str | None]], findings: list[QualityFinding], topic: str
 ) -> RecordedPoses:
     """Return `rows` with added states for entities that exist without an update: with a place only if they stood still.
@@ -39,7 +39,7 @@ def with_persisted(
     whom = np.array([-1 if name is None else number.get(name, len(unique)) for name in deletions[1]], np.int32)
     new = np.r_[True, rows.t_ns[1:] != rows.t_ns[:-1]]
     grid_ns = np.unique(np.concatenate([rows.t_ns[new], deletions[0]]))
-    row, t_ns, stood_still = _persisted(rows, actor, (deletions[0], whom), grid_ns)
+    row, t_ns, stood_still = _states_between_updates(rows, actor, (deletions[0], whom), grid_ns)
     if not len(row):
         return rows
     extra = rows.take(row)
@@ -61,7 +61,7 @@ def with_persisted(
     return join_batches([rows, extra])
 
 
-def _persisted(
+def _states_between_updates(
     updates: RecordedPoses, actor: NDArray[np.int32], deletions: tuple[Times, NDArray[np.int32]], grid_ns: Times
 ) -> tuple[Indices, Times, Mask]:
     """Return the states between updates: the row of the last update, the time, and whether the entity stood still.
@@ -77,31 +77,31 @@ def _persisted(
     before, after = box[:-1], box[1:]
     alike = ((before == after) | (np.isnan(before) & np.isnan(after))).all(axis=1)
     same = actor[1:] == actor[:-1]
-    follows = np.r_[np.where(same, t_ns[1:], _NEVER), _NEVER]
+    follows = np.r_[np.where(same, t_ns[1:], _NEVER_NS), _NEVER_NS]
     # a lifetime of centuries would overflow
-    gone_ns = np.where((lifetime > 0) & (lifetime < _NEVER - np.abs(t_ns)), t_ns + lifetime, _NEVER)
-    gone_ns = np.minimum(gone_ns, _deleted(actor, t_ns, deletions))
-    replaced = (follows <= gone_ns) & (follows < _NEVER)
+    gone_ns = np.where((lifetime > 0) & (lifetime < _NEVER_NS - np.abs(t_ns)), t_ns + lifetime, _NEVER_NS)
+    gone_ns = np.minimum(gone_ns, _deletion_times(actor, t_ns, deletions))
+    replaced = (follows <= gone_ns) & (follows < _NEVER_NS)
     # an entity whose next update has another place moved, and gets no states in between
     still = np.asarray(np.where(replaced, np.r_[same & alike, False], np.r_[True, alike | ~same]), np.bool_)
     first = np.searchsorted(grid_ns, t_ns + np.where(still, 0, STALE_NS), side="right")
     last = np.searchsorted(grid_ns, np.minimum(follows, gone_ns), side="left")
     count = np.where(still | ~replaced, np.maximum(last - first, 0), 0)
     total = int(count.sum())
-    if total > MAX_PERSISTED:
+    if total > MAX_ADDED_STATES:
         raise TraceError(f"entities that are never deleted would have {total} states: record them with a lifetime")
     row = np.repeat(np.arange(n), count)
     step = np.arange(total) - np.repeat(np.cumsum(count) - count, count)
     return order[row], grid_ns[first[row] + step], still[row]
 
 
-def _deleted(actor: NDArray[np.int32], t_ns: Times, deletions: tuple[Times, NDArray[np.int32]]) -> Times:
+def _deletion_times(actor: NDArray[np.int32], t_ns: Times, deletions: tuple[Times, NDArray[np.int32]]) -> Times:
     """Return the time at which each update is deleted: the first later deletion of its actor or of all actors."""
     when, whom = deletions
-    result = np.full(len(t_ns), _NEVER)
+    result = np.full(len(t_ns), _NEVER_NS)
     for one in np.unique(whom):
         mine = np.flatnonzero((actor == one) | (one < 0))
         times = np.sort(when[whom == one])
-        first_later = np.r_[times, _NEVER][np.searchsorted(times, t_ns[mine], side="right")]
+        first_later = np.r_[times, _NEVER_NS][np.searchsorted(times, t_ns[mine], side="right")]
         result[mine] = np.minimum(result[mine], first_later)
     return result

@@ -25,12 +25,12 @@ INFO, WARNING, ERROR = 2, 3, 4
 def schema(name: str) -> Schema:
     """Return the MCAP schema record of `foxglove.<name>`, with the id 0: a set of file descriptors, imports first."""
     files = descriptor_pb2.FileDescriptorSet()
-    _add_declaration(name, files, set(), Declarations(toml_beside(__file__, "messages.toml")))
+    _add_message_files(name, files, set(), Declarations(toml_beside(__file__, "messages.toml")))
     # the bytes are deterministic: there are no map fields, and the order of the files is fixed
     return Schema(id=0, name=f"foxglove.{name}", encoding="protobuf", data=files.SerializeToString(deterministic=True))
 
 
-def _add_declaration(
+def _add_message_files(
     name: str, files: descriptor_pb2.FileDescriptorSet, added_names: set[str], declared: Declarations
 ) -> None:
     """Append the files that a message imports, then the file that declares it."""
@@ -43,7 +43,7 @@ def _add_declaration(
     fields = declared.messages[name]
     used = sorted({kind.removesuffix("[]") for _, _, kind in fields} & {*declared.messages, *_WELL_KNOWN_TYPES})
     for kind in used:
-        _add_declaration(kind, files, added_names, declared)
+        _add_message_files(kind, files, added_names, declared)
     file = files.file.add(name=f"foxglove/{name}.proto", package="foxglove", syntax="proto3")
     file.dependency.extend(
         _WELL_KNOWN_TYPES[kind].name if kind in _WELL_KNOWN_TYPES else f"foxglove/{kind}.proto" for kind in used

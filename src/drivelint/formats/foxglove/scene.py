@@ -27,7 +27,7 @@ from drivelint.formats.foxglove.decode import (
     times,
     vectors,
 )
-from drivelint.formats.foxglove.entity_lifetime import with_persisted
+from drivelint.formats.foxglove.entity_lifetime import with_states_between_updates
 from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.losses import times_of_parts
 from drivelint.formats.mcap.malformed import decode_readable
@@ -55,13 +55,13 @@ if TYPE_CHECKING:
 
     from drivelint.arrays import Codes, Mask, Times
 
-KIND_KEYS: Final = ("class", "type", "classification", "category", "label", "object_class", "object_type")
+CLASS_KEYS: Final = ("class", "type", "classification", "category", "label", "object_class", "object_type")
 """Keys of an entity's metadata whose value can be its class."""
 DELETE_ALL: Final = 1
 
 
 @dataclass
-class _Scene:
+class _TopicContent:
     """The content of one topic with scenes. `without_box`: number of entities without a cube."""
 
     rows: list[RecordedPoses] = field(default_factory=list)
@@ -74,14 +74,14 @@ def read(path: Path, topic: str | None) -> Recording:
 
     Errors: `TraceError` for a damaged log, no scene, several topics without a choice, or no entity with a position.
     """
-    scenes: dict[str, _Scene] = {}
+    scenes: dict[str, _TopicContent] = {}
     transforms: list[tuple[pa.Array, Times]] = []
     findings: list[QualityFinding] = []
     parts: list[Container] = []
     unread = UnreadTopics()
     for file in bag.mcap_files(path):
         container = Container(file, salvage=True)
-        for name, log_messages in message_batches(container, partial(_kind, topic, unread)):
+        for name, log_messages in message_batches(container, partial(_readable_message_type, topic, unread)):
             channel = log_messages[0].channel
             schema = container.schemas[channel.schema_id]
             decoded, readable = decode_readable(container, log_messages, partial(decoded_rows, file, schema))
@@ -89,7 +89,7 @@ def read(path: Path, topic: str | None) -> Recording:
                 continue
             log_ns = np.array([log_message.log_time_ns for log_message in readable], np.int64)
             if name == SCENE:
-                _take(scenes.setdefault(channel.topic, _Scene()), decoded, log_ns)
+                _add_messages(scenes.setdefault(channel.topic, _TopicContent()), decoded, log_ns)
             elif name == TRANSFORM:
                 transforms.append((decoded, log_ns))
             else:
@@ -98,13 +98,13 @@ def read(path: Path, topic: str | None) -> Recording:
         findings += container.findings
         parts.append(container)
     findings += bag.missing_messages(path, parts, FIELD_TREES.__contains__)
-    name = _scene_topic(path, scenes, topic, unread)
+    name = _choose_scene_topic(path, scenes, topic, unread)
     recording = _recording(path, name, scenes[name], transforms, [*findings, *unread.findings()])
     recording.lost_times += times_of_parts([(part.path, part.losses) for part in parts])
     return recording
 
 
-def _kind(topic: str | None, unread: UnreadTopics, channel: Channel, schema: Schema) -> str | None:
+def _readable_message_type(topic: str | None, unread: UnreadTopics, channel: Channel, schema: Schema) -> str | None:
     if schema.name not in FIELD_TREES:
         return None
     if channel.message_encoding in {"protobuf", "json"}:
@@ -114,7 +114,7 @@ def _kind(topic: str | None, unread: UnreadTopics, channel: Channel, schema: Sch
     return None
 
 
-def _scene_topic(path: Path, scenes: dict[str, _Scene], topic: str | None, unread: UnreadTopics) -> str:
+def _choose_scene_topic(path: Path, scenes: dict[str, _TopicContent], topic: str | None, unread: UnreadTopics) -> str:
     names = sorted(scenes)
     if topic is not None:
         if topic not in scenes:
@@ -128,7 +128,7 @@ def _scene_topic(path: Path, scenes: dict[str, _Scene], topic: str | None, unrea
     return names[0]
 
 
-def _take(scene: _Scene, decoded: pa.StructArray, log_ns: Times) -> None:
+def _add_messages(scene: _TopicContent, decoded: pa.StructArray, log_ns: Times) -> None:
     entities, message = list_items(decoded, "entities")
     lists = struct_field(entities, "cubes")
     none = pa.types.is_null(lists.type)
@@ -145,10 +145,10 @@ def _take(scene: _Scene, decoded: pa.StructArray, log_ns: Times) -> None:
             times(struct_field(entities, "timestamp")),
             (vectors(pose, "position"), vectors(pose, "orientation", "xyzw")),
             log_ns=log_ns[message],
-            ids=_bytes(entities, "id"),
-            frames=_bytes(entities, "frame_id"),
+            ids=_text_as_bytes(entities, "id"),
+            frames=_text_as_bytes(entities, "frame_id"),
             size=vectors(cubes, "size"),
-            classes=_classes(entities),
+            classes=_class_codes(entities),
             lifetime_ns=times(struct_field(entities, "lifetime"))[0],
             locked=pc.fill_null(struct_field(entities, "frame_locked").cast(pa.bool_()), False).to_numpy(
                 zero_copy_only=False
@@ -164,19 +164,19 @@ def _take(scene: _Scene, decoded: pa.StructArray, log_ns: Times) -> None:
         scene.deletions.append((t_ns, timed & (t_ns != 0), log_ns[message], whom))
 
 
-def _bytes(entities: pa.Array, name: str) -> NDArray[np.bytes_]:
+def _text_as_bytes(entities: pa.Array, name: str) -> NDArray[np.bytes_]:
     texts, which = distinct_texts(entities, name)
     return np.array([text.encode() for text in texts] or [b""])[which]
 
 
-def _classes(entities: pa.Array) -> Codes:
-    """Return the classes of entities, from the first metadata entry with a key of `KIND_KEYS` and a known value; -1 without one."""
+def _class_codes(entities: pa.Array) -> Codes:
+    """Return the classes of entities, from the first metadata entry with a key of `CLASS_KEYS` and a known value; -1 without one."""
     codes = np.full(len(entities), -1, np.int8)
     pairs, parent = list_items(entities, "metadata")
     if not len(pairs):
         return codes
     keys, key = distinct_texts(pairs, "key")
-    telling = np.array([name.lower() in KIND_KEYS for name in keys], np.bool_)[key]
+    telling = np.array([name.lower() in CLASS_KEYS for name in keys], np.bool_)[key]
     values, value = distinct_texts(pairs, "value")
     known = np.array([class_code(text) for text in values], np.int8)[value]
     rows = np.flatnonzero(telling & (known >= 0))[::-1]
@@ -185,7 +185,11 @@ def _classes(entities: pa.Array) -> Codes:
 
 
 def _recording(
-    path: Path, topic: str, scene: _Scene, transforms: list[tuple[pa.Array, Times]], findings: list[QualityFinding]
+    path: Path,
+    topic: str,
+    scene: _TopicContent,
+    transforms: list[tuple[pa.Array, Times]],
+    findings: list[QualityFinding],
 ) -> Recording:
     rows = join_batches(scene.rows)
     has_id = rows.ids != b""
@@ -202,8 +206,8 @@ def _recording(
         message = f"{topic}: entities without a cube: {scene.without_box}: they are not treated as road users"
         findings.append(QualityFinding("no_box", "info", message, scene.without_box))
     own_times = choose_clock({topic: rows}, findings)
-    frames = _frames(transforms, own_times=own_times)
-    rows = with_persisted(rows, _deletions(scene, rows, own_times=own_times), findings, topic)
+    frames = _transform_tree(transforms, own_times=own_times)
+    rows = with_states_between_updates(rows, _deletions(scene, rows, own_times=own_times), findings, topic)
     fixed = fixed_frame(frames, sorted(distinct(rows.frames)[0]))
     states, found = states_in_fixed_frame(rows, frames, fixed, topic)
     findings += found
@@ -226,7 +230,7 @@ def _lost_times(nameless: RecordedPoses, topic: str) -> list[LostTime]:
     return found if endless is None else [*found, LostTime(endless, None, what)]
 
 
-def _deletions(scene: _Scene, rows: RecordedPoses, *, own_times: bool) -> tuple[Times, list[str | None]]:
+def _deletions(scene: _TopicContent, rows: RecordedPoses, *, own_times: bool) -> tuple[Times, list[str | None]]:
     """Return times and ids (None: all) of deletions, in the clock of the entities.
 
     A deletion without a time gets the latest time of the entities before it in the log.
@@ -242,7 +246,7 @@ def _deletions(scene: _Scene, rows: RecordedPoses, *, own_times: bool) -> tuple[
     return np.concatenate(times), ids
 
 
-def _frames(transforms: list[tuple[pa.Array, Times]], *, own_times: bool) -> TransformTree:
+def _transform_tree(transforms: list[tuple[pa.Array, Times]], *, own_times: bool) -> TransformTree:
     """Return the tree of all transforms. A transform that never changes is static: some logs contain it only once, at the start."""
     parts_by_frames: dict[tuple[str, str], list[tuple[Times, Any, Any]]] = {}
     for rows, log_ns in transforms:

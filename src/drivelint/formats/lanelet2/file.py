@@ -19,10 +19,10 @@ if TYPE_CHECKING:
     from drivelint.road.quality import MapQuality
 
 
-_EARTH_M = 6_378_137.0
+_EARTH_RADIUS_M = 6_378_137.0
 
 
-def load(source: MapSource, request: MapOptions, quality: MapQuality) -> tuple[Any, bool]:
+def load_lanelet2_map(source: MapSource, request: MapOptions, quality: MapQuality) -> tuple[Any, bool]:
     """Return the library's map, and whether its coordinates are local; elements that the library cannot read are in `quality`.
 
     Errors: `MapError` if the library is not installed, the file is not a Lanelet2 map, or latitude and longitude of the log's
@@ -37,7 +37,7 @@ def load(source: MapSource, request: MapOptions, quality: MapQuality) -> tuple[A
     root = safe_xml.parse_map(source)  # unlike the library, this refuses entities
     local = root.find("node/tag[@k='local_x']") is not None
     if local:
-        _place_locally(root, quality)
+        _set_lat_lon_from_local(root, quality)
         if request.origin is not None:
             message = "the map has local coordinates: these are used, and --map-origin is ignored"
             quality.add("map_origin_unused", "info", None, message)
@@ -59,7 +59,7 @@ def load(source: MapSource, request: MapOptions, quality: MapQuality) -> tuple[A
     return layers, local
 
 
-def _place_locally(root: etree._Element, quality: MapQuality) -> None:
+def _set_lat_lon_from_local(root: etree._Element, quality: MapQuality) -> None:
     """Set the latitude and longitude of every node from its local coordinates.
 
     In Autoware's maps, latitude and longitude are empty or of another frame; the library uses them to decide which bound of a lane is the
@@ -69,7 +69,7 @@ def _place_locally(root: etree._Element, quality: MapQuality) -> None:
     first: tuple[float, float] | None = None
     for node in root.iterfind("node"):
         tags = {tag.get("k"): tag for tag in node.iterfind("tag")}
-        x, y = (safe_xml.number(tags[k].get("v") if k in tags else None) for k in ("local_x", "local_y"))
+        x, y = (safe_xml.number_or_nan(tags[k].get("v") if k in tags else None) for k in ("local_x", "local_y"))
         if not (math.isfinite(x) and math.isfinite(y)):
             n_lost += 1
             x = y = math.nan
@@ -78,14 +78,14 @@ def _place_locally(root: etree._Element, quality: MapQuality) -> None:
         for k, value in (("local_x", x), ("local_y", y)):
             (tags[k] if k in tags else etree.SubElement(node, "tag", k=k)).set("v", repr(value))
         east, north = (0.0, 0.0) if first is None or math.isnan(x) else (x - first[0], y - first[1])
-        node.set("lon", repr(math.degrees(east / _EARTH_M)))
-        node.set("lat", repr(math.degrees(north / _EARTH_M)))
+        node.set("lon", repr(math.degrees(east / _EARTH_RADIUS_M)))
+        node.set("lat", repr(math.degrees(north / _EARTH_RADIUS_M)))
     if n_lost:
         message = "nodes lack local_x and local_y, which the other nodes have: the elements that use them are left out"
         quality.add("unplaced_node", "warning", None, message, n_lost)
 
 
-def xy(bound: Any) -> Floats:
+def line_points(bound: Any) -> Floats:
     """Return the points (n, 2) of a line, in local coordinates where the nodes have them (Autoware)."""
     return np.array(
         [

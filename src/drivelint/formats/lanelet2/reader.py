@@ -7,8 +7,8 @@ from collections import defaultdict
 from typing import TYPE_CHECKING, Any
 
 from drivelint.errors import MapError
-from drivelint.formats.lanelet2.file import attribute, load, xy
-from drivelint.formats.lanelet2.furniture import furniture
+from drivelint.formats.lanelet2.file import attribute, line_points, load_lanelet2_map
+from drivelint.formats.lanelet2.furniture import furniture_rows
 from drivelint.formats.lanelet2.traffic_rules import TrafficRules, limit_text
 from drivelint.road.boundary_lanes import BoundedLane, both_marks, build_lanes, map_from_bounds, side_driven_on
 from drivelint.road.driving_side import choose_side
@@ -21,37 +21,42 @@ if TYPE_CHECKING:
 
     from drivelint.road.map_reader import MapOptions, MapSource, MapTables
 
-_LINES = {"solid": "solid", "dashed": "broken", "solid_solid": "solid_solid", "dashed_dashed": "broken_broken"}
-_EDGES = {"curbstone": "curb", "virtual": "none"}
-_LEFT_DRIVEN = frozenset({"gb", "uk", "ie", "au", "nz", "jp", "in", "za", "sg", "my", "th", "hk", "cy", "mt"})
+_MARKING_BY_LINE_STYLE = {
+    "solid": "solid",
+    "dashed": "broken",
+    "solid_solid": "solid_solid",
+    "dashed_dashed": "broken_broken",
+}
+_MARKING_BY_BOUND_TYPE = {"curbstone": "curb", "virtual": "none"}
+_LEFT_DRIVING_NATIONS = frozenset({"gb", "uk", "ie", "au", "nz", "jp", "in", "za", "sg", "my", "th", "hk", "cy", "mt"})
 
 
 def read(source: MapSource, request: MapOptions) -> MapTables:
     """Return the map's tables.
 
-    Errors: as `file.load`, and `MapError` if no lanelet can be built.
+    Errors: as `file.load_lanelet2_map`, and `MapError` if no lanelet can be built.
     """
     quality = MapQuality()
-    layers, local = load(source, request, quality)
+    layers, local = load_lanelet2_map(source, request, quality)
     lanes = build_lanes(_lanes(layers, quality), request.offset, quality)
     if not lanes:
         raise MapError(f"map {source.name} has no lanelet that can be built: is it a plain OpenStreetMap extract?")
     mark_junctions(lanes)
     regions = {attribute(x, "region") for x in layers.laneletLayer} - {""}
-    by_region = {"lht" if region[:2].lower() in _LEFT_DRIVEN else "rht" for region in regions}
+    by_region = {"lht" if region[:2].lower() in _LEFT_DRIVING_NATIONS else "rht" for region in regions}
     said = by_region.pop() if len(by_region) == 1 else None
     side = choose_side([("option", request.side), ("lanes", side_driven_on(lanes)), ("attribute", said)], quality)
-    beside = furniture(layers, lanes, request.offset, quality)
+    beside = furniture_rows(layers, lanes, request.offset, quality)
     geo = None if request.origin is None or local else tangent_plane(*request.origin)
     return map_from_bounds(source, request, lanes, beside, quality, kind="lanelet2", side=side, geo=geo)
 
 
-Bound = tuple[int, bool]
+BoundKey = tuple[int, bool]
 """A bound of a lane: the id of its line, and whether it runs against the direction in which the line was drawn."""
 
 
-def _bound(line: Any, *, turned: bool = False) -> Bound:
-    return line.id, bool(line.inverted()) != turned
+def _bound_key(line: Any, *, is_reversed: bool = False) -> BoundKey:
+    return line.id, bool(line.inverted()) != is_reversed
 
 
 def _lanes(layers: Any, quality: MapQuality) -> Iterable[BoundedLane]:
@@ -63,12 +68,12 @@ def _lanes(layers: Any, quality: MapQuality) -> Iterable[BoundedLane]:
         lanelets.remove(x)
         quality.add("invalid_lane", "error", str(x.id), f"lanelet {x.id} is left out: a bound has no points")
     starts: dict[tuple[int, int], list[str]] = defaultdict(list)
-    lefts: dict[Bound, list[Any]] = defaultdict(list)
-    rights: dict[Bound, list[Any]] = defaultdict(list)
+    lefts: dict[BoundKey, list[Any]] = defaultdict(list)
+    rights: dict[BoundKey, list[Any]] = defaultdict(list)
     for x in lanelets:
         starts[x.leftBound[0].id, x.rightBound[0].id].append(str(x.id))
-        lefts[_bound(x.leftBound)].append(x)
-        rights[_bound(x.rightBound)].append(x)
+        lefts[_bound_key(x.leftBound)].append(x)
+        rights[_bound_key(x.rightBound)].append(x)
     for x in lanelets:
         lane_type, drivable, bidirectional = access[x.id]
         limit_mps = rules.limit_mps(x)
@@ -79,45 +84,51 @@ def _lanes(layers: Any, quality: MapQuality) -> Iterable[BoundedLane]:
             what = "its sign has no limit that can be read" if said is None else f"{said[:20]!r} is not a speed limit"
             quality.add("invalid_speed", "warning", str(x.id), f"{what}: treated as unknown")
         lane = BoundedLane(
-            str(x.id), xy(x.leftBound), xy(x.rightBound), lane_type, drivable, bidirectional=bidirectional,
+            str(x.id), line_points(x.leftBound), line_points(x.rightBound), lane_type, drivable, bidirectional=bidirectional,
             road_type=_road_type(x),
             successors=tuple(sorted(starts[x.leftBound[-1].id, x.rightBound[-1].id])),
-            marks=both_marks(_marking(x.leftBound, near_left=False), _marking(x.rightBound, near_left=True)),
+            marks=both_marks(_marking(x.leftBound, is_left_line_nearer=False), _marking(x.rightBound, is_left_line_nearer=True)),
             limits=limits, limit_source="sign" if readable else "unread",
         )  # fmt: skip
         left, right = x.leftBound, x.rightBound
-        lane.left_id, lane.left_against = _beside(x, rights[_bound(left)], lefts[_bound(left, turned=True)])
-        lane.right_id, lane.right_against = _beside(x, lefts[_bound(right)], rights[_bound(right, turned=True)])
+        lane.left_id, lane.left_against = _neighbour(
+            x, rights[_bound_key(left)], lefts[_bound_key(left, is_reversed=True)]
+        )
+        lane.right_id, lane.right_against = _neighbour(
+            x, lefts[_bound_key(right)], rights[_bound_key(right, is_reversed=True)]
+        )
         yield lane
 
 
-def _beside(lanelet: Any, same: Sequence[Any], against: Sequence[Any]) -> tuple[str | None, bool | None]:
+def _neighbour(
+    lanelet: Any, same_way_lanes: Sequence[Any], other_way_lanes: Sequence[Any]
+) -> tuple[str | None, bool | None]:
     """Return the neighbour across a line, and whether it is driven the other way.
 
-    `same`: the lanes with this line as the bound of their other side. `against`: the lanes with this line, reversed, as the bound of the
-    same side.
+    `same_way_lanes`: the lanes with this line as the bound of their other side. `other_way_lanes`: the lanes with this line, reversed, as
+    the bound of the same side.
     """
-    for lanes, other_way in ((same, False), (against, True)):
+    for lanes, other_way in ((same_way_lanes, False), (other_way_lanes, True)):
         for x in lanes:
             if x.id != lanelet.id:
                 return str(x.id), other_way
     return None, None
 
 
-def _road_type(x: Any) -> str | None:
-    if attribute(x, "subtype") == "highway":
-        return "motorway" if attribute(x, "location") != "urban" else "town"
-    return {"urban": "town", "nonurban": "rural"}.get(attribute(x, "location"))
+def _road_type(lanelet: Any) -> str | None:
+    if attribute(lanelet, "subtype") == "highway":
+        return "motorway" if attribute(lanelet, "location") != "urban" else "town"
+    return {"urban": "town", "nonurban": "rural"}.get(attribute(lanelet, "location"))
 
 
-def _marking(bound: Any, *, near_left: bool) -> str | None:
+def _marking(bound: Any, *, is_left_line_nearer: bool) -> str | None:
     """Return the marking of a bound. Lanelet2 names a double line from left to right; here, the line nearer to the lane comes first."""
     kind, style = attribute(bound, "type"), attribute(bound, "subtype")
-    if kind in _EDGES:
-        return _EDGES[kind]
+    if kind in _MARKING_BY_BOUND_TYPE:
+        return _MARKING_BY_BOUND_TYPE[kind]
     if kind not in {"line_thin", "line_thick"}:
         return None
     if style in {"solid_dashed", "dashed_solid"}:
         first_solid = (style == "solid_dashed") != bool(bound.inverted())
-        return "solid_broken" if first_solid == near_left else "broken_solid"
-    return _LINES.get(style)
+        return "solid_broken" if first_solid == is_left_line_nearer else "broken_solid"
+    return _MARKING_BY_LINE_STYLE.get(style)

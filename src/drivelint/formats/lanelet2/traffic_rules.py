@@ -15,21 +15,21 @@ from drivelint.formats.lanelet2.file import attribute
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-_SUBTYPES: Final[Mapping[str, str]] = {
+_LANE_TYPE_BY_SUBTYPE: Final[Mapping[str, str]] = {
     "road": "driving", "highway": "driving", "play_street": "driving", "bus_lane": "bus", "exit": "exit",
     "emergency_lane": "stop", "bicycle_lane": "biking", "walkway": "sidewalk", "shared_walkway": "sidewalk",
     "stairs": "sidewalk", "pedestrian_lane": "sidewalk", "road_shoulder": "shoulder", "rail": "rail",
 }  # fmt: skip
 """Subtype -> lane type, by default."""
-_ROADSIDE: Final = frozenset({"road_shoulder", "pedestrian_lane"})
+_ROADSIDE_SUBTYPES: Final = frozenset({"road_shoulder", "pedestrian_lane"})
 """Autoware's subtypes of lanes beside the road, which the library does not know. Whatever their tags, they are not for driving."""
-_DRIVERS: Final = {
+_LANE_TYPE_BY_VEHICLE: Final = {
     "vehicle:car": "driving", "vehicle:truck": "driving", "vehicle:motorcycle": "driving", "vehicle:bus": "bus",
     "vehicle:taxi": "taxi",
 }  # fmt: skip
 """Motor vehicle -> type of a lane that it may use, but none of the vehicles listed before it."""
 _LANE_TYPE_BY_PARTICIPANT: Final = {"pedestrian": "sidewalk", "bicycle": "biking", "vehicle:emergency": "restricted"}
-_SPEED: Final = re.compile(r"\s*([0-9]+(?:\.[0-9]+)?)\s*([a-z/]*)\s*")
+_SPEED_PATTERN: Final = re.compile(r"\s*([0-9]+(?:\.[0-9]+)?)\s*([a-z/]*)\s*")
 _UNITS_MPS: Final = {
     "": 1 / 3.6, "km/h": 1 / 3.6, "kmh": 1 / 3.6, "kph": 1 / 3.6, "kmph": 1 / 3.6, "mph": 0.44704, "m/s": 1.0, "mps": 1.0,
 }  # fmt: skip
@@ -37,7 +37,7 @@ _UNITS_MPS: Final = {
 _LIMIT_TAGS: Final = ("speed_limit:vehicle:car", "speed_limit:vehicle", "speed_limit")
 
 
-class Access(NamedTuple):
+class LaneAccess(NamedTuple):
     """The type of a lane, whether motor vehicles may drive on it, and whether they may do so in both directions."""
 
     lane_type: str
@@ -54,19 +54,20 @@ class TrafficRules:
         rules = lanelet2.traffic_rules
         self._vehicle = rules.create(rules.Locations.Germany, rules.Participants.Vehicle)
         self._of = {
-            word: rules.create(rules.Locations.Germany, word) for word in (*_DRIVERS, *_LANE_TYPE_BY_PARTICIPANT)
+            word: rules.create(rules.Locations.Germany, word)
+            for word in (*_LANE_TYPE_BY_VEHICLE, *_LANE_TYPE_BY_PARTICIPANT)
         }
 
-    def access(self, lanelet: Any) -> Access | None:
+    def access(self, lanelet: Any) -> LaneAccess | None:
         """Return the type of a lanelet and who may drive on it; None if it is not a lane of a road but, for example, a crosswalk."""
         subtype = attribute(lanelet, "subtype")
-        of_subtype = _SUBTYPES.get(subtype)
-        if subtype in _ROADSIDE:
-            return Access(_SUBTYPES[subtype], False, False)
-        for word, lane_type in _DRIVERS.items():
+        of_subtype = _LANE_TYPE_BY_SUBTYPE.get(subtype)
+        if subtype in _ROADSIDE_SUBTYPES:
+            return LaneAccess(_LANE_TYPE_BY_SUBTYPE[subtype], False, False)
+        for word, lane_type in _LANE_TYPE_BY_VEHICLE.items():
             if self._of[word].canPass(lanelet):
                 both_ways = not self._of[word].isOneWay(lanelet)
-                return Access(of_subtype if of_subtype == "exit" else lane_type, True, both_ways)
+                return LaneAccess(of_subtype if of_subtype == "exit" else lane_type, True, both_ways)
         if of_subtype is None:
             return None
         may_pass = [
@@ -74,8 +75,8 @@ class TrafficRules:
         ]
         has_participants = any(key.startswith("participant:") for key in lanelet.attributes.keys())  # noqa: SIM118 - the library's map
         if of_subtype in {"driving", "bus", "exit"} or (has_participants and may_pass):
-            return Access(may_pass[0] if may_pass else "restricted", False, False)
-        return Access(of_subtype, False, False)
+            return LaneAccess(may_pass[0] if may_pass else "restricted", False, False)
+        return LaneAccess(of_subtype, False, False)
 
     def limit_mps(self, lanelet: Any) -> float | None:
         """Return the limit (m/s) of a lanelet's sign, else of its tag; a nation's default is not used.
@@ -83,7 +84,7 @@ class TrafficRules:
         None: the map states no limit; NaN: the stated limit cannot be read.
         """
         signed = any(attribute(rule, "subtype") == "speed_limit" for rule in lanelet.regulatoryElements)
-        of_sign = self._limit_of_sign(lanelet) if signed else math.nan
+        of_sign = self._sign_limit_mps(lanelet) if signed else math.nan
         if of_sign > 0.0:
             return of_sign
         text = limit_text(lanelet)
@@ -91,7 +92,7 @@ class TrafficRules:
             return math.nan if signed else None
         return speed_mps(text)
 
-    def _limit_of_sign(self, lanelet: Any) -> float:
+    def _sign_limit_mps(self, lanelet: Any) -> float:
         """Return the limit (m/s) of a lanelet that has a sign; NaN if the library does not know the number on the sign."""
         try:
             limit = float(self._vehicle.speedLimit(lanelet).speedLimit) / 3.6
@@ -107,6 +108,6 @@ def limit_text(lanelet: Any) -> str | None:
 
 def speed_mps(text: str) -> float:
     """Return a speed in m/s; NaN for a text that is not one positive number, with a known unit or without a unit."""
-    found = _SPEED.fullmatch(text.lower())
+    found = _SPEED_PATTERN.fullmatch(text.lower())
     speed = float(found[1]) * _UNITS_MPS.get(found[2], math.nan) if found else math.nan
     return speed if speed > 0.0 else math.nan

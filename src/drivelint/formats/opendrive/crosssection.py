@@ -15,16 +15,16 @@ if TYPE_CHECKING:
     from drivelint.formats.opendrive.planview import ReferenceLine
 
 CHORD_TOLERANCE_M = 0.01  # the largest distance of a bound from the chord between two of its points
-SPACING_M = 5.0  # the largest distance between two points
-JUMP_M = 0.01  # a larger step in an edge is kept as a step
+MAX_SPACING_M = 5.0  # the largest distance between two points
+MIN_SIDEWAYS_STEP_M = 0.01  # a larger step in an edge is kept as a step
 MAX_POINTS = 100_000  # per strip: 100 km in steps of a metre
-MAX_REACH_M = 1000.0  # no lane lies further from its reference line
-_SNAP_M = 1e-3  # break points closer than this count as one
-_INSIDE_M = 1e-6  # a record applies to a section if it begins no further inside than this
+MAX_EDGE_OFFSET_M = 1000.0  # no lane lies further from its reference line
+_SAME_STATION_M = 1e-3  # break points closer than this count as one
+_INSIDE_TOLERANCE_M = 1e-6  # a record applies to a section if it begins no further inside than this
 
 
 @dataclass(frozen=True, eq=False)
-class Edges:
+class LaneEdges:
     """Lane edges at stations: rows are the lanes' outer edges and lane 0's line, by lane number descending."""
 
     line: ReferenceLine  # the reference line, (n,)
@@ -34,7 +34,7 @@ class Edges:
     y: Floats  # (m, n)
 
 
-class Evaluator:
+class EdgeEvaluator:
     """Evaluates the lane edges of one lane section."""
 
     def __init__(self, road: Road, strip: LaneSection) -> None:
@@ -45,10 +45,14 @@ class Evaluator:
         self.numbers = [*(lane.number for lane in self.left[::-1]), 0, *(lane.number for lane in self.right)]
         self.negative_m: dict[int, float] = {}
 
-    def edges(self, s: Floats, at: Floats | None = None) -> Edges:
+    def edges(self, s: Floats, at: Floats | None = None) -> LaneEdges:
         """Return the edges at stations `s` (n,), ascending. `at`: the stations at which records and geometries are looked up."""
         if at is None:
-            at = np.clip(s + _INSIDE_M, self.strip.start_m + _INSIDE_M, self.strip.end_m - _INSIDE_M)
+            at = np.clip(
+                s + _INSIDE_TOLERANCE_M,
+                self.strip.start_m + _INSIDE_TOLERANCE_M,
+                self.strip.end_m - _INSIDE_TOLERANCE_M,
+            )
         line = self.road.plan.evaluate(s, at)
         centre = self.road.offset.evaluate(s, at)
         left, right = (
@@ -57,9 +61,9 @@ class Evaluator:
         )
         rows = [*left[::-1], centre, *right]
         t, dt = np.array([row[0] for row in rows]), np.array([row[1] for row in rows])
-        if not float(np.abs(t).max(initial=0.0)) < MAX_REACH_M:
+        if not float(np.abs(t).max(initial=0.0)) < MAX_EDGE_OFFSET_M:
             raise MalformedError(f"an edge lies {float(np.abs(t).max()):.3g} m from the reference line")
-        return Edges(line, t, dt, line.x - line.sin * t, line.y + line.cos * t)
+        return LaneEdges(line, t, dt, line.x - line.sin * t, line.y + line.cos * t)
 
     def _edges_outward(
         self, lanes: list[Lane], side: float, centre: tuple[Floats, Floats], s: Floats, at: Floats
@@ -90,32 +94,35 @@ class Evaluator:
         stations = np.concatenate(
             [self.road.plan.s, self.road.offset.start, *(p.start for p in profiles if p is not None)]
         )
-        stations = np.unique(stations[(stations > start + _SNAP_M) & (stations < end - _SNAP_M)])
-        apart = np.diff(stations, prepend=-np.inf) > _SNAP_M
+        stations = np.unique(stations[(stations > start + _SAME_STATION_M) & (stations < end - _SAME_STATION_M)])
+        apart = np.diff(stations, prepend=-np.inf) > _SAME_STATION_M
         return np.concatenate([[start], stations[apart], [end]])
 
-    def sideways_steps(self, breaks: Floats) -> tuple[Floats, Floats]:
+    def sideways_steps(self, break_stations: Floats) -> tuple[Floats, Floats]:
         """Return the inner break points where an edge steps sideways, and by how much (m)."""
-        inner = breaks[1:-1]
+        inner = break_stations[1:-1]
         if not len(inner):
             return inner, inner
-        before, after = self.edges(inner, inner - 2 * _INSIDE_M), self.edges(inner, inner + _INSIDE_M)
+        before, after = (
+            self.edges(inner, inner - 2 * _INSIDE_TOLERANCE_M),
+            self.edges(inner, inner + _INSIDE_TOLERANCE_M),
+        )
         step = np.hypot(before.x - after.x, before.y - after.y).max(axis=0)
-        return inner[step > JUMP_M], step[step > JUMP_M]
+        return inner[step > MIN_SIDEWAYS_STEP_M], step[step > MIN_SIDEWAYS_STEP_M]
 
 
-def sample_stations(evaluator: Evaluator, breaks: Floats) -> Floats:
-    """Return stations, breaks included, at most SPACING_M apart and with chords within CHORD_TOLERANCE_M of every edge."""
-    s = _divide(breaks, np.ceil(np.diff(breaks) / SPACING_M - 1e-9))
+def sample_stations(evaluator: EdgeEvaluator, break_stations: Floats) -> Floats:
+    """Return stations, breaks included, at most MAX_SPACING_M apart and with chords within CHORD_TOLERANCE_M of every edge."""
+    s = _divide_intervals(break_stations, np.ceil(np.diff(break_stations) / MAX_SPACING_M - 1e-9))
     for _ in range(10):
-        parts = _deviation(evaluator, s)
+        parts = _n_parts_of_intervals(evaluator, s)
         if (parts <= 1).all():
             break
-        s = _divide(s, parts)
+        s = _divide_intervals(s, parts)
     return s
 
 
-def _divide(s: Floats, parts: Floats) -> Floats:
+def _divide_intervals(s: Floats, parts: Floats) -> Floats:
     """Return the stations with each interval cut into equal parts."""
     count = np.maximum(parts, 1).astype(np.int64)
     if count.sum() > MAX_POINTS:
@@ -125,9 +132,9 @@ def _divide(s: Floats, parts: Floats) -> Floats:
     return np.append(first + place * np.repeat(np.diff(s) / count, count), s[-1])
 
 
-def _deviation(evaluator: Evaluator, s: Floats) -> Floats:
+def _n_parts_of_intervals(evaluator: EdgeEvaluator, s: Floats) -> Floats:
     """Return into how many parts each interval has to be cut (1: it stays whole)."""
-    edges = evaluator.edges(_divide(s, np.full(len(s) - 1, 4.0)))
+    edges = evaluator.edges(_divide_intervals(s, np.full(len(s) - 1, 4.0)))
     x, y = edges.x, edges.y
     ax, ay, dx, dy = x[:, :-1:4], y[:, :-1:4], np.diff(x[:, ::4]), np.diff(y[:, ::4])
     square = np.maximum(dx * dx + dy * dy, 1e-18)
@@ -137,6 +144,6 @@ def _deviation(evaluator: Evaluator, s: Floats) -> Floats:
         along = np.clip((px * dx + py * dy) / square, 0.0, 1.0)
         off = np.maximum(off, np.hypot(px - along * dx, py - along * dy).max(axis=0))
     by_chord = np.where(off > CHORD_TOLERANCE_M, np.ceil(np.sqrt(off / CHORD_TOLERANCE_M)), 1.0)
-    by_length = np.ceil(np.sqrt(square.max(axis=0)) / SPACING_M - 1e-3)
+    by_length = np.ceil(np.sqrt(square.max(axis=0)) / MAX_SPACING_M - 1e-3)
     # a step in an edge, which no chord follows, would be cut without end
-    return np.where(np.diff(s) > 2 * _SNAP_M, np.clip(np.maximum(by_chord, by_length), 1.0, 16.0), 1.0)
+    return np.where(np.diff(s) > 2 * _SAME_STATION_M, np.clip(np.maximum(by_chord, by_length), 1.0, 16.0), 1.0)

@@ -6,7 +6,7 @@ from collections import Counter
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, NamedTuple
 
-from drivelint.formats.opendrive.network import DRIVABLE
+from drivelint.formats.opendrive.network import DRIVABLE_LANE_TYPES
 from drivelint.phrases import plural
 from drivelint.road.driving_side import correction_hint, opposite_side
 
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from drivelint.road.map_reader import MapOptions
     from drivelint.road.quality import MapQuality
 
-_DECISIVE = 2 / 3  # some maps list both ends of every connecting lane, with half of the votes for each side
+_DECISIVE_SHARE = 2 / 3  # some maps list both ends of every connecting lane, with half of the votes for each side
 
 
 @dataclass(frozen=True)
-class Direction:
+class DrivingDirection:
     """The side that is driven on, the direction of the lanes, and the sources of both.
 
     `forward`: lanes with negative numbers run along the reference line, the standard's rule for right-hand traffic. `travel`: the travel
@@ -39,7 +39,7 @@ class Direction:
         keep = 1 if self.forward else -1
         if lane.kind == "bidirectional" or lane.direction == "both":
             return keep, True
-        if self.travel and lane.travel in {"forward", "backward"} and lane.kind in DRIVABLE:
+        if self.travel and lane.travel in {"forward", "backward"} and lane.kind in DRIVABLE_LANE_TYPES:
             return (1 if lane.travel == "forward" else -1), False
         along = keep if lane.number < 0 else -keep
         return (-along if lane.direction == "reversed" else along), False
@@ -72,21 +72,26 @@ class DrivingSideStatements:
         junctions, travel = _junction_votes(net), _travel_votes(net)
         candidates = [
             ("option", request.side, "--handedness says", False),
-            ("attribute", _winner(roads), f"the rule attribute of {plural(roads.total(), 'road')} says", False),
-            ("junctions", _winner(junctions), f"{junctions.total()} lane links of junctions fit", True),
-            ("attribute", _winner(travel), f"the travel direction of {travel.total()} lanes (userData) fits", True),
+            ("attribute", _decisive_side(roads), f"the rule attribute of {plural(roads.total(), 'road')} says", False),
+            ("junctions", _decisive_side(junctions), f"{junctions.total()} lane links of junctions fit", True),
+            (
+                "attribute",
+                _decisive_side(travel),
+                f"the travel direction of {travel.total()} lanes (userData) fits",
+                True,
+            ),
             ("traces", request.voted_handedness, "the traces fit", True),
         ]
         said = tuple(
             DrivingSideStatement(source, side, text, of) for source, side, text, of in candidates if side is not None
         )
-        return cls(said, roads, _winner(travel))
+        return cls(said, roads, _decisive_side(travel))
 
-    def two_way_direction(self) -> Direction:
+    def two_way_direction(self) -> DrivingDirection:
         """Return the direction of the lanes on two-way roads, where it follows from the driving side."""
         return self._direction("rht", self.statements[0] if self.statements else None)
 
-    def final_direction(self, side_by_lanes: str | None, quality: MapQuality) -> Direction:
+    def final_direction(self, side_by_lanes: str | None, quality: MapQuality) -> DrivingDirection:
         """Return the direction by the most trusted statement, and report the statements that disagree.
 
         `side_by_lanes`: `rht` or `lht`, the driving side that follows from adjacent lanes with opposite directions; None: there are none.
@@ -98,9 +103,9 @@ class DrivingSideStatements:
             message = f"the map has roads with both rules ({counts}): one rule is used for all"
             quality.add("handedness_mixed", "warning", None, message)
         direction = (
-            self._without_opposing(quality)
+            self._direction_without_opposing(quality)
             if side_by_lanes is None
-            else self._with_side_by_lanes(side_by_lanes, quality)
+            else self._direction_by_lanes(side_by_lanes, quality)
         )
         if direction.source == "default":
             message = "the map does not state which side is driven on: right-hand traffic is assumed; set --handedness"
@@ -112,7 +117,7 @@ class DrivingSideStatements:
             quality.add("handedness_default", "warning", None, message)
         return direction
 
-    def _with_side_by_lanes(self, side_by_lanes: str, quality: MapQuality) -> Direction:
+    def _direction_by_lanes(self, side_by_lanes: str, quality: MapQuality) -> DrivingDirection:
         statements = list(self.statements)
         if side_by_lanes == "lht" and (
             rule := next((w for w in statements if w.source == "attribute" and not w.of_lanes), None)
@@ -127,10 +132,10 @@ class DrivingSideStatements:
             w._replace(side=w.side if side_by_lanes == "rht" or not w.of_lanes else opposite_side(w.side))
             for w in statements
         ]
-        _disagreements(statements, quality, "every direction")
+        _report_disagreements(statements, quality, "every direction")
         return self._direction(side_by_lanes, statements[0] if statements else None)
 
-    def _without_opposing(self, quality: MapQuality) -> Direction:
+    def _direction_without_opposing(self, quality: MapQuality) -> DrivingDirection:
         side = next((w for w in self.statements if not w.of_lanes), None)
         option = next((w for w in self.statements if w.source == "option"), None)
         rule = next((w for w in self.statements if w.source == "attribute" and not w.of_lanes), None)
@@ -139,13 +144,15 @@ class DrivingSideStatements:
         ways += [w for w in self.statements if w.of_lanes]
         way = ways[0] if ways else side
         if side is None:  # then no option could correct the lanes' direction
-            _disagreements(self.statements, quality, "every direction", "use a map whose roads have the rule attribute")
+            _report_disagreements(
+                self.statements, quality, "every direction", "use a map whose roads have the rule attribute"
+            )
         else:
-            _disagreements(
+            _report_disagreements(
                 self.statements, quality, "the side for overtaking" if way and way.of_lanes else "every direction"
             )
         forward = way is None or way.side == "rht"
-        return Direction(
+        return DrivingDirection(
             side.side if side else "rht",
             side.source if side else "default",
             forward,
@@ -153,13 +160,13 @@ class DrivingSideStatements:
             self.travel == ("rht" if forward else "lht"),
         )
 
-    def _direction(self, side_by_lanes: str, statement: DrivingSideStatement | None) -> Direction:
+    def _direction(self, side_by_lanes: str, statement: DrivingSideStatement | None) -> DrivingDirection:
         side, source = (statement.side, statement.source) if statement else (side_by_lanes, "default")
         forward = side == side_by_lanes
-        return Direction(side, source, forward, source, self.travel == ("rht" if forward else "lht"))
+        return DrivingDirection(side, source, forward, source, self.travel == ("rht" if forward else "lht"))
 
 
-def _disagreements(
+def _report_disagreements(
     statements: Sequence[DrivingSideStatement], quality: MapQuality, wrong: str, advice: str | None = None
 ) -> None:
     """Report statements that disagree. `wrong`: what is wrong if the first statement is; `advice`: another remedy than --handedness."""
@@ -172,11 +179,11 @@ def _disagreements(
         quality.add("handedness_disagrees", "warning", None, message)
 
 
-def _winner(votes: Counter[str]) -> str | None:
+def _decisive_side(votes: Counter[str]) -> str | None:
     if not votes:
         return None
     side, n = max(votes.items(), key=lambda item: (item[1], item[0]))
-    return side if n >= _DECISIVE * votes.total() else None
+    return side if n >= _DECISIVE_SHARE * votes.total() else None
 
 
 def _junction_votes(net: Network) -> Counter[str]:
@@ -188,7 +195,7 @@ def _junction_votes(net: Network) -> Counter[str]:
             continue
         kinds = {lane.number: lane.kind for strip in road.strips for lane in strip.lanes}
         for _, to in connection.lanes:
-            if kinds.get(to) in DRIVABLE - {"bidirectional"}:
+            if kinds.get(to) in DRIVABLE_LANE_TYPES - {"bidirectional"}:
                 votes["rht" if (connection.contact == "start") == (to < 0) else "lht"] += 1
     return votes
 
@@ -198,11 +205,11 @@ def _travel_votes(net: Network) -> Counter[str]:
     return Counter(
         "rht" if (lane.travel == "forward") == (lane.number < 0) else "lht"
         for lane in lanes
-        if lane.kind in DRIVABLE and lane.travel in {"forward", "backward"}
+        if lane.kind in DRIVABLE_LANE_TYPES and lane.travel in {"forward", "backward"}
     )
 
 
-def report_lanes_against_side(net: Network, direction: Direction, quality: MapQuality) -> None:
+def report_lanes_against_side(net: Network, direction: DrivingDirection, quality: MapQuality) -> None:
     """Report the lanes whose stated direction is not that of their side of the road."""
     plain = replace(direction, travel=False)
     for road in net.roads.values():

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import shapely
 
-from drivelint.formats.opendrive.signals import signal_rows
-from drivelint.formats.opendrive.xml import MalformedError, number, required_attribute
+from drivelint.formats.opendrive.signals import signal_and_stop_line_rows
+from drivelint.formats.opendrive.xml import MalformedError, number_attribute, required_attribute
 from drivelint.road.tables import Rows, crossing_row, stop_line_row
 
 if TYPE_CHECKING:
@@ -27,17 +27,17 @@ MIN_STOP_LINE_SHARE = 0.5  # a stop line that covers less of a lane's width belo
 MIN_STOP_LINE_ANGLE_RAD = 0.87  # 50 degrees: a line at a smaller angle to the lane is no stop line
 MIN_CROSSING_AREA_M2 = 0.5  # a crossing that only touches a lane does not lie across it
 MAX_REPEATS = 10_000  # of one object
-_BAND_STEP_M = 5.0
+_BAND_SPACING_M = 5.0
 _BAND_WIDTH_M = 0.05  # of a fence or railing that has no width of its own
 
-_BY_TYPE = {
+_KIND_BY_TYPE = {
     "crosswalk": "crossing", "parkingSpace": "parking_space", "obstacle": "obstacle", "barrier": "barrier",
     "railing": "barrier", "guardRail": "barrier", "soundBarrier": "barrier", "wall": "barrier", "pole": "pole",
     "streetLamp": "pole", "signalPole": "pole", "rail-pole": "pole", "guide-post": "pole", "tree": "tree",
     "vegetation": "tree", "building": "building", "trafficIsland": "island", "roadMark": "marking",
     "stopLine": "stop_line",
 }  # fmt: skip
-_BY_NAME = (
+_KIND_BY_NAME_PART = (
     ("stopline_pedestrian", "marking"),  # RoadRunner's edge of a pedestrian crossing, right across the road
     ("stopline", "stop_line"), ("stop_line", "stop_line"), ("crosswalk", "crossing"), ("zebra", "crossing"),
     ("parking", "parking_space"), ("stencil", "marking"), ("crosshatch", "marking"), ("chevron", "marking"),
@@ -62,8 +62,8 @@ class PlacedObject:
     def kind(self) -> str:
         """The kind of the object, by its type, else by its name."""
         name = (self.element.get("name") or "").lower()
-        by_name = next((kind for part, kind in _BY_NAME if part in name), "other")
-        return _BY_TYPE.get(self.element.get("type", ""), by_name)
+        by_name = next((kind for part, kind in _KIND_BY_NAME_PART if part in name), "other")
+        return _KIND_BY_TYPE.get(self.element.get("type", ""), by_name)
 
     def row(self) -> dict[str, Any]:
         """Return the row of `road_object`."""
@@ -85,11 +85,13 @@ def counter_clockwise(outline: Floats) -> Floats:
     return outline if area >= -1e-6 else outline[::-1]  # the area of a line is 0 except for rounding: keep its order
 
 
-def furniture(net: Network, lanes: list[Lanelet], offset: tuple[float, float], quality: MapQuality) -> dict[str, Rows]:
+def furniture_rows(
+    net: Network, lanes: list[Lanelet], offset: tuple[float, float], quality: MapQuality
+) -> dict[str, Rows]:
     """Return rows of `traffic_signal`, `stop_line`, `road_object` and `crossing`."""
-    signals, painted = signal_rows(net, lanes, offset, quality)
+    signals, painted = signal_and_stop_line_rows(net, lanes, offset, quality)
     objects = _placed_objects(net, offset, quality)
-    stop_lines, crossings = _laid_over(objects, [lane for lane in lanes if lane.drivable], quality)
+    stop_lines, crossings = _stop_lines_and_crossings(objects, [lane for lane in lanes if lane.drivable], quality)
     return {
         "traffic_signal": signals,
         "stop_line": sorted([*painted, *stop_lines], key=lambda r: (r["stop_line_id"], r["lanelet_id"], r["lane_s_m"])),
@@ -98,16 +100,18 @@ def furniture(net: Network, lanes: list[Lanelet], offset: tuple[float, float], q
     }
 
 
-def _laid_over(objects: list[PlacedObject], lanes: list[Lanelet], quality: MapQuality) -> tuple[Rows, Rows]:
+def _stop_lines_and_crossings(
+    objects: list[PlacedObject], lanes: list[Lanelet], quality: MapQuality
+) -> tuple[Rows, Rows]:
     """Return the stop lines and crossings among the objects, one row per drivable lanelet that they lie across."""
     rows_by_kind: dict[str, Rows] = {"stop_line": [], "crossing": []}
     flat = [(p, p.outline) for p in objects if p.kind in rows_by_kind and p.outline is not None and len(p.outline) > 1]
     if not flat:
         return [], []
-    tree = shapely.STRtree([_valid(np.vstack([lane.line.right, lane.line.left[::-1]])) for lane in lanes])
+    tree = shapely.STRtree([_valid_polygon(np.vstack([lane.line.right, lane.line.left[::-1]])) for lane in lanes])
     for flat_object, corners in flat:
         rows = []
-        shape = _shape(corners)
+        shape = _polygon_or_line(corners)
         for i in sorted(int(i) for i in tree.query(shape)):
             common = shapely.intersection(shape, tree.geometries[i])
             if common.is_empty:
@@ -127,32 +131,32 @@ def _laid_over(objects: list[PlacedObject], lanes: list[Lanelet], quality: MapQu
     return rows_by_kind["stop_line"], rows_by_kind["crossing"]
 
 
-def _valid(corners: Floats) -> shapely.Geometry:
+def _valid_polygon(corners: Floats) -> shapely.Geometry:
     polygon = shapely.Polygon(corners)
     return polygon if polygon.is_valid else polygon.buffer(0.0)
 
 
-def _shape(corners: Floats) -> shapely.Geometry:
+def _polygon_or_line(corners: Floats) -> shapely.Geometry:
     """Return the polygon of an outline; a line if the outline has almost no width."""
     if len(corners) > 2:
         polygon = shapely.Polygon(corners)
         if polygon.area > 0.005 * polygon.length**2:  # a square has 0.0625; 0.2 m by 3.5 m has 0.013
-            return _valid(corners)
+            return _valid_polygon(corners)
     axis = np.linalg.svd(corners - corners.mean(axis=0))[2][0]
     reach = (corners - corners.mean(axis=0)) @ axis
     return shapely.LineString([corners.mean(axis=0) + r * axis for r in (reach.min(), reach.max())])
 
 
-def _lies_across(lane: Lanelet, corners: Floats, points: Floats, middle: float) -> bool:
+def _lies_across(lane: Lanelet, corners: Floats, common_points: Floats, mean_station_m: float) -> bool:
     """Return whether a line crosses enough of a lane's width, at a large enough angle.
 
-    `points`: the line's points on the lane; `middle`: their mean station (m).
+    `common_points`: the line's points on the lane; `mean_station_m`: their mean station (m).
     """
     line = lane.line
     columns = (*line.centre.T, *line.tangent.T, line.half_width)
-    x, y, tx, ty, half = (float(np.interp(middle, line.s, column)) for column in columns)
+    x, y, tx, ty, half = (float(np.interp(mean_station_m, line.s, column)) for column in columns)
     norm = max(float(np.hypot(tx, ty)), 1e-9)
-    d = ((points[:, 1] - y) * tx - (points[:, 0] - x) * ty) / norm  # left positive
+    d = ((common_points[:, 1] - y) * tx - (common_points[:, 0] - x) * ty) / norm  # left positive
     axis = np.linalg.svd(corners - corners.mean(axis=0))[2][0]
     across = abs(float(axis[0] * ty - axis[1] * tx)) / norm
     return not (d.max() - d.min() < MIN_STOP_LINE_SHARE * 2.0 * half or across < np.sin(MIN_STOP_LINE_ANGLE_RAD))
@@ -169,46 +173,50 @@ def _placed_objects(net: Network, offset: tuple[float, float], quality: MapQuali
     for road in net.roads.values():
         for element in road.element.iterfind("objects/object"):
             try:
-                objects += _placements(road, element, offset)
+                objects += _objects_of_element(road, element, offset)
             except MalformedError as error:
                 message = f"object {element.get('id')} of road {road.road_id} is left out: {error}"
                 quality.add("invalid_object", "warning", road.road_id, message)
     return sorted(objects, key=lambda p: (p.object_id, p.road.road_id, p.s, p.x, p.y))
 
 
-def _placements(road: Road, element: etree._Element, offset: tuple[float, float]) -> Iterator[PlacedObject]:
+def _objects_of_element(road: Road, element: etree._Element, offset: tuple[float, float]) -> Iterator[PlacedObject]:
     repeats = element.findall("repeat")
     if not repeats:
-        s, t = np.array([number(element, "s")]), np.array([number(element, "t", 0.0)])
-        yield from _instances(road, element, s, t, offset, numbered=False)
+        s, t = np.array([number_attribute(element, "s")]), np.array([number_attribute(element, "t", 0.0)])
+        yield from _objects_at(road, element, s, t, offset, numbered=False)
     n_repeats = 0
     for repeat in repeats:
-        distance, length = number(repeat, "distance", 0.0), number(repeat, "length", 0.0)
-        start = number(repeat, "s", number(element, "s"))
-        ends = [number(repeat, end, number(element, "t", 0.0)) for end in ("tStart", "tEnd")]
+        distance, length = number_attribute(repeat, "distance", 0.0), number_attribute(repeat, "length", 0.0)
+        start = number_attribute(repeat, "s", number_attribute(element, "s"))
+        ends = [number_attribute(repeat, end, number_attribute(element, "t", 0.0)) for end in ("tStart", "tEnd")]
         if distance <= 0.0:
-            yield _band(road, element, repeat, offset)
+            yield _band_object(road, element, repeat, offset)
             continue
         steps = np.arange(min(int(length / distance + 1e-6) + 1, MAX_REPEATS + 1)) * distance
         n_repeats += len(steps)
         if n_repeats > MAX_REPEATS:
             raise MalformedError(f"it is repeated more than {MAX_REPEATS} times")
         t = np.interp(steps, [0.0, max(length, 1e-9)], ends)
-        yield from _instances(road, element, start + steps.astype(np.float64), t, offset, numbered=True)
+        yield from _objects_at(road, element, start + steps.astype(np.float64), t, offset, numbered=True)
 
 
-def _instances(
+def _objects_at(
     road: Road, element: etree._Element, s: Floats, t: Floats, offset: tuple[float, float], *, numbered: bool
 ) -> Iterator[PlacedObject]:
-    x, y, heading = road.place(s, t, offset)
+    x, y, heading = road.xy_and_heading(s, t, offset)
     local, on_road = _local_outline(element), _corners(element, "cornerRoad", ("s", "t"))
-    turned = heading + number(element, "hdg", 0.0)
+    turned = heading + number_attribute(element, "hdg", 0.0)
     for i in range(len(s)):
         outline = None
         if on_road is not None:
-            shift = np.array([s[i] - number(element, "s"), t[i] - number(element, "t", 0.0)]) if numbered else 0.0
+            shift = (
+                np.array([s[i] - number_attribute(element, "s"), t[i] - number_attribute(element, "t", 0.0)])
+                if numbered
+                else 0.0
+            )
             corners = on_road + shift
-            outline = np.column_stack(road.place(corners[:, 0], corners[:, 1], offset)[:2])
+            outline = np.column_stack(road.xy_and_heading(corners[:, 0], corners[:, 1], offset)[:2])
         elif local is not None:
             cos, sin = np.cos(turned[i]), np.sin(turned[i])
             outline = np.array([x[i], y[i]]) + local @ np.array([[cos, sin], [-sin, cos]])
@@ -216,20 +224,32 @@ def _instances(
         yield PlacedObject(road, element, name, float(s[i]), float(x[i]), float(y[i]), outline)
 
 
-def _band(road: Road, element: etree._Element, repeat: etree._Element, offset: tuple[float, float]) -> PlacedObject:
+def _band_object(
+    road: Road, element: etree._Element, repeat: etree._Element, offset: tuple[float, float]
+) -> PlacedObject:
     """Return an object that runs along the road without gaps."""
-    start, length = number(repeat, "s", number(element, "s")), number(repeat, "length", 0.0)
+    start, length = (
+        number_attribute(repeat, "s", number_attribute(element, "s")),
+        number_attribute(repeat, "length", 0.0),
+    )
     if not 0.0 < length <= 1e5:
         raise MalformedError(f"it is repeated over {length:g} m")
-    along = np.linspace(0.0, 1.0, int(np.ceil(length / _BAND_STEP_M)) + 1)
-    t0 = number(element, "t", 0.0)
-    t = np.interp(along, [0.0, 1.0], [number(repeat, "tStart", t0), number(repeat, "tEnd", t0)])
-    width = number(element, "width", 0.0)
-    half = np.interp(along, [0.0, 1.0], [number(repeat, "widthStart", width), number(repeat, "widthEnd", width)]) / 2
+    along = np.linspace(0.0, 1.0, int(np.ceil(length / _BAND_SPACING_M)) + 1)
+    t0 = number_attribute(element, "t", 0.0)
+    t = np.interp(along, [0.0, 1.0], [number_attribute(repeat, "tStart", t0), number_attribute(repeat, "tEnd", t0)])
+    width = number_attribute(element, "width", 0.0)
+    half = (
+        np.interp(
+            along,
+            [0.0, 1.0],
+            [number_attribute(repeat, "widthStart", width), number_attribute(repeat, "widthEnd", width)],
+        )
+        / 2
+    )
     half = np.maximum(half, 0.5 * _BAND_WIDTH_M)
     s = np.minimum(start + along * length, road.length_m)
-    right, left = (np.column_stack(road.place(s, t + side, offset)[:2]) for side in (-half, half))
-    x, y, _ = road.place(s[:1], t[:1], offset)
+    right, left = (np.column_stack(road.xy_and_heading(s, t + side, offset)[:2]) for side in (-half, half))
+    x, y, _ = road.xy_and_heading(s[:1], t[:1], offset)
     outline = np.concatenate([right, left[::-1]])
     return PlacedObject(
         road, element, required_attribute(element, "id"), float(s[0]), float(x[0]), float(y[0]), outline
@@ -241,7 +261,7 @@ def _corners(element: etree._Element, tag: str, axes: tuple[str, str]) -> Floats
         found = element.findall(path)
         if found:
             mine = [c for c in found if c.getparent() is found[0].getparent()]  # the first outline of several
-            return np.array([[number(c, axis) for axis in axes] for c in mine])
+            return np.array([[number_attribute(c, axis) for axis in axes] for c in mine])
     return None
 
 
@@ -250,7 +270,7 @@ def _local_outline(element: etree._Element) -> Floats | None:
     listed = _corners(element, "cornerLocal", ("u", "v"))
     if listed is not None:
         return listed
-    length, width, radius = (number(element, a, 0.0) for a in ("length", "width", "radius"))
+    length, width, radius = (number_attribute(element, a, 0.0) for a in ("length", "width", "radius"))
     if length > 0.0 and width > 0.0:
         return 0.5 * np.array([[length, width], [-length, width], [-length, -width], [length, -width]])
     if radius > 0.0:

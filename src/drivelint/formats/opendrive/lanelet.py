@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.formats.opendrive.network import DRIVABLE, RoadMark, record_spans
+from drivelint.formats.opendrive.network import DRIVABLE_LANE_TYPES, RoadMark, record_spans
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -50,7 +50,7 @@ class Lanelet:
     @property
     def drivable(self) -> bool:
         """Whether motor vehicles may drive on the lanelet."""
-        return self.lane.kind in DRIVABLE
+        return self.lane.kind in DRIVABLE_LANE_TYPES
 
     def station_at(self, road_s: float) -> float:
         """Return the lanelet station (m) of a road station (m), limited to the lanelet."""
@@ -69,7 +69,7 @@ class Lanelet:
         ordered = [(i, min(a, b), max(a, b)) for i, a, b in found if abs(b - a) > 1e-6]
         return sorted(ordered, key=lambda r: r[1])
 
-    def mean_width(self) -> float:
+    def mean_width_m(self) -> float:
         """Return the mean distance between the bounds (m)."""
         ds, half = np.diff(self.line.s), self.line.half_width
         return float(((half[:-1] + half[1:]) * ds).sum() / ds.sum()) if ds.sum() > 0 else 0.0
@@ -86,21 +86,21 @@ def road_type(lanelet: Lanelet) -> str | None:
     return None if best == "unknown" else best
 
 
-def speed_rows(lanelet: Lanelet) -> Rows:
+def recorded_limit_rows(lanelet: Lanelet) -> Rows:
     """Return rows of `speed_limit`: the lane's own records, else those of the road type; no row where neither states a limit."""
     rows: Rows = []
     start, end = lanelet.strip.start_m, lanelet.strip.end_m
     for i, a, b in record_spans((s.start_m for s in lanelet.lane.speeds), start, end):
         if i >= 0 and lanelet.lane.speeds[i].is_stated:
-            rows += _speed_row(lanelet, a, b, lanelet.lane.speeds[i], "lane")
+            rows += _rows_of_limit(lanelet, a, b, lanelet.lane.speeds[i], "lane")
             continue
         for j, c, d in record_spans((s.start_m for s in lanelet.road.speeds), a, b):
             if j >= 0 and lanelet.road.speeds[j].is_stated:
-                rows += _speed_row(lanelet, c, d, lanelet.road.speeds[j], "road_type")
+                rows += _rows_of_limit(lanelet, c, d, lanelet.road.speeds[j], "road_type")
     return sorted(rows, key=lambda row: float(row["s_start_m"]))
 
 
-def _speed_row(lanelet: Lanelet, start: float, end: float, speed: SpeedLimit, source: str) -> Rows:
+def _rows_of_limit(lanelet: Lanelet, start: float, end: float, speed: SpeedLimit, source: str) -> Rows:
     limit, said = speed.limit_mps, source if speed.readable else "unread"
     return [
         {"lanelet_id": lanelet.lanelet_id, "s_start_m": a, "s_end_m": b, "limit_mps": limit, "source": said}
@@ -120,20 +120,20 @@ def boundary_rows(lanelet: Lanelet) -> Rows:
     # double lines on the centre line are named left to right: for lanes left of it, the nearer line comes first
     swap_inner = bool(inside) or lane_no < 0
     outer_side, inner_side = ("left", "right") if (lane_no > 0) == (along > 0) else ("right", "left")
-    rows = _mark_rows(lanelet, outer_side, lanelet.lane.marks, swap=False)
-    rows += _mark_rows(lanelet, inner_side, inner, swap=swap_inner)
+    rows = _mark_rows(lanelet, outer_side, lanelet.lane.marks, swaps_double_lines=False)
+    rows += _mark_rows(lanelet, inner_side, inner, swaps_double_lines=swap_inner)
     return sorted(rows, key=lambda row: (str(row["side"]), float(row["s_start_m"])))
 
 
-_SWAPPED = {"solid_broken": "broken_solid", "broken_solid": "solid_broken"}
+_SWAPPED_MARKING = {"solid_broken": "broken_solid", "broken_solid": "solid_broken"}
 
 
-def _mark_rows(lanelet: Lanelet, side: str, marks: tuple[RoadMark, ...], *, swap: bool) -> Rows:
+def _mark_rows(lanelet: Lanelet, side: str, marks: tuple[RoadMark, ...], *, swaps_double_lines: bool) -> Rows:
     rows = []
     spans = record_spans((m.start_m for m in marks), lanelet.strip.start_m, lanelet.strip.end_m)
     for i, a, b in lanelet.lanelet_spans(spans):
         mark = marks[i] if i >= 0 else RoadMark(0.0, None, None, None)
-        marking = _SWAPPED.get(mark.marking or "", mark.marking) if swap else mark.marking
+        marking = _SWAPPED_MARKING.get(mark.marking or "", mark.marking) if swaps_double_lines else mark.marking
         rows.append({
             "lanelet_id": lanelet.lanelet_id, "side": side, "s_start_m": a, "s_end_m": b,
             "marking": marking, "color": mark.color, "lane_change": mark.lane_change,

@@ -8,20 +8,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.formats.opendrive.crosssection import Edges, Evaluator, sample_stations
+from drivelint.formats.opendrive.crosssection import EdgeEvaluator, LaneEdges, sample_stations
 from drivelint.formats.opendrive.lanelet import LaneKey, Lanelet, lanelet_id
-from drivelint.formats.opendrive.network import DRIVABLE
+from drivelint.formats.opendrive.network import DRIVABLE_LANE_TYPES
 from drivelint.formats.opendrive.xml import MalformedError
 from drivelint.road.lane_geometry import LaneGeometry
 
 if TYPE_CHECKING:
     from drivelint.arrays import Floats
-    from drivelint.formats.opendrive.direction import Direction
+    from drivelint.formats.opendrive.direction import DrivingDirection
     from drivelint.formats.opendrive.network import Lane, LaneSection, Network, Road
     from drivelint.road.quality import MapQuality
 
-NARROW_M = 0.05  # a lane that is nowhere wider is a line, not a lane
-SHORT_M = 1e-3  # a shorter section is a rounding error: links pass through it
+NARROW_LANE_M = 0.05  # a lane that is nowhere wider is a line, not a lane
+SHORT_SECTION_M = 1e-3  # a shorter section is a rounding error: links pass through it
 
 
 @dataclass(eq=False)
@@ -34,19 +34,21 @@ class BuiltLanes:
     failed: set[LaneKey] = field(default_factory=set)
 
 
-def build(net: Network, direction: Direction, offset: tuple[float, float], quality: MapQuality) -> BuiltLanes:
+def build_lanelets(
+    net: Network, direction: DrivingDirection, offset: tuple[float, float], quality: MapQuality
+) -> BuiltLanes:
     """Build every lane of the network; lanes that are left out are reported in `quality`."""
     lanes = BuiltLanes()
     for road in net.roads.values():
-        _check_plan(road, quality)
+        _report_plan_faults(road, quality)
         for strip in road.strips:
-            _StripBuilder(road, strip, direction, offset, lanes, quality).build()
-        _join_sides(road, lanes)
+            _SectionBuilder(road, strip, direction, offset, lanes, quality).build()
+        _join_one_sided_sections(road, lanes)
     return lanes
 
 
-def _check_plan(road: Road, quality: MapQuality) -> None:
-    gap, kink = road.plan.joints()
+def _report_plan_faults(road: Road, quality: MapQuality) -> None:
+    gap, kink = road.plan.joint_gaps_and_turns()
     name = f"the geometries of road {road.road_id}"
     if (gap > 0.05).any():
         message = f"{name} leave gaps of up to {float(gap.max()):.2f} m"
@@ -54,71 +56,73 @@ def _check_plan(road: Road, quality: MapQuality) -> None:
     if (kink > 0.05).any():
         message = f"{name} turn on the spot by up to {float(np.degrees(kink.max())):.1f} degrees"
         quality.add("reference_kink", "warning", road.road_id, message, int((kink > 0.05).sum()))
-    if abs(road.plan.end - road.said_length_m) > 0.01:
-        message = f"{name} are {road.plan.end:.2f} m long, the road states {road.said_length_m:.2f} m: the shorter length is used"
+    if abs(road.plan.end - road.stated_length_m) > 0.01:
+        message = f"{name} are {road.plan.end:.2f} m long, the road states {road.stated_length_m:.2f} m: the shorter length is used"
         quality.add("length_mismatch", "warning", road.road_id, message)
 
 
 @dataclass(eq=False)
-class _StripBuilder:
+class _SectionBuilder:
     """Builds the lanelets of one strip into `lanes`."""
 
     road: Road
     strip: LaneSection
-    direction: Direction
+    direction: DrivingDirection
     offset: tuple[float, float]
     lanes: BuiltLanes
     quality: MapQuality
 
     def build(self) -> None:
         strip, road = self.strip, self.road
-        keys = [self._key(lane) for lane in strip.lanes]
+        keys = [self._lane_key(lane) for lane in strip.lanes]
         length, name = strip.end_m - strip.start_m, f"section {strip.section} of road {road.road_id}"
-        if length < SHORT_M:
+        if length < SHORT_SECTION_M:
             self.lanes.short.update(keys)
             message = f"{name} is {length:.4f} m long: it is left out, and links lead through it"
             self.quality.add("short_section", "info", road.road_id, message, max(len(keys), 1))
             return
-        self._fail(_unbuildable(strip))
+        self._report_failed(_reason_by_unbuildable_lane(strip))
         try:
-            evaluator = Evaluator(road, strip)
+            evaluator = EdgeEvaluator(road, strip)
             breaks = evaluator.break_stations()
             at, step = evaluator.sideways_steps(breaks)
-            s = sample_stations(evaluator, np.sort(np.concatenate([breaks, at - SHORT_M])))
+            s = sample_stations(evaluator, np.sort(np.concatenate([breaks, at - SHORT_SECTION_M])))
             edges = evaluator.edges(s)
         except MalformedError as error:
-            self._fail({lane.number: str(error) for lane in strip.lanes if self._key(lane) not in self.lanes.failed})
+            self._report_failed(
+                {lane.number: str(error) for lane in strip.lanes if self._lane_key(lane) not in self.lanes.failed}
+            )
             return
         if len(at):
             message = f"lane edges in {name} step sideways by up to {float(step.max()):.2f} m"
             self.quality.add("edge_step", "warning", road.road_id, message, len(at))
-        self._cut(evaluator, edges, s)
+        self._add_lanelets(evaluator, edges, s)
         for number, low in sorted(evaluator.negative_m.items()):
             if low < -0.01:
                 lane_id = lanelet_id((road.road_id, strip.section, number))
                 message = f"the width of lane {lane_id} falls to {low:.2f} m: treated as 0 there"
                 self.quality.add("negative_width", "warning", lane_id, message)
 
-    def _cut(self, evaluator: Evaluator, edges: Edges, s: Floats) -> None:
+    def _add_lanelets(self, evaluator: EdgeEvaluator, edges: LaneEdges, s: Floats) -> None:
         """Create a lanelet between the edges of each lane, from left to right, and make lanelets beside each other neighbours."""
         row = {number: i for i, number in enumerate(evaluator.numbers)}
         lanelets: list[Lanelet] = []
         for lane in self.strip.lanes[::-1]:
-            key = self._key(lane)
+            key = self._lane_key(lane)
             if key in self.lanes.failed:
                 continue
             outer, inner = row[lane.number], row[lane.number] + (1 if lane.number > 0 else -1)
-            if float(np.abs(edges.t[outer] - edges.t[inner]).max()) < NARROW_M:
+            if float(np.abs(edges.t[outer] - edges.t[inner]).max()) < NARROW_LANE_M:
                 self.lanes.narrow.add(key)
-                message = f"lane {lanelet_id(key)} is nowhere wider than {NARROW_M} m: it is left out, and its neighbours are adjacent"
+                message = f"lane {lanelet_id(key)} is nowhere wider than {NARROW_LANE_M} m: it is left out, and its neighbours are adjacent"
                 self.quality.add("narrow_lane", "info", lanelet_id(key), message)
                 continue
             lanelets.append(self._lanelet(lane, edges, s, (min(outer, inner), max(outer, inner))))
         for a, b in pairwise(lanelets):
-            _adjoin(a, b)
+            _make_neighbours(a, b)
         self.lanes.built.update((lanelet.key, lanelet) for lanelet in lanelets)
 
-    def _lanelet(self, lane: Lane, edges: Edges, s: Floats, rows: tuple[int, int]) -> Lanelet:
+    def _lanelet(self, lane: Lane, edges: LaneEdges, s: Floats, rows: tuple[int, int]) -> Lanelet:
         """Return the lanelet of a lane. `rows`: the rows of its left and right edge in `edges`, seen along the reference line."""
         i, j = rows
         along, bidirectional = self.direction.lane_direction(lane)
@@ -134,8 +138,8 @@ class _StripBuilder:
             norm = np.maximum(np.hypot(tx, ty), 1e-12)
         folded = np.any(line.curvature * edges.t[[i, j]] > 1.0, axis=0)
         if folded.any():
-            name = lanelet_id(self._key(lane))
-            severity = "error" if lane.kind in DRIVABLE and (forward <= 0.0).any() else "warning"
+            name = lanelet_id(self._lane_key(lane))
+            severity = "error" if lane.kind in DRIVABLE_LANE_TYPES and (forward <= 0.0).any() else "warning"
             message = (
                 f"an edge of lane {name} folds back on itself: the bend is too tight for the distance "
                 "of the edge from the reference line"
@@ -155,14 +159,14 @@ class _StripBuilder:
             half_width=(0.5 * (edges.t[i] - edges.t[j]))[order],
         )
         return Lanelet(
-            self._key(lane), lane, self.road, self.strip, along, bidirectional,
+            self._lane_key(lane), lane, self.road, self.strip, along, bidirectional,
             line=geometry, road_s=s[order], z=z[order], t=t[order],
         )  # fmt: skip
 
-    def _key(self, lane: Lane) -> LaneKey:
+    def _lane_key(self, lane: Lane) -> LaneKey:
         return (self.road.road_id, self.strip.section, lane.number)
 
-    def _fail(self, reasons: dict[int, str]) -> None:
+    def _report_failed(self, reasons: dict[int, str]) -> None:
         for number, reason in sorted(reasons.items()):
             key = (self.road.road_id, self.strip.section, number)
             self.lanes.failed.add(key)
@@ -170,7 +174,7 @@ class _StripBuilder:
             self.quality.add("invalid_lane", "error", lanelet_id(key), message)
 
 
-def _unbuildable(strip: LaneSection) -> dict[int, str]:
+def _reason_by_unbuildable_lane(strip: LaneSection) -> dict[int, str]:
     """Return lane number -> why the lane cannot be built. A lane outside an invalid lane has no place either."""
     reasons: dict[int, str] = {}
     for side in (1, -1):
@@ -184,31 +188,31 @@ def _unbuildable(strip: LaneSection) -> dict[int, str]:
     return reasons
 
 
-def _adjoin(a: Lanelet, b: Lanelet) -> None:
+def _make_neighbours(a: Lanelet, b: Lanelet) -> None:
     """Make `b` the neighbour of `a` on its right, seen along the reference line."""
     setattr(a, "right" if a.along > 0 else "left", b)
     setattr(b, "left" if b.along > 0 else "right", a)
 
 
-def _join_sides(road: Road, lanes: BuiltLanes) -> None:
+def _join_one_sided_sections(road: Road, lanes: BuiltLanes) -> None:
     """Give each innermost lane of a one-sided lane section a neighbour: the lane across the centre line that it adjoins longest."""
     built = [lanes.built[key] for key in road.lane_keys if key in lanes.built]
     for a in built:
         inward = "right" if (a.lane.number > 0) == (a.along > 0) else "left"
         if getattr(a, inward) is not None:
             continue
-        across = [b for b in built if b.lane.number * a.lane.number < 0 and _innermost(b, built)]
-        across = [b for b in across if _overlap(a, b) > SHORT_M]
-        if across and _innermost(a, built):
-            setattr(a, inward, max(across, key=lambda b: (_overlap(a, b), -b.strip.section)))
+        across = [b for b in built if b.lane.number * a.lane.number < 0 and _is_innermost(b, built)]
+        across = [b for b in across if _common_length_m(a, b) > SHORT_SECTION_M]
+        if across and _is_innermost(a, built):
+            setattr(a, inward, max(across, key=lambda b: (_common_length_m(a, b), -b.strip.section)))
 
 
-def _innermost(a: Lanelet, built: list[Lanelet]) -> bool:
+def _is_innermost(a: Lanelet, built: list[Lanelet]) -> bool:
     return not any(
         b.strip is a.strip and b.lane.number * a.lane.number > 0 and abs(b.lane.number) < abs(a.lane.number)
         for b in built
     )
 
 
-def _overlap(a: Lanelet, b: Lanelet) -> float:
+def _common_length_m(a: Lanelet, b: Lanelet) -> float:
     return min(a.strip.end_m, b.strip.end_m) - max(a.strip.start_m, b.strip.start_m)

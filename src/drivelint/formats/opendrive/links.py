@@ -22,15 +22,15 @@ if TYPE_CHECKING:
     from drivelint.formats.opendrive.network import Connection, LaneSection, Network, Road
     from drivelint.road.quality import MapQuality
 
-GAP_M = 0.5  # linked ends further apart than this are reported
-TOUCH_M = 0.1  # a lane that begins this close to another's end, in the same direction, should be linked to it
-TOUCH_HEADING_COS = 0.98
+REPORTED_GAP_M = 0.5  # linked ends further apart than this are reported
+TOUCH_DISTANCE_M = 0.1  # a lane that begins this close to another's end, in the same direction, should be linked to it
+MIN_TOUCH_HEADING_COS = 0.98
 LaneEnd = tuple[LaneKey, str]
 Link = tuple[Lanelet, Lanelet]  # the second continues the first
 _OPPOSITE_END = {START: END, END: START}
 
 
-def links(net: Network, lanes: BuiltLanes, quality: MapQuality) -> list[Link]:
+def lanelet_links(net: Network, lanes: BuiltLanes, quality: MapQuality) -> list[Link]:
     """Return the links, each once, ordered by ids; links to missing lanes and over gaps are reported in `quality`."""
     declared = {key for road in net.roads.values() for key in road.lane_keys}
     touching: set[tuple[LaneEnd, LaneEnd]] = set()
@@ -40,18 +40,18 @@ def links(net: Network, lanes: BuiltLanes, quality: MapQuality) -> list[Link]:
         else:
             _report_missing_link(lanes, a, f"lane {lanelet_id(b[0])}, which does not exist", quality)
     link_by_ids: dict[tuple[str, str], Link] = {}
-    for a, b in sorted(_through_short(touching, lanes.short)):
-        link = _directed(a, b, lanes, quality)
+    for a, b in sorted(_contacts_through_short(touching, lanes.short)):
+        link = _directed_link(a, b, lanes, quality)
         if link is not None:
             link_by_ids[link[0].lanelet_id, link[1].lanelet_id] = link
     result = [link_by_ids[key] for key in sorted(link_by_ids)]
     for source, target in result:
         gap = float(np.hypot(*(source.line.centre[-1] - target.line.centre[0])))
-        if gap > GAP_M:
+        if gap > REPORTED_GAP_M:
             name = source.lanelet_id
             message = f"lane {target.lanelet_id} begins {gap:.2f} m away from the end of lane {name} that it continues"
             quality.add("link_gap", "warning" if source.drivable else "info", name, message)
-    _check_unlinked(sorted(lanes.built.values(), key=lambda lane: lane.key), link_by_ids, quality)
+    _report_unlinked_ends(sorted(lanes.built.values(), key=lambda lane: lane.key), link_by_ids, quality)
     return result
 
 
@@ -63,29 +63,35 @@ def _declared_contacts(net: Network, quality: MapQuality) -> Iterator[tuple[Lane
                 for lane in strip.lanes:
                     if lane.number * side > 0 and lane.invalid is None:
                         key = (road.road_id, strip.section, lane.number)
-                        yield from _contacts_at(net, road, (key, START), lane.predecessors, before, quality=quality)
-                        yield from _contacts_at(net, road, (key, END), lane.successors, after, quality=quality)
+                        yield from _contacts_of_end(net, road, (key, START), lane.predecessors, before, quality=quality)
+                        yield from _contacts_of_end(net, road, (key, END), lane.successors, after, quality=quality)
     for connection in net.connections:
         yield from _junction_contacts(net, connection, quality)
 
 
-def _contacts_at(
-    net: Network, road: Road, at: LaneEnd, targets: tuple[int, ...], beside: LaneSection | None, *, quality: MapQuality
+def _contacts_of_end(
+    net: Network,
+    road: Road,
+    lane_end: LaneEnd,
+    targets: tuple[int, ...],
+    next_section: LaneSection | None,
+    *,
+    quality: MapQuality,
 ) -> Iterator[tuple[LaneEnd, LaneEnd]]:
     """Yield the contacts of a lane's end with lane ends in the next section of its road, or in the next road."""
-    key, end = at
-    if beside is not None:
+    key, end = lane_end
+    if next_section is not None:
         for target in targets:
-            yield (key, end), ((road.road_id, beside.section, target), _OPPOSITE_END[end])
+            yield (key, end), ((road.road_id, next_section.section, target), _OPPOSITE_END[end])
         return
-    join = road.joins.get(end)
+    join = road.links.get(end)
     if join is None or join.is_junction or not targets:
         return
     other_road = net.roads.get(join.element_id)
     if other_road is None:
         yield from (((key, end), ((join.element_id, 0, target), START)) for target in targets)
         return
-    back = [e for e, link in other_road.joins.items() if not link.is_junction and link.element_id == road.road_id]
+    back = [e for e, link in other_road.links.items() if not link.is_junction and link.element_id == road.road_id]
     contact = join.contact or (back[0] if len(back) == 1 else None)
     if contact is None:
         name = lanelet_id(key)
@@ -93,10 +99,10 @@ def _contacts_at(
         quality.add("missing_link", "error", name, message)
         return
     for target in targets:
-        yield (key, end), (_lane_at(other_road, contact, target), contact)
+        yield (key, end), (_lane_key_at_end(other_road, contact, target), contact)
 
 
-def _lane_at(road: Road, contact: str, lane_no: int) -> LaneKey:
+def _lane_key_at_end(road: Road, contact: str, lane_no: int) -> LaneKey:
     strips = road.sections_on_side(lane_no)
     if not strips:
         return (road.road_id, 0, lane_no)
@@ -112,28 +118,30 @@ def _junction_contacts(net: Network, connection: Connection, quality: MapQuality
         return
     end, contact = _end_at_junction(incoming, connecting, connection), connection.contact
     for source, target in connection.lanes:
-        yield (_lane_at(incoming, end, source), end), (_lane_at(connecting, contact, target), contact)
+        yield (_lane_key_at_end(incoming, end, source), end), (_lane_key_at_end(connecting, contact, target), contact)
 
 
 def _end_at_junction(incoming: Road, connecting: Road, connection: Connection) -> str:
     """Return which end of the incoming road is at the junction: as this road or the connecting road states, else the nearer end."""
-    ends = [e for e, join in incoming.joins.items() if join.is_junction and join.element_id == connection.junction_id]
+    ends = [e for e, join in incoming.links.items() if join.is_junction and join.element_id == connection.junction_id]
     if len(ends) == 1:
         return ends[0]
-    back = connecting.joins.get(connection.contact)
+    back = connecting.links.get(connection.contact)
     if back is not None and not back.is_junction and back.element_id == incoming.road_id and back.contact is not None:
         return back.contact
-    at = _road_end(connecting, connection.contact)
-    return min((START, END), key=lambda e: float(np.hypot(*(_road_end(incoming, e) - at))))
+    at = _road_end_xy(connecting, connection.contact)
+    return min((START, END), key=lambda e: float(np.hypot(*(_road_end_xy(incoming, e) - at))))
 
 
-def _road_end(road: Road, end: str) -> np.ndarray:
+def _road_end_xy(road: Road, end: str) -> np.ndarray:
     s = np.array([0.0 if end == START else road.length_m])
     line = road.plan.evaluate(s, np.clip(s, 1e-6, max(road.length_m - 1e-6, 1e-6)))
     return np.array([line.x[0], line.y[0]])
 
 
-def _through_short(touching: set[tuple[LaneEnd, LaneEnd]], short: set[LaneKey]) -> set[tuple[LaneEnd, LaneEnd]]:
+def _contacts_through_short(
+    touching: set[tuple[LaneEnd, LaneEnd]], short: set[LaneKey]
+) -> set[tuple[LaneEnd, LaneEnd]]:
     """Return the contacts; where a section was left out as too short, the lanes at its two ends touch each other instead."""
     result = set(touching)
     for key in sorted(short):
@@ -147,7 +155,7 @@ def _through_short(touching: set[tuple[LaneEnd, LaneEnd]], short: set[LaneKey]) 
     return result
 
 
-def _directed(a: LaneEnd, b: LaneEnd, lanes: BuiltLanes, quality: MapQuality) -> Link | None:
+def _directed_link(a: LaneEnd, b: LaneEnd, lanes: BuiltLanes, quality: MapQuality) -> Link | None:
     """Return the link in the direction of travel; None if a lane was left out or the directions contradict each other (reported)."""
     first, second = lanes.built.get(a[0]), lanes.built.get(b[0])
     if first is None or second is None:
@@ -155,7 +163,7 @@ def _directed(a: LaneEnd, b: LaneEnd, lanes: BuiltLanes, quality: MapQuality) ->
             if other[0] in lanes.failed and end[0] in lanes.built:
                 _report_missing_link(lanes, end, f"lane {lanelet_id(other[0])}, which could not be built", quality)
         return None
-    leaves, enters = _exit(first) == a[1], _exit(second) != b[1]
+    leaves, enters = _exit_end(first) == a[1], _exit_end(second) != b[1]
     if leaves and enters:
         return first, second
     if not leaves and not enters:
@@ -168,7 +176,7 @@ def _directed(a: LaneEnd, b: LaneEnd, lanes: BuiltLanes, quality: MapQuality) ->
     return None
 
 
-def _exit(lane: Lanelet) -> str:
+def _exit_end(lane: Lanelet) -> str:
     return END if lane.along > 0 else START
 
 
@@ -181,16 +189,18 @@ def _report_missing_link(lanes: BuiltLanes, end: LaneEnd, target: str, quality: 
     quality.add("missing_link", severity, name, f"lane {name} is linked at its {end[1]} to {target}")
 
 
-def _check_unlinked(lanes: list[Lanelet], links: dict[tuple[str, str], Link], quality: MapQuality) -> None:
+def _report_unlinked_ends(lanes: list[Lanelet], links: dict[tuple[str, str], Link], quality: MapQuality) -> None:
     """Report drivable lanes that another lane continues without a link: chains of lanes would end there."""
     lanes = [lane for lane in lanes if lane.drivable]
     if not lanes:
         return
     ends, starts = ([lane.line.centre[k] for lane in lanes] for k in (-1, 0))
-    touching = query_in_parts(shapely.STRtree(shapely.points(starts)), shapely.points(ends), "dwithin", TOUCH_M)
+    touching = query_in_parts(
+        shapely.STRtree(shapely.points(starts)), shapely.points(ends), "dwithin", TOUCH_DISTANCE_M
+    )
     for i, j in (pair for part in touching for pair in sorted(np.stack(part, axis=1).tolist())):
         a, b = lanes[i], lanes[j]
-        same = float((a.line.tangent[-1] * b.line.tangent[0]).sum()) > TOUCH_HEADING_COS
+        same = float((a.line.tangent[-1] * b.line.tangent[0]).sum()) > MIN_TOUCH_HEADING_COS
         if same and (a.lanelet_id, b.lanelet_id) not in links:
             message = f"lane {b.lanelet_id} begins where lane {a.lanelet_id} ends, but the map does not link them"
             quality.add("unlinked_end", "error", a.lanelet_id, message)

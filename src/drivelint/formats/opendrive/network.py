@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from drivelint.formats.opendrive.planview import Cubics, PlanView, cubics, planview
-from drivelint.formats.opendrive.xml import MalformedError, integer, number, required_attribute
+from drivelint.formats.opendrive.xml import MalformedError, integer_attribute, number_attribute, required_attribute
 from drivelint.road.countries import only_nation
 from drivelint.road.geo_reference import GeoFrame
 
@@ -21,12 +21,12 @@ if TYPE_CHECKING:
     from drivelint.arrays import Floats
     from drivelint.road.quality import MapQuality
 
-MAX_ROAD_M = 1e6  # a longer road is a unit mistake, and would be millions of points
+MAX_ROAD_LENGTH_M = 1e6  # a longer road is a unit mistake, and would be millions of points
 START, END = "start", "end"
 
 # Types of lanes on which motor vehicles may drive (ASAM OpenDRIVE e_laneType, with the names of older versions). Not
 # among them: the hard shoulder ("stop"), parking, biking, tram and everything beside the carriageway.
-DRIVABLE = frozenset({
+DRIVABLE_LANE_TYPES = frozenset({
     "driving", "entry", "exit", "onRamp", "offRamp", "connectingRamp", "slipLane", "bidirectional",
     "bus", "taxi", "HOV", "carpool", "shared", "mwyEntry", "mwyExit",
 })  # fmt: skip
@@ -98,10 +98,10 @@ class Road:
 
     road_id: str
     length_m: float  # the part of the stated length that its geometries cover
-    said_length_m: float
+    stated_length_m: float
     junction_id: str | None
     rule: str | None  # lht, rht
-    joins: dict[str, RoadLink]  # start or end of this road -> link
+    links: dict[str, RoadLink]  # start or end of this road -> link
     types: tuple[tuple[float, str], ...]  # (from station, type)
     speeds: tuple[SpeedLimit, ...]
     plan: PlanView
@@ -119,7 +119,7 @@ class Road:
         """Return the lane sections with lanes on the same side as lane `lane_no`, in order of station."""
         return [s for s in self.strips if any((lane.number > 0) == (lane_no > 0) for lane in s.lanes)]
 
-    def place(self, s: Floats, t: Floats, offset: tuple[float, float]) -> tuple[Floats, Floats, Floats]:
+    def xy_and_heading(self, s: Floats, t: Floats, offset: tuple[float, float]) -> tuple[Floats, Floats, Floats]:
         """Return x, y (m) and the road's heading (rad) at road coordinates, each (n,); `s` is limited to the road."""
         inside = np.clip(s, 0.0, self.length_m)
         order = np.argsort(inside, kind="stable")
@@ -151,7 +151,7 @@ class Network:
     nation: str | None  # the only country of its roads and signals, as two letters; None: not known
 
 
-def network(root: etree._Element, quality: MapQuality) -> Network:
+def road_network(root: etree._Element, quality: MapQuality) -> Network:
     """Return the road network of a file; roads that cannot be read are left out and reported in `quality`."""
     roads: dict[str, Road] = {}
     for element in root.findall("road"):
@@ -178,7 +178,7 @@ def _geo_frame(root: etree._Element, quality: MapQuality) -> GeoFrame | None:
     if offset is None:
         return GeoFrame(reference)
     try:
-        return GeoFrame(reference, *(number(offset, name, 0.0) for name in ("x", "y", "z", "hdg")))
+        return GeoFrame(reference, *(number_attribute(offset, name, 0.0) for name in ("x", "y", "z", "hdg")))
     except MalformedError as error:
         quality.geo_unusable(reference, error)
         return None
@@ -187,31 +187,33 @@ def _geo_frame(root: etree._Element, quality: MapQuality) -> GeoFrame | None:
 def _road(element: etree._Element, roads: dict[str, Road], quality: MapQuality) -> Road:
     if element.get("id") in roads:
         raise MalformedError("another road has the same id")
-    length = number(element, "length")
-    if not 0.0 < length <= MAX_ROAD_M:
+    length = number_attribute(element, "length")
+    if not 0.0 < length <= MAX_ROAD_LENGTH_M:
         raise MalformedError(f"its length is {length:g} m")
     junction = element.get("junction", "-1")
     rule = (element.get("rule") or "").lower()
     plan = planview(element.find("planView"))
-    types = [(number(t, "s", 0.0), _road_type(t.get("type", "unknown"), quality)) for t in element.findall("type")]
+    types = [
+        (number_attribute(t, "s", 0.0), _road_type(t.get("type", "unknown"), quality)) for t in element.findall("type")
+    ]
     return Road(
         road_id=required_attribute(element, "id"),
         length_m=min(length, plan.end),
-        said_length_m=length,
+        stated_length_m=length,
         junction_id=None if junction in {"-1", ""} else junction,
         rule=rule if rule in {"lht", "rht"} else None,
-        joins=_joins(element),
+        links=_road_links(element),
         types=tuple(sorted(types, key=lambda t: t[0])),
-        speeds=_speeds(element.findall("type"), "s", 0.0, quality, child="speed"),
+        speeds=_speed_limits(element.findall("type"), "s", 0.0, quality, child="speed"),
         plan=plan,
         elevation=cubics(element.findall("elevationProfile/elevation"), "s"),
         offset=cubics(element.findall("lanes/laneOffset"), "s"),
-        strips=_strips(element, min(length, plan.end), quality),
+        strips=_lane_sections(element, min(length, plan.end), quality),
         element=element,
     )
 
 
-def _joins(element: etree._Element) -> dict[str, RoadLink]:
+def _road_links(element: etree._Element) -> dict[str, RoadLink]:
     joins = {}
     for end, name in ((START, "predecessor"), (END, "successor")):
         link = element.find(f"link/{name}")
@@ -221,8 +223,8 @@ def _joins(element: etree._Element) -> dict[str, RoadLink]:
     return joins
 
 
-def _strips(element: etree._Element, length: float, quality: MapQuality) -> tuple[LaneSection, ...]:
-    sections = sorted(enumerate(element.findall("lanes/laneSection")), key=lambda item: number(item[1], "s"))
+def _lane_sections(element: etree._Element, length: float, quality: MapQuality) -> tuple[LaneSection, ...]:
+    sections = sorted(enumerate(element.findall("lanes/laneSection")), key=lambda item: number_attribute(item[1], "s"))
     if not sections:
         raise MalformedError("it has no <laneSection>")
     strips = []
@@ -231,8 +233,8 @@ def _strips(element: etree._Element, length: float, quality: MapQuality) -> tupl
         if _has_numbers_of_other_side(section):
             quality.side_by_number()
         sides = [side for side in ("left", "right") if section in ends[side]]
-        start = number(section, "s")
-        marks = tuple(m for centre in section.findall("center/lane") for m in _marks(centre, start, quality))
+        start = number_attribute(section, "s")
+        marks = tuple(m for centre in section.findall("center/lane") for m in _road_marks(centre, start, quality))
         together = len({ends[side][section] for side in sides}) == 1
         groups = [sides] if together else [[side] for side in sides]
         for group in groups:
@@ -249,15 +251,15 @@ def _section_ends(sections: list[etree._Element], side: str, length: float) -> d
     """Return the end of each section that describes this side of the road; a `singleSide` section may describe only the other side."""
     other = "left" if side == "right" else "right"
     mine = [s for s in sections if s.get("singleSide") != "true" or s.find(side) is not None or s.find(other) is None]
-    ends = [min(number(s, "s"), length) for s in mine[1:]] + [length]
+    ends = [min(number_attribute(s, "s"), length) for s in mine[1:]] + [length]
     return dict(zip(mine, ends, strict=True))
 
 
 def _lane(element: etree._Element, section_start: float, quality: MapQuality) -> Lane:
-    lane_no = integer(element, "id")
+    lane_no = integer_attribute(element, "id")
     kind = quality.known_word("lane_type", element.get("type", "none")) or "unknown"
     try:
-        return _valid_lane(element, lane_no, kind, section_start, quality)
+        return _lane_or_error(element, lane_no, kind, section_start, quality)
     except MalformedError as error:
         return Lane(lane_no, kind, invalid=str(error))
 
@@ -267,7 +269,9 @@ def _has_numbers_of_other_side(section: etree._Element) -> bool:
 
     netconvert 1.28.0 does this for the roads in junctions of its left-hand nets; their lanes lie on the side of their numbers.
     """
-    left, right = ([integer(lane, "id") for lane in section.findall(f"{side}/lane")] for side in ("left", "right"))
+    left, right = (
+        [integer_attribute(lane, "id") for lane in section.findall(f"{side}/lane")] for side in ("left", "right")
+    )
     return bool(left) != bool(right) and all(no < 0 for no in left) and all(no > 0 for no in right)
 
 
@@ -275,7 +279,7 @@ def _road_type(word: str, quality: MapQuality) -> str:
     return "unknown" if word == "unknown" else quality.known_word("road_type", word) or "unknown"
 
 
-def _valid_lane(element: etree._Element, lane_no: int, kind: str, section_start: float, quality: MapQuality) -> Lane:
+def _lane_or_error(element: etree._Element, lane_no: int, kind: str, section_start: float, quality: MapQuality) -> Lane:
     parent = element.getparent()
     side = "" if parent is None else str(parent.tag)
     fits = (side == "left") == (lane_no > 0)
@@ -289,21 +293,21 @@ def _valid_lane(element: etree._Element, lane_no: int, kind: str, section_start:
     return Lane(
         number=lane_no,
         kind=kind,
-        predecessors=tuple(integer(e, "id") for e in element.findall("link/predecessor")),
-        successors=tuple(integer(e, "id") for e in element.findall("link/successor")),
+        predecessors=tuple(integer_attribute(e, "id") for e in element.findall("link/predecessor")),
+        successors=tuple(integer_attribute(e, "id") for e in element.findall("link/successor")),
         widths=cubics(widths, "sOffset", section_start) if widths else None,
         borders=None if widths else cubics(borders, "sOffset", section_start),
-        marks=tuple(_marks(element, section_start, quality)),
-        speeds=_speeds(element.findall("speed"), "sOffset", section_start, quality),
+        marks=tuple(_road_marks(element, section_start, quality)),
+        speeds=_speed_limits(element.findall("speed"), "sOffset", section_start, quality),
         travel=None if user is None else user.get("travelDir"),
         direction=element.get("direction"),
     )
 
 
-def _marks(lane: etree._Element, section_start: float, quality: MapQuality) -> list[RoadMark]:
+def _road_marks(lane: etree._Element, section_start: float, quality: MapQuality) -> list[RoadMark]:
     marks = [
         RoadMark(
-            section_start + number(mark, "sOffset", 0.0),
+            section_start + number_attribute(mark, "sOffset", 0.0),
             quality.known_word("marking", "_".join(mark.get("type", "none").split())),
             _known_attribute(mark, "color", "marking_color", quality),
             _known_attribute(mark, "laneChange", "lanes_changed", quality),
@@ -321,13 +325,13 @@ def _known_attribute(mark: etree._Element, name: str, vocabulary: str, quality: 
 SPEED_UNITS_MPS = {"m/s": 1.0, "km/h": 1.0 / 3.6, "mph": 0.44704}
 
 
-def _speeds(
+def _speed_limits(
     elements: Iterable[etree._Element], station: str, origin: float, quality: MapQuality, child: str | None = None
 ) -> tuple[SpeedLimit, ...]:
     """Read speed limits. With `child`, the limit is in a child element; an element without it is a record that states no limit."""
     speeds = []
     for element in elements:
-        start = origin + number(element, station, 0.0)
+        start = origin + number_attribute(element, station, 0.0)
         speed = element.find(child) if child else element
         word = "undefined" if speed is None else speed.get("max", "undefined").strip().lower()
         if speed is None or word == "undefined":
@@ -335,7 +339,7 @@ def _speeds(
         elif word in {"no limit", "nolimit", "unlimited"}:
             speeds.append(SpeedLimit(start, None, is_stated=True))
         else:
-            limit = _limit(speed)
+            limit = _limit_mps(speed)
             posted = None if limit is None else quality.posted_limit(limit)
             speeds.append(SpeedLimit(start, posted, is_stated=True, readable=posted is not None))
             if limit is None:
@@ -345,9 +349,9 @@ def _speeds(
     return tuple(sorted(speeds, key=lambda s: s.start_m))
 
 
-def _limit(speed: etree._Element) -> float | None:
+def _limit_mps(speed: etree._Element) -> float | None:
     try:
-        limit = number(speed, "max") * SPEED_UNITS_MPS[speed.get("unit", "m/s")]
+        limit = number_attribute(speed, "max") * SPEED_UNITS_MPS[speed.get("unit", "m/s")]
     except (MalformedError, KeyError):
         return None
     return limit if limit > 0.0 else None
@@ -377,7 +381,9 @@ def _connection(junction_id: str, element: etree._Element) -> Connection:
         incoming=required_attribute(element, "incomingRoad"),
         connecting=element.get("connectingRoad") or required_attribute(element, "linkedRoad"),
         contact=contact,
-        lanes=tuple((integer(link, "from"), integer(link, "to")) for link in element.findall("laneLink")),
+        lanes=tuple(
+            (integer_attribute(link, "from"), integer_attribute(link, "to")) for link in element.findall("laneLink")
+        ),
     )
 
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from drivelint.arrays import wrapped
-from drivelint.formats.opendrive.xml import MalformedError, number
+from drivelint.formats.opendrive.xml import MalformedError, number_attribute
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
-_BLOCK = 2**20  # nodes at a time: bounds the memory that a long spiral takes
+_NODES_AT_A_TIME = 2**20  # nodes at a time: bounds the memory that a long spiral takes
 _MAX_TURN_RAD = 200.0  # a loop ramp turns 5 rad; more than 30 turns in one geometry is nonsense
 
 
@@ -50,22 +50,22 @@ class Clothoid:
     def evaluate(self, ds: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:
         """Return u, v, cos and sin of the heading, curvature, speed, each (n,), at distances `ds` from the start."""
         heading = (self.start + 0.5 * self.rate * ds) * ds
-        u, v = self._constant(ds) if self.rate == 0.0 else self._integral(ds)
+        u, v = self._points_of_arc(ds) if self.rate == 0.0 else self._points_of_spiral(ds)
         return u, v, np.cos(heading), np.sin(heading), self.start + self.rate * ds, np.ones_like(ds)
 
-    def _constant(self, ds: Floats) -> tuple[Floats, Floats]:
+    def _points_of_arc(self, ds: Floats) -> tuple[Floats, Floats]:
         # sinc keeps full precision where the curvature is tiny, and is the straight line where it is 0
         half = 0.5 * self.start * ds
         chord = ds * np.sinc(half / np.pi)
         return chord * np.cos(half), chord * np.sin(half)
 
-    def _integral(self, ds: Floats) -> tuple[Floats, Floats]:
+    def _points_of_spiral(self, ds: Floats) -> tuple[Floats, Floats]:
         turn = np.abs(self.start * ds) + np.abs(0.5 * self.rate * ds * ds)
         panels = max(1, int(np.ceil(2.0 * float(turn.max(initial=0.0)))))
         at = (np.arange(panels)[:, None] + 0.5 * (_NODES + 1.0)).ravel() / panels  # fractions of ds
         weight = np.tile(0.5 * _WEIGHTS, panels) / panels
         u, v = np.empty_like(ds), np.empty_like(ds)
-        block = max(1, _BLOCK // len(at))
+        block = max(1, _NODES_AT_A_TIME // len(at))
         for i in range(0, len(ds), block):
             part = ds[i : i + block]
             q = part[:, None] * at
@@ -85,44 +85,46 @@ class Polynomial:
 
     def evaluate(self, ds: Floats) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:
         """Return u, v, cos and sin of the heading, curvature, speed, each (n,), at distances `ds` from the start."""
-        p = ds if self.table is None else self._parameter(ds * self.stretch)
-        (u, du, ddu), (v, dv, ddv) = _powers(self.u, p), _powers(self.v, p)
+        p = ds if self.table is None else self._parameters_at(ds * self.stretch)
+        (u, du, ddu), (v, dv, ddv) = _values_and_derivatives(self.u, p), _values_and_derivatives(self.v, p)
         norm = np.hypot(du, dv)
         if not (norm > 1e-9).all():
             raise MalformedError("a polynomial geometry stands still: its derivative is zero")
         speed = norm if self.table is None else np.full_like(ds, self.stretch)
         return u, v, du / norm, dv / norm, (du * ddv - dv * ddu) / norm**3, speed
 
-    def _parameter(self, ds: Floats) -> Floats:
+    def _parameters_at(self, ds: Floats) -> Floats:
         assert self.table is not None  # noqa: S101 - the caller's branch
         length, p_at = self.table
         k = np.clip(np.searchsorted(length, ds, side="right") - 1, 0, len(length) - 2)
         p = np.interp(ds, length, p_at)
         for _ in range(3):
-            p = p - (length[k] + _arc(self.u, self.v, p_at[k], p) - ds) / _rate(self.u, self.v, p)
+            p = p - (length[k] + _arc_lengths(self.u, self.v, p_at[k], p) - ds) / _length_per_parameter(
+                self.u, self.v, p
+            )
         return p
 
 
-def _powers(coef: Floats, p: Floats) -> tuple[Floats, Floats, Floats]:
+def _values_and_derivatives(coef: Floats, p: Floats) -> tuple[Floats, Floats, Floats]:
     a, b, c, d = coef
     return ((d * p + c) * p + b) * p + a, (3 * d * p + 2 * c) * p + b, 6 * d * p + 2 * c
 
 
-def _rate(u: Floats, v: Floats, p: Floats) -> Floats:
-    rate = np.hypot(_powers(u, p)[1], _powers(v, p)[1])
+def _length_per_parameter(u: Floats, v: Floats, p: Floats) -> Floats:
+    rate = np.hypot(_values_and_derivatives(u, p)[1], _values_and_derivatives(v, p)[1])
     return np.maximum(rate, 1e-9)
 
 
-def _arc(u: Floats, v: Floats, p0: Floats, p1: Floats) -> Floats:
+def _arc_lengths(u: Floats, v: Floats, p0: Floats, p1: Floats) -> Floats:
     half = 0.5 * (p1 - p0)
     nodes = p0[:, None] + half[:, None] * (_NODES + 1.0)
-    return half * (_rate(u, v, nodes) @ _WEIGHTS)
+    return half * (_length_per_parameter(u, v, nodes) @ _WEIGHTS)
 
 
 def arc_length_polynomial(u: Floats, v: Floats, p_max: float, length: float | None = None) -> Polynomial:
     """Return the curve as a function of arc length, up to p_max; with `length`, it is stretched so that p_max is reached there."""
     p_at = np.linspace(0.0, p_max, 257)
-    along = np.concatenate([[0.0], np.cumsum(_arc(u, v, p_at[:-1], p_at[1:]))])
+    along = np.concatenate([[0.0], np.cumsum(_arc_lengths(u, v, p_at[:-1], p_at[1:]))])
     if not along[-1] > 1e-6:
         raise MalformedError("a polynomial geometry has no length")
     return Polynomial(u, v, (along, p_at), 1.0 if length is None else float(along[-1]) / length)
@@ -165,7 +167,7 @@ class PlanView:
             self.x[k] + c * u - n * v, self.y[k] + n * u + c * v, c * cos - n * sin, n * cos + c * sin, curvature, speed
         )
 
-    def joints(self) -> tuple[Floats, Floats]:
+    def joint_gaps_and_turns(self) -> tuple[Floats, Floats]:
         """Return distance (m) and turn (rad) between each geometry's end and the next one's start, both (n - 1,)."""
         if len(self.s) < 2:
             return np.zeros(0), np.zeros(0)
@@ -176,16 +178,18 @@ class PlanView:
 
 def planview(element: etree._Element | None) -> PlanView:
     """Read `<planView>`; `MalformedError` for a geometry that is missing, unknown or impossible."""
-    found = [] if element is None else sorted(element.findall("geometry"), key=lambda g: number(g, "s"))
-    found = [g for g in found if number(g, "length") > 0.0]
+    found = [] if element is None else sorted(element.findall("geometry"), key=lambda g: number_attribute(g, "s"))
+    found = [g for g in found if number_attribute(g, "length") > 0.0]
     if not found:
         raise MalformedError("the road has no <geometry> with a length")
-    s, x, y, heading, length = np.array([[number(g, a) for a in ("s", "x", "y", "hdg", "length")] for g in found]).T
+    s, x, y, heading, length = np.array(
+        [[number_attribute(g, a) for a in ("s", "x", "y", "hdg", "length")] for g in found]
+    ).T
     return PlanView(s, x, y, heading, length, tuple(_shape(g) for g in found))
 
 
 def _shape(geometry: etree._Element) -> Shape:
-    length = number(geometry, "length")
+    length = number_attribute(geometry, "length")
     kind = next(iter(geometry), None)
     if kind is None:
         raise MalformedError(f"<geometry> in line {geometry.sourceline} is empty")
@@ -193,14 +197,14 @@ def _shape(geometry: etree._Element) -> Shape:
         case "line":
             return Clothoid(0.0, 0.0)
         case "arc":
-            return _clothoid(length, number(kind, "curvature"), number(kind, "curvature"))
+            return _clothoid(length, number_attribute(kind, "curvature"), number_attribute(kind, "curvature"))
         case "spiral":
-            return _clothoid(length, number(kind, "curvStart"), number(kind, "curvEnd"))
+            return _clothoid(length, number_attribute(kind, "curvStart"), number_attribute(kind, "curvEnd"))
         case "poly3":
-            u, v = np.array([0.0, 1.0, 0.0, 0.0]), np.array([number(kind, c) for c in "abcd"])
+            u, v = np.array([0.0, 1.0, 0.0, 0.0]), np.array([number_attribute(kind, c) for c in "abcd"])
             return arc_length_polynomial(u, v, length)
         case "paramPoly3":
-            u, v = (np.array([number(kind, c + axis) for c in "abcd"]) for axis in "UV")
+            u, v = (np.array([number_attribute(kind, c + axis) for c in "abcd"]) for axis in "UV")
             if kind.get("pRange") == "arcLength":
                 return Polynomial(u, v, None)
             return arc_length_polynomial(u, v, 1.0, length)
@@ -247,7 +251,9 @@ def cubics(elements: Iterable[etree._Element], station: str, origin: float = 0.0
 
     Of records with the same start, the last one applies.
     """
-    rows = [(origin + number(e, station, 0.0), *(number(e, c, 0.0) for c in "abcd")) for e in elements]
+    rows = [
+        (origin + number_attribute(e, station, 0.0), *(number_attribute(e, c, 0.0) for c in "abcd")) for e in elements
+    ]
     rows.sort(key=lambda row: row[0])
     table = np.array(rows, dtype=np.float64).reshape(-1, 5)
     return Cubics(table[:, 0].copy(), table[:, 1:].copy())

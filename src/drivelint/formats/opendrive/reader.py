@@ -8,19 +8,19 @@ from typing import TYPE_CHECKING, Any
 from drivelint.errors import MapError
 from drivelint.formats import safe_xml
 from drivelint.formats.opendrive.direction import DrivingSideStatements, report_lanes_against_side
-from drivelint.formats.opendrive.furniture import furniture
-from drivelint.formats.opendrive.lanelet import boundary_rows, road_type, speed_rows
-from drivelint.formats.opendrive.lanes import build
-from drivelint.formats.opendrive.links import links
-from drivelint.formats.opendrive.network import network
-from drivelint.formats.opendrive.signlimits import speed_limits
+from drivelint.formats.opendrive.furniture import furniture_rows
+from drivelint.formats.opendrive.lanelet import boundary_rows, recorded_limit_rows, road_type
+from drivelint.formats.opendrive.lanes import build_lanelets
+from drivelint.formats.opendrive.links import lanelet_links
+from drivelint.formats.opendrive.network import road_network
+from drivelint.formats.opendrive.signlimits import speed_limit_rows
 from drivelint.road.boundary_lanes import lane_points
 from drivelint.road.driving_side import opposite_side, side_driven_on
 from drivelint.road.quality import MapQuality
 from drivelint.road.tables import map_tables
 
 if TYPE_CHECKING:
-    from drivelint.formats.opendrive.direction import Direction
+    from drivelint.formats.opendrive.direction import DrivingDirection
     from drivelint.formats.opendrive.lanelet import Lanelet
     from drivelint.formats.opendrive.lanes import BuiltLanes
     from drivelint.formats.opendrive.network import Network
@@ -31,19 +31,19 @@ if TYPE_CHECKING:
 def read(source: MapSource, request: MapOptions) -> MapTables:
     """Return the map's tables. Errors: `MapError` if the file is not XML, or no lane can be built."""
     quality = MapQuality()
-    net = network(safe_xml.parse_map(source), quality)
-    direction, lanes = _built(net, request, quality)
+    net = road_network(safe_xml.parse_map(source), quality)
+    direction, lanes = _direction_and_lanes(net, request, quality)
     if not lanes.built:
         first = next((row["message"] for row in quality.rows if row["severity"] == "error"), "it has no roads")
         raise MapError(f"map {source.name} has no lane that can be built: {first}")
-    lane_links = links(net, lanes, quality)
+    lane_links = lanelet_links(net, lanes, quality)
     side = direction.handedness, direction.source
     turned = direction.forward != (direction.handedness == "rht")
     built = sorted(lanes.built.values(), key=lambda lane: lane.key)
     places = {lane.lanelet_id: n for n, lane in enumerate(built)}
-    recorded = [row for lane in built for row in speed_rows(lane)]
-    beside = furniture(net, built, request.offset, quality)
-    limits = speed_limits(built, lane_links, beside["traffic_signal"], recorded, quality)
+    recorded = [row for lane in built for row in recorded_limit_rows(lane)]
+    beside = furniture_rows(net, built, request.offset, quality)
+    limits = speed_limit_rows(built, lane_links, beside["traffic_signal"], recorded, quality)
     content: dict[str, Rows | dict[str, Any]] = {
         "lanelet": [_lanelet_row(lane) for lane in built],
         "lane_point": lane_points(built),
@@ -66,11 +66,11 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     return replace(tables, lanes="rht" if direction.forward else "lht", lanes_source=direction.forward_source)
 
 
-def _built(net: Network, request: MapOptions, quality: MapQuality) -> tuple[Direction, BuiltLanes]:
+def _direction_and_lanes(net: Network, request: MapOptions, quality: MapQuality) -> tuple[DrivingDirection, BuiltLanes]:
     """Build the lanes as for two-way traffic; build them again if their layout shows that the directions are wrong."""
     witnesses = DrivingSideStatements.collect(net, request)
     first, noted = witnesses.two_way_direction(), len(quality.rows)
-    lanes = build(net, first, request.offset, quality)
+    lanes = build_lanelets(net, first, request.offset, quality)
     side = side_driven_on(
         [
             lane.line.driving_side_points(lane.z)
@@ -84,7 +84,7 @@ def _built(net: Network, request: MapOptions, quality: MapQuality) -> tuple[Dire
     del quality.rows[noted:]
     direction = witnesses.final_direction(side, quality)
     if (direction.forward, direction.travel) != (first.forward, first.travel):
-        lanes = build(net, direction, request.offset, quality)
+        lanes = build_lanelets(net, direction, request.offset, quality)
     else:
         quality.rows += built
     report_lanes_against_side(net, direction, quality)
@@ -97,14 +97,14 @@ def _lanelet_row(lane: Lanelet) -> dict[str, Any]:
         "lane_no": lane.lane.number, "lane_type": lane.lane.kind, "drivable": lane.drivable,
         "bidirectional": lane.bidirectional, "along_road": lane.along, "junction_id": lane.road.junction_id,
         "road_type": road_type(lane),
-        "length_m": lane.line.length, "width_m": lane.mean_width(), "area_m2": lane.line.area,
+        "length_m": lane.line.length, "width_m": lane.mean_width_m(), "area_m2": lane.line.area,
         "left_id": lane.left.lanelet_id if lane.left else None,
-        "left_against": _against(lane, lane.left),
+        "left_against": _is_driven_other_way(lane, lane.left),
         "right_id": lane.right.lanelet_id if lane.right else None,
-        "right_against": _against(lane, lane.right),
+        "right_against": _is_driven_other_way(lane, lane.right),
     }  # fmt: skip
 
 
-def _against(lane: Lanelet, beside: Lanelet | None) -> bool | None:
+def _is_driven_other_way(lane: Lanelet, beside: Lanelet | None) -> bool | None:
     """Return whether the lane beside is driven the other way; a lane that is driven both ways counts as such."""
     return None if beside is None else beside.along != lane.along or beside.bidirectional

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.formats.opendrive.xml import MalformedError, integer, number
+from drivelint.formats.opendrive.xml import MalformedError, integer_attribute, number_attribute
 from drivelint.road.signcodes import kind_of, turns_of
 from drivelint.road.tables import Rows, stop_line_row
 
@@ -17,16 +17,16 @@ if TYPE_CHECKING:
     from drivelint.formats.opendrive.network import Network, Road
     from drivelint.road.quality import MapQuality
 
-MIN_LINE_M = 1.0  # the stated width of a stop line shorter than this does not show which lanes it crosses
+MIN_STOP_LINE_WIDTH_M = 1.0  # the stated width of a stop line shorter than this does not show which lanes it crosses
 MIN_SAME_DIRECTION_SHARE = 0.25  # of a stop line's width on lanes of its orientation: less is on opposite lanes
 OFF_ROAD_M = 1.0  # a signal further beyond its road's end than this is a mistake worth a warning
 
 
-def signal_rows(
+def signal_and_stop_line_rows(
     net: Network, lanes: list[Lanelet], offset: tuple[float, float], quality: MapQuality
 ) -> tuple[Rows, Rows]:
     """Return rows of `traffic_signal`, and rows of `stop_line` for signals that are painted stop lines (StVO 294)."""
-    reader = _Reader(net, offset, quality)
+    reader = _SignalReader(net, offset, quality)
     for lane in lanes:
         if lane.drivable:
             reader.lanes.setdefault(lane.road.road_id, []).append(lane)
@@ -34,18 +34,18 @@ def signal_rows(
         for listing in road.element.iterfind("signals/*"):
             if listing.tag in {"signal", "signalReference"}:
                 reader.read(road, listing)
-    reader.report()
-    signals = _unique(reader.signals, ("signal_id", "road_id", "road_s_m", "lanelet_id", "type", "subtype"))
-    return signals, _unique(reader.stop_lines, ("stop_line_id", "lanelet_id", "lane_s_m"))
+    reader.report_problems()
+    signals = _unique_rows(reader.signals, ("signal_id", "road_id", "road_s_m", "lanelet_id", "type", "subtype"))
+    return signals, _unique_rows(reader.stop_lines, ("stop_line_id", "lanelet_id", "lane_s_m"))
 
 
-def _unique(rows: Rows, key: tuple[str, ...]) -> Rows:
+def _unique_rows(rows: Rows, key: tuple[str, ...]) -> Rows:
     """Return the rows ordered by their key, each once."""
     found = {tuple("" if row[k] is None else row[k] for k in key): row for row in rows}
     return [found[k] for k in sorted(found)]
 
 
-class _Reader:
+class _SignalReader:
     """Collects signals; a signal that cannot be placed is reported in `quality`."""
 
     def __init__(self, net: Network, offset: tuple[float, float], quality: MapQuality) -> None:
@@ -65,24 +65,24 @@ class _Reader:
         name = listing.get("id", "")
         home, signal = (road, listing) if listing.tag == "signal" else self.defined.get(name, (road, None))
         try:
-            self._read(road, listing, home, signal)
+            self._add_signal(road, listing, home, signal)
         except MalformedError as error:
             message = f"{listing.tag} {name} of road {road.road_id} is left out: {error}"
             self.quality.add("invalid_signal", "error", road.road_id, message)
 
-    def _read(self, road: Road, listing: etree._Element, home: Road, signal: etree._Element | None) -> None:
+    def _add_signal(self, road: Road, listing: etree._Element, home: Road, signal: etree._Element | None) -> None:
         if signal is None:
             raise MalformedError("it refers to a signal that is not defined")
-        listed_s = number(listing, "s")
+        listed_s = number_attribute(listing, "s")
         s = min(max(listed_s, 0.0), road.length_m)
         if abs(listed_s - s) > OFF_ROAD_M:
             message = f"signal {listing.get('id')} is listed at {listed_s:.1f} m of a road of {road.length_m:.1f} m"
             self.quality.add("signal_off_road", "warning", road.road_id, message)
-        lanes = [lane for lane in self.lanes.get(road.road_id, []) if _at(lane, s)]
+        lanes = [lane for lane in self.lanes.get(road.road_id, []) if _contains_station(lane, s)]
         x, y = _position(home, signal, self.offset)
         kind = kind_of(signal.get("country", ""), signal.get("type", ""), signal.get("name", ""))
         turns = turns_of(signal.get("type", ""), signal.get("subtype", "")) if kind == "traffic_light" else None
-        value = 0.0 if signal.get("value") in {None, "", "None"} else number(signal, "value")
+        value = 0.0 if signal.get("value") in {None, "", "None"} else number_attribute(signal, "value")
         signal_columns = {
             "signal_id": listing.get("id", ""), "kind": kind, "country": (signal.get("country") or "").lower() or None,
             "type": signal.get("type"), "subtype": signal.get("subtype"),
@@ -97,7 +97,7 @@ class _Reader:
         if kind == "stop_line":
             self.stop_lines += [
                 stop_line_row(listing.get("id", ""), lane.lanelet_id, lane.station_at(s), "signal")
-                for lane in self._stopped(listing, signal, s, lanes)
+                for lane in self._lanelets_of_stop_line(listing, signal, s, lanes)
             ]
 
     def _lanelets_of_signal(self, listing: etree._Element, lanes: list[Lanelet]) -> list[Lanelet]:
@@ -107,7 +107,10 @@ class _Reader:
         reference line). If validity and orientation contradict each other, the validity decides, since it names the lanes.
         In RoadRunner's files they always do: the orientation is the direction in which the sign faces.
         """
-        valid = [sorted((integer(v, "fromLane"), integer(v, "toLane"))) for v in listing.findall("validity")]
+        valid = [
+            sorted((integer_attribute(v, "fromLane"), integer_attribute(v, "toLane")))
+            for v in listing.findall("validity")
+        ]
         if valid:
             lanes = [lane for lane in lanes if any(low <= lane.lane.number <= high for low, high in valid)]
         along = {"+": 1, "-": -1}.get(listing.get("orientation", "none"))
@@ -117,7 +120,7 @@ class _Reader:
             return lanes
         return lanelets
 
-    def _stopped(
+    def _lanelets_of_stop_line(
         self, listing: etree._Element, signal: etree._Element, s: float, lanes: list[Lanelet]
     ) -> list[Lanelet]:
         """Return the lanelets to which a painted stop line applies.
@@ -128,11 +131,11 @@ class _Reader:
         to those: its orientation is then the direction in which it faces.
         """
         lanelets = self._lanelets_of_signal(listing, lanes)
-        width = number(signal, "width", 0.0)
+        width = number_attribute(signal, "width", 0.0)
         oriented = listing.get("orientation") in {"+", "-"}
-        if listing.find("validity") is not None or (oriented and width < MIN_LINE_M):
+        if listing.find("validity") is not None or (oriented and width < MIN_STOP_LINE_WIDTH_M):
             return lanelets
-        t, half = number(listing, "t", 0.0), max(0.5 * width, 1e-3)
+        t, half = number_attribute(listing, "t", 0.0), max(0.5 * width, 1e-3)
         ranges = [(lane, *lane.lateral_range(s)) for lane in lanes]
         shared = [(lane, min(high, t + half) - max(low, t - half), high - low) for lane, low, high in ranges]
         across = [lane for lane, common, wide in shared if common > min(0.5 * wide, half)]
@@ -144,7 +147,7 @@ class _Reader:
         self.contradictions.append(listing.get("id", ""))
         return across
 
-    def report(self) -> None:
+    def report_problems(self) -> None:
         """Report contradictions, and signals that apply to no lane, neither directly nor by a reference."""
         if self.contradictions:
             message = f"the orientation of signals contradicts their lanes (the first: {self.contradictions[0]}): the lanes are used"
@@ -160,12 +163,14 @@ def _position(road: Road, signal: etree._Element, offset: tuple[float, float]) -
     """Return where the signal stands: its own inertial position, if it has one, else beside its road."""
     inertial = signal.find("positionInertial")
     if inertial is not None:
-        return number(inertial, "x") + offset[0], number(inertial, "y") + offset[1]
-    x, y, _ = road.place(np.array([number(signal, "s")]), np.array([number(signal, "t", 0.0)]), offset)
+        return number_attribute(inertial, "x") + offset[0], number_attribute(inertial, "y") + offset[1]
+    x, y, _ = road.xy_and_heading(
+        np.array([number_attribute(signal, "s")]), np.array([number_attribute(signal, "t", 0.0)]), offset
+    )
     return float(x[0]), float(y[0])
 
 
-def _at(lane: Lanelet, s: float) -> bool:
+def _contains_station(lane: Lanelet, s: float) -> bool:
     """Return whether the lanelet contains a road station; where two lanelets meet, only the later one does."""
     end = lane.strip.end_m
     return lane.strip.start_m <= s < end or (s >= end >= lane.road.length_m - 1e-3)

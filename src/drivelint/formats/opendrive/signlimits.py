@@ -23,15 +23,15 @@ if TYPE_CHECKING:
     from drivelint.road.quality import MapQuality
     from drivelint.road.tables import Rows
 
-LIMIT_BEGINS = frozenset({"speed_limit", "speed_zone"})
-LIMIT_ENDS = LIMIT_BEGINS | {
+LIMIT_BEGIN_KINDS = frozenset({"speed_limit", "speed_zone"})
+LIMIT_END_KINDS = LIMIT_BEGIN_KINDS | {
     "speed_limit_end", "speed_zone_end", "restrictions_end", "town_entrance", "town_exit", "motorway", "motorway_end",
     "expressway", "expressway_end",
 }  # fmt: skip
-_SHORT_M = 1e-6
+_MIN_SPAN_M = 1e-6
 
 
-class _Stretch(NamedTuple):
+class _SignStretch(NamedTuple):
     """A stretch of road still to be processed: its start on a lanelet, and the sign's limit (m/s; None: it cannot be read)."""
 
     lanelet_id: str
@@ -39,12 +39,12 @@ class _Stretch(NamedTuple):
     limit_mps: float | None
 
 
-def speed_limits(
-    lanes: Sequence[Lanelet], links: Sequence[Link], signals: Rows, recorded: Rows, quality: MapQuality
+def speed_limit_rows(
+    lanes: Sequence[Lanelet], links: Sequence[Link], signals: Rows, recorded_rows: Rows, quality: MapQuality
 ) -> Rows:
-    """Return the rows of `speed_limit`. `recorded`: the rows that lanes and roads record; `signals`: rows of `traffic_signal`."""
+    """Return the rows of `speed_limit`. `recorded_rows`: the rows that lanes and roads record; `signals`: rows of `traffic_signal`."""
     records: dict[str, Rows] = {lane.lanelet_id: [] for lane in lanes}
-    for row in recorded:
+    for row in recorded_rows:
         records[row["lanelet_id"]].append(row)
     signed: dict[str, Rows] = {}
     for row in _sign_rows(lanes, links, signals, records):
@@ -57,10 +57,10 @@ def speed_limits(
         of_lane = [row for row in own_rows if row["source"] == "lane"]
         unread = [row for row in of_signs if row["source"] != "sign"]
         rows += sign_rows
-        rows += [part for row in unread for part in _outside(row, of_lane)]
-        rows += [part for row in of_lane for part in _outside(row, sign_rows)]
-        rows += [part for row in own_rows if row["source"] != "lane" for part in _outside(row, of_signs)]
-        if any(_contradict(sign, lane) for sign in sign_rows for lane in of_lane):
+        rows += [part for row in unread for part in _uncovered_parts(row, of_lane)]
+        rows += [part for row in of_lane for part in _uncovered_parts(row, sign_rows)]
+        rows += [part for row in own_rows if row["source"] != "lane" for part in _uncovered_parts(row, of_signs)]
+        if any(_is_contradiction(sign, lane) for sign in sign_rows for lane in of_lane):
             contradicted.append(name)
     if contradicted:
         message = (
@@ -81,10 +81,14 @@ def _sign_rows(
         after.setdefault(a.lanelet_id, []).append(b.lanelet_id)
     posts: dict[str, list[float]] = {}
     for row in signals:
-        if row["kind"] in LIMIT_ENDS:
+        if row["kind"] in LIMIT_END_KINDS:
             posts.setdefault(row["lanelet_id"], []).append(row["lane_s_m"])
-    todo = [_Stretch(row["lanelet_id"], row["lane_s_m"], _limit(row)) for row in signals if row["kind"] in LIMIT_BEGINS]
-    seen: set[_Stretch] = set()
+    todo = [
+        _SignStretch(row["lanelet_id"], row["lane_s_m"], _sign_limit_mps(row))
+        for row in signals
+        if row["kind"] in LIMIT_BEGIN_KINDS
+    ]
+    seen: set[_SignStretch] = set()
     while todo:
         stretch = todo.pop()
         if stretch in seen:
@@ -101,15 +105,15 @@ def _sign_rows(
             }  # fmt: skip
         if posted is None:
             todo += [
-                _Stretch(name, 0.0, stretch.limit_mps)
+                _SignStretch(name, 0.0, stretch.limit_mps)
                 for name in after.get(stretch.lanelet_id, ())
                 if by_id[name].road.junction_id is None
                 and 0.0 not in posts.get(name, ())
-                and (by_id[name].road is lane.road or _same_record(records[stretch.lanelet_id], records[name]))
+                and (by_id[name].road is lane.road or _records_same_limit(records[stretch.lanelet_id], records[name]))
             ]
 
 
-def _same_record(before: Rows, behind: Rows) -> bool:
+def _records_same_limit(before: Rows, behind: Rows) -> bool:
     """Return whether a lanelet records no limit, or at its start the limit that the lanelet before it records at its end."""
     last, first = (
         (row["limit_mps"], row["source"]) if row is not None else None
@@ -121,7 +125,7 @@ def _same_record(before: Rows, behind: Rows) -> bool:
     return first is None or first == last
 
 
-def _outside(row: Mapping[str, Any], covering_rows: Rows) -> Rows:
+def _uncovered_parts(row: Mapping[str, Any], covering_rows: Rows) -> Rows:
     """Return the parts of a row that the spans of `covering_rows` do not cover."""
     parts, at = [], float(row["s_start_m"])
     for start, end in sorted((float(other["s_start_m"]), float(other["s_end_m"])) for other in covering_rows):
@@ -130,16 +134,16 @@ def _outside(row: Mapping[str, Any], covering_rows: Rows) -> Rows:
         parts.append((at, min(start, row["s_end_m"])))
         at = end
     parts.append((at, row["s_end_m"]))
-    return [{**row, "s_start_m": a, "s_end_m": b} for a, b in parts if b - a > _SHORT_M]
+    return [{**row, "s_start_m": a, "s_end_m": b} for a, b in parts if b - a > _MIN_SPAN_M]
 
 
-def _contradict(sign: Mapping[str, Any], lane: Mapping[str, Any]) -> bool:
+def _is_contradiction(sign: Mapping[str, Any], lane: Mapping[str, Any]) -> bool:
     common = min(sign["s_end_m"], lane["s_end_m"]) - max(sign["s_start_m"], lane["s_start_m"])
     same = lane["limit_mps"] is not None and abs(sign["limit_mps"] - lane["limit_mps"]) < 0.1
-    return common > _SHORT_M and not same
+    return common > _MIN_SPAN_M and not same
 
 
-def _limit(row: Mapping[str, Any]) -> float | None:
+def _sign_limit_mps(row: Mapping[str, Any]) -> float | None:
     """Return the limit on a sign (m/s); None: it has no number or no unit, or it changes."""
     unit = SPEED_UNITS_MPS.get(row["unit"] or "")
     return None if unit is None or row["value"] is None or row["dynamic"] else float(row["value"]) * unit

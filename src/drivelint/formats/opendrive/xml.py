@@ -16,7 +16,7 @@ class MalformedError(ValueError):
 MAX_NUMBER = 1e9  # no length, coordinate or coefficient of a road is larger; beyond it arithmetic loses the millimetres
 
 
-def number(element: etree._Element, name: str, default: float | None = None) -> float:
+def number_attribute(element: etree._Element, name: str, default: float | None = None) -> float:
     """Return an attribute as a finite number, or the default if it is absent."""
     if default is not None and name not in element.attrib:
         return default
@@ -26,17 +26,17 @@ def number(element: etree._Element, name: str, default: float | None = None) -> 
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
-        raise MalformedError(f"{_where(element, name)} is not a finite number")
+        raise MalformedError(f"{_attribute_place(element, name)} is not a finite number")
     if abs(value) > MAX_NUMBER:
-        raise MalformedError(f"{_where(element, name)} is larger than any value on a road")
+        raise MalformedError(f"{_attribute_place(element, name)} is larger than any value on a road")
     return value
 
 
-def integer(element: etree._Element, name: str) -> int:
+def integer_attribute(element: etree._Element, name: str) -> int:
     """Return an attribute as an integer."""
-    value = number(element, name)
+    value = number_attribute(element, name)
     if value != int(value):
-        raise MalformedError(f"{_where(element, name)} is not an integer")
+        raise MalformedError(f"{_attribute_place(element, name)} is not an integer")
     return int(value)
 
 
@@ -48,6 +48,6 @@ def required_attribute(element: etree._Element, name: str) -> str:
     return value
 
 
-def _where(element: etree._Element, name: str) -> str:
+def _attribute_place(element: etree._Element, name: str) -> str:
     said = (element.get(name) or "")[:40]
     return f"<{element.tag}> in line {element.sourceline}: {name}={said!r}"

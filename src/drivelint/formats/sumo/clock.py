@@ -18,7 +18,7 @@ def seconds(text: str | None) -> float:
     """Return a time in seconds, NaN if the text is not a time."""
     parts = _CLOCK.fullmatch(text or "")
     if parts is None:
-        return safe_xml.number(text)
+        return safe_xml.number_or_nan(text)
     days, hours, minutes, rest = parts.groups()
     return ((int(days or 0) * 24 + int(hours)) * 60 + int(minutes)) * 60 + float(rest)
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from drivelint.formats.safe_xml import number
+from drivelint.formats.safe_xml import number_or_nan
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -41,5 +41,5 @@ def opendrive_import(content: bytes, root: etree._Element, quality: MapQuality) 
     file = found[1].decode("utf-8", "replace")
     message = f"netconvert imported this net from the OpenDRIVE file {file}: its side of traffic and limits may be lost: give that file"
     quality.add("imported_net", "warning", None, message)
-    speeds = {each.get("id", ""): number(each.get("speed", "")) for each in root.iterfind("type")}
+    speeds = {each.get("id", ""): number_or_nan(each.get("speed", "")) for each in root.iterfind("type")}
     return OpenDriveImport(file, speeds)

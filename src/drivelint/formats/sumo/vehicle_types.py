@@ -113,5 +113,5 @@ def _read(file: Path) -> dict[str, VehicleType]:
 
 
 def _positive(text: str | None, default: float) -> float:
-    value = default if text is None else safe_xml.number(text)
+    value = default if text is None else safe_xml.number_or_nan(text)
     return value if value > 0 else math.nan

@@ -9,7 +9,7 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from drivelint.errors import ExitCode
-from drivelint.fleet_report.audit_views import opened_packed
+from drivelint.fleet_report.audit_views import open_packed_audit
 from drivelint.pack import bag
 from drivelint.pack.audits.tables import AUDIT
 from drivelint.pack.statement import PREDICATE, SEALED, TYPE, resource_descriptor, result_word
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 def statement(folder: Path, evidence: Mapping[str, Any]) -> bytes:
     """Return the statement about the audit whose tables and manifest are in the pack `folder`."""
-    with opened_packed(folder / AUDIT) as (con, _):
+    with open_packed_audit(folder / AUDIT) as (con, _):
         drives = (
             con.execute(query("audit/drive_outcomes"), {"misfits": sorted(MAP_MISFIT_CODES)})
             .to_arrow_table()

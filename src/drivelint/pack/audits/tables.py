@@ -24,7 +24,7 @@ from drivelint.drive.trace import DriveInput
 from drivelint.errors import UsageError
 from drivelint.formats import expand_traces
 from drivelint.formats.files import identify
-from drivelint.formats.search import why_not_here
+from drivelint.formats.search import why_unreadable
 from drivelint.pack.bag import DATA, Problem, sha256_of
 from drivelint.pack.contents import SAID_OF_FINDINGS, facts_of_rules, hashes
 from drivelint.pack.inputs import located
@@ -215,7 +215,7 @@ def logs_of(con: duckdb.DuckDBPyConnection, findings: Sequence[Row], log_paths: 
     sql = "SELECT log_sha256, size FROM receipts WHERE list_contains($keys, key)"
     receipts = con.execute(sql, {"keys": keys}).fetchall()
     wanted, sizes = ({row[i] for row in receipts} for i in (0, 1))
-    there = [path for path in expand_traces(list(map(str, log_paths))) if why_not_here(path) is None]
+    there = [path for path in expand_traces(list(map(str, log_paths))) if why_unreadable(path) is None]
     likely = [path for path in there if path.is_dir() or path.stat().st_size in sizes]
     found = {digest: path for path in likely if (digest := identify(path).sha256) in wanted}
     if not found:

@@ -18,7 +18,7 @@ from drivelint.audit.store import LocalFolder
 from drivelint.audit.unpacked import SUMMARY_FILE
 from drivelint.audit.worker import TABLES, rows_sha256, with_key
 from drivelint.errors import DriveLintError, UsageError
-from drivelint.fleet_report.audit_views import opened_packed
+from drivelint.fleet_report.audit_views import open_packed_audit
 from drivelint.pack import again, consistency, signature
 from drivelint.pack.audits import tables
 from drivelint.pack.audits.statement import statement
@@ -77,7 +77,7 @@ def verified(request: VerifyRequest) -> tuple[list[Problem], str, str, list[str]
     """
     with ExitStack() as stack:
         try:
-            con, audit = stack.enter_context(opened_packed(request.folder / tables.AUDIT))
+            con, audit = stack.enter_context(open_packed_audit(request.folder / tables.AUDIT))
             evidence = consistency.evidence_of(request.folder)
             rules = pq.read_table(request.folder / tables.AUDIT / RULES_FILE)
             dirs = tuple(inside(request.folder, place) for place in evidence["rules_dirs"])

@@ -13,7 +13,7 @@ from drivelint.audit.run import RULES_FILE
 from drivelint.audit.store import LocalFolder
 from drivelint.audit.unpacked import SUMMARY_FILE
 from drivelint.errors import UsageError
-from drivelint.fleet_report.audit_views import open_audits, opened_packed
+from drivelint.fleet_report.audit_views import open_audits, open_packed_audit
 from drivelint.pack import again, contents
 from drivelint.pack.audits import tables
 from drivelint.pack.audits.statement import statement
@@ -43,7 +43,7 @@ def _payload(work: Path, request: PackRequest) -> dict[str, Any]:
     for name in names:
         (work / tables.AUDIT / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(request.folder / name, work / tables.AUDIT / name)
-    with opened_packed(work / tables.AUDIT) as (con, audit):
+    with open_packed_audit(work / tables.AUDIT) as (con, audit):
         said = json.loads((work / tables.AUDIT / SUMMARY_FILE).read_bytes())
         if wrong := tables.unlike_summary(con, audit, said):
             raise UsageError(f"{request.folder}: its summary and its tables do not agree ({wrong[0]}): audit again")
