@@ -120,7 +120,7 @@ def check(
             folder,
             confidence=None if confidence is None else float(confidence),
         )
-        pack = option_values.asked_pack(options.path(evidence), options.path(sign), folder, overwrite=overwrite)
+        pack = option_values.pack_request(options.path(evidence), options.path(sign), folder, overwrite=overwrite)
         settings = run.CheckOptions(
             traces=paths,
             **options.map_input(
@@ -172,10 +172,12 @@ def check(
         return CheckResult(result, folder, tuple(listener.notes), scratch)
 
 
-def _interruptible(settings: run.CheckOptions, listener: NoteKeeper, keep: Callable[[Result], Result]) -> Result:
+def _interruptible(
+    settings: run.CheckOptions, listener: NoteKeeper, on_nothing_judged: Callable[[Result], Result]
+) -> Result:
     """Run a check and return its result. Errors: also `KeyboardInterrupt`, which DuckDB would hide in a `RuntimeError`."""
     try:
-        return run.check(settings, listener, keep=keep)
+        return run.check(settings, listener, on_nothing_judged=on_nothing_judged)
     except RuntimeError as error:
         if isinstance(error.__cause__, KeyboardInterrupt):
             raise error.__cause__ from None

@@ -15,7 +15,7 @@ from drivelint.fleet import rates
 from drivelint.fleet.distinct_logs import create_counted_views
 from drivelint.fleet_report import gated
 from drivelint.fleet_report.audit_views import destination, is_audit, open_audits
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 from drivelint.report.outcome import headline
 from drivelint.report.outputs import REPORT_FORMATS
 from drivelint.result.counts import one_per_event
@@ -87,7 +87,7 @@ class AuditResult(TableSet):
     def report(self, *, to: str) -> str:
         """Return a report as text. `to`: junit or sarif. For the pages of a fleet, use `drivelint report`."""
         if to not in gated.FORMATS:
-            raise UsageError(f"to={to!r}: of an audit there are {listed(gated.FORMATS)}")
+            raise UsageError(f"to={to!r}: of an audit there are {name_list(gated.FORMATS)}")
         return REPORT_FORMATS[to][1](self._result).decode()
 
     def __repr__(self) -> str:

@@ -17,7 +17,7 @@ from drivelint.audit.store import LocalFolder, open_store
 from drivelint.audit.unpacked import views_of_all
 from drivelint.errors import UsageError
 from drivelint.fleet.distinct_logs import COUNTED_PREFIX, create_counted_views
-from drivelint.phrases import inert, inert_json
+from drivelint.phrases import terminal_safe, terminal_safe_json
 from drivelint.result.certainty import LEAST_KEEPING_SHARE
 from drivelint.result.folder import changed_files
 from drivelint.sql.statements import statement
@@ -32,7 +32,8 @@ if TYPE_CHECKING:
 _CELL: Final = re.compile(r'(")((?:[^"]|"")*)"|[^,"\r\n]+')
 _NUMBER: Final = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|[+-]?(?:inf|nan)")
 _FORMULA: Final = tuple("=+-@\n\uff1d\uff0b\uff0d\uff20")
-"""First characters of a cell that a spreadsheet treats as a formula. A tab is not needed here: `inert` replaces it by a backslash and t."""
+"""First characters of a cell that a spreadsheet treats as a formula. A tab is not needed here: `terminal_safe` replaces it by a backslash
+and t."""
 
 
 def ask(dest: str, query: str, format_: str, warn: Callable[[str], None] = lambda _: None) -> str:
@@ -47,7 +48,7 @@ def ask(dest: str, query: str, format_: str, warn: Callable[[str], None] = lambd
             if len(statements) != 1 or statements[0].type != duckdb.StatementType.SELECT:
                 raise UsageError("drivelint sql takes exactly one SELECT, without other statements before or after it")
             if format_ == "text":
-                return inert(f"{con.sql(query)}\n")
+                return terminal_safe(f"{con.sql(query)}\n")
             if format_ == "csv":
                 file = Path(home) / "rows.csv"
                 con.execute(f"COPY ({query.strip().rstrip(';')}) TO {quoted(file)} (FORMAT csv, HEADER)")
@@ -55,12 +56,12 @@ def ask(dest: str, query: str, format_: str, warn: Callable[[str], None] = lambd
             rows = con.execute(statements[0]).to_arrow_table().to_pylist()
         except duckdb.Error as error:
             raise UsageError(f"drivelint sql: {' '.join(str(error).split())[:400]}") from error
-    return inert_json(json.dumps(rows, indent=2, default=str, ensure_ascii=False)) + "\n"
+    return terminal_safe_json(json.dumps(rows, indent=2, default=str, ensure_ascii=False)) + "\n"
 
 
 def _inert_cell(cell: re.Match[str]) -> str:
     """Return a CSV cell without control characters that a spreadsheet does not run as a formula. Numbers do not change."""
-    quote, text = cell[1] or "", inert(cell[2] if cell[1] else cell[0])
+    quote, text = cell[1] or "", terminal_safe(cell[2] if cell[1] else cell[0])
     is_formula = text.startswith(_FORMULA) and not _NUMBER.fullmatch(text)
     return f"{quote}{chr(39) * is_formula}{text}{quote}"
 

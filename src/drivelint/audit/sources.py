@@ -23,7 +23,7 @@ from drivelint.drive.trace import DriveInput
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats import expand_traces
 from drivelint.formats.files import TRACE_SUFFIXES, is_log_name, is_utf8
-from drivelint.phrases import hint, listed
+from drivelint.phrases import hint, name_list
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -95,7 +95,7 @@ def with_manifests(
 
 def doubtful_tags(names: Sequence[str]) -> Iterator[str]:
     """Yield warnings about tags whose name is a condition, or is similar to an option column."""
-    if of_conditions := listed([f"column {name}" for name in names if name in CONDITION_VALUES]):
+    if of_conditions := name_list([f"column {name}" for name in names if name in CONDITION_VALUES]):
         yield f"the manifest's {of_conditions} is only a tag: conditions of a drive stand in the column environment, such as weather=wet"
     for name in names:
         text = name.casefold()
@@ -166,7 +166,7 @@ def _is_manifest(path: Path, *, with_mapping: bool) -> bool:
     if not with_mapping and (not _TABLE_NEVER_HAS.isdisjoint(names) or not _may_have_states(path)):
         apart = "; separate them by commas" if re.search(r"[;\t]", "".join(names)) else ""
         raise UsageError(
-            f"{path}: a manifest needs a column log: its columns are {listed([name for name in names if name], 6)}{apart}"
+            f"{path}: a manifest needs a column log: its columns are {name_list([name for name in names if name], 6)}{apart}"
         )
     return False
 

@@ -11,7 +11,7 @@ import pyarrow.compute as pc
 from drivelint.audit.compact import tables_digest
 from drivelint.errors import ExitCode
 from drivelint.fleet.distinct_logs import COUNTED_PREFIX, create_counted_views
-from drivelint.phrases import listed, plural
+from drivelint.phrases import name_list, plural
 from drivelint.reasons.signals import UNRECORDED_PREFIX
 from drivelint.result.certainty import LEAST_KEEPING_SHARE
 from drivelint.result.counts import SEVERITIES
@@ -172,7 +172,7 @@ class AuditSummary:
         if self.off_map:
             return f"the map does not fit {self.off_map} of {plural(self.n_contents, 'drive')}"
         if self.missing_parts:
-            return f"parts have not ended: {listed(self.missing_parts)}"
+            return f"parts have not ended: {name_list(self.missing_parts)}"
         return self.undecided or (
             f"{plural(self.unknown, 'verdict')} unknown (--strict)" if self.unknown else "no drive was judged"
         )

@@ -126,7 +126,7 @@ def split_sections(text: str, where: str) -> tuple[str, dict[str, Section]]:
     ends = [n for n, _ in marks[1:]] + [len(lines)]
     for (start, name), end in zip(marks, ends, strict=False):
         if name not in SECTIONS:
-            raise RuleError(f"{where}:{start + 1}: unknown section @{name}; {hint(name, SECTIONS, sign='@')}")
+            raise RuleError(f"{where}:{start + 1}: unknown section @{name}; {hint(name, SECTIONS, prefix='@')}")
         if name in sections:
             raise RuleError(f"{where}:{start + 1}: section @{name} stands twice")
         below = lines[start + 1 : end]

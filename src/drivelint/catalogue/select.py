@@ -25,7 +25,7 @@ import msgspec
 
 from drivelint.drive import conditions
 from drivelint.errors import UsageError
-from drivelint.phrases import hint, listed
+from drivelint.phrases import hint, name_list
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
@@ -95,7 +95,7 @@ def required_rules(
         if not stable & chosen and not lacking:
             raise UsageError(f"--require {selector!r}: --ignore excludes all of its rules")
         if lacking and (selector in rules or not stable & chosen):
-            raise UsageError(f"--require {selector!r}: not selected by --rules: {listed(lacking, 3)}")
+            raise UsageError(f"--require {selector!r}: not selected by --rules: {name_list(lacking, 3)}")
         found |= stable & chosen
     return tuple(sorted(found))
 

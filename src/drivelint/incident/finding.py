@@ -10,7 +10,7 @@ import pyarrow.compute as pc
 from drivelint.catalogue.header import CONTACT
 from drivelint.errors import UsageError
 from drivelint.explain.target import VerdictFilter, find_verdict
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 from drivelint.report.worst_first import is_contact, worst_first
 
 if TYPE_CHECKING:
@@ -101,6 +101,6 @@ def _worst_of(verdict: Row, result: Result) -> dict[str, Any]:
         failed = sorted(there, key=lambda rule_id: (CONTACT not in tags[rule_id], rule_id))
         raise UsageError(
             f"{verdict['rule_id']} in {verdict['drive_id']} is {verdict['verdict'].replace('_', ' ')}, so it has no finding: "
-            f"name a finding by its id, or a rule that failed there ({listed(failed) or 'none did'})"
+            f"name a finding by its id, or a rule that failed there ({name_list(failed) or 'none did'})"
         )
     return min(about, key=lambda row: (row["margin"] is not None, row["margin"], row["t_worst_ns"], row["finding_id"]))

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from drivelint.catalogue.header import CONTACT
-from drivelint.convert import CLIP
+from drivelint.convert import CLIP_CHECK_ID
 from drivelint.engine.robustness.copies import MeasurementErrors
 from drivelint.incident.case import LETTERS
 from drivelint.incident.command import commands
@@ -255,7 +255,11 @@ def _told_warnings(case: Case) -> Fitting:
 
 
 def _cut_from(case: Case) -> list[str]:
-    return [f"{check['message']}{_CLIP_NOTE}" for check in case.finding.drive["quality"] if check["check_id"] == CLIP]
+    return [
+        f"{check['message']}{_CLIP_NOTE}"
+        for check in case.finding.drive["quality"]
+        if check["check_id"] == CLIP_CHECK_ID
+    ]
 
 
 def _recording(finding: NamedFinding) -> dict[str, str]:

@@ -15,7 +15,7 @@ from rich.text import Text
 
 from drivelint.errors import ExitCode
 from drivelint.gate import descriptions
-from drivelint.phrases import inert_line, plural
+from drivelint.phrases import plural, terminal_safe_line
 from drivelint.report.inputs import LAW, input_notes
 from drivelint.report.law import law_words
 from drivelint.report.outcome import LABELS, LET_THROUGH, headline, one_per_event, rule_counts, standing
@@ -324,6 +324,8 @@ def _end(result: Result, findings: list[Row], out: str | None) -> list[Text]:
     if findings:
         worst = findings[0]
         name = f"{worst['rule_id']}@{worst['drive_id']}"
-        name = name if inert_line(name) == name else worst["finding_id"]  # the printed command must work in a shell
+        name = (
+            name if terminal_safe_line(name) == name else worst["finding_id"]
+        )  # the printed command must work in a shell
         lines.append(Text(f"explain  drivelint explain {shlex.quote(name)} --in {out}"))
     return lines

@@ -18,7 +18,7 @@ from drivelint.audit.executors import Outcome
 from drivelint.audit.worker import run_task, warm_up
 from drivelint.computing import resident_bytes
 from drivelint.errors import InternalError
-from drivelint.without_pandas import leave_out_pandas
+from drivelint.without_pandas import block_pandas_import
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -205,7 +205,7 @@ def deaf_to_ctrl_c() -> Iterator[None]:
 
 def prepare_worker_process(driver_pid: int) -> None:
     """Prepare a worker process: it ignores Ctrl-C and a closed terminal, which the driver handles, and ends if its driver was killed."""
-    leave_out_pandas()
+    block_pandas_import()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if (hang_up := getattr(signal, "SIGHUP", None)) is not None:  # not on Windows
         signal.signal(hang_up, signal.SIG_IGN)
