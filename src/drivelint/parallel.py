@@ -20,7 +20,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint import run, temporary
-from drivelint.audit.executors.local import cores, deaf_to_ctrl_c, prepare_worker_process
+from drivelint.audit.executors.local import block_ctrl_c, core_count, prepare_worker_process
 from drivelint.engine.default_rules import with_chosen_rules
 from drivelint.engine.interruption import Interruption
 from drivelint.engine.memory import LEAST_MEMORY_BYTES
@@ -121,7 +121,7 @@ def _judge_in_workers(
 ) -> list[JudgedLogs]:
     """Judge each part in a process of its own."""
     memory = None if settings.memory is None else max(LEAST_MEMORY_BYTES, settings.memory // len(parts))
-    own = replace(settings, memory=memory, threads=max(1, cores() // len(parts)))
+    own = replace(settings, memory=memory, threads=max(1, core_count() // len(parts)))
     recording = recorder.active()
     is_output = None if recording is None else recording.is_output
     progress.stage(run.CHECKING_STAGE, len(paths))
@@ -222,7 +222,7 @@ class _Worker:
         context = multiprocessing.get_context("spawn")  # a fork would copy threads that hold locks
         self.pipe, theirs = context.Pipe()
         self._process = context.Process(target=_run_worker, args=(self._part, theirs, os.getpid()), daemon=True)
-        with deaf_to_ctrl_c():
+        with block_ctrl_c():
             self._process.start()
         theirs.close()
 

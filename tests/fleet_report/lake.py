@@ -10,7 +10,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from drivelint.audit.compact import CHUNK_DRIVES, RECEIPT_SCHEMA
-from drivelint.audit.driver import empty_rows
+from drivelint.audit.driver import empty_tables
 from drivelint.audit.identity import rule_table, run_id, versions
 from drivelint.audit.model import JudgeSettings
 from drivelint.audit.run import AUDIT_FILE, RULES_FILE
@@ -162,7 +162,7 @@ def _exposure(km: float) -> Row:
 
 def _table(name: str, n: int, **columns: Any) -> pa.Table:
     """Return rows of a table of an audit; a single value is that of every row, a column that is not named is NULL."""
-    schema = empty_rows()[name].schema
+    schema = empty_tables()[name].schema
     made = []
     for each in schema:
         value = columns.pop(each.name, None)

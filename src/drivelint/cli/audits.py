@@ -174,7 +174,7 @@ def audit(
         result = gated.apply_gate(out, gate)
         code, told = gated.exit_code(result, counted), list(gated.lines(result))
         why = gated.exit_reason(result, code)
-    typer.echo(terminal_safe(summary_text(counted, out, code, told, fail_on=fail_on, why=why)))
+    typer.echo(terminal_safe(summary_text(counted, out, code, told, fail_on=fail_on, gate_reason=why)))
     if pack is not None:
         packs.write_and_tell(pack, err=True)
     raise typer.Exit(int(code))
@@ -229,9 +229,9 @@ def sql(
     format_: Annotated[options.SqlFormat, option("--format", None, "Format of the output on stdout.")] = "text",
 ) -> None:
     """Query the tables of an audit or a check with SQL. Nothing is changed."""
-    from drivelint.audit.ask import ask
+    from drivelint.audit.ask import run_query
 
     def warn(warning: str) -> None:
         typer.echo(f"drivelint: {terminal_safe_line(warning)}", err=True)
 
-    typer.echo(ask(dest, query, format_, warn), nl=False)
+    typer.echo(run_query(dest, query, format_, warn), nl=False)

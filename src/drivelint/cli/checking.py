@@ -247,9 +247,9 @@ def _with_manifests(settings: CheckOptions, *, packed: bool) -> CheckOptions:
     """Return the settings with manifests replaced by the logs that they name. Errors: `UsageError`."""
     if not any(trace.lower().endswith((".csv", ".parquet")) for trace in settings.traces):
         return settings
-    from drivelint.audit.sources import with_manifests
+    from drivelint.audit.sources import expand_manifests
 
-    logs, manifest_options = with_manifests(
+    logs, manifest_options = expand_manifests(
         settings.traces, settings, lambda text: streams.say(f"drivelint: {terminal_safe_line(text)}")
     )
     if manifest_options and packed:

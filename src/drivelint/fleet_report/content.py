@@ -6,7 +6,7 @@ import shlex
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.audit.summary import LogList, logs_that_are
+from drivelint.audit.summary import LogList, logs_with_flag
 from drivelint.catalogue.header import CONTACT
 from drivelint.fleet.coverage import Coverage, coverage
 from drivelint.fleet.distinct_logs import COUNTED_PREFIX, create_counted_views, subject
@@ -163,8 +163,8 @@ def content(con: duckdb.DuckDBPyConnection, audit: Audit, base: Audit | None, by
         n_without_rate=with_findings["without_rate"],
         contacts=touched,
         not_judged=rows(con, "not_judged", {"most": MAX_DRIVES}),
-        lossy=logs_that_are(con, "lossy"),
-        off_map=logs_that_are(con, "off_map"),
+        lossy=logs_with_flag(con, "lossy"),
+        off_map=logs_with_flag(con, "off_map"),
         worst_value=worst_value(con, found),
         by_tag=[rates_by_tag(con, tag) for tag in dict.fromkeys(by)],
         coverage=coverage(con),
