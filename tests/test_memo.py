@@ -42,16 +42,16 @@ def test_a_fact_is_found_once(home: Path) -> None:
 
 def test_rules_are_read_and_checked_once(monkeypatch: pytest.MonkeyPatch) -> None:
     def fresh() -> None:
-        load._known_rule.cache_clear()
-        monkeypatch.setattr(load, "_RULES", Memo[Rule]("rules", Rule))
+        load._cached_rule.cache_clear()
+        monkeypatch.setattr(load, "_RULE_MEMO", Memo[Rule]("rules", Rule))
 
     fresh()
     rules = load_rules()
-    load._RULES.save()
+    load._RULE_MEMO.save()
     fresh()
     monkeypatch.setattr(rule_file, "checked_rule", never)
     assert load_rules() == rules
-    load._known_rule.cache_clear()
+    load._cached_rule.cache_clear()
 
 
 def test_other_code_finds_its_own(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -141,7 +141,7 @@ def run_tests(
 
         over, names = Event(), tuple(only or ())
         if watch:
-            code = run_interruptible(lambda: commands.watch(test, folder, names, say, over), over.set)
+            code = run_interruptible(lambda: commands.repeat_tests_on_changes(test, folder, names, say, over), over.set)
         else:
             code = run_interruptible(lambda: test(folder, names, say))
         raise typer.Exit(int(code))

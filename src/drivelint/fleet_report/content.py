@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.audit.summary import LogList, logs_with_flag
-from drivelint.catalogue.header import CONTACT
+from drivelint.catalogue.header import CONTACT_TAG
 from drivelint.fleet.coverage import Coverage, coverage
 from drivelint.fleet.distinct_logs import COUNTED_PREFIX, create_counted_views, subject
 from drivelint.fleet.missing_signals import SignalGaps, missing_signals
@@ -176,6 +176,6 @@ def content(con: duckdb.DuckDBPyConnection, audit: Audit, base: Audit | None, by
 
 def _gravest_first(rate: Rate, rules: dict[str, Row]) -> tuple[Any, ...]:
     rule = rules[rate.rule_id]
-    severity = SEVERITIES.index(rule["severity"]), CONTACT not in rule["tags"]
+    severity = SEVERITIES.index(rule["severity"]), CONTACT_TAG not in rule["tags"]
     n = rate.findings + rate.findings_of_unknown
     return (not n, severity, -(rate.per_100km.rate or 0.0), -n, rate.rule_id, rate.profile or "")

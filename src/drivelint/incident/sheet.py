@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from drivelint.catalogue.header import CONTACT
+from drivelint.catalogue.header import CONTACT_TAG
 from drivelint.convert import CLIP_CHECK_ID
 from drivelint.engine.robustness.copies import MeasurementErrors
 from drivelint.incident.case import LETTERS
@@ -210,7 +210,7 @@ def _least_gap(motion: Motion, finding: NamedFinding) -> str | None:
 def _contacts(case: Case) -> list[Row]:
     """Return the contacts of A in this drive, except the sheet's finding, in time order."""
     mine = case.finding.row
-    tagged = {rule["rule_id"] for rule in case.result.rules.to_pylist() if CONTACT in rule["tags"]}
+    tagged = {rule["rule_id"] for rule in case.result.rules.to_pylist() if CONTACT_TAG in rule["tags"]}
     found = [
         row
         for row in case.result.findings.to_pylist()
