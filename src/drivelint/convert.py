@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from drivelint.drive.trace import Trace
 
-TABLES: Final = ("actor", "actor_state", "data_log", "declared_event", "quality", "signal_state")
+CONVERTED_TABLES: Final = ("actor", "actor_state", "data_log", "declared_event", "quality", "signal_state")
 MAP_FILE: Final = "map.xodr"
 CLIP_CHECK_ID: Final = "clip"
 """The data-quality check, information only, that names the log from which a clip was cut."""
@@ -64,7 +64,7 @@ class ConvertedTrace:
     """The converted trace: its path, its files with their sizes, and counts."""
 
     path: Path
-    files: dict[str, int]
+    bytes_by_file: dict[str, int]
     n_states: int
     n_actors: int
     map_name: str | None
@@ -97,7 +97,7 @@ def convert(request: ConvertRequest) -> ConvertedTrace:
     options = replace(options, as_recorded=request.clip is None)
     trace = read_trace(path, options)
     if request.clip is not None:
-        told = QualityFinding(CLIP_CHECK_ID, "info", _source_of_clip(trace, request.clip))
+        told = QualityFinding(CLIP_CHECK_ID, "info", _clip_source_sentence(trace, request.clip))
         trace = with_quality_finding(cut_trace(trace, request.clip.from_ns, request.clip.to_ns), told)
     if request.map_offset is not None:
         x, y = request.map_offset
@@ -117,7 +117,7 @@ def convert(request: ConvertRequest) -> ConvertedTrace:
         )
     return ConvertedTrace(
         path=target,
-        files=files,
+        bytes_by_file=files,
         n_states=trace.tables["actor_state"].num_rows,
         n_actors=trace.tables["actor"].num_rows,
         map_name=None if road is None else road.name,
@@ -126,7 +126,7 @@ def convert(request: ConvertRequest) -> ConvertedTrace:
     )
 
 
-def _source_of_clip(trace: Trace, clip: Clip) -> str:
+def _clip_source_sentence(trace: Trace, clip: Clip) -> str:
     """Return the log and the time range that a clip is cut from, in one sentence."""
     (log,) = trace.tables["data_log"].to_pylist()
     from_s, to_s = ((t_ns - (log["t_start_ns"] or 0)) / 1e9 for t_ns in (clip.from_ns, clip.to_ns))
@@ -239,7 +239,7 @@ def _write_mcap(target: Path, trace: Trace, road: MapSource | None, *, as_record
 def _write_parquet(target: Path, trace: Trace, road: MapSource | None, *, as_recorded: bool) -> dict[str, int]:
     tables = {**trace.tables, "quality": ego_independent_quality(trace)}
     tables["actor_state"] = canonical.with_frames_of_nobody(tables["actor_state"], trace)
-    names = [*TABLES, *(["drive_condition"] if tables["drive_condition"].num_rows else [])]
+    names = [*CONVERTED_TABLES, *(["drive_condition"] if tables["drive_condition"].num_rows else [])]
     about = {canonical.AS_RECORDED: "yes"} if as_recorded else {}
     contents = {
         f"{name}.parquet": described_parquet(tables[name], name, {_CONVERTED_KEY: name, **about}) for name in names
@@ -252,9 +252,9 @@ def _write_parquet(target: Path, trace: Trace, road: MapSource | None, *, as_rec
 
 def summary_text(trace: ConvertedTrace) -> str:
     """Return a text of two lines: the written files, and the command that checks them."""
-    size = sum(trace.files.values())
+    size = sum(trace.bytes_by_file.values())
     amount = f"{size / 1e6:.1f} MB" if size >= 1e6 else f"{max(size / 1e3, 0.1):.1f} kB"
-    files = f"{len(trace.files)} files, " if len(trace.files) > 1 else ""
+    files = f"{len(trace.bytes_by_file)} files, " if len(trace.bytes_by_file) > 1 else ""
     road = f", the map {trace.map_name} with it" if trace.map_name else ", no map"
     ego = "" if trace.has_ego else " --ego ID"
     command = (

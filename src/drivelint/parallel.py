@@ -197,7 +197,7 @@ class _ProgressOfWorkers:
         self.progress = progress
         self._notes = LogNotes(progress, n_logs)
 
-    def hear(self, call: _ProgressCall) -> None:
+    def forward_call(self, call: _ProgressCall) -> None:
         """Forward one call of a worker to the progress display."""
         if call.method == "add":
             self._notes.add(*call.arguments)
@@ -249,7 +249,7 @@ class _Worker:
             self._restart_without_rule(message)
         else:
             self._n_done += message.arguments[0] if message.method == "advance" else 0
-            self._listener.receive_message(message)
+            self._listener.forward_call(message)
 
     def _restart_without_rule(self, deaf_rule: _DeafRule) -> None:
         """Start the process again without a rule that cannot be interrupted."""

@@ -297,7 +297,7 @@ def test_conditions_are_read_and_what_they_include_is_known(tmp_path: Path) -> N
     tables = '[applies]\nnation = ["gb"]\nroad_type = ["town", "rural"]\nlimit_min_mps = 13\n'
     rule = write(tmp_path, GOOD | {"observes": '"speed"'}, {"condition": SPEED}, tables=tables)
     assert rule.applies.restricted_conditions == {"road_type": ("town", "rural"), "nation": ("gb",)}
-    assert (rule.applies.limit_min_mps, rule.applies.restricts_speed_limit, rule.observes) == (13.0, True, "speed")
+    assert (rule.applies.limit_min_mps, rule.applies.has_speed_limit_condition, rule.observes) == (13.0, True, "speed")
     assert conditions.with_narrower_values(("gb",)) == ["gb", "gb-eng", "gb-sct", "gb-wls"]
     assert {"town", "townLocal", "rural"} < set(conditions.with_narrower_values(("rural", "town")))
     assert (conditions.broader_values(("gb-sct", "de")), conditions.broader_values(("gb",))) == (["gb"], [])

@@ -82,7 +82,7 @@ def ego_transform_chunks(
         len(rows),
         wire.text(2, draw.MAP_FRAME) + wire.text(3, EGO_FRAME),
         _fields_of_doubles(4, tracks.x[rows], tracks.y[rows], z),
-        _fields_of_doubles(5, np.sin(half), np.cos(half), first=3),
+        _fields_of_doubles(5, np.sin(half), np.cos(half), first_number=3),
         wire.timestamps(1, log_time),
     )
     size = body.shape[1] + message_headers(channel, log_time[:0], log_time[:0].astype(np.int64), 0).shape[1]
@@ -169,15 +169,18 @@ def _changing_box_bytes(tracks: Tracks, rows: NDArray[np.intp], log_time: NDArra
 
 def _pose_fields(x: Floats, y: Floats, z: Floats, half_yaw: Floats) -> wire.Bytes:
     """Return one encoded pose field per row."""
-    where, turned = _fields_of_doubles(1, x, y, z), _fields_of_doubles(2, np.sin(half_yaw), np.cos(half_yaw), first=3)
+    where, turned = (
+        _fields_of_doubles(1, x, y, z),
+        _fields_of_doubles(2, np.sin(half_yaw), np.cos(half_yaw), first_number=3),
+    )
     head = wire.varint(1 << 3 | 2) + wire.varint(where.shape[1] + turned.shape[1])
     return wire.join_columns(len(x), head, where, turned)
 
 
-def _fields_of_doubles(number: int, *columns: Floats, first: int = 1) -> wire.Bytes:
-    """Return, for each row, field `number`: a message whose fields, numbered from `first`, are doubles."""
-    keyed = [(wire.varint(n << 3 | 1), wire.double_column(values)) for n, values in enumerate(columns, first)]
-    head = wire.varint(number << 3 | 2) + wire.varint(9 * len(columns))
+def _fields_of_doubles(field_number: int, *columns: Floats, first_number: int = 1) -> wire.Bytes:
+    """Return, for each row, field `field_number`: a message whose fields, numbered from `first_number`, are doubles."""
+    keyed = [(wire.varint(n << 3 | 1), wire.double_column(values)) for n, values in enumerate(columns, first_number)]
+    head = wire.varint(field_number << 3 | 2) + wire.varint(9 * len(columns))
     return wire.join_columns(len(columns[0]), head, *(part for pair in keyed for part in pair))
 
 

@@ -48,20 +48,20 @@ def deletion_of_all(log_time: int) -> bytes:
 
 
 @cache
-def colour_field(number: int, colour: Colour) -> bytes:
+def colour_field(field_number: int, colour: Colour) -> bytes:
     """Return a field that contains a colour."""
-    return wire.nested(number, wire.doubles(*colour))
+    return wire.nested(field_number, wire.doubles(*colour))
 
 
-def pose(x: float, y: float, z: float, yaw: float = 0.0, *, number: int = 1) -> bytes:
+def pose(x: float, y: float, z: float, yaw: float = 0.0, *, field_number: int = 1) -> bytes:
     """Return a primitive's pose, rotated about the vertical axis: field 1 of all primitives except lines."""
     turned = wire.doubles(math.sin(yaw / 2), math.cos(yaw / 2), first=3)
-    return wire.nested(number, wire.nested(1, wire.doubles(x, y, z)) + wire.nested(2, turned))
+    return wire.nested(field_number, wire.nested(1, wire.doubles(x, y, z)) + wire.nested(2, turned))
 
 
 def line(xyz: Points, colour: Colour, *, thickness: float, line_type: int, pixels: bool = True) -> bytes:
     """Return a line. `thickness`: pixels, or metres without `pixels`. Points are relative to the first, which keeps them exact."""
-    origin = pose(*map(float, xyz[0]), number=2)
+    origin = pose(*map(float, xyz[0]), field_number=2)
     head = wire.integer(1, line_type) + origin + wire.doubles(thickness, first=3) + wire.integer(4, int(pixels))
     return wire.nested(_LINES, head + wire.points(5, xyz - xyz[0]) + colour_field(6, colour))
 

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from drivelint.audit.store import ResultStore
 
-CHUNK_DRIVES: Final = 4_000
+DRIVES_PER_CHUNK: Final = 4_000
 MEMORY_LIMIT: Final = "1GB"
 RECEIPT_SCHEMA: Final = pa.schema(
     [
@@ -158,7 +158,7 @@ def unpacked_receipts(results: ResultStore, *, only_whole_batches: bool) -> Iter
         if only_whole_batches and len(receipts) < receipts[0].n_in_batch:
             continue
         some += receipts
-        if len(some) >= CHUNK_DRIVES:
+        if len(some) >= DRIVES_PER_CHUNK:
             yield some
             some = []
     if some:

@@ -141,7 +141,7 @@ def _audit_under_lock(
         n_drives = listing.fill_listed_drives(con, request.sources, _drive_input(request), audit_run_id, request.shard)
         parts.record_drive_count(results, parts.part_name(request.shard, claim=request.claim), n_drives)
         create_views(con, results, Path(download_folder))
-        if alone and (n_stale := _remove_stale_results(con, results, retry=request.retry_errors)):
+        if alone and (n_stale := _remove_stale_results(con, results, with_unjudged=request.retry_errors)):
             create_views(con, results, Path(download_folder))
             progress.note(f"{plural(n_stale, 'drive')} judged again: changed since, or not judged before")
         n_absent = _count_or_prune_absent(con, results, request, progress) if alone else 0
@@ -152,7 +152,7 @@ def _audit_under_lock(
             progress.note(doubt)
         progress.stage("auditing", n_drives)
         progress.advance(n_known)
-        if not alone and (n_stale := len(_stale_keys(con, retry=False))):
+        if not alone and (n_stale := len(_stale_keys(con, with_unjudged=False))):
             raise UsageError(f"{plural(n_stale, 'log')} changed since: run the audit once without --shard and --claim")
         audit_summary = _judge_remaining_drives(
             request, con, results, progress, audit_run_id=audit_run_id, executor=executor
@@ -270,15 +270,15 @@ def _compact_whole_batches(out: str) -> None:
     compact(open_store(out), while_judging=True)
 
 
-def _remove_stale_results(con: duckdb.DuckDBPyConnection, results: ResultStore, *, retry: bool) -> int:
-    """Remove the results of changed logs; with `retry`, also those of drives that were not judged. Return how many were removed."""
-    stale = _stale_keys(con, retry=retry)
+def _remove_stale_results(con: duckdb.DuckDBPyConnection, results: ResultStore, *, with_unjudged: bool) -> int:
+    """Remove the results of changed logs; with `with_unjudged`, also those of drives that were not judged. Return how many were removed."""
+    stale = _stale_keys(con, with_unjudged=with_unjudged)
     remove_drives(results, stale)
     return len(stale)
 
 
-def _stale_keys(con: duckdb.DuckDBPyConnection, *, retry: bool) -> pa.Array:
-    return con.execute(statement("audit/stale"), {"retry": retry}).to_arrow_table()["key"].combine_chunks()
+def _stale_keys(con: duckdb.DuckDBPyConnection, *, with_unjudged: bool) -> pa.Array:
+    return con.execute(statement("audit/stale"), {"retry": with_unjudged}).to_arrow_table()["key"].combine_chunks()
 
 
 def _pack_and_seal(

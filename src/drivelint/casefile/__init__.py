@@ -129,7 +129,7 @@ def read_cases(rule: Rule) -> list[Case]:
             raise RuleError(
                 f"{case_location(rule, case)}: params: {rule.id} has no parameter {strange[0]!r}; it has: {known}"
             )
-        with _with_location(rule, case):
+        with _add_location_to_errors(rule, case):
             _refuse_wrong_words(rule, case)
         if "capability" not in rule.reads and (idle := sorted(set(case.missing_signals) - set(rule.requires))):
             raise RuleError(f"{case_location(rule, case)}: missing: {rule.id} does not require {idle[0]!r}")
@@ -229,7 +229,7 @@ def coverage_problem(cases: Sequence[Case]) -> str:
 
 def run_case(rule: Rule, case: Case) -> CaseResult:
     """Judge one case by this rule alone, and compare the outcome with `expect`. Errors: `RuleError` with file, line and case."""
-    with _with_location(rule, case):
+    with _add_location_to_errors(rule, case):
         message = outcome_difference(case, judge_case(rule, case))
     of_pairs = rule.kind == "invariant" and rule.per_object and "applies" not in rule.sections
     if message and of_pairs and "pair" not in case.given_tables:
@@ -245,7 +245,7 @@ def case_location(rule: Rule, case: Case) -> str:
 
 
 @contextmanager
-def _with_location(rule: Rule, case: Case) -> Iterator[None]:
+def _add_location_to_errors(rule: Rule, case: Case) -> Iterator[None]:
     """Add the location of the case to errors raised inside."""
     try:
         yield
@@ -272,7 +272,7 @@ def numbered_cases(rule: Rule, cases: Sequence[Case]) -> list[merged_cases.Numbe
     """Return the scenes of all cases, to be judged together. Errors: `RuleError` with file, line and case."""
     found = []
     for no, case in enumerate(cases):
-        with _with_location(rule, case):
+        with _add_location_to_errors(rule, case):
             scene = complete_scene(rule, case.given_tables, case.missing_signals)
             found.append(merged_cases.NumberedCase(no, scene, case.params))
     return found

@@ -105,20 +105,20 @@ def merge_cases(cases: Sequence[NumberedCase], key: str) -> Scene:
     return merged
 
 
-def _row_with_case_number(row: Row, table: str, key: str, no: int) -> Row:
+def _row_with_case_number(row: Row, table: str, key: str, case_number: int) -> Row:
     marked = dict(row)
     keys = (key, "environment_id") if key == "drive_id" else (key if key in row else "actor_id",)
     if _is_map_table(table):
         marked.setdefault("environment_id", "")
     for name in keys:
         if marked.get(name) is not None:
-            marked[name] = f"{no}:{marked[name]}"
+            marked[name] = f"{case_number}:{marked[name]}"
     return marked
 
 
-def outcome_of_case(outcome: CaseOutcome, no: int) -> CaseOutcome:
-    """Return the rows of case `no` from an outcome of merged cases, with the original keys."""
-    mark = f"{no}:"
+def outcome_of_case(outcome: CaseOutcome, case_number: int) -> CaseOutcome:
+    """Return the rows of case `case_number` from an outcome of merged cases, with the original keys."""
+    mark = f"{case_number}:"
     found = CaseOutcome([], [])
     for rows, mine in zip(outcome, found, strict=True):
         for row in rows:

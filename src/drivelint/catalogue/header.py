@@ -59,7 +59,7 @@ class Conditions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return {name: getattr(self, name) for name in conditions.CONDITION_VALUES if getattr(self, name)}
 
     @property
-    def restricts_speed_limit(self) -> bool:
+    def has_speed_limit_condition(self) -> bool:
         """Whether the speed limit restricts the rule."""
         return self.limit_min_mps is not None or self.limit_max_mps is not None
 

@@ -78,7 +78,7 @@ def checked_rule(file: Path, pack: str, pack_title: str, content: bytes, *, with
     problems += _reason_problems(header, queries, file, toml)
     if with_words:
         with collect_problems(problems):
-            _check_words(header, sections, file, toml)
+            _refuse_wrong_words(header, sections, file, toml)
     raise_problems(problems)
     return Rule(
         **msgspec.structs.asdict(header),
@@ -254,7 +254,7 @@ def _param_problems(header: Header, queries: dict[str, Query], file: Path, toml:
         )
 
 
-def _check_words(header: Header, sections: dict[str, Section], file: Path, toml: str) -> None:
+def _refuse_wrong_words(header: Header, sections: dict[str, Section], file: Path, toml: str) -> None:
     def place(part: str, offset: int) -> str:
         if part not in sections:
             return f"{file}:{line_of_key(toml, part)}"

@@ -20,7 +20,7 @@ ENGAGED = "(w.ego_id IS NULL OR e.engaged)"
 
 def has_conditions(rule: Rule) -> bool:
     """Return whether the rule's header contains any condition."""
-    return bool(rule.applies.restricted_conditions) or rule.applies.restricts_speed_limit
+    return bool(rule.applies.restricted_conditions) or rule.applies.has_speed_limit_condition
 
 
 def fragments(rule: Rule, alias: str, time: str, check_engagement: bool) -> dict[str, str]:
@@ -65,6 +65,6 @@ def _terms(rule: Rule, check_engagement: bool) -> dict[str, str]:
             f"WHEN e.{name} IS NOT NULL AND NOT list_contains($_may_{name}, e.{name}) THEN false END"
         )
     limits = ((">= $_limit_min", rule.applies.limit_min_mps), ("<= $_limit_max", rule.applies.limit_max_mps))
-    if rule.applies.restricts_speed_limit:
+    if rule.applies.has_speed_limit_condition:
         found["limit"] = " AND ".join(f"e.limit_mps {bound}" for bound, mps in limits if mps is not None)
     return found

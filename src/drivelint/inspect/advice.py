@@ -42,7 +42,7 @@ def undecided_rules(rules: Sequence[Rule], lacking: Mapping[str, str], never: Ma
     found = []
     for rule in rules:
         conditions = {SIGNAL_OF_CONDITION.get(name, name) for name in rule.applies.restricted_conditions}
-        conditions |= {"speed_limits"} if rule.applies.restricts_speed_limit else set()
+        conditions |= {"speed_limits"} if rule.applies.has_speed_limit_condition else set()
         needed = set(rule.needed_signals) & lacking.keys() | conditions & never.keys()
         missing = needed | set(rule.pass_requires) & never.keys()
         if "map" in missing:
