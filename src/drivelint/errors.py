@@ -31,7 +31,7 @@ class DriveLintError(Exception):
     """An error that is shown to the user as one clear line, without a traceback."""
 
     exit_code: ExitCode = ExitCode.USAGE
-    _is_told = False
+    _is_shown = False
 
     def __reduce__(self) -> tuple[object, ...]:
         """Return how pickle restores the error in another process: with its finished message, without `__init__`."""

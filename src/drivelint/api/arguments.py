@@ -53,7 +53,7 @@ _CHECK_OF_TYPE: Final[dict[str, tuple[Callable[[Any], bool], str]]] = {
     "Pair": (lambda given: given is None or isinstance(given, str) or _are_numbers(given), "two numbers"),
     "tuple[float, ...]": (_are_numbers, "numbers"),
 }
-"""Annotation in a signature -> test of a value, and the name of the type in messages. `options.one_of` checks `Literal` types."""
+"""Annotation in a signature -> test of a value, and the name of the type in messages. `options.require_one_of` checks `Literal` types."""
 
 
 def with_argument_checks(function: Callable[_P, _R]) -> Callable[_P, _R]:
