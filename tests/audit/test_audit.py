@@ -203,7 +203,7 @@ def test_the_first_tasks_are_small_so_that_an_early_interrupt_keeps_something() 
     drives = [AuditDrive(f"{n:03}.mcap", DriveInput()) for n in range(100)]
     cut = [
         len(task.drives)
-        for task in divide_into_tasks(drives, "", "run", SETTINGS, group_size=100, max_drives=30, n_small_tasks=2)
+        for task in divide_into_tasks(drives, "", "run", SETTINGS, group_size=100, max_drives=30, n_small=2)
     ]
     assert cut == [8, 8, 30, 30, 24]
 

@@ -41,8 +41,8 @@ def run_query(dest: str, query: str, format_: str, warn: Callable[[str], None] =
 
     Errors: `UsageError` for another kind of statement, or one that fails.
     """
-    with open_database() as con, TemporaryDirectory(prefix="drivelint-sql-") as download_folder:
-        _create_views_and_lock(con, dest, Path(download_folder), warn)
+    with open_database() as con, TemporaryDirectory(prefix="drivelint-sql-") as downloads:
+        _create_views_and_lock(con, dest, Path(downloads), warn)
         try:
             statements = con.extract_statements(query)
             if len(statements) != 1 or statements[0].type != duckdb.StatementType.SELECT:
@@ -50,7 +50,7 @@ def run_query(dest: str, query: str, format_: str, warn: Callable[[str], None] =
             if format_ == "text":
                 return terminal_safe(f"{con.sql(query)}\n")
             if format_ == "csv":
-                file = Path(download_folder) / "rows.csv"
+                file = Path(downloads) / "rows.csv"
                 con.execute(f"COPY ({query.strip().rstrip(';')}) TO {quoted(file)} (FORMAT csv, HEADER)")
                 return _CSV_CELL.sub(_safe_cell, file.read_text(encoding="utf-8"))
             rows = con.execute(statements[0]).to_arrow_table().to_pylist()
@@ -67,14 +67,14 @@ def _safe_cell(cell: re.Match[str]) -> str:
 
 
 def _create_views_and_lock(
-    con: duckdb.DuckDBPyConnection, dest: str, download_folder: Path, warn: Callable[[str], None]
+    con: duckdb.DuckDBPyConnection, dest: str, downloads: Path, warn: Callable[[str], None]
 ) -> None:
     """Create the views of an audit, or of a check's result, and then bar the database from all other files."""
     results = open_store(dest)
     is_audit = results.read(AUDIT_FILE) is not None
-    _warn_of_changes(results, dest, download_folder, warn, is_audit=is_audit)
+    _warn_of_changes(results, dest, downloads, warn, is_audit=is_audit)
     if is_audit:
-        if warning := create_views_of_all_results(con, results, download_folder).warning:
+        if warning := create_views_of_all_results(con, results, downloads).warning:
             warn(f"{dest}: {warning}")
         create_counted_views(con)
         event = statement("fleet/event", of=COUNTED_PREFIX, least_share=str(LEAST_KEEPING_SHARE))
@@ -86,9 +86,9 @@ def _create_views_and_lock(
                 f"{dest}: neither an audit nor a result is here: name the folder of audit --out or check --out"
             )
         for file in sorted(files):
-            _create_view(con, results, Path(file).stem, file, download_folder)
+            _create_view(con, results, Path(file).stem, file, downloads)
     folders = [
-        str(download_folder),
+        str(downloads),
         *([str(results.root), *escape_wildcards([str(results.root)])] if isinstance(results, LocalFolder) else []),
     ]
     con.execute("SET allowed_directories=?", [folders])
@@ -97,7 +97,7 @@ def _create_views_and_lock(
 
 
 def _warn_of_changes(
-    results: ResultStore, dest: str, download_folder: Path, warn: Callable[[str], None], *, is_audit: bool
+    results: ResultStore, dest: str, downloads: Path, warn: Callable[[str], None], *, is_audit: bool
 ) -> None:
     """Warn about the first file that has changed since it was written: the query may read that file.
 
@@ -106,7 +106,7 @@ def _warn_of_changes(
     if is_audit:
         sealed.require_file_list(results, dest)
         try:
-            sealed.require_audit_unchanged(results, download_folder, dest)
+            sealed.require_audit_unchanged(results, downloads, dest)
         except UsageError as error:
             warn(str(error))
     elif isinstance(results, LocalFolder):  # the files of a bucket would have to be downloaded
@@ -114,7 +114,5 @@ def _warn_of_changes(
             warn(f"{dest.rstrip('/')}/{name}: was changed since drivelint check wrote it: check the drives again")
 
 
-def _create_view(
-    con: duckdb.DuckDBPyConnection, results: ResultStore, name: str, file: str, download_folder: Path
-) -> None:
-    con.read_parquet(escape_wildcards([str(results.fetch(file, download_folder))])).create_view(name)
+def _create_view(con: duckdb.DuckDBPyConnection, results: ResultStore, name: str, file: str, downloads: Path) -> None:
+    con.read_parquet(escape_wildcards([str(results.fetch(file, downloads))])).create_view(name)

@@ -74,9 +74,9 @@ def compact(results: ResultStore, *, while_judging: bool = False) -> int:
     """
     _remove_unfinished_chunks(results)
     n_packed = 0
-    with open_database() as con, TemporaryDirectory(prefix="drivelint-compact-") as download_folder:
+    with open_database() as con, TemporaryDirectory(prefix="drivelint-compact-") as downloads:
         for receipts in unpacked_receipts(results, only_whole_batches=while_judging):
-            n_packed += _pack_receipts(results, con, receipts, Path(download_folder))
+            n_packed += _pack_receipts(results, con, receipts, Path(downloads))
     if not while_judging:
         _remove_unreceipted_batches(results)
     return n_packed
@@ -84,14 +84,14 @@ def compact(results: ResultStore, *, while_judging: bool = False) -> int:
 
 def remove_drives(results: ResultStore, keys: pa.Array) -> None:
     """Remove the drives with these keys from the chunks, so that they are judged again. No other process may compact meanwhile."""
-    with TemporaryDirectory(prefix="drivelint-compact-") as download_folder:
+    with TemporaryDirectory(prefix="drivelint-compact-") as downloads:
         for chunk in chunk_ids(results) if len(keys) else ():
-            receipts = _read_chunk(results, "receipts", chunk, Path(download_folder))
+            receipts = _read_chunk(results, "receipts", chunk, Path(downloads))
             kept = receipts.filter(pc.invert(pc.is_in(receipts["key"], value_set=keys)))
             if kept.num_rows == receipts.num_rows:
                 continue
             left = kept["key"].combine_chunks()
-            rows = {table: _read_chunk(results, table, chunk, Path(download_folder)) for table in TABLES}
+            rows = {table: _read_chunk(results, table, chunk, Path(downloads)) for table in TABLES}
             rows = {table: of.filter(pc.is_in(of["key"], value_set=left)) for table, of in rows.items()}
             # remove the old receipts first: if killed in between, drives are judged again, but never exist twice
             results.delete([chunk_name("receipts", chunk), *(chunk_name(table, chunk) for table in TABLES)])
@@ -110,17 +110,17 @@ def open_database() -> Iterator[duckdb.DuckDBPyConnection]:
         yield con
 
 
-def create_views(con: duckdb.DuckDBPyConnection, results: ResultStore, download_folder: Path, prefix: str = "") -> None:
+def create_views(con: duckdb.DuckDBPyConnection, results: ResultStore, downloads: Path, prefix: str = "") -> None:
     """Create the views `verdicts`, `findings`, `drives`, `rules` and `receipts` over all chunks.
 
-    Everything must be packed before. `download_folder`: folder for copies of remote files. `prefix`: prefix of the view names.
+    Everything must be packed before. `downloads`: folder for copies of remote files. `prefix`: prefix of the view names.
     """
-    con.read_parquet(escape_wildcards([str(results.fetch("rules.parquet", download_folder))])).create_view(
+    con.read_parquet(escape_wildcards([str(results.fetch("rules.parquet", downloads))])).create_view(
         f"{prefix}rules", replace=True
     )
     ids = chunk_ids(results)
     for table in (*TABLES, "receipts"):
-        files = [str(results.fetch(chunk_name(table, each), download_folder)) for each in ids]
+        files = [str(results.fetch(chunk_name(table, each), downloads)) for each in ids]
         if files:
             con.read_parquet(escape_wildcards(files)).create_view(f"{prefix}{table}", replace=True)
         else:
@@ -166,22 +166,22 @@ def unpacked_receipts(results: ResultStore, *, only_whole_batches: bool) -> Iter
 
 
 def _pack_receipts(
-    results: ResultStore, con: duckdb.DuckDBPyConnection, receipts: Sequence[Receipt], download_folder: Path
+    results: ResultStore, con: duckdb.DuckDBPyConnection, receipts: Sequence[Receipt], downloads: Path
 ) -> int:
     """Write a chunk of these receipts and their rows, then remove the small files. Return the number of drives in the chunk."""
     lost = {batch for batch in {each.batch for each in receipts} if results.read(batch_name("drives", batch)) is None}
     if lost:  # the rows were removed: without a receipt, the drives are judged again
         results.delete(receipt_name(receipt.key) for receipt in receipts if receipt.batch in lost)
         receipts = [receipt for receipt in receipts if receipt.batch not in lost]
-    packed_keys = _packed_keys(results, con, receipts, download_folder)
+    packed_keys = _packed_keys(results, con, receipts, downloads)
     new = [receipt for receipt in receipts if receipt.key not in packed_keys]
     if new:
         table = pa.Table.from_pylist([receipt_row(receipt) for receipt in new], schema=RECEIPT_SCHEMA).sort_by("key")
         con.register("_packed", table.select(["key", "batch"]))
         rows = {}
         for name in TABLES:
-            rows[name] = download_folder / f"{name}.parquet"
-            packed = batch_rows_query(con, results, download_folder, name, new)
+            rows[name] = downloads / f"{name}.parquet"
+            packed = batch_rows_query(con, results, downloads, name, new)
             written = con.execute(
                 f"COPY ({packed}) TO {quoted(rows[name])} (FORMAT parquet, COMPRESSION zstd)"
             ).fetchone()
@@ -197,22 +197,22 @@ def _pack_receipts(
 
 
 def batch_rows_query(
-    con: duckdb.DuckDBPyConnection, results: ResultStore, download_folder: Path, table: str, receipts: Sequence[Receipt]
+    con: duckdb.DuckDBPyConnection, results: ResultStore, downloads: Path, table: str, receipts: Sequence[Receipt]
 ) -> str:
     """Return the SELECT that reads one table's rows from the batches of these receipts, for the drives in the relation `_packed`."""
-    files = {each.batch: str(results.fetch(batch_name(table, each.batch), download_folder)) for each in receipts}
+    files = {each.batch: str(results.fetch(batch_name(table, each.batch), downloads)) for each in receipts}
     con.read_parquet(escape_wildcards(files.values()), filename=True).create_view("_rows", replace=True)
     return statement("audit/packed", order=_ORDER_OF_TABLE[table])
 
 
 def _packed_keys(
-    results: ResultStore, con: duckdb.DuckDBPyConnection, receipts: Sequence[Receipt], download_folder: Path
+    results: ResultStore, con: duckdb.DuckDBPyConnection, receipts: Sequence[Receipt], downloads: Path
 ) -> set[str]:
     """Return the keys that a chunk already contains, because a log was moved or a compaction was killed."""
     ids = chunk_ids(results)
     if not ids:
         return set()
-    files = [str(results.fetch(chunk_name("receipts", each), download_folder)) for each in ids]
+    files = [str(results.fetch(chunk_name("receipts", each), downloads)) for each in ids]
     con.register("_new", pa.table({"key": [r.key for r in receipts], "rows_sha256": [r.rows_sha256 for r in receipts]}))
     con.read_parquet(escape_wildcards(files)).create_view("_old", replace=True)
     found = con.execute(statement("audit/known")).fetchall()
@@ -252,8 +252,8 @@ def _remove_unreceipted_batches(results: ResultStore) -> None:
     )
 
 
-def _read_chunk(results: ResultStore, table: str, chunk: str, download_folder: Path) -> pa.Table:
-    return pq.read_table(results.fetch(chunk_name(table, chunk), download_folder), partitioning=None)
+def _read_chunk(results: ResultStore, table: str, chunk: str, downloads: Path) -> pa.Table:
+    return pq.read_table(results.fetch(chunk_name(table, chunk), downloads), partitioning=None)
 
 
 def receipt_row(receipt: Receipt) -> dict[str, Any]:

@@ -82,7 +82,7 @@ def require_writable(dest: str, out: str, run_id: str) -> None:
 def write_tables(
     con: duckdb.DuckDBPyConnection,
     results: ResultStore,
-    download_folder: Path,
+    downloads: Path,
     dest: str,
     *,
     run_id: str,
@@ -90,14 +90,14 @@ def write_tables(
 ) -> DeltaChange:
     """Make the Delta tables in `dest` equal to the packed tables, with one commit for each table that differs.
 
-    `con` has the views of `create_views`; `download_folder` has local copies of the files. `digest`: the digest in the audit's summary.
+    `con` has the views of `create_views`; `downloads` has local copies of the files. `digest`: the digest in the audit's summary.
     Only one process may write an audit's tables at a time. Errors: `UsageError` for a table of another program; `OutputError`.
     """
     ids = chunk_ids(results)
     n_added = n_removed = 0
     for table in TABLE_NAMES:
         names = ["rules.parquet"] if table == "rules" else [chunk_name(table, each) for each in ids]
-        files = {_file_name_by_hash(file): file for file in (results.fetch(name, download_folder) for name in names)}
+        files = {_file_name_by_hash(file): file for file in (results.fetch(name, downloads) for name in names)}
         schema = con.table(table).limit(0).to_arrow_table().schema
         where = _table_place(dest, table)
         job = partial(_write_table, where, table, files, schema, run_id=run_id, digest=digest)

@@ -48,11 +48,11 @@ def divide_into_tasks(
     *,
     group_size: int,
     max_drives: int = TASK_DRIVES,
-    n_small_tasks: int = 0,
+    n_small: int = 0,
 ) -> Iterator[Task]:
     """Divide drives into tasks. Each group of `group_size` drives starts with its largest logs, so that no long log is left for the end.
 
-    The first `n_small_tasks` tasks are small, so that an audit that is interrupted early has some results.
+    The first `n_small` tasks are small, so that an audit that is interrupted early has some results.
     """
     left, n_cut = iter(drives), 0
     while some := list(islice(left, group_size)):
@@ -60,7 +60,7 @@ def divide_into_tasks(
         part: list[AuditDrive] = []
         for drive in some:
             part.append(drive)
-            most = min(max_drives, LEAST_TASK_DRIVES) if n_cut < n_small_tasks else max_drives
+            most = min(max_drives, LEAST_TASK_DRIVES) if n_cut < n_small else max_drives
             if len(part) >= most or sum(each.size for each in part) >= TASK_BYTES:
                 yield Task(tuple(part), dest, run_id, settings)
                 part, n_cut = [], n_cut + 1

@@ -70,7 +70,7 @@ def _insert_drives(con: duckdb.DuckDBPyConnection, rows: list[dict[str, Any]]) -
     con.unregister("_some")
 
 
-def drives_without_receipt(con: duckdb.DuckDBPyConnection) -> Iterator[AuditDrive]:
+def unjudged_drives(con: duckdb.DuckDBPyConnection) -> Iterator[AuditDrive]:
     """Yield the listed drives that have no receipt, ordered by log."""
     rows = con.cursor().execute(statement("audit/todo"))
     for batch in rows.to_arrow_reader(1_000):

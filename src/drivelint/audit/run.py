@@ -54,7 +54,7 @@ if TYPE_CHECKING:
 
 AUDIT_FILE: Final = "audit.json"
 RULES_FILE: Final = "rules.parquet"
-_RECEIPTS_OF_LISTED_DRIVES: Final = "(FROM receipts SEMI JOIN _listed USING (source_id))"
+_LISTED_RECEIPTS: Final = "(FROM receipts SEMI JOIN _listed USING (source_id))"
 """The receipts that were packed before, of drives that this part of the audit lists."""
 RECEIPTS_PER_COMPACTION: Final = 4_000
 WORKER_BYTES: Final = 500_000_000
@@ -99,21 +99,21 @@ def audit(request: AuditRequest, progress: Progress, executor: Executor | None =
     """
     rules = chosen_selectors(request.settings.rules, request.settings.rules_dirs, request)
     request = replace(request, settings=replace(request.settings, rules=rules))
-    audit_run_id = run_id(request.settings)
+    run_hash = run_id(request.settings)
     results = open_store(request.out)
     alone = request.shard is None and not request.claim
     if request.delta is not None:
         if not alone:
             raise UsageError("--delta needs packed tables: when all parts have ended, run drivelint merge --delta")
-        delta.require_writable(request.delta, request.out, audit_run_id)
-    was_unchanged = _create_or_check_settings(request, results, audit_run_id)
+        delta.require_writable(request.delta, request.out, run_hash)
+    was_unchanged = _create_or_check_settings(request, results, run_hash)
     if not alone and (request.retry_errors or request.prune):
         raise UsageError("--retry-errors and --prune remove results: use them without --shard and --claim")
     part = parts.part_name(request.shard, claim=request.claim)
     with lock_results(results, shared=not alone):
         parts.record_begin(results, part)
         audit_summary = _audit_under_lock(
-            request, results, progress, audit_run_id=audit_run_id, executor=executor, was_unchanged=was_unchanged
+            request, results, progress, run_hash=run_hash, executor=executor, was_unchanged=was_unchanged
         )
         parts.record_end(results, part)
     return audit_summary
@@ -124,7 +124,7 @@ def _audit_under_lock(
     results: ResultStore,
     progress: Progress,
     *,
-    audit_run_id: str,
+    run_hash: str,
     executor: Executor | None,
     was_unchanged: bool,
 ) -> AuditSummary:
@@ -136,17 +136,17 @@ def _audit_under_lock(
         progress.stage("looking at earlier results", None)
         sealed.require_rows_unchanged(results, request.out, packed=not was_unchanged)
         compact(results)
-    with open_database() as con, TemporaryDirectory(prefix="drivelint-audit-") as download_folder:
+    with open_database() as con, TemporaryDirectory(prefix="drivelint-audit-") as downloads:
         progress.stage("listing", None)
-        n_drives = listing.fill_listed_drives(con, request.sources, _drive_input(request), audit_run_id, request.shard)
+        n_drives = listing.fill_listed_drives(con, request.sources, _drive_input(request), run_hash, request.shard)
         parts.record_drive_count(results, parts.part_name(request.shard, claim=request.claim), n_drives)
-        create_views(con, results, Path(download_folder))
+        create_views(con, results, Path(downloads))
         if alone and (n_stale := _remove_stale_results(con, results, with_unjudged=request.retry_errors)):
-            create_views(con, results, Path(download_folder))
+            create_views(con, results, Path(downloads))
             progress.note(f"{plural(n_stale, 'drive')} judged again: changed since, or not judged before")
         n_absent = _count_or_prune_absent(con, results, request, progress) if alone else 0
         if n_absent and request.prune:
-            create_views(con, results, Path(download_folder))
+            create_views(con, results, Path(downloads))
         (n_known,) = con.execute("SELECT count(*) FROM _listed SEMI JOIN receipts USING (source_id)").fetchall()[0]
         for doubt in _tag_warnings(con):
             progress.note(doubt)
@@ -154,22 +154,14 @@ def _audit_under_lock(
         progress.advance(n_known)
         if not alone and (n_stale := len(_stale_keys(con, with_unjudged=False))):
             raise UsageError(f"{plural(n_stale, 'log')} changed since: run the audit once without --shard and --claim")
-        audit_summary = _judge_remaining_drives(
-            request, con, results, progress, audit_run_id=audit_run_id, executor=executor
-        )
+        audit_summary = _judge_remaining(request, con, results, progress, run_hash=run_hash, executor=executor)
         n_reused = n_known + audit_summary.reused
         if not alone:
-            return replace(audit_summary.plus(sums_of_receipts(con, _RECEIPTS_OF_LISTED_DRIVES)), reused=n_reused)
-        audit_summary = _pack_and_seal(con, results, Path(download_folder), n_reused)
+            return replace(audit_summary.plus(sums_of_receipts(con, _LISTED_RECEIPTS)), reused=n_reused)
+        audit_summary = _pack_and_seal(con, results, Path(downloads), n_reused)
         if request.delta is not None:
             _write_delta(
-                request.delta,
-                con,
-                results,
-                Path(download_folder),
-                progress,
-                audit_run_id=audit_run_id,
-                audit_summary=audit_summary,
+                request.delta, con, results, Path(downloads), progress, run_hash=run_hash, audit_summary=audit_summary
             )
         return replace(audit_summary, n_asked=n_drives, n_absent=0 if request.prune else n_absent)
 
@@ -180,13 +172,13 @@ def _tag_warnings(con: duckdb.DuckDBPyConnection) -> Iterator[str]:
     yield from tag_warnings([name for (name,) in rows])
 
 
-def _judge_remaining_drives(
+def _judge_remaining(
     request: AuditRequest,
     con: duckdb.DuckDBPyConnection,
     results: ResultStore,
     progress: Progress,
     *,
-    audit_run_id: str,
+    run_hash: str,
     executor: Executor | None,
 ) -> AuditSummary:
     """Let workers judge the listed drives that have no receipt; return the summary of these drives."""
@@ -219,21 +211,11 @@ def _judge_remaining_drives(
                 workers, results, count_receipt, compact_if_due, claims.mark_done if claims else lambda _drives: None
             )
             while True:
-                todo = (
-                    claims.claimed_drives(listing.drives_without_receipt(con))
-                    if claims
-                    else listing.drives_without_receipt(con)
-                )
+                todo = claims.claimed_drives(listing.unjudged_drives(con)) if claims else listing.unjudged_drives(con)
                 settings, n_small = _settings_of_workers(request), workers.capacity
                 driver.run(
                     divide_into_tasks(
-                        todo,
-                        request.out,
-                        audit_run_id,
-                        settings,
-                        group_size=ahead,
-                        max_drives=most,
-                        n_small_tasks=n_small,
+                        todo, request.out, run_hash, settings, group_size=ahead, max_drives=most, n_small=n_small
                     )
                 )
                 if claims is None or not claims.n_waiting:
@@ -284,14 +266,14 @@ def _stale_keys(con: duckdb.DuckDBPyConnection, *, with_unjudged: bool) -> pa.Ar
 def _pack_and_seal(
     con: duckdb.DuckDBPyConnection,
     results: ResultStore,
-    download_folder: Path,
+    downloads: Path,
     n_reused: int,
     missing_parts: Sequence[str] = (),
 ) -> AuditSummary:
     """Pack everything, then write the summary and the list of files. Return the summary."""
     sealed.unseal(results)
     compact(results)
-    create_views(con, results, download_folder)
+    create_views(con, results, downloads)
     told = read_audit_file(results, "the audit") or {}
     robust = bool(told.get("settings", {}).get("robustness"))
     audit_summary = replace(summary_of_all_drives(con, n_reused), missing_parts=list(missing_parts), robust=robust)
@@ -304,10 +286,10 @@ def _write_delta(
     dest: str,
     con: duckdb.DuckDBPyConnection,
     results: ResultStore,
-    download_folder: Path,
+    downloads: Path,
     progress: Progress,
     *,
-    audit_run_id: str,
+    run_hash: str,
     audit_summary: AuditSummary,
 ) -> None:
     """Write the packed results to the Delta tables. Leave the tables unchanged if parts of the audit have not ended."""
@@ -316,9 +298,7 @@ def _write_delta(
         return
     progress.stage("writing Delta tables", None)
     progress.note(
-        delta.write_tables(con, results, download_folder, dest, run_id=audit_run_id, digest=audit_summary.digest).text(
-            dest
-        )
+        delta.write_tables(con, results, downloads, dest, run_id=run_hash, digest=audit_summary.digest).text(dest)
     )
 
 
@@ -331,29 +311,23 @@ def merge(out: str, progress: Progress, delta_dest: str | None = None) -> AuditS
     told = read_audit_file(results, out)
     if told is None:
         raise UsageError(f"{out}: no audit is here: name the folder that `audit --out` wrote")
-    audit_run_id = told["run_id"]
+    run_hash = told["run_id"]
     if delta_dest is not None:
-        delta.require_writable(delta_dest, out, audit_run_id)
+        delta.require_writable(delta_dest, out, run_hash)
     progress.stage("packing", None)
     with (
         lock_results(results, shared=False),
         open_database() as con,
-        TemporaryDirectory(prefix="drivelint-audit-") as download_folder,
+        TemporaryDirectory(prefix="drivelint-audit-") as downloads,
     ):
         if isinstance(results, LocalFolder):
             results.remove_unfinished_files()
-        sealed.require_rows_unchanged(results, out, packed=not _is_sealed_and_unchanged(results, out))
+        sealed.require_rows_unchanged(results, out, packed=not _is_sealed(results, out))
         results.delete(list(results.names("claims")))
-        audit_summary = _pack_and_seal(con, results, Path(download_folder), 0, parts.unfinished_parts(results))
+        audit_summary = _pack_and_seal(con, results, Path(downloads), 0, parts.unfinished_parts(results))
         if delta_dest is not None:
             _write_delta(
-                delta_dest,
-                con,
-                results,
-                Path(download_folder),
-                progress,
-                audit_run_id=audit_run_id,
-                audit_summary=audit_summary,
+                delta_dest, con, results, Path(downloads), progress, run_hash=run_hash, audit_summary=audit_summary
             )
         return replace(audit_summary, n_asked=parts.n_expected_drives(results))
 
@@ -369,23 +343,23 @@ def _count_or_prune_absent(
     return len(absent)
 
 
-def _create_or_check_settings(request: AuditRequest, results: ResultStore, audit_run_id: str) -> bool:
+def _create_or_check_settings(request: AuditRequest, results: ResultStore, run_hash: str) -> bool:
     """Write `audit.json` with the settings that determine the results; if it exists, check that its settings are the same.
 
     Return whether an audit exists that has ended and whose files are unchanged since then. Errors: `UsageError` if the existing audit used
     other rules, parameters or versions, or if its files were changed after it ended.
     """
-    told = {"run_id": audit_run_id, "versions": versions(), "settings": _settings_without_memory(request.settings)}
+    told = {"run_id": run_hash, "versions": versions(), "settings": _settings_without_memory(request.settings)}
     told |= {name: getattr(request, name) for name in ("fail_on", "strict", "min_judged")}
     content = (json.dumps(told, indent=2, sort_keys=True, default=str) + "\n").encode()
     was_unchanged = False
     if not results.create(AUDIT_FILE, content):
         there = read_audit_file(results, request.out) or {}
-        if there.get("run_id") != audit_run_id:
+        if there.get("run_id") != run_hash:
             changed = sorted(name for name, value in versions().items() if there.get("versions", {}).get(name) != value)
             why = f"other versions of {', '.join(changed)}" if changed else "other rules, parameters or profiles"
             raise UsageError(f"{request.out}: the audit there was made with {why}: choose another --out")
-        was_unchanged = _is_sealed_and_unchanged(results, request.out)
+        was_unchanged = _is_sealed(results, request.out)
         sealed.unseal(results)
         results.delete([SUMMARY_FILE, GATE_FILE])  # they describe the earlier results
         if request.shard is None and not request.claim:
@@ -410,9 +384,9 @@ def read_audit_file(results: ResultStore, dest: str) -> dict[str, Any] | None:
     )
 
 
-def _is_sealed_and_unchanged(results: ResultStore, dest: str) -> bool:
-    with TemporaryDirectory(prefix="drivelint-audit-") as download_folder:
-        return sealed.require_listed_files_unchanged(results, Path(download_folder), dest)
+def _is_sealed(results: ResultStore, dest: str) -> bool:
+    with TemporaryDirectory(prefix="drivelint-audit-") as downloads:
+        return sealed.require_listed_files_unchanged(results, Path(downloads), dest)
 
 
 def _settings_without_memory(settings: JudgeSettings) -> dict[str, Any]:

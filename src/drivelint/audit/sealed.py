@@ -48,10 +48,10 @@ def unseal(results: ResultStore) -> None:
     results.delete([MANIFEST])
 
 
-def require_listed_files_unchanged(results: ResultStore, download_folder: Path, dest: str) -> bool:
+def require_listed_files_unchanged(results: ResultStore, downloads: Path, dest: str) -> bool:
     """Raise `UsageError`, which names the first changed file, if the audit's files have changed since it ended.
 
-    Return whether the audit has `files.json`. An audit without it has not ended, or is of an older version. `download_folder`: folder for
+    Return whether the audit has `files.json`. An audit without it has not ended, or is of an older version. `downloads`: folder for
     copies.
     Errors: also `OutputError`.
     """
@@ -59,20 +59,20 @@ def require_listed_files_unchanged(results: ResultStore, download_folder: Path, 
     if not said:
         return False
     for name in sorted({*results.names(_TABLES_FOLDER), *said}):
-        if name not in said or _file_sha256(results, download_folder, name) != said[name]:
+        if name not in said or _file_sha256(results, downloads, name) != said[name]:
             if results.read(MANIFEST) is None:  # a shard has found the files unchanged, and has begun to change them
                 return False
             raise UsageError(f"{dest.rstrip('/')}/{name}: was changed since drivelint audit wrote it: {_ADVICE}")
     return True
 
 
-def require_audit_unchanged(results: ResultStore, download_folder: Path, dest: str) -> None:
+def require_audit_unchanged(results: ResultStore, downloads: Path, dest: str) -> None:
     """Raise `UsageError` if an audit was changed: it has ended but lacks `files.json`, or a file or a drive's rows differ from their hash.
 
-    `download_folder`: folder for copies. Errors: also `OutputError`.
+    `downloads`: folder for copies. Errors: also `OutputError`.
     """
     require_file_list(results, dest)
-    is_listed = require_listed_files_unchanged(results, download_folder, dest)
+    is_listed = require_listed_files_unchanged(results, downloads, dest)
     before = _file_names(results)
     try:
         require_rows_unchanged(results, dest, packed=not is_listed)
@@ -117,10 +117,8 @@ def require_rows_unchanged(results: ResultStore, dest: str, *, packed: bool) -> 
             )
     for chunk in chunk_ids(results) if packed else ():
         names = {table: chunk_name(table, chunk) for table in (*TABLES, "receipts")}
-        with TemporaryDirectory(prefix="drivelint-audit-") as download_folder:
-            receipts = _read_table(
-                results, dest, names.pop("receipts"), Path(download_folder), RECEIPT_SCHEMA
-            ).to_pylist()
+        with TemporaryDirectory(prefix="drivelint-audit-") as downloads:
+            receipts = _read_table(results, dest, names.pop("receipts"), Path(downloads), RECEIPT_SCHEMA).to_pylist()
         expected_hashes = {each["key"]: (each["log"], each["rows_sha256"]) for each in receipts}
         _require_rows_match_hashes(results, dest, names, expected_hashes, refuse_other_drives=True)
 
@@ -135,9 +133,9 @@ def _require_rows_match_hashes(
 ) -> None:
     """Raise `UsageError` if rows do not match `expected_hashes`: key -> (log, hash). `names`: table -> its file. `refuse_other_drives`:
     also refuse rows of other drives."""
-    with TemporaryDirectory(prefix="drivelint-audit-") as download_folder:
+    with TemporaryDirectory(prefix="drivelint-audit-") as downloads:
         read = {
-            table: _read_table(results, dest, name, Path(download_folder), empty_tables()[table].schema)
+            table: _read_table(results, dest, name, Path(downloads), empty_tables()[table].schema)
             for table, name in names.items()
         }
     by_key = {table: dict(_rows_by_key(rows)) for table, rows in read.items()}
@@ -162,19 +160,19 @@ def _rows_by_key(rows: pa.Table) -> Iterator[tuple[str, pa.Table]]:
 
 
 def _read_table(
-    results: ResultStore, dest: str, name: str, download_folder: Path, schema: pa.Schema | None = None
+    results: ResultStore, dest: str, name: str, downloads: Path, schema: pa.Schema | None = None
 ) -> pa.Table:
     try:
-        rows = pq.read_table(results.fetch(name, download_folder), partitioning=None)
+        rows = pq.read_table(results.fetch(name, downloads), partitioning=None)
         return rows if schema is None else rows.cast(schema)
     except (OSError, ValueError) as error:  # errors of pyarrow are subclasses of these
         raise UsageError(f"{dest.rstrip('/')}/{name}: was changed since drivelint audit wrote it: {_ADVICE}") from error
 
 
-def _file_sha256(results: ResultStore, download_folder: Path, name: str) -> str | None:
+def _file_sha256(results: ResultStore, downloads: Path, name: str) -> str | None:
     """Return the hash of a file; None: there is no such file. The name may come from a damaged list."""
     try:
-        with results.fetch(name, download_folder).open("rb") as file:
+        with results.fetch(name, downloads).open("rb") as file:
             return file_digest(file, "sha256").hexdigest()
     except (OSError, ValueError):
         return None

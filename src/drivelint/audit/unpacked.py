@@ -69,7 +69,7 @@ class AuditProgress(NamedTuple):
 
 
 def create_views_of_all_results(
-    con: duckdb.DuckDBPyConnection, results: ResultStore, download_folder: Path, prefix: str = ""
+    con: duckdb.DuckDBPyConnection, results: ResultStore, downloads: Path, prefix: str = ""
 ) -> AuditProgress:
     """Create the views of `create_views` over all results, including results that are not packed. `prefix`: as in `create_views`.
 
@@ -77,10 +77,10 @@ def create_views_of_all_results(
     """
     inner = f"packed_{prefix}"
     try:
-        create_views(con, results, download_folder, inner)
+        create_views(con, results, downloads, inner)
         loose = _unpacked_receipts_with_rows(con, results, inner)
         for table in (*TABLES, "receipts"):
-            _fill_unpacked_rows(con, results, download_folder, table, loose)
+            _fill_unpacked_rows(con, results, downloads, table, loose)
             con.execute(f"CREATE OR REPLACE TABLE loose_{prefix}{table} AS FROM _loose")
             both = f"FROM {inner}{table}" + (f" UNION ALL BY NAME FROM loose_{prefix}{table}" if loose else "")
             con.execute(f"CREATE OR REPLACE VIEW {prefix}{table} AS {both}")
@@ -102,11 +102,11 @@ def create_views_of_all_results(
     return AuditProgress(told.get("digest"), len(loose), n, parts.n_expected_drives(results), tuple(unfinished_parts))
 
 
-def n_results(results: ResultStore, download_folder: Path) -> int:
+def n_results(results: ResultStore, downloads: Path) -> int:
     """Return the number of drives that have a result."""
     n = sum(1 for _ in results.names("receipts"))
     for each in chunk_ids(results):
-        n += pq.read_metadata(results.fetch(chunk_name("receipts", each), download_folder)).num_rows
+        n += pq.read_metadata(results.fetch(chunk_name("receipts", each), downloads)).num_rows
     return n
 
 
@@ -123,7 +123,7 @@ def _unpacked_receipts_with_rows(
 
 
 def _fill_unpacked_rows(
-    con: duckdb.DuckDBPyConnection, results: ResultStore, download_folder: Path, table: str, unpacked: list[Receipt]
+    con: duckdb.DuckDBPyConnection, results: ResultStore, downloads: Path, table: str, unpacked: list[Receipt]
 ) -> None:
     """Create the table `_loose` with the rows of these receipts."""
     receipts = pa.Table.from_pylist([receipt_row(each) for each in unpacked], schema=RECEIPT_SCHEMA)
@@ -133,5 +133,5 @@ def _fill_unpacked_rows(
         con.unregister("_some")
         return
     con.register("_packed", receipts.select(["key", "batch"]))
-    con.execute(f"CREATE OR REPLACE TABLE _loose AS {batch_rows_query(con, results, download_folder, table, unpacked)}")
+    con.execute(f"CREATE OR REPLACE TABLE _loose AS {batch_rows_query(con, results, downloads, table, unpacked)}")
     con.unregister("_packed")

@@ -17,15 +17,7 @@ from drivelint.incident.case import LETTERS
 from drivelint.incident.command import commands
 from drivelint.incident.conduct import conduct, name_party
 from drivelint.incident.delta_v import WINDOW_S
-from drivelint.incident.fitting import (
-    SHARED_HEAD,
-    Fitting,
-    check_room,
-    first_fitting,
-    fit,
-    is_crowded,
-    shared_reasons,
-)
+from drivelint.incident.fitting import SHARED_HEAD, Fitting, check_room, first_fitting, fit, is_crowded, shared_reasons
 from drivelint.incident.judge import same_finding
 from drivelint.incident.motion import BEFORE_S, MOST_ROWS, Motion, second_by_second, slowings
 from drivelint.incident.parties import against_each_other, kinds, others_drawn, overtaking, party, title
