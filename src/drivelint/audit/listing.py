@@ -37,7 +37,7 @@ def fill_listed_drives(
     for drive in sources.drives(source_names, options):
         if shard and int(digest(drive.log)[:8], 16) % shard[1] != shard[0] - 1:
             continue
-        options_id = hashes.of(drive.options)
+        options_id = hashes.hash_of(drive.options)
         size, stamp = (drive.size, drive.stamp) if drive.stamp else _size_and_stamp(drive.log)
         found = drive.with_ids(size, stamp, run_id, options_id)
         some.append(
