@@ -76,7 +76,7 @@ def _listing(drives: fleet.Fleet) -> float:
     begin = time.perf_counter()
     hashes, options = OptionHashes(), DriveInput(map=drives.road)
     listed = [
-        AuditDrive(str(path), options).with_ids(path.stat().st_size, "0", "run", hashes.of(options))
+        AuditDrive(str(path), options).with_ids(path.stat().st_size, "0", "run", hashes.hash_of(options))
         for path in sorted((drives.manifest.parent / "logs").iterdir())
     ]
     cut = [
