@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from drivelint.casefile import coverage_problem, read_cases, run_cases, unused_reasons
-from drivelint.casefile.mutation import entries_without_rule, judge_mutants
+from drivelint.casefile import coverage_problem, read_cases, run_cases, unused_reasons_message
+from drivelint.casefile.mutation import judge_mutants, unknown_rule_messages
 from drivelint.catalogue import load_rules
 from drivelint.sql import store
 from tests.catalogue.judged_together import Judged, judged_together
@@ -64,7 +64,7 @@ def test_cases(rule_id: str) -> None:
     rule = RULES[rule_id]
     problem, codes = judged_in_part(IDS.index(rule_id) // RULES_AT_ONCE)[rule_id]
     assert problem == ""
-    assert unused_reasons(rule, codes) == ""
+    assert unused_reasons_message(rule, codes) == ""
     assert coverage_problem(read_cases(rule)) == ""
 
 
@@ -82,4 +82,4 @@ def test_the_cases_would_notice_a_wrong_rule(rule_id: str) -> None:
 
 
 def test_a_survivor_is_listed_of_rules_that_there_are() -> None:
-    assert entries_without_rule(list(RULES.values())) == []
+    assert unknown_rule_messages(list(RULES.values())) == []

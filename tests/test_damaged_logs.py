@@ -163,7 +163,7 @@ def test_an_annotation_that_fails_voids_no_verdict(tmp_path: Path, good: Path, m
         raise ValueError("no picture")
 
     alone = drivelint.check([good], rules=NO_COLLISION, annotate=False)
-    monkeypatch.setattr(annotator, "write", fail)
+    monkeypatch.setattr(annotator, "write_log", fail)
     result = drivelint.check([good], rules=NO_COLLISION, out=tmp_path / "out")
     assert result.verdicts.arrow() == alone.verdicts.arrow()
     assert [note for note in result.notes if "not annotated" in note and "no picture" in note]

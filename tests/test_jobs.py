@@ -114,7 +114,7 @@ def test_a_log_that_two_parts_have_is_judged_once(alone: Alone) -> None:
     drives = sorted(judged.run_options.traces)
     notes = tuple(LogNote(Path(judged.run_options.traces[drive]), "said", once=True) for drive in drives)
     one = run.JudgedLogs(replace(judged, **_of(judged, drives[:2], inside=True)), notes[:2], (), {})
-    first, second = parallel._without_copies([one, run.JudgedLogs(judged, notes, (), {})])
+    first, second = parallel._without_duplicate_drives([one, run.JudgedLogs(judged, notes, (), {})])
     assert first is one
     assert set(second.result.drives["drive_id"].to_pylist()) == {*drives[2:], "m"}
     assert not set(second.result.verdicts["drive_id"].to_pylist()) & set(drives[:2])
@@ -138,12 +138,12 @@ def test_parts_are_neighbours_of_about_as_many_bytes(tmp_path: Path, most: int, 
     for path in paths:
         path.write_bytes(bytes(2000 if path.name.isupper() else 1000))
     paths[2].write_bytes(bytes(1100))
-    assert ["".join(path.name for path in part) for part in parallel._cut(paths, most)] == cut
+    assert ["".join(path.name for path in part) for part in parallel._cut_into_parts(paths, most)] == cut
 
 
 def test_a_log_that_cannot_be_looked_at_is_in_a_part(tmp_path: Path) -> None:
     paths = [tmp_path / "a", tmp_path / "b"]
-    assert [path for part in parallel._cut(paths, 2) for path in part] == paths
+    assert [path for part in parallel._cut_into_parts(paths, 2) for path in part] == paths
 
 
 def test_joined_results_are_those_of_one_run(alone: Alone) -> None:

@@ -30,40 +30,42 @@ def never() -> Query:
 def test_a_fact_is_found_once(home: Path) -> None:
     query = check_query(SQL, "a.sql", 1)
     first = Memo[Query]("queries", Query)
-    assert first.of(SQL, lambda: query) == query
+    assert first.find_or_compute(SQL, lambda: query) == query
     first.save()
-    assert [file.name for file in home.iterdir()] == [f"queries-{memo.foundation(memo.SQL_CODE)[:16]}.msgpack"]
-    assert Memo[Query]("queries", Query).of(SQL, never) == query
+    assert [file.name for file in home.iterdir()] == [
+        f"queries-{memo.code_and_version_hash(memo.SQL_CODE_GLOBS)[:16]}.msgpack"
+    ]
+    assert Memo[Query]("queries", Query).find_or_compute(SQL, never) == query
     with pytest.raises(AssertionError):
-        Memo[Query]("queries", Query).of(f"{SQL} ", never)
+        Memo[Query]("queries", Query).find_or_compute(f"{SQL} ", never)
 
 
 def test_rules_are_read_and_checked_once(monkeypatch: pytest.MonkeyPatch) -> None:
     def fresh() -> None:
-        load._known_rule.cache_clear()
-        monkeypatch.setattr(load, "_RULES", Memo[Rule]("rules", Rule))
+        load._cached_rule.cache_clear()
+        monkeypatch.setattr(load, "_RULE_MEMO", Memo[Rule]("rules", Rule))
 
     fresh()
     rules = load_rules()
-    load._RULES.save()
+    load._RULE_MEMO.save()
     fresh()
     monkeypatch.setattr(rule_file, "checked_rule", never)
     assert load_rules() == rules
-    load._known_rule.cache_clear()
+    load._cached_rule.cache_clear()
 
 
 def test_other_code_finds_its_own(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     kept = Memo[int]("numbers", int)
     kept.put("a", 1)
     kept.save()
-    monkeypatch.setattr(memo, "foundation", lambda _: "f" * 64)
-    assert Memo[int]("numbers", int).of("a", lambda: 2) == 2
+    monkeypatch.setattr(memo, "code_and_version_hash", lambda _: "f" * 64)
+    assert Memo[int]("numbers", int).find_or_compute("a", lambda: 2) == 2
 
 
 def test_the_code_and_the_declarations_count() -> None:
-    whole = memo.foundation(memo.SQL_CODE)
-    assert whole != memo.foundation(memo.SQL_CODE[1:])
-    files = {file.name for pattern in memo.SQL_CODE for file in Path(memo.__file__).parent.glob(pattern)}
+    whole = memo.code_and_version_hash(memo.SQL_CODE_GLOBS)
+    assert whole != memo.code_and_version_hash(memo.SQL_CODE_GLOBS[1:])
+    files = {file.name for pattern in memo.SQL_CODE_GLOBS for file in Path(memo.__file__).parent.glob(pattern)}
     assert {"syntax.py", "check.py", "allowed_sql.py", "derivations.py", "memo.py"} <= files
 
 
@@ -74,7 +76,7 @@ def test_a_damaged_file_is_none(home: Path, content: bytes) -> None:
     kept.save()
     (file,) = home.iterdir()
     file.write_bytes(content)
-    assert Memo[int]("numbers", int).of("a", lambda: 1) == 1
+    assert Memo[int]("numbers", int).find_or_compute("a", lambda: 1) == 1
 
 
 def test_errors_are_not_kept() -> None:
@@ -86,7 +88,7 @@ def test_errors_are_not_kept() -> None:
 def test_a_folder_that_cannot_be_written(home: Path) -> None:
     home.write_bytes(b"a file stands there")
     kept = Memo[int]("numbers", int)
-    assert kept.of("a", lambda: 1) == 1
+    assert kept.find_or_compute("a", lambda: 1) == 1
     kept.save()
 
 
@@ -98,7 +100,7 @@ def test_no_more_facts_than_are_asked_for(monkeypatch: pytest.MonkeyPatch) -> No
     old.save()
     new = Memo[int]("numbers", int)
     new.put("c", 1)
-    new.of("b", lambda: 5)
+    new.find_or_compute("b", lambda: 5)
     new.save()
     last = Memo[int]("numbers", int)
     assert [last.get(name) for name in "abc"] == [None, 0, 1]

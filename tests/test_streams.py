@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from drivelint.phrases import inert, inert_line
+from drivelint.phrases import terminal_safe, terminal_safe_line
 from tests.shared_data import ROOT
 
 COMMAND = [sys.executable, "-m", "drivelint"]
@@ -46,10 +46,10 @@ def assert_inert(said: str) -> None:
 
 
 def test_words_that_steer_a_terminal_are_shown() -> None:
-    assert_inert(inert(HOSTILE))
-    assert inert_line(HOSTILE) == r"\x1b]0;t\x07\x1b[31m ::error::x #\#[error]y\u202e\x9b1m"
-    assert inert("a: b\n  ::warning::") == "a: b\n  :\\:warning::"
-    assert inert("Straße 1 \u2192 2 \u00b7 3") == "Straße 1 \u2192 2 \u00b7 3"
+    assert_inert(terminal_safe(HOSTILE))
+    assert terminal_safe_line(HOSTILE) == r"\x1b]0;t\x07\x1b[31m ::error::x #\#[error]y\u202e\x9b1m"
+    assert terminal_safe("a: b\n  ::warning::") == "a: b\n  :\\:warning::"
+    assert terminal_safe("Straße 1 \u2192 2 \u00b7 3") == "Straße 1 \u2192 2 \u00b7 3"
 
 
 @pytest.mark.skipif(os.name != "posix", reason="files cannot have such names")

@@ -23,12 +23,12 @@ __all__ = [
     "read_trace",
     "write_demo",
 ]
-_OF_API = frozenset(__all__) - {"DriveLintError"}
+_API_NAMES = frozenset(__all__) - {"DriveLintError"}
 
 
 def __getattr__(name: str) -> object:
     """Import the Python interface on first use: `import drivelint` itself loads nothing heavy."""
-    if name not in _OF_API:
+    if name not in _API_NAMES:
         raise AttributeError(f"module 'drivelint' has no attribute {name!r}")
     return getattr(import_module("drivelint.api"), name)
 

@@ -19,7 +19,7 @@ Indices = NDArray[np.intp]
 Codes = NDArray[np.int8]  # indices into a tuple of words, -1: unknown
 
 
-def spelled(codes: NDArray[np.integer], words: Sequence[str]) -> pa.Array:
+def words_of_codes(codes: NDArray[np.integer], words: Sequence[str]) -> pa.Array:
     """Return the word of each code as an Arrow string array, -1 as NULL."""
     import pyarrow as pa
 
@@ -32,18 +32,18 @@ def floats(column: pa.Array | pa.ChunkedArray) -> Floats:
     return np.asarray(column.to_numpy(zero_copy_only=False), np.float64)
 
 
-def turned(x: Floats, y: Floats, angle: Floats) -> tuple[Floats, Floats]:
+def rotate_vectors(x: Floats, y: Floats, angle_rad: Floats) -> tuple[Floats, Floats]:
     """Return vectors rotated counterclockwise by an angle (rad)."""
-    cos, sin = np.cos(angle), np.sin(angle)
+    cos, sin = np.cos(angle_rad), np.sin(angle_rad)
     return x * cos - y * sin, x * sin + y * cos
 
 
-def wrapped(angle: Floats) -> Floats:
+def wrap_angles(angle_rad: Floats) -> Floats:
     """Return angles (rad) wrapped into [-pi, pi]; an angle in this range keeps all its bits."""
-    return angle - 2.0 * np.pi * np.round(angle / (2.0 * np.pi))
+    return angle_rad - 2.0 * np.pi * np.round(angle_rad / (2.0 * np.pi))
 
 
-def with_columns(table: pa.Table, columns: Mapping[str, Any]) -> pa.Table:
+def replace_columns(table: pa.Table, columns: Mapping[str, Any]) -> pa.Table:
     """Return a table with new values in the given columns, whose types stay the same; NaN becomes NULL."""
     import pyarrow as pa
 
@@ -54,7 +54,7 @@ def with_columns(table: pa.Table, columns: Mapping[str, Any]) -> pa.Table:
     return table
 
 
-def coded(texts: pa.Array, code_of: Callable[[str], int]) -> Codes:
+def codes_of_texts(texts: pa.Array, code_of: Callable[[str], int]) -> Codes:
     """Return the code of each text, -1 for NULL; `code_of` is called once per distinct text."""
     import pyarrow.compute as pc
 

@@ -8,14 +8,14 @@ from contextlib import suppress
 from time import process_time
 
 
-class Work:
+class ProcessorClock:
     """Counts the processor seconds of this process without its other Python threads, such as threads that read logs.
 
-    `thread`: the system's number of the thread whose work is counted. The threads of the database work for it and are counted, too.
+    `thread_id`: the system's number of the thread whose work is counted. The threads of the database work for it and are counted, too.
     """
 
-    def __init__(self, thread: int) -> None:
-        self._thread = thread
+    def __init__(self, thread_id: int) -> None:
+        self._thread = thread_id
         self._seconds = 0.0
         self._process_s, self._others_s = process_time(), self._cpu_s_of_other_threads()
 
@@ -33,19 +33,19 @@ class Work:
         for thread in threading.enumerate():
             if (number := thread.native_id) is not None and number != self._thread:
                 with suppress(OSError, ValueError, IndexError):
-                    found[number] = int(_content(f"/proc/self/task/{number}/schedstat").split()[0]) / 1e9
+                    found[number] = int(_read_system_file(f"/proc/self/task/{number}/schedstat").split()[0]) / 1e9
         return found
 
 
 def resident_bytes(process: int | None = None) -> int:
     """Return the resident memory of a process (None: this process); 0 if the system does not report it."""
     try:
-        return int(_content(f"/proc/{process or 'self'}/statm").split()[1]) * os.sysconf("SC_PAGE_SIZE")
+        return int(_read_system_file(f"/proc/{process or 'self'}/statm").split()[1]) * os.sysconf("SC_PAGE_SIZE")
     except (OSError, ValueError, IndexError):  # the file may be empty if the process ends during the read
         return 0
 
 
-def _content(path: str) -> bytes:
+def _read_system_file(path: str) -> bytes:
     """Return the content of a system file, without a `Path` object: creating it would take longer than reading the file."""
     file = os.open(path, os.O_RDONLY)
     try:

@@ -20,7 +20,7 @@ from drivelint.formats.map_registry import root_element_name
 from drivelint.formats.osi import writer as osi_log
 from drivelint.formats.osi.metadata import LIBRARY, ego_independent_quality
 from drivelint.formats.tables import canonical, parquet
-from drivelint.phrases import listed, one_line
+from drivelint.phrases import name_list, one_line
 from drivelint.result.files import parquet_bytes_with_metadata
 from drivelint.result.publishing import OutputError, prepare_folder, publish
 from drivelint.road.map_reader import MapSource
@@ -30,11 +30,11 @@ if TYPE_CHECKING:
 
     from drivelint.drive.trace import Trace
 
-TABLES: Final = ("actor", "actor_state", "data_log", "declared_event", "quality", "signal_state")
+CONVERTED_TABLES: Final = ("actor", "actor_state", "data_log", "declared_event", "quality", "signal_state")
 MAP_FILE: Final = "map.xodr"
-CLIP: Final = "clip"
+CLIP_CHECK_ID: Final = "clip"
 """The data-quality check, information only, that names the log from which a clip was cut."""
-_MARK: Final = "drivelint.converted"
+_CONVERTED_KEY: Final = "drivelint.converted"
 """Key in the metadata of every Parquet file that is written."""
 _HEAD_BYTES: Final = 64
 """How many bytes of an MCAP file contain its magic bytes and its header, which names the program that wrote the file."""
@@ -64,7 +64,7 @@ class ConvertedTrace:
     """The converted trace: its path, its files with their sizes, and counts."""
 
     path: Path
-    files: dict[str, int]
+    bytes_by_file: dict[str, int]
     n_states: int
     n_actors: int
     map_name: str | None
@@ -83,33 +83,33 @@ def convert(request: ConvertRequest) -> ConvertedTrace:
     """
     paths = expand_traces([request.trace])
     if len(paths) != 1:
-        names = listed([each.name for each in paths])
+        names = name_list([each.name for each in paths])
         raise UsageError(
             f"{request.trace}: {len(paths)} logs ({names}): convert takes one at a time, each with its own --out"
         )
     (path,) = paths
     stem = request.clip.name if request.clip else path.resolve().name if path.is_dir() else path.stem
     target = request.out / f"{stem}.mcap" if request.to == "mcap" else request.out
-    _refuse_to_overwrite(path, request.out, target)
+    _refuse_to_overwrite_others_files(path, request.out, target)
     # conditions that the user states and assumptions about unrecorded actors belong to a check, not to the log
     options = replace(request.ingest_options(need_ego=False), in_sight=False, conditions=())
     # values that need a whole log cannot be derived from a clip, so it stores the values of the log's judgement
     options = replace(options, as_recorded=request.clip is None)
     trace = read_trace(path, options)
     if request.clip is not None:
-        told = QualityFinding(CLIP, "info", _cut_from(trace, request.clip))
+        told = QualityFinding(CLIP_CHECK_ID, "info", _clip_source_sentence(trace, request.clip))
         trace = with_quality_finding(cut_trace(trace, request.clip.from_ns, request.clip.to_ns), told)
     if request.map_offset is not None:
         x, y = request.map_offset
-        trace = replace(_with_log(trace, map_offset_x_m=x, map_offset_y_m=y), map_offset=request.map_offset)
-    road, trace, of_road = _road(request, trace)
+        trace = replace(_with_log_values(trace, map_offset_x_m=x, map_offset_y_m=y), map_offset=request.map_offset)
+    road, trace, of_road = _map_to_write(request, trace)
     if trace.geo_reference is not None:
         x, y, yaw = trace.geo_offset
-        trace = _with_log(trace, geo_reference=trace.geo_reference, geo_x_m=x, geo_y_m=y, geo_yaw_rad=yaw)
+        trace = _with_log_values(trace, geo_reference=trace.geo_reference, geo_x_m=x, geo_y_m=y, geo_yaw_rad=yaw)
     prepare_folder(request.out)
-    write = _mcap if request.to == "mcap" else _parquet
+    write = _write_mcap if request.to == "mcap" else _write_parquet
     files = write(target, trace, road, as_recorded=options.as_recorded)
-    notes = [*trace.notes, *of_road, *_of_a_check(request)]
+    notes = [*trace.notes, *of_road, *_notes_on_check_options(request)]
     has_ego = any(trace.tables["actor"]["is_ego"].to_pylist())
     if not has_ego:
         notes.append(
@@ -117,7 +117,7 @@ def convert(request: ConvertRequest) -> ConvertedTrace:
         )
     return ConvertedTrace(
         path=target,
-        files=files,
+        bytes_by_file=files,
         n_states=trace.tables["actor_state"].num_rows,
         n_actors=trace.tables["actor"].num_rows,
         map_name=None if road is None else road.name,
@@ -126,7 +126,7 @@ def convert(request: ConvertRequest) -> ConvertedTrace:
     )
 
 
-def _cut_from(trace: Trace, clip: Clip) -> str:
+def _clip_source_sentence(trace: Trace, clip: Clip) -> str:
     """Return the log and the time range that a clip is cut from, in one sentence."""
     (log,) = trace.tables["data_log"].to_pylist()
     from_s, to_s = ((t_ns - (log["t_start_ns"] or 0)) / 1e9 for t_ns in (clip.from_ns, clip.to_ns))
@@ -134,7 +134,7 @@ def _cut_from(trace: Trace, clip: Clip) -> str:
     return f"cut from {log['file_name']}, SHA-256 {log['sha256']}: {from_s:.2f} s to {to_s:.2f} s{', all of it' if whole else ' of it'}"
 
 
-def _refuse_to_overwrite(source: Path, out: Path, target: Path) -> None:
+def _refuse_to_overwrite_others_files(source: Path, out: Path, target: Path) -> None:
     """Raise `UsageError`, which names the file, if a file that `convert` did not write would be overwritten."""
     if not out.exists():
         return
@@ -147,7 +147,8 @@ def _refuse_to_overwrite(source: Path, out: Path, target: Path) -> None:
         if target.exists() and not _is_our_mcap(target):
             raise UsageError(f"{target} exists and was not written by convert: choose another --out")
     elif next(out.iterdir(), None) is not None and not (
-        is_canonical_folder(out) and _MARK.encode() in (parquet.schema(out / "actor_state.parquet").metadata or {})
+        is_canonical_folder(out)
+        and _CONVERTED_KEY.encode() in (parquet.schema(out / "actor_state.parquet").metadata or {})
     ):
         raise UsageError(f"--out {out} holds other files: a converted log is a folder of its own: choose another")
 
@@ -157,7 +158,7 @@ def _is_our_mcap(path: Path) -> bool:
         return LIBRARY.encode() in file.read(_HEAD_BYTES)
 
 
-def _of_a_check(request: ConvertRequest) -> list[str]:
+def _notes_on_check_options(request: ConvertRequest) -> list[str]:
     """Return a note for each given option that a converted log cannot contain."""
     given = {name: getattr(request, name) for name in ("map_origin", "handedness", "visibility", "env")}
     unset = {field.name: field.default for field in fields(DriveInput)}
@@ -165,7 +166,7 @@ def _of_a_check(request: ConvertRequest) -> list[str]:
     return [f"{name} is not part of the converted log: give it in every check" for name in names]
 
 
-def _with_log(trace: Trace, **values: str | float) -> Trace:
+def _with_log_values(trace: Trace, **values: str | float) -> Trace:
     """Return the trace with these values in its row of `data_log`."""
     log = trace.tables["data_log"]
     for name, value in values.items():
@@ -173,20 +174,22 @@ def _with_log(trace: Trace, **values: str | float) -> Trace:
     return replace(trace, tables={**trace.tables, "data_log": log})
 
 
-def _road(request: ConvertRequest, trace: Trace) -> tuple[MapSource | None, Trace, list[str]]:
+def _map_to_write(request: ConvertRequest, trace: Trace) -> tuple[MapSource | None, Trace, list[str]]:
     """Return the map to write (the user's, else the log's own), the trace in the map's frame, and notes. Errors: as `convert`."""
     library, own = MapLibrary(request), trace.embedded_map
     if library.uses_embedded(trace) or (road := library.find_source(trace)) is None:
         if own is None:
             return None, trace, list(library.doubts(trace, None).values())
-        return _own_road(request, trace, MapSource(MAP_FILE, own))
+        return _embedded_map_to_write(request, trace, MapSource(MAP_FILE, own))
     if request.to == "mcap" and (why := _why_unfit_for_mcap(road)):
         raise UsageError(why)
     # a wrong map is refused now, not when the converted log is checked
     return road, library.find(trace)[1], []
 
 
-def _own_road(request: ConvertRequest, trace: Trace, road: MapSource) -> tuple[MapSource | None, Trace, list[str]]:
+def _embedded_map_to_write(
+    request: ConvertRequest, trace: Trace, road: MapSource
+) -> tuple[MapSource | None, Trace, list[str]]:
     """Return the log's own map unchanged, the trace in the map's frame, and notes.
 
     A map that cannot be used is kept, too, since converting loses nothing. None as map: MCAP cannot store it.
@@ -217,7 +220,7 @@ def _why_unfit_for_mcap(road: MapSource) -> str | None:
     return None
 
 
-def _mcap(target: Path, trace: Trace, road: MapSource | None, *, as_recorded: bool) -> dict[str, int]:
+def _write_mcap(target: Path, trace: Trace, road: MapSource | None, *, as_recorded: bool) -> dict[str, int]:
     temporary = target.with_name(f".{target.name}.{os.getpid()}.part")
     try:
         with temporary.open("wb") as file:
@@ -233,13 +236,14 @@ def _mcap(target: Path, trace: Trace, road: MapSource | None, *, as_recorded: bo
     return {target.name: size}
 
 
-def _parquet(target: Path, trace: Trace, road: MapSource | None, *, as_recorded: bool) -> dict[str, int]:
+def _write_parquet(target: Path, trace: Trace, road: MapSource | None, *, as_recorded: bool) -> dict[str, int]:
     tables = {**trace.tables, "quality": ego_independent_quality(trace)}
     tables["actor_state"] = canonical.with_frames_of_nobody(tables["actor_state"], trace)
-    names = [*TABLES, *(["drive_condition"] if tables["drive_condition"].num_rows else [])]
+    names = [*CONVERTED_TABLES, *(["drive_condition"] if tables["drive_condition"].num_rows else [])]
     about = {canonical.AS_RECORDED: "yes"} if as_recorded else {}
     contents = {
-        f"{name}.parquet": parquet_bytes_with_metadata(tables[name], name, {_MARK: name, **about}) for name in names
+        f"{name}.parquet": parquet_bytes_with_metadata(tables[name], name, {_CONVERTED_KEY: name, **about})
+        for name in names
     }
     if road is not None:
         contents[MAP_FILE] = road.content
@@ -249,9 +253,9 @@ def _parquet(target: Path, trace: Trace, road: MapSource | None, *, as_recorded:
 
 def summary_text(trace: ConvertedTrace) -> str:
     """Return a text of two lines: the written files, and the command that checks them."""
-    size = sum(trace.files.values())
+    size = sum(trace.bytes_by_file.values())
     amount = f"{size / 1e6:.1f} MB" if size >= 1e6 else f"{max(size / 1e3, 0.1):.1f} kB"
-    files = f"{len(trace.files)} files, " if len(trace.files) > 1 else ""
+    files = f"{len(trace.bytes_by_file)} files, " if len(trace.bytes_by_file) > 1 else ""
     road = f", the map {trace.map_name} with it" if trace.map_name else ", no map"
     ego = "" if trace.has_ego else " --ego ID"
     command = (

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 ROAD_FILE: Final = "road.xodr"
-_SOURCES: Final = {ROAD_FILE: "overtake-road.xodr"} | {
+_FIXTURE_BY_FILE: Final = {ROAD_FILE: "overtake-road.xodr"} | {
     name: name for scene in ("safe", "near-miss", "collision") for name in (f"{scene}.mcap", f"{scene}-25mph.mcap")
 }
 _GENERATOR = b"drivelint demo"
@@ -28,7 +28,7 @@ _HEAD_BYTES = 1024  # the header contains the generator's name, in MCAP and in O
 def contents() -> dict[str, bytes]:
     """Return file name -> content of all files."""
     scenes = folder("fixtures") / "scenes"
-    return {name: (scenes / source).read_bytes() for name, source in _SOURCES.items()}
+    return {name: (scenes / source).read_bytes() for name, source in _FIXTURE_BY_FILE.items()}
 
 
 def write(out: Path) -> list[Path]:
@@ -39,12 +39,12 @@ def write(out: Path) -> list[Path]:
     """
     files = contents()
     for name in files:
-        _is_ours(out / name)
+        _require_own_file(out / name)
     publish(out, files, {})
     return [out / name for name in files]
 
 
-def _is_ours(path: Path) -> None:
+def _require_own_file(path: Path) -> None:
     if not path.exists() and not path.is_symlink():
         return
     try:

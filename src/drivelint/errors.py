@@ -22,8 +22,8 @@ class ExitCode(IntEnum):
 
 LEAST_ADDRESS_SPACE_BYTES: Final = 2_000_000_000
 """The least address space (`ulimit -v`). With less, libraries end the process at import, with their own messages and exit codes."""
-_LIMITED: Final = "the limit of memory (ulimit -v) is too low: raise it, and run the same command again"
-LONGEST_LINE: Final = 2000
+_LIMIT_TOO_LOW: Final = "the limit of memory (ulimit -v) is too low: raise it, and run the same command again"
+MAX_ERROR_LENGTH: Final = 2000
 """The most characters of an error that are shown: a damaged file may contain a name of a megabyte."""
 
 
@@ -31,7 +31,7 @@ class DriveLintError(Exception):
     """An error that is shown to the user as one clear line, without a traceback."""
 
     exit_code: ExitCode = ExitCode.USAGE
-    _is_told = False
+    _is_shown = False
 
     def __reduce__(self) -> tuple[object, ...]:
         """Return how pickle restores the error in another process: with its finished message, without `__init__`."""
@@ -40,19 +40,23 @@ class DriveLintError(Exception):
     def __str__(self) -> str:
         """Return the message; the middle of a very long message is left out."""
         text = super().__str__()
-        return text if len(text) <= LONGEST_LINE else f"{text[: LONGEST_LINE // 2]} ... {text[-LONGEST_LINE // 2 :]}"
+        return (
+            text
+            if len(text) <= MAX_ERROR_LENGTH
+            else f"{text[: MAX_ERROR_LENGTH // 2]} ... {text[-MAX_ERROR_LENGTH // 2 :]}"
+        )
 
     def _render_traceback_(self) -> list[str]:
         """Return what IPython shows: on the first call the message alone, on later calls (`%tb`) the traceback."""
-        if self._is_told:
+        if self._is_shown:
             return traceback.format_exception(self)
-        self._is_told = True
+        self._is_shown = True
         # a text from a log may contain control characters of a terminal
         line = "".join(each if each.isprintable() or each == "\n" else ascii(each)[1:-1] for each in str(self))
         return [f"{type(self).__name__}: {line} (%tb shows the traceback)"]
 
     @property
-    def is_of_the_run(self) -> bool:
+    def is_about_whole_run(self) -> bool:
         """Whether the error concerns the whole run: every other drive would fail in the same way."""
         return self.exit_code == ExitCode.TEMPFAIL
 
@@ -84,10 +88,10 @@ class MemoryShortError(DriveLintError):
     exit_code = ExitCode.NOT_JUDGED
 
     def __init__(self, task: str) -> None:
-        if least_limit_bytes() is None:
+        if least_memory_limit_bytes() is None:
             super().__init__(f"{task}: needs more memory than this machine has: use a larger one, or fewer --rules")
         else:
-            super().__init__(f"{task}: {_LIMITED}")
+            super().__init__(f"{task}: {_LIMIT_TOO_LOW}")
             self.exit_code = ExitCode.TEMPFAIL
 
 
@@ -107,7 +111,7 @@ class InternalError(DriveLintError):
     exit_code = ExitCode.NOT_JUDGED
 
 
-_NO_MEMORY: Final = (
+_MEMORY_ERROR_WORDS: Final = (
     "bad_alloc",
     "cannot allocate memory",
     "can't start new thread",
@@ -116,20 +120,23 @@ _NO_MEMORY: Final = (
 )
 
 
-def of_the_machine(error: Exception) -> tuple[str, ExitCode] | None:
+def describe_machine_error(error: Exception) -> tuple[str, ExitCode] | None:
     """Return the message and the exit code of an error that the machine causes; None: the cause is a bug.
 
     A memory limit can have an effect anywhere, even at an import or the start of a thread, and each library words the error differently.
     """
-    if isinstance(error, MemoryError) or any(words in str(error).casefold() for words in _NO_MEMORY):
-        limited = least_limit_bytes() is not None
-        return _LIMITED if limited else "there is too little memory: run the same command again", ExitCode.TEMPFAIL
+    if isinstance(error, MemoryError) or any(words in str(error).casefold() for words in _MEMORY_ERROR_WORDS):
+        limited = least_memory_limit_bytes() is not None
+        return (
+            _LIMIT_TOO_LOW if limited else "there is too little memory: run the same command again",
+            ExitCode.TEMPFAIL,
+        )
     if isinstance(error, OSError) and error.errno == errno.ENAMETOOLONG:
         return f"{error.filename}: the name is too long for this system: choose a shorter one", ExitCode.USAGE
     return None
 
 
-def least_limit_bytes() -> int | None:
+def least_memory_limit_bytes() -> int | None:
     """Return the least memory limit that is set for this process; None: no limit is set, or the system does not report limits."""
     try:
         import resource

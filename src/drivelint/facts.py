@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from drivelint.memo import Memo
 
-_TOML: Final = Memo[dict[str, Any]]("toml", dict[str, Any])
+_TOML_MEMO: Final = Memo[dict[str, Any]]("toml", dict[str, Any])
 
 
 @cache
@@ -20,10 +20,10 @@ def toml_beside(module_file: str, name: str) -> dict[str, Any]:
 def toml_facts(file: Path) -> dict[str, Any]:
     """Return the content of a TOML file that is part of drivelint."""
 
-    def read() -> dict[str, Any]:
+    def parse() -> dict[str, Any]:
         import tomllib
 
         return tomllib.loads(text)
 
     text = file.read_text(encoding="utf-8")
-    return _TOML.of(text, read)
+    return _TOML_MEMO.find_or_compute(text, parse)

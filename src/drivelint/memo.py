@@ -25,7 +25,14 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 T = TypeVar("T")
-SQL_CODE: Final = ("*.py", "sql/*.py", "catalogue/*", "drive/conditions.*", "drive/declared_events.*", "reasons/*")
+SQL_CODE_GLOBS: Final = (
+    "*.py",
+    "sql/*.py",
+    "catalogue/*",
+    "drive/conditions.*",
+    "drive/declared_events.*",
+    "reasons/*",
+)
 """The files of the package that read SQL and rules."""
 MOST_FACTS_IN_FILE: Final = 4096
 """The largest number of facts in a file. If there are more, only the facts that this process has used are written."""
@@ -47,12 +54,12 @@ def cache_folder() -> Path | None:
 
 
 @cache
-def foundation(code: tuple[str, ...]) -> str:
-    """Return the hash of what all facts depend on: versions, the files in `code`, declarations and macros."""
+def code_and_version_hash(code_globs: tuple[str, ...]) -> str:
+    """Return the hash of what all facts depend on: versions, the files in `code_globs`, declarations and macros."""
     versions = [version(name) for name in ("duckdb", "jinja2", "msgspec")]
     said = sha256(" ".join([sys.version, *versions]).encode())
     package = Path(__file__).parent
-    files = [file for pattern in code for file in package.glob(pattern)]
+    files = [file for pattern in code_globs for file in package.glob(pattern)]
     files += [*folder("schemas").glob("*"), *(folder("queries") / "macros").glob("*")]
     for file in sorted(file for file in files if file.is_file()):
         content = file.read_bytes()
@@ -61,26 +68,27 @@ def foundation(code: tuple[str, ...]) -> str:
 
 
 class Memo(Generic[T]):
-    """Stores facts of one kind in one file. `kind`: their type, which msgspec must support; `code`: the files that compute them."""
+    """Stores facts of one kind in one file. `fact_type`: their type, which msgspec must support; `code_globs`: the files that compute
+    them."""
 
-    def __init__(self, name: str, kind: Any, code: tuple[str, ...] = SQL_CODE) -> None:
-        self._name, self._kind, self._code = name, kind, code
+    def __init__(self, name: str, fact_type: Any, code_globs: tuple[str, ...] = SQL_CODE_GLOBS) -> None:
+        self._name, self._kind, self._code = name, fact_type, code_globs
         self._facts: dict[str, T] | None = None
         self._used: set[str] = set()
         self._has_new = False
 
-    def of(self, content: str, find: Callable[[], T]) -> T:
-        """Return the fact about a text; if it is not stored, compute it by `find`. Errors of `find` are not stored."""
-        known = self.get(content)
-        return self.put(content, find()) if known is None else known
+    def find_or_compute(self, text: str, compute: Callable[[], T]) -> T:
+        """Return the fact about a text; if it is not stored, compute it by `compute`. Errors of `compute` are not stored."""
+        known = self.get(text)
+        return self.put(text, compute()) if known is None else known
 
-    def get(self, content: str) -> T | None:
+    def get(self, text: str) -> T | None:
         """Return the fact about a text; None: it is not stored."""
-        return self._read().get(self._key(content))
+        return self._stored_facts().get(self._key(text))
 
-    def put(self, content: str, fact: T) -> T:
+    def put(self, text: str, fact: T) -> T:
         """Store a fact, and return it."""
-        self._read()[self._key(content)] = fact
+        self._stored_facts()[self._key(text)] = fact
         if not self._has_new:
             self._has_new = True
             atexit.register(self.save)
@@ -88,7 +96,7 @@ class Memo(Generic[T]):
 
     def save(self) -> None:
         """Write the facts to the file, completely or not at all."""
-        file, facts = self._file, self._facts
+        file, facts = self._cache_file, self._facts
         if file is None or not facts or not self._has_new:
             return
         self._has_new = False
@@ -104,22 +112,22 @@ class Memo(Generic[T]):
                 old.unlink()
 
     @property
-    def _file(self) -> Path | None:
+    def _cache_file(self) -> Path | None:
         home = cache_folder()
-        return None if home is None else home / f"{self._name}-{foundation(self._code)[:16]}.msgpack"
+        return None if home is None else home / f"{self._name}-{code_and_version_hash(self._code)[:16]}.msgpack"
 
-    def _key(self, content: str) -> str:
-        key = sha256(content.encode("utf-8", "surrogatepass")).hexdigest()[:32]
+    def _key(self, text: str) -> str:
+        key = sha256(text.encode("utf-8", "surrogatepass")).hexdigest()[:32]
         self._used.add(key)
         return key
 
-    def _read(self) -> dict[str, T]:
+    def _stored_facts(self) -> dict[str, T]:
         if self._facts is None:
             self._facts = {}
-            if self._file is not None:
+            if self._cache_file is not None:
                 with suppress(OSError, msgspec.MsgspecError):  # a damaged file counts as missing
                     self._facts = msgspec.msgpack.decode(
-                        self._file.read_bytes(),
+                        self._cache_file.read_bytes(),
                         type=dict[str, self._kind],  # type: ignore[name-defined]
                         dec_hook=lambda kind, text: kind(text),  # a path: the only type here that msgspec does not know
                     )

@@ -81,7 +81,7 @@ def parse_shard(text: str | None) -> tuple[int, int] | None:
     return int(said[1]), int(said[2])
 
 
-def _numbers(text: str) -> tuple[float, ...]:
+def _comma_separated_numbers(text: str) -> tuple[float, ...]:
     """Return the comma-separated numbers; an empty tuple if one of them is not a number."""
     try:
         return tuple(float(part) for part in text.split(","))
@@ -93,7 +93,7 @@ def parse_offset(text: str | None) -> tuple[float, float] | None:
     """Read DX,DY in metres. Errors: `UsageError`."""
     if text is None:
         return None
-    match _numbers(text):
+    match _comma_separated_numbers(text):
         case dx, dy:
             return dx, dy
     raise UsageError(f"--map-offset {text!r}: write two numbers in metres, DX,DY, such as 2.6,3.1")
@@ -105,7 +105,7 @@ def parse_ego_size(text: str | None) -> EgoSize | None:
         return None
     from drivelint.drive.trace import EgoSize
 
-    size = _numbers(text)
+    size = _comma_separated_numbers(text)
     if len(size) in {2, 3} and 0.0 < size[0] < 100.0 and 0.0 < size[1] < 10.0 and all(abs(x) < 100.0 for x in size[2:]):
         return EgoSize(*size)
     raise UsageError(f"--ego-size {text!r}: write length and width in metres, such as 4.9,1.9 or 4.9,1.9,1.4")
@@ -115,18 +115,24 @@ def parse_origin(text: str | None) -> tuple[float, float] | None:
     """Read LAT,LON in degrees. Errors: `UsageError`."""
     if text is None:
         return None
-    match _numbers(text):
+    match _comma_separated_numbers(text):
         case lat, lon if abs(lat) <= 90 and abs(lon) <= 180:
             return lat, lon
     raise UsageError(f"--map-origin {text!r}: write latitude and longitude in degrees, LAT,LON, such as 51.5,-2.58")
 
 
-def asked_pack(
-    evidence: Path | None, sign: Path | None, result: str | Path | None, *, whole: bool = True, overwrite: bool = False
+def pack_request(
+    evidence: Path | None,
+    sign: Path | None,
+    result: str | Path | None,
+    *,
+    has_all_drives: bool = True,
+    overwrite: bool = False,
 ) -> PackRequest | None:
     """Return the request for an evidence pack of the result that `check` or `audit` will write; None: no pack is requested.
 
-    `whole`: the command judges all drives and packs their results. Errors: `UsageError` for mistakes that can be found before judging.
+    `has_all_drives`: the command judges all drives and packs their results. Errors: `UsageError` for mistakes that can be found before
+    judging.
     """
     if evidence is None:
         if sign is not None:
@@ -134,7 +140,7 @@ def asked_pack(
         return None
     if result is None:
         raise UsageError("--evidence packs what --out writes: use --out, too")
-    if not whole:
+    if not has_all_drives:
         raise UsageError(
             "--evidence packs a whole audit: when all parts have ended, run drivelint merge and then drivelint pack"
         )

@@ -13,7 +13,7 @@ MANIFEST: Final = "files.json"
 """The list of the files that drivelint wrote into a folder and below it."""
 MANIFEST_KEY: Final = "written_by_drivelint"
 """The field of `MANIFEST` that contains the file names."""
-RESULT_LOGS: Final = (
+RESULT_GLOBS: Final = (
     *(
         f"{name}.parquet"
         for name in (
@@ -24,15 +24,15 @@ RESULT_LOGS: Final = (
     "annotated/*.mcap",
 )  # fmt: skip
 """Globs of the files of `check --out` that have a log's suffix. They apply even if the list is missing, as in a copy of some files."""
-AUDIT_LOGS: Final = ("rules.parquet", "batches/*/*.parquet", "tables/*/*.parquet")
+AUDIT_GLOBS: Final = ("rules.parquet", "batches/*/*.parquet", "tables/*/*.parquet")
 """Globs of the files of `audit --out` that have a log's suffix. They apply even if the audit has not ended, and so has no list."""
 
 
 class OwnFiles:
     """The files that drivelint wrote into a folder and its subfolders, according to the lists there."""
 
-    def __init__(self, searched: Path) -> None:
-        self._searched = searched
+    def __init__(self, searched_folder: Path) -> None:
+        self._searched = searched_folder
         self._written: dict[Path, tuple[frozenset[str], tuple[str, ...]]] = {}
 
     def __contains__(self, file: Path) -> bool:
@@ -41,7 +41,7 @@ class OwnFiles:
         Lists above this folder are ignored: a user who names the folder of annotated logs wants to read these logs.
         """
         for folder in file.parents:
-            names, globs = self._of(folder)
+            names, globs = self._names_and_globs(folder)
             name = file.relative_to(folder).as_posix()
             if name in names or any(_matches(name, glob) for glob in globs):
                 return True
@@ -49,11 +49,17 @@ class OwnFiles:
                 return False
         return False
 
-    def _of(self, folder: Path) -> tuple[frozenset[str], tuple[str, ...]]:
+    def _names_and_globs(self, folder: Path) -> tuple[frozenset[str], tuple[str, ...]]:
         """Return the names of the files that drivelint wrote into a folder, and globs for further files."""
         if folder not in self._written:
             names = frozenset(written_files(folder))
-            globs = RESULT_LOGS if _is_result(folder) else AUDIT_LOGS if _is_audit(folder) and not names else ()
+            globs = (
+                RESULT_GLOBS
+                if _is_result_folder(folder)
+                else AUDIT_GLOBS
+                if _is_audit_folder(folder) and not names
+                else ()
+            )
             self._written[folder] = names, globs
         return self._written[folder]
 
@@ -70,9 +76,9 @@ def _matches(name: str, glob: str) -> bool:
     return name.count("/") == glob.count("/") and fnmatchcase(name, glob)
 
 
-def _is_result(folder: Path) -> bool:
+def _is_result_folder(folder: Path) -> bool:
     return (folder / "summary.json").is_file() and (folder / "verdicts.parquet").is_file()
 
 
-def _is_audit(folder: Path) -> bool:
+def _is_audit_folder(folder: Path) -> bool:
     return (folder / "audit.json").is_file() and (folder / "rules.parquet").is_file()

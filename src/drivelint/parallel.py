@@ -20,7 +20,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint import run, temporary
-from drivelint.audit.executors.local import cores, deaf_to_ctrl_c, prepare_worker_process
+from drivelint.audit.executors.local import block_ctrl_c, core_count, prepare_worker_process
 from drivelint.engine.default_rules import with_chosen_rules
 from drivelint.engine.interruption import Interruption
 from drivelint.engine.memory import LEAST_MEMORY_BYTES
@@ -42,8 +42,8 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
     from drivelint.run import CheckOptions, JudgedLogs
 
-_LOOK_S: Final = 0.2
-_PATIENCE_S: Final = 5.0
+_POLL_S: Final = 0.2
+_GRACE_PERIOD_S: Final = 5.0
 """How long a process may take to end by itself before it is killed."""
 
 
@@ -53,7 +53,7 @@ class WorkerLostError(DriveLintError):
     exit_code = ExitCode.TEMPFAIL
 
 
-class _Part(NamedTuple):
+class _PartOfLogs(NamedTuple):
     """The logs that one process judges. `n_logs`: the number of logs of the whole run.
 
     `is_output`: needed to record the inputs; None: they are not recorded. `limits_of_deaf_rules`: task -> rule -> exceeded limit, for
@@ -67,7 +67,7 @@ class _Part(NamedTuple):
     limits_of_deaf_rules: dict[str, dict[str, Excess]]
 
 
-class _Ended(NamedTuple):
+class _PartOutcome(NamedTuple):
     """The result of a part, and the inputs that were read for it."""
 
     judged_logs: JudgedLogs
@@ -96,7 +96,7 @@ def check(
     *,
     interruption: Interruption | None = None,
     deaf_rules: DeafRules | None = None,
-    keep: Callable[[Result], object] | None = None,
+    on_nothing_judged: Callable[[Result], object] | None = None,
 ) -> Result:
     """Judge every drive as `run.check` does, in at most `jobs` processes; in one if margins are written or a database is kept.
 
@@ -104,15 +104,15 @@ def check(
     """
     if jobs > 1 and not settings.margins and not settings.keep_db:
         settings = with_chosen_rules(settings)
-        run.RunRules.of(settings)  # wrong rules or parameters are refused here, once
+        run.RunRules.from_options(settings)  # wrong rules or parameters are refused here, once
         paths, _ = run.named_logs(settings)
-        if len(parts := _cut(paths, jobs)) > 1:
-            joined = _judged_by_workers(settings, paths, parts, progress, interruption or Interruption())
-            return run.conclude(paths, joined, keep)
-    return run.check(settings, progress, interruption, deaf_rules, keep)
+        if len(parts := _cut_into_parts(paths, jobs)) > 1:
+            joined = _judge_in_workers(settings, paths, parts, progress, interruption or Interruption())
+            return run.join_parts(paths, joined, on_nothing_judged)
+    return run.check(settings, progress, interruption, deaf_rules, on_nothing_judged)
 
 
-def _judged_by_workers(
+def _judge_in_workers(
     settings: CheckOptions,
     paths: Sequence[Path],
     parts: Sequence[Sequence[Path]],
@@ -121,12 +121,12 @@ def _judged_by_workers(
 ) -> list[JudgedLogs]:
     """Judge each part in a process of its own."""
     memory = None if settings.memory is None else max(LEAST_MEMORY_BYTES, settings.memory // len(parts))
-    own = replace(settings, memory=memory, threads=max(1, cores() // len(parts)))
+    own = replace(settings, memory=memory, threads=max(1, core_count() // len(parts)))
     recording = recorder.current_recorder()
     is_output = None if recording is None else recording.is_output
-    progress.stage(run.CHECKING, len(paths))
-    listener = _Listener(progress, len(paths))
-    workers = [_Worker(_Part(own, part, len(paths), is_output, {}), listener) for part in parts]
+    progress.stage(run.CHECKING_STAGE, len(paths))
+    listener = _ProgressOfWorkers(progress, len(paths))
+    workers = [_Worker(_PartOfLogs(own, part, len(paths), is_output, {}), listener) for part in parts]
     try:
         for worker in workers:
             worker.start()
@@ -134,8 +134,8 @@ def _judged_by_workers(
             if interruption.requested:
                 for worker in running.values():
                     worker.interrupt()
-            for pipe in wait(list(running), timeout=_LOOK_S):
-                running[pipe].hear()  # type: ignore[index]
+            for pipe in wait(list(running), timeout=_POLL_S):
+                running[pipe].receive_message()  # type: ignore[index]
     finally:
         for worker in workers:
             worker.stop()
@@ -143,10 +143,10 @@ def _judged_by_workers(
     if recording is not None:
         for each in ended:
             recording.add(each.inputs)
-    return _without_copies([each.judged_logs for each in ended])
+    return _without_duplicate_drives([each.judged_logs for each in ended])
 
 
-def _cut(paths: Sequence[Path], max_parts: int) -> list[list[Path]]:
+def _cut_into_parts(paths: Sequence[Path], max_parts: int) -> list[list[Path]]:
     """Return the logs in at most `max_parts` parts of about the same size; a log whose size cannot be read counts as empty."""
     sizes = []
     for path in paths:
@@ -163,7 +163,7 @@ def _cut(paths: Sequence[Path], max_parts: int) -> list[list[Path]]:
     return [parts[no] for no in sorted(parts)]
 
 
-def _without_copies(parts: Sequence[JudgedLogs]) -> list[JudgedLogs]:
+def _without_duplicate_drives(parts: Sequence[JudgedLogs]) -> list[JudgedLogs]:
     """Return the parts without drives that an earlier part has judged: logs with the same name and content count once."""
     judged: set[str] = set()
     found: list[JudgedLogs] = []
@@ -171,12 +171,12 @@ def _without_copies(parts: Sequence[JudgedLogs]) -> list[JudgedLogs]:
         drives = part.result.drives
         mine = set(drives.filter(pc.equal(drives["status"], "judged"))["drive_id"].to_pylist())
         copies = sorted(mine & judged)
-        found.append(_without(part, copies) if copies else part)
+        found.append(_without_drives(part, copies) if copies else part)
         judged |= mine
     return found
 
 
-def _without(part: JudgedLogs, drives: Sequence[str]) -> JudgedLogs:
+def _without_drives(part: JudgedLogs, drives: Sequence[str]) -> JudgedLogs:
     """Return a part without these drives; the only note on each of their logs is that it is a duplicate."""
     result, paths = part.result, {} if part.result.run_options is None else part.result.run_options.traces
     tables = {name: getattr(result, name) for name in (*TABLE_OF_FILE, *TABLE_OF_PICTURE_FILE)}
@@ -190,14 +190,14 @@ def _without(part: JudgedLogs, drives: Sequence[str]) -> JudgedLogs:
     return replace(part, result=replace(result, **others), notes=(*kept, *told))
 
 
-class _Listener:
+class _ProgressOfWorkers:
     """Shows the messages of the workers, each text once."""
 
     def __init__(self, progress: Progress, n_logs: int) -> None:
         self.progress = progress
         self._notes = LogNotes(progress, n_logs)
 
-    def hear(self, call: _ProgressCall) -> None:
+    def forward_call(self, call: _ProgressCall) -> None:
         """Forward one call of a worker to the progress display."""
         if call.method == "add":
             self._notes.add(*call.arguments)
@@ -211,8 +211,8 @@ class _Worker:
     `ended`: the outcome of the part; None: the process still runs.
     """
 
-    def __init__(self, part: _Part, listener: _Listener) -> None:
-        self.ended: _Ended | None = None
+    def __init__(self, part: _PartOfLogs, listener: _ProgressOfWorkers) -> None:
+        self.ended: _PartOutcome | None = None
         self._part = part
         self._listener = listener
         self._n_done = 0
@@ -221,8 +221,8 @@ class _Worker:
         """Start the process."""
         context = multiprocessing.get_context("spawn")  # a fork would copy threads that hold locks
         self.pipe, theirs = context.Pipe()
-        self._process = context.Process(target=_work, args=(self._part, theirs, os.getpid()), daemon=True)
-        with deaf_to_ctrl_c():
+        self._process = context.Process(target=_run_worker, args=(self._part, theirs, os.getpid()), daemon=True)
+        with block_ctrl_c():
             self._process.start()
         theirs.close()
 
@@ -231,7 +231,7 @@ class _Worker:
         with suppress(OSError):
             self.pipe.send(None)
 
-    def hear(self) -> None:
+    def receive_message(self) -> None:
         """Receive one message. Errors: the error that ended the part; `WorkerLostError`."""
         try:
             message = self.pipe.recv()
@@ -241,42 +241,42 @@ class _Worker:
                 f"a process that judged {plural(len(self._part.paths), 'log')} died (exit code {self._process.exitcode}; -9: killed, "
                 "as for lack of memory): check again with fewer --jobs"
             ) from None
-        if isinstance(message, _Ended):
+        if isinstance(message, _PartOutcome):
             self.ended = message
         elif isinstance(message, BaseException):
             raise message
         elif isinstance(message, _DeafRule):
-            self._begin_again(message)
+            self._restart_without_rule(message)
         else:
             self._n_done += message.arguments[0] if message.method == "advance" else 0
-            self._listener.hear(message)
+            self._listener.forward_call(message)
 
-    def _begin_again(self, endless_rule: _DeafRule) -> None:
+    def _restart_without_rule(self, deaf_rule: _DeafRule) -> None:
         """Start the process again without a rule that cannot be interrupted."""
         self.stop()
         self._listener.progress.note(
-            f"rule {endless_rule.rule_id} cannot be stopped: {plural(len(self._part.paths), 'log')} judged again without it"
+            f"rule {deaf_rule.rule_id} cannot be stopped: {plural(len(self._part.paths), 'log')} judged again without it"
         )
         self._listener.progress.advance(-self._n_done)
         self._n_done = 0
-        task, limits_of_deaf_rules = endless_rule.task, self._part.limits_of_deaf_rules
+        task, limits_of_deaf_rules = deaf_rule.task, self._part.limits_of_deaf_rules
         limits_of_deaf_rules = {
             **limits_of_deaf_rules,
-            task: {**limits_of_deaf_rules.get(task, {}), endless_rule.rule_id: endless_rule.excess},
+            task: {**limits_of_deaf_rules.get(task, {}), deaf_rule.rule_id: deaf_rule.excess},
         }
         self._part = self._part._replace(limits_of_deaf_rules=limits_of_deaf_rules)
         self.start()
 
     def stop(self) -> None:
-        """End the process: wait until it has removed its temporary files, but not longer than `_PATIENCE_S`, then kill it."""
+        """End the process: wait until it has removed its temporary files, but not longer than `_GRACE_PERIOD_S`, then kill it."""
         self.pipe.close()
-        self._process.join(_PATIENCE_S)
+        self._process.join(_GRACE_PERIOD_S)
         self._process.kill()
         self._process.join()
 
 
 class _ProgressSender(Progress):
-    """Sends progress messages from a worker to the parent. `advance` counts only in the stage `run.CHECKING`."""
+    """Sends progress messages from a worker to the parent. `advance` counts only in the stage `run.CHECKING_STAGE`."""
 
     def __init__(self, pipe: Connection) -> None:
         self._pipe = pipe
@@ -290,7 +290,7 @@ class _ProgressSender(Progress):
 
     def stage(self, name: str, total: int | None = None) -> None:  # noqa: ARG002 - the parent knows the total
         """See `Progress`."""
-        self._counts = name == run.CHECKING
+        self._counts = name == run.CHECKING_STAGE
         self.doing(name)
 
     def advance(self, n: int = 1) -> None:
@@ -307,7 +307,7 @@ class _ProgressSender(Progress):
         self.send(_ProgressCall("note", (text,)))
 
 
-class _SentNotes(LogNotes):
+class _NotesSender(LogNotes):
     """Sends notes on logs to the parent, which shows each text once for all workers."""
 
     def __init__(self, sender: _ProgressSender, n_logs: int) -> None:
@@ -338,12 +338,12 @@ class _DeafRulesOfWorker:
         os._exit(0)
 
 
-def _work(part: _Part, pipe: Connection, parent: int) -> None:
+def _run_worker(part: _PartOfLogs, pipe: Connection, parent: int) -> None:
     """Judge a part in this process, and send the outcome to the parent."""
     prepare_worker_process(parent)
     signal.signal(signal.SIGTERM, signal.SIG_IGN)  # the listener ends this process when its parent has ended
     interruption, sender = Interruption(), _ProgressSender(pipe)
-    Thread(target=_listen, args=(pipe, interruption), daemon=True, name="listener").start()
+    Thread(target=_obey_parent, args=(pipe, interruption), daemon=True, name="listener").start()
     try:
         sender.send(_judge_part(part, sender, interruption))
     except DriveLintError as error:
@@ -352,13 +352,13 @@ def _work(part: _Part, pipe: Connection, parent: int) -> None:
         sender.send(InternalError(f"internal error in a worker: {type(error).__name__}: {error}: please report it"))
 
 
-def _judge_part(part: _Part, sender: _ProgressSender, interruption: Interruption) -> _Ended:
-    notes, deaf = _SentNotes(sender, part.n_logs), _DeafRulesOfWorker(part.limits_of_deaf_rules, sender)
+def _judge_part(part: _PartOfLogs, sender: _ProgressSender, interruption: Interruption) -> _PartOutcome:
+    notes, deaf = _NotesSender(sender, part.n_logs), _DeafRulesOfWorker(part.limits_of_deaf_rules, sender)
     with nullcontext() if part.is_output is None else recorder.record_inputs(part.is_output, []) as recording:
-        judged_by = run.RunRules.of(part.settings)
+        run_rules = run.RunRules.from_options(part.settings)
         judged = run.judge_logs(
             part.settings,
-            judged_by,
+            run_rules,
             part.paths,
             refused_logs=[],
             progress=sender,
@@ -366,10 +366,10 @@ def _judge_part(part: _Part, sender: _ProgressSender, interruption: Interruption
             interruption=interruption,
             deaf_rules=deaf,
         )
-    return _Ended(judged, None if recording is None or part.limits_of_deaf_rules else recording.inputs())
+    return _PartOutcome(judged, None if recording is None or part.limits_of_deaf_rules else recording.inputs())
 
 
-def _listen(pipe: Connection, interruption: Interruption) -> None:
+def _obey_parent(pipe: Connection, interruption: Interruption) -> None:
     """Interrupt the judging on request, and end the process when the parent has ended."""
     while True:
         try:

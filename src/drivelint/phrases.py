@@ -14,11 +14,11 @@ _INVISIBLE = re.compile(
     r"\u2028-\u202e\u2060-\u2069\ufeff\ud800-\udfff]"
 )
 """Characters that control a terminal or reverse the reading order; not the line feed."""
-_COMMAND: Final = re.compile(r"^(\s*):(?=:)|#(?=#\w*\[)", re.MULTILINE)
+_BUILD_COMMAND: Final = re.compile(r"^(\s*):(?=:)|#(?=#\w*\[)", re.MULTILINE)
 """Texts in a job's output that a build server may run as a command (`::error::`, `##[error]`, `##vso[task.x]`)."""
-_IN_JSON: Final = re.compile(rf"{_INVISIBLE.pattern}|#(?=#\w*\[)")
-_BREAK: Final = re.compile(r"\s*[\n\r\v\f\x1c-\x1e\x85\u2028\u2029]\s*")
-_PLURAL: Final = {"bus": "buses", "actor of unknown class": "actors of unknown class"}
+_UNSAFE_IN_JSON: Final = re.compile(rf"{_INVISIBLE.pattern}|#(?=#\w*\[)")
+_LINE_BREAK: Final = re.compile(r"\s*[\n\r\v\f\x1c-\x1e\x85\u2028\u2029]\s*")
+_IRREGULAR_PLURALS: Final = {"bus": "buses", "actor of unknown class": "actors of unknown class"}
 
 
 def escape_invisible(text: str) -> str:
@@ -26,36 +26,36 @@ def escape_invisible(text: str) -> str:
     return _INVISIBLE.sub(lambda found: found[0].encode("unicode_escape", "surrogatepass").decode("ascii"), text)
 
 
-def inert(text: str) -> str:
+def terminal_safe(text: str) -> str:
     """Return a text, which may come from a log, made safe for a terminal: control characters as codes, no build-server commands."""
-    return _COMMAND.sub(lambda found: f"{found[0]}\\", escape_invisible(text))
+    return _BUILD_COMMAND.sub(lambda found: f"{found[0]}\\", escape_invisible(text))
 
 
 def one_line(text: str) -> str:
     """Return the text as one line: text from a log must not look like a line of drivelint."""
-    return _BREAK.sub(" ", text.rstrip())
+    return _LINE_BREAK.sub(" ", text.rstrip())
 
 
-def inert_line(text: str) -> str:
-    """Return a text as one line that is safe for a terminal (see `inert`)."""
-    return inert(one_line(text))
+def terminal_safe_line(text: str) -> str:
+    """Return a text as one line that is safe for a terminal (see `terminal_safe`)."""
+    return terminal_safe(one_line(text))
 
 
-def inert_json(text: str) -> str:
-    """Return JSON with the same meaning that is safe for a terminal (see `inert`)."""
-    return _IN_JSON.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
+def terminal_safe_json(text: str) -> str:
+    """Return JSON with the same meaning that is safe for a terminal (see `terminal_safe`)."""
+    return _UNSAFE_IN_JSON.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
 
 
-def hint(word: str, known_words: Iterable[str], *, cutoff: float = 0.6, sign: str = "") -> str:
+def hint(word: str, known_words: Iterable[str], *, cutoff: float = 0.6, prefix: str = "") -> str:
     """Return "did you mean 'x'?" for the most similar known word, ignoring case; if none is similar, "known are ...".
 
-    `sign` is put before the word, in place of quotes.
+    `prefix` is put before the word, in place of quotes.
     """
     words = list(dict.fromkeys(known_words))
     meant = nearest_word(word, words, cutoff=cutoff)
     if meant is None:
         return f"known are {', '.join(words)}"
-    return f"did you mean {sign}{meant}?" if sign else f"did you mean {meant!r}?"
+    return f"did you mean {prefix}{meant}?" if prefix else f"did you mean {meant!r}?"
 
 
 def nearest_word(word: str, known_words: Iterable[str], *, cutoff: float = 0.6) -> str | None:
@@ -65,7 +65,7 @@ def nearest_word(word: str, known_words: Iterable[str], *, cutoff: float = 0.6) 
     return words[near[0]] if near else None
 
 
-def listed(names: Sequence[str], max_names: int = 5) -> str:
+def name_list(names: Sequence[str], max_names: int = 5) -> str:
     """Return the first names as a text, and how many more there are."""
     more = len(names) - max_names
     return ", ".join(names[:max_names]) + (f" and {more} more" if more > 0 else "")
@@ -73,4 +73,4 @@ def listed(names: Sequence[str], max_names: int = 5) -> str:
 
 def plural(n: int, noun: str) -> str:
     """Return a count with its noun, such as "2 logs"."""
-    return f"{n} {noun if n == 1 else _PLURAL.get(noun, f'{noun}s')}"
+    return f"{n} {noun if n == 1 else _IRREGULAR_PLURALS.get(noun, f'{noun}s')}"

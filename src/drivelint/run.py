@@ -46,9 +46,9 @@ if TYPE_CHECKING:
     from drivelint.evaluate.limits import DeafRules
     from drivelint.report.progress import Progress
 
-CHECKING: Final = "checking"
+CHECKING_STAGE: Final = "checking"
 """The stage in which drives are judged; their copies are judged in a later stage."""
-_MISSED: Final = "the run was interrupted before this drive was judged"
+_INTERRUPTED_REASON: Final = "the run was interrupted before this drive was judged"
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,9 @@ class CheckOptions(JudgingOptions):
     """How many cores a statement may use; None: all."""
 
     @classmethod
-    def judging(cls, traces: tuple[str, ...], options: JudgingOptions, out: Path | None = None) -> CheckOptions:
+    def from_judging_options(
+        cls, traces: tuple[str, ...], options: JudgingOptions, out: Path | None = None
+    ) -> CheckOptions:
         """Return the options of a check of these logs, with the judging options of `options` and without its other fields."""
         return cls(traces, out, **{each.name: getattr(options, each.name) for each in fields(JudgingOptions)})
 
@@ -87,7 +89,7 @@ class RunRules(NamedTuple):
     profiles: pa.Table
 
     @classmethod
-    def of(cls, settings: CheckOptions) -> RunRules:
+    def from_options(cls, settings: CheckOptions) -> RunRules:
         """Return the rules and profiles that the options of a run choose. Errors: `UsageError`, `RuleError`."""
         known = catalogue.load_rules(settings.rules_dirs)
         rules = catalogue.select_rules(known, settings.rules, settings.ignore, named_ids=settings.named_rules)
@@ -115,12 +117,13 @@ def check(
     progress: Progress,
     interruption: Interruption | None = None,
     deaf_rules: DeafRules | None = None,
-    keep: Callable[[Result], object] | None = None,
+    on_nothing_judged: Callable[[Result], object] | None = None,
 ) -> Result:
     """Judge every drive by every selected rule.
 
-    `deaf_rules`: which rules are known to continue after an interrupt, and what to do about another such rule. `keep`: called with the
-    result if no drive could be judged, before the error is raised; an earlier result left in `out` would look like that of this run.
+    `deaf_rules`: which rules are known to continue after an interrupt, and what to do about another such rule. `on_nothing_judged`: called
+    with the result if no drive could be judged, before the error is raised; an earlier result left in `out` would look like that of this
+    run.
 
     After an interruption, the result contains the remaining drives as not judged. If no drive was judged before it, the error is
     `NothingJudgedError`, a `KeyboardInterrupt`.
@@ -129,12 +132,12 @@ def check(
     """
     library = MapLibrary(settings)
     settings = with_chosen_rules(settings, library)
-    judged_by = RunRules.of(settings)
+    run_rules = RunRules.from_options(settings)
     paths, refused_logs = named_logs(settings)
-    progress.stage(CHECKING, len(paths))
+    progress.stage(CHECKING_STAGE, len(paths))
     judged = judge_logs(
         settings,
-        judged_by,
+        run_rules,
         paths,
         refused_logs=refused_logs,
         progress=progress,
@@ -143,12 +146,12 @@ def check(
         deaf_rules=deaf_rules,
         library=library,
     )
-    return conclude(paths, [judged], keep)
+    return join_parts(paths, [judged], on_nothing_judged)
 
 
 def judge_logs(
     settings: CheckOptions,
-    judged_by: RunRules,
+    run_rules: RunRules,
     paths: Sequence[Path],
     *,
     refused_logs: list[RefusedLog],
@@ -163,7 +166,7 @@ def judge_logs(
     `library`: the maps of these options, some of which may be read already.
     """
     interruption = interruption or Interruption()
-    rules, required, params, profiles = judged_by
+    rules, required, params, profiles = run_rules
     with store.workspace(settings.memory, threads=settings.threads) as con:
         memory = Memory(con, settings.memory, progress.note)
         store.insert(con, "profile", profiles)
@@ -187,7 +190,7 @@ def judge_logs(
                     strict=settings.strict,
                     required=required,
                     note=progress.note,
-                    release=memory.release,
+                    release_memory=memory.release,
                 )
             )
         limits = ReportingRuleLimits(progress, len(rules), settings.rule_timeout, task="drives", deaf_rules=deaf_rules)
@@ -207,13 +210,13 @@ def judge_logs(
             limits_of_copies=RuleLimits(settings.rule_timeout, task="copies", deaf_rules=deaf_rules),
         )
         ids: dict[Path, str] = {}
-        read = _announced(_read(paths, settings, library), len(paths), progress)
+        read = _with_reading_progress(_read_logs(paths, settings, library), len(paths), progress)
         read = takewhile(lambda _item: not interruption.requested, read)
         try:
             with suppress(InterruptedRunError):
                 for batch in cut_batches(read):
                     ids |= {drive.trace.path: drive.trace.drive_id for drive in batch if isinstance(drive, Drive)}
-                    _judge(session, batch, refused_logs, progress=progress, notes=notes, limits=limits)
+                    _judge_batch(session, batch, refused_logs, progress=progress, notes=notes, limits=limits)
             _judge_copies(session, progress, memory)
         finally:
             session.close()
@@ -222,7 +225,7 @@ def judge_logs(
         done = {path for _, path in judged} | {log.path for log in refused_logs}
         missed = sorted(set(paths) - done) if interruption.requested else []
         unjudged = [collect.unjudged_drive(r.path.stem, r.path.name, str(r.error)) for r in refused_logs]
-        unjudged += [collect.unjudged_drive(path.stem, path.name, _MISSED) for path in missed]
+        unjudged += [collect.unjudged_drive(path.stem, path.name, _INTERRUPTED_REASON) for path in missed]
         drives = pa.concat_tables([memory.run_job(collect.drives), *unjudged])
         result = Result(
             verdicts=memory.run_job(collect.verdicts),
@@ -253,8 +256,8 @@ def judge_logs(
         )
 
 
-def conclude(
-    paths: Sequence[Path], parts: Sequence[JudgedLogs], keep: Callable[[Result], object] | None = None
+def join_parts(
+    paths: Sequence[Path], parts: Sequence[JudgedLogs], on_nothing_judged: Callable[[Result], object] | None = None
 ) -> Result:
     """Return the result of a run, joined from its parts, which have no drive in common.
 
@@ -273,8 +276,8 @@ def conclude(
         raise NothingJudgedError
     refused = [each for part in parts for each in part.refused_logs]
     if len(refused) >= len(statuses):
-        if keep is not None:
-            keep(result)
+        if on_nothing_judged is not None:
+            on_nothing_judged(result)
         first = refused[0].error
         many = TraceError(f"none of {len(refused)} logs could be judged; the first: {first}")
         raise first if len(refused) == 1 else many
@@ -300,14 +303,18 @@ def named_logs(settings: CheckOptions) -> tuple[list[Path], list[RefusedLog]]:
     return paths, []
 
 
-def _read(paths: Sequence[Path], settings: CheckOptions, library: MapLibrary | None) -> Iterator[Drive | RefusedLog]:
+def _read_logs(
+    paths: Sequence[Path], settings: CheckOptions, library: MapLibrary | None
+) -> Iterator[Drive | RefusedLog]:
     """Yield every log, read with the options that apply to it; logs with the same options are read together."""
     for options, mine in group_rows(paths, lambda path: settings.manifest_options.get(path, settings)).items():
         maps = library if library is not None and options is settings else MapLibrary(options)
         yield from read_drives(mine, options.ingest_options(), maps)
 
 
-def _announced(drives: Iterable[Drive | RefusedLog], n: int, progress: Progress) -> Iterator[Drive | RefusedLog]:
+def _with_reading_progress(
+    drives: Iterable[Drive | RefusedLog], n: int, progress: Progress
+) -> Iterator[Drive | RefusedLog]:
     """Yield the logs, and show which log is read next: a batch is read before it is judged."""
     progress.doing(f"reading 1/{n}")
     for done, item in enumerate(drives, 1):
@@ -315,7 +322,7 @@ def _announced(drives: Iterable[Drive | RefusedLog], n: int, progress: Progress)
         progress.doing(f"reading {min(done + 1, n)}/{n}")
 
 
-def _without_map(drive: Drive) -> list[str]:
+def _missing_map_messages(drive: Drive) -> list[str]:
     """Return the message that the folder of maps has no map of the drive's place; empty if it has one."""
     quality = drive.trace.tables["quality"]
     texts: list[str] = quality.filter(pc.equal(quality["check_id"], NOT_IN_FOLDER))["message"].to_pylist()
@@ -332,7 +339,7 @@ def _judge_copies(session: JudgingSession, progress: Progress, memory: Memory) -
         session.judge_copies(progress.advance)
 
 
-def _judge(
+def _judge_batch(
     session: JudgingSession,
     batch: Iterable[Drive | RefusedLog],
     refused_logs: list[RefusedLog],
@@ -353,7 +360,7 @@ def _judge(
             drives.append(item)
             for text in item.trace.notes:
                 notes.add(LogNote(item.trace.path, text, once=True))
-            for text in _without_map(item):
+            for text in _missing_map_messages(item):
                 notes.add(LogNote(item.trace.path, text))
     limits.begin_batch(len(drives))
     n_unread = len(refused_logs) - n_before

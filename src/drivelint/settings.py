@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 SETTINGS_FILE: Final = "drivelint.toml"
 PROJECT_FILE: Final = "pyproject.toml"
-_TOOL: Final = "drivelint"
+_TOOL_NAME: Final = "drivelint"
 
 
 def find_settings() -> Path | None:
@@ -38,14 +38,14 @@ def find_settings() -> Path | None:
         place = Path() if folder == here else folder
         for file in (place / SETTINGS_FILE, place / PROJECT_FILE):
             # pyproject.toml may have settings of other tools only
-            if file.is_file() and (file.name == SETTINGS_FILE or (_mentions_us(file) and settings_table(file))):
+            if file.is_file() and (file.name == SETTINGS_FILE or (_mentions_drivelint(file) and settings_table(file))):
                 return file
     return None
 
 
-def _mentions_us(file: Path) -> bool:
+def _mentions_drivelint(file: Path) -> bool:
     try:
-        return _TOOL.encode() in file.read_bytes()
+        return _TOOL_NAME.encode() in file.read_bytes()
     except OSError:
         return False
 
@@ -67,45 +67,45 @@ def settings_table(file: Path) -> dict[str, Any]:
         raise UsageError(f"{file}: not TOML: {error}") from error
     if file.name == PROJECT_FILE:
         tools = content.get("tool")
-        content = tools.get(_TOOL, {}) if isinstance(tools, dict) else {}
+        content = tools.get(_TOOL_NAME, {}) if isinstance(tools, dict) else {}
     return content if isinstance(content, dict) else {}
 
 
 def read_settings(
-    options: Mapping[str, tuple[str, bool]], file: Path = Path(SETTINGS_FILE), paths: Collection[str] = ()
+    known_options: Mapping[str, tuple[str, bool]], file: Path = Path(SETTINGS_FILE), path_options: Collection[str] = ()
 ) -> dict[str, Any]:
     """Return parameter name -> value from the settings file; empty if there is no file.
 
-    `options`: option name without dashes -> (parameter name, whether it may be given more than once). `paths`: options whose values are
-    paths; a value of `mapping` is a path only if this file exists. Relative paths start in the folder of the settings file.
+    `known_options`: option name without dashes -> (parameter name, whether it may be given more than once). `path_options`: options whose
+    values are paths; a value of `mapping` is a path only if this file exists. Relative paths start in the folder of the settings file.
     Errors: `UsageError`, which names the file, for bad TOML, an unknown key (with the most similar one), or a value of a wrong type.
     """
     values: dict[str, Any] = {}
     for key, said in settings_table(file).items():
         if key == "waiver":
             continue  # read by `drivelint.gate.waivers`
-        if key not in options:
-            raise UsageError(f"{file}: unknown setting {key!r}; {hint(key, sorted(options))}")
-        name, repeatable = options[key]
-        value = _assignments(said, file) if key == "env" and isinstance(said, dict) else said
+        if key not in known_options:
+            raise UsageError(f"{file}: unknown setting {key!r}; {hint(key, sorted(known_options))}")
+        name, repeatable = known_options[key]
+        value = _environment_assignments(said, file) if key == "env" and isinstance(said, dict) else said
         texts = isinstance(value, list) and all(isinstance(item, str) for item in value)
         if not (texts if repeatable else isinstance(value, str | bool | int | float)):
             raise UsageError(f"{file}: {key} = {value!r}: must be {'a list of texts' if repeatable else 'one value'}")
         value = value if repeatable or isinstance(value, bool) else str(value)
-        values[name] = _from(file.parent, value, is_path=key != "mapping") if key in paths else value
+        values[name] = _resolve_paths(file.parent, value, is_path=key != "mapping") if key in path_options else value
     return values
 
 
-def _from(folder: Path, value: Any, *, is_path: bool) -> Any:
+def _resolve_paths(folder: Path, value: Any, *, is_path: bool) -> Any:
     """Return a path, or each path of a list, relative to `folder`; without `is_path`, only if such a file is there."""
     if isinstance(value, list):
-        return [_from(folder, each, is_path=is_path) for each in value]
+        return [_resolve_paths(folder, each, is_path=is_path) for each in value]
     if folder == Path() or not isinstance(value, str) or not (is_path or (folder / value).is_file()):
         return value
     return str(folder / value)
 
 
-def _assignments(table: Mapping[str, Any], file: Path) -> list[str]:
+def _environment_assignments(table: Mapping[str, Any], file: Path) -> list[str]:
     """Return the table [env] as texts `KEY=VALUE`, as on the command line."""
     words = {True: "yes", False: "no"}
     for key, value in table.items():

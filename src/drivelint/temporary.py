@@ -15,31 +15,31 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 PREFIX: Final = "drivelint-"
-_open: Final[set[Path]] = set()
-_TRIES: Final = 3
+_existing_folders: Final[set[Path]] = set()
+_REMOVAL_ATTEMPTS: Final = 3
 """How often a removal is repeated: a running thread may write into the folder meanwhile."""
 
 
 @contextmanager
 def temporary_folder() -> Iterator[Path]:
-    """Create an empty folder, which is removed after the block unless `keep` was called."""
+    """Create an empty folder, which is removed after the block unless `exclude_from_removal` was called."""
     folder = Path(mkdtemp(prefix=PREFIX))
-    _open.add(folder)
+    _existing_folders.add(folder)
     try:
         yield folder
     finally:
-        if folder in _open:
+        if folder in _existing_folders:
             shutil.rmtree(folder, ignore_errors=True)
-            _open.discard(folder)
+            _existing_folders.discard(folder)
 
 
-def keep(folder: Path) -> None:
+def exclude_from_removal(folder: Path) -> None:
     """Exclude a folder from the removal: its content belongs to the user."""
-    _open.discard(folder)
+    _existing_folders.discard(folder)
 
 
 def remove_all() -> None:
     """Remove the temporary folders of this process that still exist."""
-    for folder in list(_open):
-        for _ in range(_TRIES):
+    for folder in list(_existing_folders):
+        for _ in range(_REMOVAL_ATTEMPTS):
             shutil.rmtree(folder, ignore_errors=True)

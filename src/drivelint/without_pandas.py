@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from types import ModuleType
 
 
-class _NoPandas(MetaPathFinder):
+class _PandasBlocker(MetaPathFinder):
     def find_spec(
         self,
         fullname: str,
@@ -29,6 +29,6 @@ class _NoPandas(MetaPathFinder):
         return None
 
 
-def leave_out_pandas() -> None:
+def block_pandas_import() -> None:
     """Prevent every later import of pandas in this process; for commands and workers, not for `import drivelint`."""
-    sys.meta_path.insert(0, _NoPandas())
+    sys.meta_path.insert(0, _PandasBlocker())

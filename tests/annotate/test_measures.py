@@ -17,8 +17,8 @@ from shapely.geometry import Polygon, box
 
 from drivelint.annotate import measures
 from drivelint.annotate.annotator import LAYOUT_FILE
-from drivelint.annotate.layout import MAX_SERIES, layout
-from drivelint.annotate.measures import Series
+from drivelint.annotate.layout import MAX_SERIES, layout_json
+from drivelint.annotate.measures import MarginSeries
 from drivelint.resources import folder
 from drivelint.result.geometry import without_geometry
 from drivelint.sql.store import column_comments
@@ -250,9 +250,9 @@ def test_every_line_of_a_plot_leads_to_numbers_of_some_drive(out: Path) -> None:
 
 
 def test_the_plot_of_margins_shows_the_worst_rules_whatever_the_order() -> None:
-    series = [Series(k % 3, f"pack.r{k}.rule", "", "m") for k in range(30)]
-    assert layout(series) == layout(series[::-1])
-    paths = json.loads(layout(series))["configById"]["Plot!drivelint-margins"]["paths"]
+    series = [MarginSeries(k % 3, f"pack.r{k}.rule", "", "m") for k in range(30)]
+    assert layout_json(series) == layout_json(series[::-1])
+    paths = json.loads(layout_json(series))["configById"]["Plot!drivelint-margins"]["paths"]
     assert [path["value"] for path in paths[1:]] == [
         f"/drivelint/margins/pack/{one.rule_id.split('.')[1]}/rule.margin" for one in sorted(series)[:MAX_SERIES]
     ]
@@ -265,7 +265,7 @@ def test_plots_are_configured_as_foxgloves_own_package_does() -> None:
     known = set(package.PlotConfig()._to_dict()) | {"foxglovePanelTitle"}
     known_of_line = set(package.PlotSeries()._to_dict())
     assert line.keys() <= known_of_line
-    for key, panel in json.loads(layout([Series(0, "a.b", "p", "m")]))["configById"].items():
+    for key, panel in json.loads(layout_json([MarginSeries(0, "a.b", "p", "m")]))["configById"].items():
         if key.startswith("Plot!"):
             assert panel.keys() <= known
             assert all(path.keys() <= known_of_line for path in panel["paths"])

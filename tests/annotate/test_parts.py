@@ -103,7 +103,7 @@ def test_our_messages_have_the_columns_of_the_table(name: str) -> None:
         line.split()[0] for line in sql.partition("\n);")[0].splitlines() if " NOT NULL" in line.partition("--")[0]
     ]
     assert content["required"] == needed
-    assert (result_messages.schema(name).name, result_messages.schema(name).encoding) == (
+    assert (result_messages.message_schema(name).name, result_messages.message_schema(name).encoding) == (
         f"drivelint.{name.title()}",
         "jsonschema",
     )
@@ -111,13 +111,13 @@ def test_our_messages_have_the_columns_of_the_table(name: str) -> None:
 
 def test_frames_give_their_log_times() -> None:
     times = clock.of_frames(np.array([20, 10, 10, 30], np.int64), np.array([2, 1, 9, 3], np.uint64))
-    assert times.log_time(np.array([5, 10, 19, 20, 99], np.int64)).tolist() == [1, 1, 1, 2, 3]
+    assert times.log_times(np.array([5, 10, 19, 20, 99], np.int64)).tolist() == [1, 1, 1, 2, 3]
 
 
 def test_a_trace_that_begins_before_zero_is_moved() -> None:
     times = clock.of_trace(-5)
-    assert (times.at(-5), times.at(0), times.shift_ns) == (0, 5, 5)
-    assert clock.of_trace(5).at(7) == 7
+    assert (times.log_time_at(-5), times.log_time_at(0), times.shift_ns) == (0, 5, 5)
+    assert clock.of_trace(5).log_time_at(7) == 7
 
 
 def test_who_is_not_seen_for_long_has_no_place() -> None:

@@ -161,7 +161,7 @@ def test_a_way_is_not_drawn_across_a_hole() -> None:
     flat = np.zeros(100)
     ego = Tracks(["e"], ["car"], np.ones((1, 3)), [True], np.zeros(100, np.int32), t_ns, x, flat, flat, flat)
     nothing = pa.table({"lon": pa.array([], pa.float64())})
-    message = places.geojson(nothing, ego, GeoFrame(KARLSRUHE), None, {})
+    message = places.geojson_message(nothing, ego, GeoFrame(KARLSRUHE), None, {})
     ways = json.loads(message[message.index(b"{") :])["features"]
     assert [len(way["geometry"]["coordinates"]) for way in ways] == [16, 20]
     times = [fix.log_time for fix in places.location_messages(ego, GeoFrame(KARLSRUHE), clock.of_trace(0), "")]

@@ -625,7 +625,7 @@ def test_what_type_checkers_see_is_there() -> None:
     stub = (ROOT / "src" / "drivelint" / "__init__.pyi").read_text("utf-8")
     names = re.findall(r"^from \S+ import (\w+) as \1\b", stub, re.MULTILINE)
     assert set(names) <= set(dir(drivelint))
-    assert set(drivelint._OF_API) | {"DriveLintError"} == set(names)  # type: ignore[attr-defined]
+    assert set(drivelint._API_NAMES) | {"DriveLintError"} == set(names)  # type: ignore[attr-defined]
     assert all(getattr(drivelint, name).__module__.startswith("drivelint.") for name in names)
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from drivelint.audit import AuditRequest, JudgeSettings, audit
-from drivelint.audit.executors import Outcome
+from drivelint.audit.executors import TaskOutcome
 from drivelint.audit.worker import run_task
 from drivelint.report.progress import Silent
 from tests.audit import fleet
@@ -31,12 +31,12 @@ class InThisProcess:
     def submit(self, task: Task) -> None:
         self.tasks.append(task)
 
-    def wait(self) -> list[Outcome]:
+    def wait(self) -> list[TaskOutcome]:
         task = self.tasks.pop(0)
         if any(self.poison in drive.log for drive in task.drives):
             self.lost.append(len(task.drives))
-            return [Outcome(task, loss_reason="the worker died")]
-        return [Outcome(task, run_task(task))]
+            return [TaskOutcome(task, loss_reason="the worker died")]
+        return [TaskOutcome(task, run_task(task))]
 
     def close(self) -> None:
         pass
@@ -45,7 +45,7 @@ class InThisProcess:
 class Stopped(InThisProcess):
     """An executor that interrupts the audit before its last two tasks."""
 
-    def wait(self) -> list[Outcome]:
+    def wait(self) -> list[TaskOutcome]:
         if len(self.tasks) < 2:
             raise KeyboardInterrupt
         return super().wait()

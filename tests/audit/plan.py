@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 from drivelint.audit import AuditRequest, audit
 from drivelint.audit.compact import compact
-from drivelint.audit.driver import SUBMITTED_TASKS_PER_WORKER, tasks
+from drivelint.audit.driver import SUBMITTED_TASKS_PER_WORKER, divide_into_tasks
 from drivelint.audit.identity import OptionHashes
 from drivelint.audit.model import AuditDrive
 from drivelint.audit.store import LocalFolder
@@ -76,9 +76,12 @@ def _listing(drives: fleet.Fleet) -> float:
     begin = time.perf_counter()
     hashes, options = OptionHashes(), DriveInput(map=drives.road)
     listed = [
-        AuditDrive(str(path), options).with_ids(path.stat().st_size, "0", "run", hashes.of(options))
+        AuditDrive(str(path), options).with_ids(path.stat().st_size, "0", "run", hashes.hash_of(options))
         for path in sorted((drives.manifest.parent / "logs").iterdir())
     ]
-    cut = [len(task.drives) for task in tasks(listed, "", "run", SETTINGS, ahead=SUBMITTED_TASKS_PER_WORKER)]
+    cut = [
+        len(task.drives)
+        for task in divide_into_tasks(listed, "", "run", SETTINGS, group_size=SUBMITTED_TASKS_PER_WORKER)
+    ]
     assert sum(cut) == len(listed)
     return time.perf_counter() - begin

@@ -13,11 +13,11 @@ import pytest
 from drivelint import run
 from drivelint.audit import AuditRequest, JudgeSettings, audit, identity, merge, worker
 from drivelint.audit import run as audit_run
-from drivelint.audit.ask import ask
+from drivelint.audit.ask import run_query
 from drivelint.audit.compact import compact
-from drivelint.audit.driver import MOST_ATTEMPTS, tasks
-from drivelint.audit.executors import Outcome
-from drivelint.audit.lock import locked
+from drivelint.audit.driver import MOST_ATTEMPTS, divide_into_tasks
+from drivelint.audit.executors import TaskOutcome
+from drivelint.audit.lock import lock_results
 from drivelint.audit.model import AuditDrive
 from drivelint.audit.store import LocalFolder
 from drivelint.audit.text import summary_text
@@ -48,7 +48,7 @@ def undisturbed(drives: fleet.Fleet, tmp_path_factory: pytest.TempPathFactory) -
 
 
 def asked(out: Path, query: str) -> list[dict[str, object]]:
-    found: list[dict[str, object]] = json.loads(ask(str(out), query, "json"))
+    found: list[dict[str, object]] = json.loads(run_query(str(out), query, "json"))
     return found
 
 
@@ -201,7 +201,10 @@ def test_a_batch_that_another_audit_takes_for_a_rest_is_written_again(
 
 def test_the_first_tasks_are_small_so_that_an_early_interrupt_keeps_something() -> None:
     drives = [AuditDrive(f"{n:03}.mcap", DriveInput()) for n in range(100)]
-    cut = [len(task.drives) for task in tasks(drives, "", "run", SETTINGS, ahead=100, max_drives=30, n_small=2)]
+    cut = [
+        len(task.drives)
+        for task in divide_into_tasks(drives, "", "run", SETTINGS, group_size=100, max_drives=30, n_small=2)
+    ]
     assert cut == [8, 8, 30, 30, 24]
 
 
@@ -366,7 +369,7 @@ def test_an_audit_that_did_not_end_does_not_look_whole_after_a_merge(tmp_path: P
     few = fleet.write(tmp_path / "fleet", 20)
 
     class Stopped(InThisProcess):
-        def wait(self) -> list[Outcome]:
+        def wait(self) -> list[TaskOutcome]:
             if len(self.tasks) < 2:
                 raise KeyboardInterrupt
             return super().wait()
@@ -399,11 +402,11 @@ def test_what_takes_results_out_is_refused_with_shards(drives: fleet.Fleet, tmp_
 @pytest.mark.slow
 def test_two_audits_do_not_pack_one_place_at_once(drives: fleet.Fleet, tmp_path: Path) -> None:
     with (
-        locked(LocalFolder(tmp_path / "out"), shared=False),
+        lock_results(LocalFolder(tmp_path / "out"), shared=False),
         pytest.raises(UsageError, match="another audit is running"),
     ):
         judged(drives, tmp_path / "out")
-    with locked(LocalFolder(tmp_path / "out"), shared=True):
+    with lock_results(LocalFolder(tmp_path / "out"), shared=True):
         judged(drives, tmp_path / "out", shard=(1, 2))
         with pytest.raises(UsageError, match="another audit is running"):
             merge(str(tmp_path / "out"), Silent())
@@ -458,7 +461,7 @@ def test_other_versions_are_refused_in_the_same_folder(
 )
 def test_sql_reads_nothing_else_and_changes_nothing(undisturbed: tuple[Path, AuditSummary], query: str) -> None:
     with pytest.raises(UsageError):
-        ask(str(undisturbed[0]), query, "json")
+        run_query(str(undisturbed[0]), query, "json")
 
 
 def test_two_logs_of_one_drive_have_rows_of_their_own_key(undisturbed: tuple[Path, AuditSummary]) -> None:

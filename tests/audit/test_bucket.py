@@ -34,7 +34,9 @@ def server(drives: fleet.Fleet) -> Iterator[str]:
         _use(patch, url)
         home = drives.manifest.parent
         for file in sorted(path for path in home.rglob("*") if path.is_file()):
-            obstore.put(bucket._store("s3://fleet"), f"data/{file.relative_to(home).as_posix()}", file.read_bytes())
+            obstore.put(
+                bucket._bucket_client("s3://fleet"), f"data/{file.relative_to(home).as_posix()}", file.read_bytes()
+            )
         yield url
 
 
@@ -47,7 +49,7 @@ def _use(patch: pytest.MonkeyPatch, url: str) -> None:
         ("AWS_DEFAULT_REGION", "us-east-1"),
     ):
         patch.setenv(name, value)
-    bucket._store.cache_clear()
+    bucket._bucket_client.cache_clear()
 
 
 @pytest.fixture(scope="module")
@@ -84,7 +86,7 @@ def test_a_bucket_has_delta_tables_that_another_reader_reads(drives: fleet.Fleet
     with faults(server, 0.1) as (url, failed), pytest.MonkeyPatch.context() as patch:
         _use(patch, url)
         merge("s3://fleet/packed", Silent(), "s3://fleet/faulty-lake")
-    bucket._store.cache_clear()
+    bucket._bucket_client.cache_clear()
     assert sum(failed.values()) > 0
     assert DeltaTable("s3://fleet/faulty-lake/receipts", storage_options=options).count() == 1
 
@@ -125,7 +127,7 @@ def test_a_prefix_of_logs_is_a_source(drives: fleet.Fleet, server: str) -> None:
 
 
 def test_a_log_that_changes_between_listing_and_reading_is_refused(server: str, tmp_path: Path) -> None:
-    found = bucket.look("s3://fleet/data/logs/drive-00000.parquet")
+    found = bucket.find_object("s3://fleet/data/logs/drive-00000.parquet")
     assert found is not None
     with pytest.raises(TraceError, match="changed since it was listed"):
         bucket.download(found._replace(e_tag='"other"'), tmp_path)

@@ -15,7 +15,7 @@ import pytest
 
 from drivelint.audit import merge
 from drivelint.audit.claims import Claims
-from drivelint.audit.driver import TASK_DRIVES, tasks
+from drivelint.audit.driver import TASK_DRIVES, divide_into_tasks
 from drivelint.audit.model import AuditDrive, JudgeSettings
 from drivelint.audit.store import LocalFolder
 from drivelint.drive.trace import DriveInput
@@ -39,7 +39,7 @@ def _drives(n: int) -> list[AuditDrive]:
 def test_each_drive_is_given_to_one_of_two(tmp_path: Path) -> None:
     results = LocalFolder(tmp_path)
     first, second = Claims(results, 0.5), Claims(results, 0.5)
-    with first.alive(), second.alive():
+    with first.keep_alive(), second.keep_alive():
         one = first.claimed_drives(_drives(6))
         got = [next(one), next(one)]
         rest = list(second.claimed_drives(_drives(6)))
@@ -57,10 +57,10 @@ def test_each_drive_is_given_to_one_of_two(tmp_path: Path) -> None:
 def test_what_a_dead_one_has_claimed_is_taken_over(tmp_path: Path) -> None:
     results = LocalFolder(tmp_path)
     dead = Claims(results, 0.3)
-    with dead.alive():
+    with dead.keep_alive():
         next(iter(dead.claimed_drives(_drives(3))))
     living = Claims(results, 0.3)
-    with living.alive():
+    with living.keep_alive():
         assert [drive.log for drive in living.claimed_drives(_drives(3))] == ["log0", "log1", "log2"]
 
 
@@ -71,16 +71,18 @@ def test_two_with_more_drives_than_a_task_has_come_to_an_end(tmp_path: Path) -> 
 
     def share(no: int) -> None:
         claims = Claims(results, 2.0)
-        with claims.alive():
+        with claims.keep_alive():
             while True:
-                given = tasks(claims.claimed_drives(_drives(n)), "", "run", JudgeSettings(), ahead=TASK_DRIVES)
+                given = divide_into_tasks(
+                    claims.claimed_drives(_drives(n)), "", "run", JudgeSettings(), group_size=TASK_DRIVES
+                )
                 for task in given:
                     done[no] += [drive.log for drive in task.drives]
                     claims.mark_done(task.drives)
                 if not claims.n_waiting:
                     return
-                if not claims.n_taken:
-                    claims.pause()
+                if not claims.n_claimed:
+                    claims.wait_for_others()
 
     threads = [threading.Thread(target=share, args=[no], daemon=True) for no in range(2)]
     for thread in threads:

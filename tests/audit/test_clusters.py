@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from drivelint.audit.executors import ClusterError, Outcome
+from drivelint.audit.executors import ClusterError, TaskOutcome
 from drivelint.audit.executors.choice import open_executor
 from drivelint.errors import ExitCode, UsageError
 from tests.audit import fleet
@@ -70,7 +70,7 @@ def sleepers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[
     """Two workers that sleep for as many seconds as a task says, with the executor that hands out such tasks."""
     monkeypatch.setattr("drivelint.audit.executors.dask.run_task", time.sleep)
     monkeypatch.setattr("drivelint.audit.executors.dask.WORKERLESS_S", 1.0)
-    monkeypatch.setattr("drivelint.audit.executors.dask._LOOK_S", 0.5)
+    monkeypatch.setattr("drivelint.audit.executors.dask._POLL_S", 0.5)
     with dask(tmp_path, 2) as cluster:
         executor: Any = _on(cluster.address)
         yield cluster, executor
@@ -102,9 +102,9 @@ def test_a_result_that_is_lost_with_its_worker_is_made_again(sleepers: tuple[Das
     ((holder,),) = executor._client.who_has([short]).values()
     os.kill(executor._client.run(os.getpid)[holder], signal.SIGKILL)
     _until_status(short, "lost")
-    assert executor.wait() == [Outcome(5.0, None)]  # type: ignore[arg-type]
+    assert executor.wait() == [TaskOutcome(5.0, None)]  # type: ignore[arg-type]
     assert long.status == "finished"
-    assert executor.wait() == [Outcome(1.0, None)]  # type: ignore[arg-type]
+    assert executor.wait() == [TaskOutcome(1.0, None)]  # type: ignore[arg-type]
 
 
 def test_without_a_worker_the_audit_ends(sleepers: tuple[DaskProcesses, Any]) -> None:

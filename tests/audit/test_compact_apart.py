@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from drivelint.audit import run as audit_run
-from drivelint.audit.compact import chunks, compact
-from drivelint.audit.executors import Outcome
+from drivelint.audit.compact import chunk_ids, compact
+from drivelint.audit.executors import TaskOutcome
 from drivelint.audit.store import LocalFolder, ResultStore
 from drivelint.errors import UsageError
 from tests.audit import fleet
@@ -23,8 +23,8 @@ class Watched(InThisProcess):
         super().__init__()
         self.out, self.spoiled, self.seen = out, spoiled, [0]
 
-    def wait(self) -> list[Outcome]:
-        self.seen.append(len(chunks(LocalFolder(self.out))))
+    def wait(self) -> list[TaskOutcome]:
+        self.seen.append(len(chunk_ids(LocalFolder(self.out))))
         found = super().wait()
         if self.spoiled:
             next(self.out.glob("receipts/*/*.json")).write_bytes(b"{}")

@@ -16,7 +16,7 @@ import pytest
 from deltalake import DeltaTable, write_deltalake
 
 from drivelint.audit import delta, merge
-from drivelint.audit.delta import DIGEST, NAMES
+from drivelint.audit.delta import DIGEST_KEY, TABLE_NAMES
 from drivelint.errors import ExitCode, UsageError
 from drivelint.report.progress import Progress, Silent
 from drivelint.result.publishing import OutputError
@@ -119,11 +119,11 @@ def by_hand(table: Path) -> pa.Table:
 
 def holds(out: Path, lake: Path) -> bool:
     """Whether each Delta table has the rows of the packed table."""
-    return all(rows(in_delta(lake, table)) == rows(packed(out, table)) for table in NAMES)
+    return all(rows(in_delta(lake, table)) == rows(packed(out, table)) for table in TABLE_NAMES)
 
 
 def versions(lake: Path) -> list[int]:
-    return [DeltaTable(str(lake / table)).version() for table in NAMES]
+    return [DeltaTable(str(lake / table)).version() for table in TABLE_NAMES]
 
 
 def leaves(type_: pa.DataType) -> list[pa.DataType]:
@@ -142,7 +142,7 @@ def test_two_readers_find_the_rows_and_types_of_the_packed_tables(out: Path, tmp
     lake = tmp_path / place
     digest = merge(str(out), Silent(), str(lake)).digest
     assert packed(out, "findings").num_rows > 0
-    for table in NAMES:
+    for table in TABLE_NAMES:
         told = packed(out, table)
         found = in_delta(lake, table)
         assert rows(found) == rows(told) == rows(by_hand(lake / table)), table
@@ -153,12 +153,12 @@ def test_two_readers_find_the_rows_and_types_of_the_packed_tables(out: Path, tmp
         assert about.count() == told.num_rows
         (commit,) = (lake / table / "_delta_log").iterdir()
         assert digest is not None
-        assert f'"{DIGEST}":"{digest}"' in commit.read_text(encoding="utf-8")
+        assert f'"{DIGEST_KEY}":"{digest}"' in commit.read_text(encoding="utf-8")
 
 
 def test_the_packed_tables_have_only_types_that_delta_has(out: Path) -> None:
     """Their files are copied: a type that Delta lacks (unsigned, nanoseconds, enum) would be told wrong."""
-    types = {leaf for table in NAMES for field in packed(out, table).schema for leaf in leaves(field.type)}
+    types = {leaf for table in TABLE_NAMES for field in packed(out, table).schema for leaf in leaves(field.type)}
     assert [each for each in types if not any(known(each) for known in _IN_DELTA)] == []
 
 
@@ -172,12 +172,12 @@ def test_given_again_it_changes_nothing_and_a_grown_audit_adds_to_it(
     merge(str(out), heard, str(lake))
     assert heard.notes == [f"{lake}: the Delta tables were up to date"]
     assert sorted((path, path.stat().st_mtime_ns) for path in lake.rglob("*")) == before
-    former = {table: rows(in_delta(lake, table)) for table in NAMES}
+    former = {table: rows(in_delta(lake, table)) for table in TABLE_NAMES}
     judged(drives, out, sources=some(drives, tmp_path, N_DRIVES), delta=str(lake))
-    assert versions(lake) == [1] * len(NAMES), "the rules are the same: their commit has only the new digest"
+    assert versions(lake) == [1] * len(TABLE_NAMES), "the rules are the same: their commit has only the new digest"
     assert holds(out, lake)
     assert in_delta(lake, "receipts").num_rows == N_DRIVES
-    assert {table: rows(in_delta(lake, table, version=0)) for table in NAMES} == former
+    assert {table: rows(in_delta(lake, table, version=0)) for table in TABLE_NAMES} == former
     assert {path for path, _ in before} <= set(lake.rglob("*")), "no file of a former version is gone"
 
 
@@ -212,15 +212,15 @@ def test_killed_in_the_middle_every_table_is_as_before_or_as_after(
 ) -> None:
     lake = tmp_path / "lake"
     merge(str(out), Silent(), str(lake))
-    former = {table: rows(in_delta(lake, table)) for table in NAMES}
+    former = {table: rows(in_delta(lake, table)) for table in TABLE_NAMES}
     judged(drives, out)
     command = [sys.executable, "-c", _KILLED, str(out), str(lake), when]
     assert subprocess.run(command, cwd=ROOT, check=False).returncode == -signal.SIGKILL
-    written = NAMES.index("findings")
-    assert versions(lake) == [1] * written + [0] * (len(NAMES) - written)
-    for table in NAMES[:written]:
+    written = TABLE_NAMES.index("findings")
+    assert versions(lake) == [1] * written + [0] * (len(TABLE_NAMES) - written)
+    for table in TABLE_NAMES[:written]:
         assert rows(in_delta(lake, table)) == rows(packed(out, table))
-    for table in NAMES[written:]:
+    for table in TABLE_NAMES[written:]:
         assert rows(in_delta(lake, table)) == former[table]
     assert not holds(out, lake)
     merge(str(out), Silent(), str(lake))
@@ -311,13 +311,13 @@ def test_an_answer_that_was_cut_off_is_asked_for_again_and_errors_have_no_colour
             raise OSError("Generic S3 error\n \x1b[31m↳\x1b[0m cut off")
         return "whole"
 
-    assert delta._persistent("lake", partial(cut, 3)) == "whole"
+    assert delta._run_with_retries("lake", partial(cut, 3)) == "whole"
     assert len(asked) == 3
     asked.clear()
     with pytest.raises(
         OutputError, match=r"^lake: the Delta table failed: Generic S3 error ↳ cut off: run the same command again$"
     ):
-        delta._persistent("lake", partial(cut, 99))
+        delta._run_with_retries("lake", partial(cut, 99))
 
 
 def test_a_place_that_cannot_be_written_makes_exit_code_75(out: Path, tmp_path: Path) -> None:

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from drivelint.audit.compact import database, tables_digest
+from drivelint.audit.compact import open_database, tables_digest
 from drivelint.audit.store import LocalFolder
-from drivelint.audit.unpacked import views_of_all
+from drivelint.audit.unpacked import create_views_of_all_results
 from drivelint.errors import ExitCode
 from tests.audit import fleet
 from tests.audit.clusters import dask
@@ -70,8 +70,8 @@ def _receipts(out: Path) -> list[Path]:
 
 def _digest_of_all(out: Path) -> str:
     """Return the digest of all results, also of those that are not packed."""
-    with database() as con:
-        views_of_all(con, LocalFolder(out), out)
+    with open_database() as con:
+        create_views_of_all_results(con, LocalFolder(out), out)
         return tables_digest(con)
 
 

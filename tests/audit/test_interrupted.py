@@ -10,11 +10,11 @@ from pathlib import Path
 import pytest
 
 from drivelint.audit import merge
-from drivelint.audit.ask import ask
-from drivelint.audit.compact import create_views, database, tables_digest
+from drivelint.audit.ask import run_query
+from drivelint.audit.compact import create_views, open_database, tables_digest
 from drivelint.audit.store import LocalFolder
 from drivelint.audit.text import summary_text
-from drivelint.audit.unpacked import n_results, views_of_all
+from drivelint.audit.unpacked import create_views_of_all_results, n_results
 from drivelint.errors import ExitCode
 from drivelint.fleet_report import page
 from drivelint.fleet_report.audit_views import open_audits, open_two_audits
@@ -44,7 +44,7 @@ def test_sql_answers_and_says_how_much_is_there(interrupted: tuple[Path, int]) -
     out, n = interrupted
     told: list[str] = []
     for table in ("drives", "receipts"):
-        (row,) = json.loads(ask(str(out), f"SELECT count(*) AS n FROM {table}", "json", told.append))
+        (row,) = json.loads(run_query(str(out), f"SELECT count(*) AS n FROM {table}", "json", told.append))
         assert row == {"n": n}
     assert (
         f"the audit has not ended: {n} of {N_DRIVES} drives have a result; {n} judged drives are not packed" in told[0]
@@ -69,8 +69,8 @@ def test_the_rows_are_those_that_a_merge_packs_and_then_it_says_how_many_are_mis
     interrupted: tuple[Path, int],
 ) -> None:
     out, n = interrupted
-    with database() as con:
-        views_of_all(con, LocalFolder(out), out)
+    with open_database() as con:
+        create_views_of_all_results(con, LocalFolder(out), out)
         before = tables_digest(con)
     merged = merge(str(out), Silent())
     assert merged.digest == before
@@ -80,7 +80,7 @@ def test_the_rows_are_those_that_a_merge_packs_and_then_it_says_how_many_are_mis
     )
     with open_audits(str(out)) as (_, audit, _):
         assert f"{n} of {N_DRIVES} drives have a result; give the same audit again" in audit.warning
-    with database() as con:
+    with open_database() as con:
         create_views(con, LocalFolder(out), out)
         assert tables_digest(con) == before
 
@@ -88,7 +88,7 @@ def test_the_rows_are_those_that_a_merge_packs_and_then_it_says_how_many_are_mis
 BLOCKED = """
 import multiprocessing
 import signal
-from drivelint.audit.executors.local import deaf_to_ctrl_c
+from drivelint.audit.executors.local import block_ctrl_c
 
 def blocked():
     return signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, [])
@@ -98,7 +98,7 @@ def tell():
 
 if __name__ == "__main__":
     process = multiprocessing.get_context("spawn").Process(target=tell)
-    with deaf_to_ctrl_c():
+    with block_ctrl_c():
         process.start()
     process.join()
     print(blocked())

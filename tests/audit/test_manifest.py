@@ -10,7 +10,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from drivelint.audit.sources import doubtful_tags, drives, with_manifests
+from drivelint.audit.sources import drives, expand_manifests, tag_warnings
 from drivelint.cli.audits import audit as audit_command
 from drivelint.drive import conditions
 from drivelint.drive.trace import DriveInput
@@ -172,7 +172,7 @@ def test_check_refuses_a_manifest_before_it_judges(rows: tuple[str, ...], why: s
 def test_a_table_of_states_with_a_column_log_is_a_log(two: fleet.Fleet, tmp_path: Path) -> None:
     states = pq.read_table(two.manifest.parent / "logs" / "drive-00000.parquet")
     pq.write_table(states.append_column("log", pa.array(["a b c"] * states.num_rows)), tmp_path / "own.parquet")
-    assert with_manifests([str(tmp_path / "own.parquet")], DriveInput()) == ((str(tmp_path / "own.parquet"),), {})
+    assert expand_manifests([str(tmp_path / "own.parquet")], DriveInput()) == ((str(tmp_path / "own.parquet"),), {})
 
 
 @pytest.mark.parametrize(
@@ -184,8 +184,8 @@ def test_a_table_of_states_with_a_column_log_is_a_log(two: fleet.Fleet, tmp_path
     ],
 )
 def test_a_misspelt_column_is_told_once(columns: list[str], told: list[str], tmp_path: Path) -> None:
-    assert list(doubtful_tags(columns)) == told
+    assert list(tag_warnings(columns)) == told
     rows = [",".join(["logs/a.mcap", *("x" for _ in columns)])] * 2
     notes: list[str] = []
-    with_manifests([written(tmp_path, ",".join(["log", *columns]), *rows)], DriveInput(), notes.append)
+    expand_manifests([written(tmp_path, ",".join(["log", *columns]), *rows)], DriveInput(), notes.append)
     assert notes == told

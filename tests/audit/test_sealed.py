@@ -11,7 +11,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from drivelint.audit.ask import ask
+from drivelint.audit.ask import run_query
 from drivelint.audit.run import merge
 from drivelint.errors import UsageError
 from drivelint.fleet_report.audit_views import open_audits, open_two_audits
@@ -99,17 +99,17 @@ def test_a_changed_file_is_named(ended: Path, copy: Path, change: Callable[[Path
 @pytest.mark.parametrize("change", [without_a_row, of_another_severity, with_a_file_more])
 def test_sql_answers_from_a_changed_file_and_says_so(ended: Path, copy: Path, change: Callable[[Path], str]) -> None:
     query, warned = "SELECT count(*) AS n FROM findings", list[str]()
-    assert json.loads(ask(str(ended), query, "json", warned.append))[0]["n"] > 0
+    assert json.loads(run_query(str(ended), query, "json", warned.append))[0]["n"] > 0
     assert warned == []
     name = change(copy)
-    json.loads(ask(str(copy), query, "json", warned.append))
+    json.loads(run_query(str(copy), query, "json", warned.append))
     assert [f"{name}: was changed since drivelint audit wrote it" in each for each in warned] == [True]
 
 
 def test_a_missing_file_is_not_taken_for_another_run(copy: Path) -> None:
     only_file(copy, "findings").unlink()
     with pytest.raises(UsageError, match=r"files\.json lists is missing"):
-        ask(str(copy), "FROM findings", "json")
+        run_query(str(copy), "FROM findings", "json")
 
 
 @pytest.mark.parametrize(
@@ -222,7 +222,7 @@ def test_an_ended_audit_without_a_readable_list_is_refused(ended: Path, copy: Pa
     with pytest.raises(UsageError, match="has ended"), open_two_audits(str(ended), str(copy)):
         pass
     with pytest.raises(UsageError, match="has ended"):
-        ask(str(copy), "FROM findings", "json")
+        run_query(str(copy), "FROM findings", "json")
 
 
 @pytest.fixture(scope="module")
@@ -251,7 +251,7 @@ def test_readers_hold_rows_of_an_unfinished_audit_against_its_receipts(open_copi
         passed(verdicts)
         with pytest.raises(UsageError, match="since drivelint audit wrote"), open_audits(str(out)):
             pass
-        assert ask(str(out), "FROM verdicts", "json", warned.append)
+        assert run_query(str(out), "FROM verdicts", "json", warned.append)
         assert "since drivelint audit wrote" in warned[0]
 
 

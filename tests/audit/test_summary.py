@@ -13,12 +13,12 @@ import pyarrow.parquet as pq
 import pytest
 
 from drivelint.audit import AuditRequest, AuditSummary, JudgeSettings, audit, summary
-from drivelint.audit.ask import ask
-from drivelint.audit.compact import create_views, database
+from drivelint.audit.ask import run_query
+from drivelint.audit.compact import create_views, open_database
 from drivelint.audit.run import AUDIT_FILE, RULES_FILE
 from drivelint.audit.sealed import seal
 from drivelint.audit.store import LocalFolder
-from drivelint.audit.summary import summed
+from drivelint.audit.summary import summary_of_all_drives
 from drivelint.audit.text import summary_text
 from drivelint.audit.unpacked import SUMMARY_FILE
 from drivelint.errors import ExitCode
@@ -48,9 +48,9 @@ def audited(once: tuple[Path, int], tmp_path: Path) -> tuple[Path, int]:
 
 
 def told(out: Path, *, robust: bool = True) -> tuple[str, AuditSummary]:
-    with database() as con:
+    with open_database() as con:
         create_views(con, LocalFolder(out), out)
-        counted = replace(summed(con, 0), robust=robust)
+        counted = replace(summary_of_all_drives(con, 0), robust=robust)
     (line,) = [
         line for line in summary_text(counted, "out", ExitCode.FAILED).splitlines() if line.startswith("findings")
     ]
@@ -324,9 +324,9 @@ def test_lossy_logs_and_those_off_their_map_are_named(audited: tuple[Path, int])
     told_rows[1]["log_sha256"] = told_rows[0]["log_sha256"]
     pq.write_table(pa.Table.from_pylist(told_rows, schema=rows.schema), file)
     lossy, off_map = [told_rows[n]["log"] for n in (0, 2, 3)], told_rows[6]["log"]
-    with database() as con:
+    with open_database() as con:
         create_views(con, LocalFolder(out), out)
-        lines = summary_text(summed(con, 0), "out", ExitCode.OK).splitlines()
+        lines = summary_text(summary_of_all_drives(con, 0), "out", ExitCode.OK).splitlines()
     assert f"  lossy: {', '.join(lossy)} and 1 more" in lines
     assert f"  map does not fit: {off_map}" in lines
     results = LocalFolder(out)
@@ -352,7 +352,7 @@ def test_the_query_that_is_proposed_gives_the_numbers_that_are_printed(audited: 
     assert len(proposed) == 2
     for found in proposed:
         assert found is not None
-        (row,) = json.loads(ask(str(out), found[1], "json"))
+        (row,) = json.loads(run_query(str(out), found[1], "json"))
         assert (row["rule_id"], row["count_star()"]) == (fleet.RULE, n)
 
 

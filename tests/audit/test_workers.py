@@ -10,7 +10,7 @@ import pytest
 
 from drivelint.audit import AuditRequest, AuditSummary, audit
 from drivelint.audit.driver import Driver
-from drivelint.audit.executors import Outcome
+from drivelint.audit.executors import TaskOutcome
 from drivelint.audit.executors import local as pool
 from drivelint.audit.model import AuditDrive, JudgeSettings, Task
 from drivelint.audit.store import LocalFolder
@@ -63,11 +63,11 @@ class Meets:
     def submit(self, task: Task) -> None:
         self._tasks.append(task)
 
-    def wait(self) -> list[Outcome]:
+    def wait(self) -> list[TaskOutcome]:
         task = self._tasks.pop(0)
         self.n_drives.append(len(task.drives))
         met = self._name in {drive.log for drive in task.drives}
-        return [Outcome(task, error=self._error) if met else Outcome(task)]
+        return [TaskOutcome(task, error=self._error) if met else TaskOutcome(task)]
 
     def close(self) -> None:
         pass
@@ -96,7 +96,7 @@ class Clocks:
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.computed = self.wall = 0.0
-        monkeypatch.setattr(pool, "computed_s", lambda _process: self.computed)
+        monkeypatch.setattr(pool, "processor_seconds", lambda _process: self.computed)
         monkeypatch.setattr(pool, "monotonic", lambda: self.wall)
 
 
@@ -130,15 +130,15 @@ def test_only_what_a_worker_computes_itself_counts_and_its_start_does_not(monkey
     worker = pool._Worker.__new__(pool._Worker)
     worker.pipe, worker._process = Pipe(), Process()  # type: ignore[assignment]
     worker._memory, worker._timeout_s, worker._n_tasks = None, 10.0, 0
-    worker.begin(Task((AuditDrive("b", DriveInput()),), "", "", JudgeSettings()))
+    worker.send_task(Task((AuditDrive("b", DriveInput()),), "", "", JudgeSettings()))
     clocks.computed = clocks.wall = 100.0  # a start on a busy machine
-    assert worker.look() is None
-    assert worker.hear() is None
+    assert worker.kill_if_over_limit() is None
+    assert worker.receive_message() is None
     for _ in range(9):
         clocks.computed, clocks.wall = clocks.computed + 1.0, clocks.wall + 9.0
-        assert worker.look() is None
+        assert worker.kill_if_over_limit() is None
     clocks.computed += 2.0
-    lost = worker.look()
+    lost = worker.kill_if_over_limit()
     assert lost is not None
     assert lost.loss_reason == "the worker took too long: it computed for more than 10 s"
 
@@ -148,10 +148,10 @@ def test_a_worker_that_does_nothing_at_all_is_not_waited_for(monkeypatch: pytest
     worker = pool._Worker.__new__(pool._Worker)
     worker.pipe, worker._process = Pipe(), Process()  # type: ignore[assignment]
     worker._memory, worker._timeout_s, worker._n_tasks = None, 10.0, 0
-    worker.begin(Task((AuditDrive("b", DriveInput()),), "", "", JudgeSettings()))
-    assert worker.hear() is None
+    worker.send_task(Task((AuditDrive("b", DriveInput()),), "", "", JudgeSettings()))
+    assert worker.receive_message() is None
     clocks.wall = 11.0
-    lost = worker.look()
+    lost = worker.kill_if_over_limit()
     assert lost is not None
     assert "it did nothing for 10 s" in str(lost.loss_reason)
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from drivelint.casefile import Case, judge, read_cases
+from drivelint.casefile import Case, judge_case, read_cases
 from drivelint.casefile.scene import complete_scene, refuse_wrong_word
 from drivelint.errors import RuleError
 from drivelint.sql import store
@@ -38,9 +38,9 @@ def test_a_wrong_word_is_found_however_it_is_given(tmp_path: Path, value: str) -
     case = f"- name: clean\n  given: {{ego_state: {{{times}, indicator: {value}}}}}\n  expect: pass\n"
     rule = with_cases(measured(tmp_path), case)
     with pytest.raises(RuleError, match=r"ego_state\.indicator: 'hazards' is no indicator; did you mean 'hazard'\?"):
-        judge(rule, read_cases(rule)[0])
+        judge_case(rule, read_cases(rule)[0])
     good = with_cases(rule, case.replace("hazards", "hazard"))
-    assert judge(good, read_cases(good)[0]).verdicts
+    assert judge_case(good, read_cases(good)[0]).verdicts
 
 
 @pytest.mark.parametrize(
@@ -78,7 +78,7 @@ def test_tables_and_columns_are_named_with_the_nearest(tmp_path: Path) -> None:
         ({"ego_state": {"t_s": 0, "zzz": "off"}}, r"no column 'zzz'; it has: drive_id, "),
     ):
         with pytest.raises(RuleError, match=message):
-            judge(rule, Case(name="scene", given_tables=given, expect="pass"))
+            judge_case(rule, Case(name="scene", given_tables=given, expect="pass"))
 
 
 COLUMNS = [(table, name, column) for table, columns in store.word_columns().items() for name, column in columns.items()]

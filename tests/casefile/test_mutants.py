@@ -119,9 +119,9 @@ def test_a_threshold_that_no_case_is_close_to_is_a_survivor(tmp_path: Path) -> N
     assert proof.survivors == ("sense > -> >=", "params.limit * 0.9")
     assert not proof.ok
     assert "no case notices: params.limit * 0.9" in mutation.result_text(proof)
-    assert mutation.summary([proof]) == "1 stable rule: 2 of 4 mutants noticed (50.0%)"
+    assert mutation.summary_line([proof]) == "1 stable rule: 2 of 4 mutants noticed (50.0%)"
     assert mutation.noticed_share([proof]) < mutation.LEAST_NOTICED_SHARE
-    assert mutation.summary([proof._replace(stable=False)]) == (
+    assert mutation.summary_line([proof._replace(stable=False)]) == (
         "no stable rule here: only the mutants of stable rules must be noticed"
     )
 
@@ -143,7 +143,7 @@ def test_a_listed_survivor_may_live_and_no_other(tmp_path: Path) -> None:
     proof = mutation.judge_mutants(rule)
     assert (proof.ok, proof.stale) == (False, ("sense > -> <=",))
     file.write_text(entry.format("x").replace("pack.rule", "pack.gone"), encoding="utf-8")
-    assert mutation.entries_without_rule([rule]) == [f"{file}: there is no rule 'pack.gone' here"]
+    assert mutation.unknown_rule_messages([rule]) == [f"{file}: there is no rule 'pack.gone' here"]
 
 
 def test_a_rule_that_breaks_its_own_cases_proves_nothing(tmp_path: Path) -> None:

@@ -138,7 +138,7 @@ def test_an_unknown_column_is_told_with_its_line_and_the_names_that_are_near(tmp
 
 @pytest.mark.slow
 def test_a_rule_is_tested_again_when_it_is_saved(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(workshop, "_LOOK_S", 0.01)
+    monkeypatch.setattr(workshop, "_POLL_S", 0.01)
     rule = with_cases(measured(tmp_path), CASES)
     workshop.new_rule("mine.other", tmp_path, "invariant")
     over = Event()
@@ -156,7 +156,7 @@ def test_a_rule_is_tested_again_when_it_is_saved(tmp_path: Path, monkeypatch: py
         if len(said) > 2:  # both rules, and that it waits
             next(edits)()
 
-    assert workshop.watch(workshop.case_test, tmp_path, (), say, over) is ExitCode.USAGE
+    assert workshop.repeat_tests_on_changes(workshop.case_test, tmp_path, (), say, over) is ExitCode.USAGE
     assert [line.split(":")[0] for line in said[2:4]] == ["waiting for changes; press Ctrl-C to end", "FAIL pack.rule"]
     assert [line.split(" ")[0] for line in said[4:]] == ["REFUSED"]
 

@@ -6,18 +6,18 @@ import json
 from collections import defaultdict
 from typing import TYPE_CHECKING, NamedTuple
 
-from drivelint.casefile import Case, case_location, difference, numbered_cases, read_cases
+from drivelint.casefile import Case, case_location, numbered_cases, outcome_difference, read_cases
 from drivelint.casefile.merged_cases import (
     _FINDING_ORDER,
-    _ORDER,
+    _VERDICT_ORDER,
     CaseOutcome,
     NumberedCase,
-    _is_apart,
-    merge,
+    _may_hold_several_cases,
+    merge_cases,
     mergeable_groups,
     outcome_of_case,
 )
-from drivelint.casefile.scene import Row, case_database, fill
+from drivelint.casefile.scene import Row, case_database, insert_rows
 from drivelint.evaluate import evaluate
 from drivelint.reasons.reason_text import codes_in
 
@@ -47,7 +47,9 @@ class _Group(NamedTuple):
     def what_all_share(self) -> str:
         """The rows that are not of one drive, as text: groups that differ in them cannot share a database."""
         scene = self.members[0].scene
-        return repr(sorted((table, rows) for table, rows in scene.items() if not _is_apart(table, scene, KEY)))
+        return repr(
+            sorted((table, rows) for table, rows in scene.items() if not _may_hold_several_cases(table, scene, KEY))
+        )
 
 
 def judged_together(rules: Sequence[Rule]) -> dict[str, Judged]:
@@ -73,14 +75,15 @@ def judged_together(rules: Sequence[Rule]) -> dict[str, Judged]:
 
 
 def _outcomes(groups: Sequence[_Group]) -> list[CaseOutcome]:
-    scene = merge([member for group in groups for member in group.members], KEY)
+    scene = merge_cases([member for group in groups for member in group.members], KEY)
     con = case_database()
     try:
         for table, rows in scene.items():
-            fill(con, table, rows)
+            insert_rows(con, table, rows)
         evaluate(con, [group.rule for group in groups], {group.rule.id: group.members[0].params for group in groups})
         return [
-            CaseOutcome(_rows("verdict", _ORDER, group), _rows("finding", _FINDING_ORDER, group)) for group in groups
+            CaseOutcome(_rows("verdict", _VERDICT_ORDER, group), _rows("finding", _FINDING_ORDER, group))
+            for group in groups
         ]
     finally:
         con.execute(";".join(f"DELETE FROM {table}" for table in (*scene, "verdict", "finding", "margin")))
@@ -96,7 +99,7 @@ def _rows(table: str, order: str, group: _Group) -> list[Row]:
 def _problem(group: _Group, outcome: CaseOutcome) -> str:
     for member in group.members:
         case = group.cases[member.no]
-        if message := difference(case, outcome_of_case(outcome, member.no)):
+        if message := outcome_difference(case, outcome_of_case(outcome, member.no)):
             return f"{case_location(group.rule, case)}: among the cases of other rules: {message}"
     return ""
 

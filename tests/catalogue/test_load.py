@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from drivelint.catalogue import json_schema, load_rules, read_rule
-from drivelint.catalogue.header import line_of
+from drivelint.catalogue.header import line_of_key
 from drivelint.drive import conditions
 from drivelint.errors import RuleError
 from drivelint.resources import folder
@@ -230,7 +230,7 @@ def test_the_line_of_a_key() -> None:
         "applies.light": 7,
         "law": 1,
     }
-    assert {key: line_of(header, key) for key in keys} == keys
+    assert {key: line_of_key(header, key) for key in keys} == keys
 
 
 @pytest.mark.parametrize(
@@ -296,8 +296,8 @@ def test_a_rule_may_use_ctes_unions_macros_of_ours_and_unnest(tmp_path: Path) ->
 def test_conditions_are_read_and_what_they_include_is_known(tmp_path: Path) -> None:
     tables = '[applies]\nnation = ["gb"]\nroad_type = ["town", "rural"]\nlimit_min_mps = 13\n'
     rule = write(tmp_path, GOOD | {"observes": '"speed"'}, {"condition": SPEED}, tables=tables)
-    assert rule.applies.restricting == {"road_type": ("town", "rural"), "nation": ("gb",)}
-    assert (rule.applies.limit_min_mps, rule.applies.restricts_speed_limit, rule.observes) == (13.0, True, "speed")
+    assert rule.applies.restricted_conditions == {"road_type": ("town", "rural"), "nation": ("gb",)}
+    assert (rule.applies.limit_min_mps, rule.applies.has_speed_limit_condition, rule.observes) == (13.0, True, "speed")
     assert conditions.with_narrower_values(("gb",)) == ["gb", "gb-eng", "gb-sct", "gb-wls"]
     assert {"town", "townLocal", "rural"} < set(conditions.with_narrower_values(("rural", "town")))
     assert (conditions.broader_values(("gb-sct", "de")), conditions.broader_values(("gb",))) == (["gb"], [])

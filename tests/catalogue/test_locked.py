@@ -10,7 +10,7 @@ import msgspec
 import pyarrow as pa
 import pytest
 
-from drivelint.casefile import Case, judge
+from drivelint.casefile import Case, judge_case
 from drivelint.catalogue import Rule, allowed_sql
 from drivelint.catalogue.check import check_query
 from drivelint.engine.session import JudgingSession
@@ -192,7 +192,7 @@ def test_the_database_refuses_what_the_checker_would_have_let_pass(tmp_path: Pat
         assert con.execute(f"SELECT count(*) FROM ST_Read('{file}')").fetchall() == [(1,)]  # it could be read
     rule = beyond_the_checker(tmp_path, of(source.format(file=file), "1"))
     case = Case(name="open", given_tables={"ego_state": {"t_s": "0..1 by 0.1", "speed_mps": 2}}, expect="pass")
-    verdicts, _ = judge(rule, case)
+    verdicts, _ = judge_case(rule, case)
     assert [row["verdict"] for row in verdicts] == ["error"]
     assert message in verdicts[0]["reason"]
 

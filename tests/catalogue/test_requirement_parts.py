@@ -10,7 +10,7 @@ import msgspec
 import pytest
 
 from drivelint.casefile import read_cases
-from drivelint.casefile.scene import case_database, complete_scene, fill
+from drivelint.casefile.scene import case_database, complete_scene, insert_rows
 from drivelint.catalogue import load_rules
 from drivelint.catalogue.requirement_parts import parts_path, read_parts
 from drivelint.errors import RuleError
@@ -44,7 +44,7 @@ def _compared(rule: Rule, case: Case) -> int:
     scene = complete_scene(rule, case.given_tables, case.missing_signals)
     try:
         for table, rows in scene.items():
-            fill(con, table, rows)
+            insert_rows(con, table, rows)
         evaluate(con, [rule], {rule.id: case.params}, margins=True)
         params = {name: param.default for name, param in rule.params.items()} | case.params
         bound = {name: params[name] for name in found.parameters}

@@ -9,7 +9,7 @@ import pytest
 
 from drivelint import cli
 from drivelint.catalogue import load_rule, load_rules, parse_params, read_rule
-from drivelint.catalogue.rule_words import check_words
+from drivelint.catalogue.rule_words import refuse_wrong_words
 from drivelint.errors import RuleError, UsageError
 from tests.evaluate.packs import EXECUTION, HEADER, HOLDS, INVARIANT, text, write
 
@@ -73,7 +73,7 @@ def test_every_shipped_rule_has_only_words_that_its_tables_have(rule: object) ->
     """They are not looked at again when they are read: that takes a third of the time."""
     assert hasattr(rule, "sections")
     assert hasattr(rule, "params")
-    check_words(rule.sections, rule.params, lambda part, offset: f"{part}, byte {offset}")
+    refuse_wrong_words(rule.sections, rule.params, lambda part, offset: f"{part}, byte {offset}")
 
 
 def test_the_words_of_a_rules_reference_points_are_known_in_its_condition(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from drivelint.arrays import with_columns
+from drivelint.arrays import replace_columns
 from tests.cropping import beyond, cropped
 from tests.derive.junction_scenes import ARM, TURN, R, cross, signal, star
 from tests.scenes import Actor, Road, derived, drive, judged, moving, rows, times
@@ -216,7 +216,7 @@ def test_a_map_without_signs_tells_only_of_lights(of: str, control: str | None) 
 
 
 def without_signs(environment: MapTables) -> MapTables:
-    about = with_columns(environment.tables["environment"], {"signs_mapped": [False]})
+    about = replace_columns(environment.tables["environment"], {"signs_mapped": [False]})
     return replace(environment, tables={**environment.tables, "environment": about})
 
 

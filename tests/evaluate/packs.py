@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from drivelint.casefile import Case, judge
+from drivelint.casefile import Case, judge_case
 from drivelint.casefile.merged_cases import CaseOutcome
 from drivelint.catalogue import Rule, read_rule
 
@@ -85,7 +85,7 @@ def _outcome(rule: Rule, case: Case) -> CaseOutcome:
     """Judge a case, unless it was the last one: many tests look at a scene's verdicts, and then at its findings."""
     key = repr((rule, case))
     if key not in _LAST:
-        found = judge(rule, case)
+        found = judge_case(rule, case)
         _LAST.clear()
         _LAST[key] = found
     return CaseOutcome(*([dict(row) for row in rows] for rows in _LAST[key]))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import duckdb
 import pytest
 
-from drivelint.casefile.scene import fill
+from drivelint.casefile.scene import insert_rows
 from drivelint.catalogue import Rule
 from drivelint.errors import UsageError
 from drivelint.evaluate import evaluate, query_plans
@@ -31,9 +31,9 @@ def con() -> Iterator[duckdb.DuckDBPyConnection]:
         store.create_macros(con)
         for drive, ego in (("a", "1"), ("a", "2"), ("b", "1")):
             who = {"drive_id": drive, "ego_id": ego}
-            fill(con, "clock", [who | {"period_ns": 10, "max_gap_ns": 25, "t_start_ns": 0, "t_end_ns": 20}])
-            fill(con, "step", [who | {"t_ns": k * 10, "k": k, "seg": 0} for k in range(3)])
-            fill(
+            insert_rows(con, "clock", [who | {"period_ns": 10, "max_gap_ns": 25, "t_start_ns": 0, "t_end_ns": 20}])
+            insert_rows(con, "step", [who | {"t_ns": k * 10, "k": k, "seg": 0} for k in range(3)])
+            insert_rows(
                 con,
                 "ego_state",
                 [
@@ -48,10 +48,10 @@ def con() -> Iterator[duckdb.DuckDBPyConnection]:
                     for k in range(3)
                 ],
             )
-            fill(con, "ego_condition", [who | {"t_ns": k * 10, "engaged": True} for k in range(3)])
-            fill(con, "capability", [who | {"signal": "map", "available": drive == "a", "reason": "because"}])
+            insert_rows(con, "ego_condition", [who | {"t_ns": k * 10, "engaged": True} for k in range(3)])
+            insert_rows(con, "capability", [who | {"signal": "map", "available": drive == "a", "reason": "because"}])
         for drive in "ab":
-            fill(con, "data_log", [{"drive_id": drive, "sha256": f"hash-{drive}"}])
+            insert_rows(con, "data_log", [{"drive_id": drive, "sha256": f"hash-{drive}"}])
         yield con
 
 

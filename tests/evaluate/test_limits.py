@@ -160,7 +160,7 @@ def test_a_rule_that_takes_much_more_after_its_interrupt_is_not_waited_for(
             found.append((excess, next(bytes_now)))
             ended.set()
 
-    monkeypatch.setattr(computing.Work, "seconds", lambda _work: now)
+    monkeypatch.setattr(computing.ProcessorClock, "seconds", lambda _work: now)
     monkeypatch.setattr(limits, "resident_bytes", lambda: next(bytes_now))
     monkeypatch.setattr(limits, "_LOOK_INTERVAL_S", 0.001)
     monkeypatch.setattr(limits, "_MEMORY_GRACE_S", 60.0)
@@ -188,7 +188,7 @@ def test_only_the_work_of_a_rule_counts(monkeypatch: pytest.MonkeyPatch) -> None
             sum(range(1000))
 
     reader = Thread(target=spin)
-    work = computing.Work(get_native_id())
+    work = computing.ProcessorClock(get_native_id())
     reader.start()
     began = process_time()
     while process_time() - began < 0.5:
@@ -196,7 +196,7 @@ def test_only_the_work_of_a_rule_counts(monkeypatch: pytest.MonkeyPatch) -> None
     assert work.seconds() < 0.25
     ends.set()
     reader.join()
-    work, began = computing.Work(get_native_id()), thread_time()
+    work, began = computing.ProcessorClock(get_native_id()), thread_time()
     while thread_time() - began < 0.3:
         sum(range(1000))
     assert 0.25 < work.seconds() < 0.6

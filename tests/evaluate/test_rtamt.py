@@ -15,7 +15,7 @@ import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
-from drivelint.casefile.merged_cases import NumberedCase, judge, merge, outcome_of_case
+from drivelint.casefile.merged_cases import NumberedCase, judge, merge_cases, outcome_of_case
 from drivelint.casefile.scene import complete_scene
 from drivelint.catalogue import load_rules
 from tests.evaluate.stl import FAR, PERIOD_S, SPECS, STEPS, TIMES, Spec, Trace
@@ -52,7 +52,7 @@ def ours(spec: Spec, traces: list[Trace]) -> list[CaseOutcome]:
     """Judge all traces at once, as drives of one database."""
     rule = RULES[spec.rule]
     members = [NumberedCase(no, complete_scene(rule, trace.given, ()), {}) for no, trace in enumerate(traces)]
-    outcome = judge([rule], merge(members, "drive_id"), {})[rule.id]
+    outcome = judge([rule], merge_cases(members, "drive_id"), {})[rule.id]
     return [outcome_of_case(outcome, member.no) for member in members]
 
 

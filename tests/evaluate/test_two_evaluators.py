@@ -9,7 +9,7 @@ import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
-from drivelint.casefile.scene import fill
+from drivelint.casefile.scene import insert_rows
 from drivelint.evaluate import evaluate
 from drivelint.sql import store
 from tests.evaluate import naive
@@ -121,7 +121,7 @@ def load(con: duckdb.DuckDBPyConnection, subjects: list[tuple[list[naive.Step], 
         tables["ego_condition"] += [who | row for row in conditions]
         tables["exit_taken"] += [who | {"occurrence": i, "t_ns": t} for i, t in enumerate(references)]
     for table, rows in tables.items():
-        fill(con, table, rows)
+        insert_rows(con, table, rows)
 
 
 def expect(rule: str, steps: list[naive.Step], references: list[int]) -> list[naive.Outcome]:

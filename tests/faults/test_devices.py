@@ -21,7 +21,7 @@ from drivelint.errors import (
     MemoryShortError,
     TraceError,
     UsageError,
-    of_the_machine,
+    describe_machine_error,
 )
 from drivelint.formats import read_trace
 from drivelint.formats.files import expand_traces, identify
@@ -84,7 +84,7 @@ def test_a_name_that_no_file_can_have() -> None:
     assert why_unreadable(Path(LONG)) is None
     with pytest.raises(OSError, match="too long") as met:
         Path(LONG).stat()
-    said, code = of_the_machine(met.value) or ("", ExitCode.OK)
+    said, code = describe_machine_error(met.value) or ("", ExitCode.OK)
     assert (said, code) == (f"{LONG}: the name is too long for this system: choose a shorter one", ExitCode.USAGE)
 
 
@@ -92,15 +92,15 @@ def test_a_name_that_no_file_can_have() -> None:
     "error", [MemoryError(), ImportError("x.so: Cannot allocate memory"), RuntimeError("can't start new thread")]
 )
 def test_no_memory_is_no_fault_of_the_program(error: Exception) -> None:
-    assert (of_the_machine(error) or ("", None))[1] == ExitCode.TEMPFAIL
-    assert of_the_machine(IndexError("x")) is None
+    assert (describe_machine_error(error) or ("", None))[1] == ExitCode.TEMPFAIL
+    assert describe_machine_error(IndexError("x")) is None
 
 
 def test_what_does_not_fit_ends_the_run_where_a_limit_is_set(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert not MemoryShortError("a").is_of_the_run
-    monkeypatch.setattr("drivelint.errors.least_limit_bytes", lambda: 10**9)
+    assert not MemoryShortError("a").is_about_whole_run
+    monkeypatch.setattr("drivelint.errors.least_memory_limit_bytes", lambda: 10**9)
     error: DriveLintError = MemoryShortError("a")
-    assert error.is_of_the_run
+    assert error.is_about_whole_run
     assert "ulimit -v" in str(error)
 
 

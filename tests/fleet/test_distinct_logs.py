@@ -10,7 +10,7 @@ import pytest
 
 from drivelint import fleet
 from drivelint.audit.store import LocalFolder
-from drivelint.audit.unpacked import Standing
+from drivelint.audit.unpacked import AuditProgress
 from drivelint.fleet.coverage import coverage
 from drivelint.fleet.distinct_logs import COUNTED_PREFIX, create_counted_views
 from drivelint.fleet.missing_signals import missing_signals
@@ -116,7 +116,7 @@ def compared(base: list[Any], new: list[Any]) -> Any:
         egos = [(row["drive_id"], ego["ego_id"]) for row in drives for ego in row["exposure"]]
         findings = [found(name, ego_id=ego, finding_id=f"{name}-{ego}") for name, ego in egos]
         add(con, drives, [said(name, "fail", ego_id=ego) for name, ego in egos], findings, of)
-        sides.append(Audit(of or "new", LocalFolder(Path(of)), {"settings": {}}, Standing("d")))
+        sides.append(Audit(of or "new", LocalFolder(Path(of)), {"settings": {}}, AuditProgress("d")))
     return difference(con, sides[1], sides[0], 50)
 
 

@@ -9,8 +9,8 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from drivelint.audit.compact import CHUNK_DRIVES, RECEIPT_SCHEMA
-from drivelint.audit.driver import empty_rows
+from drivelint.audit.compact import DRIVES_PER_CHUNK, RECEIPT_SCHEMA
+from drivelint.audit.driver import empty_tables
 from drivelint.audit.identity import rule_table, run_id, versions
 from drivelint.audit.model import JudgeSettings
 from drivelint.audit.run import AUDIT_FILE, RULES_FILE
@@ -69,8 +69,8 @@ def write(folder: Path, n_drives: int, seed: int = 0, settings: JudgeSettings | 
     rng = np.random.Generator(np.random.PCG64(seed))
     n_lost = n_findings = 0
     worst: list[str] = []
-    for first in range(0, n_drives, CHUNK_DRIVES):
-        numbers = np.arange(first, min(first + CHUNK_DRIVES, n_drives))
+    for first in range(0, n_drives, DRIVES_PER_CHUNK):
+        numbers = np.arange(first, min(first + DRIVES_PER_CHUNK, n_drives))
         tables, drives = _chunk(rng, numbers, rules.to_pylist(), seed)
         worst.append(f"logs/{drives.names[0]}.mcap")
         n_lost += len(numbers) - len(drives.numbers)
@@ -125,7 +125,7 @@ def _of_rule(rng: np.random.Generator, number: int, rule: Row, drives: _Drives) 
     """Return verdicts and findings of one rule."""
     n = len(drives.numbers)
     many = rng.poisson(drives.km * per_km(number)) if number % 3 == 0 else np.zeros(n, int)
-    many[0] += WORST if number == 0 and drives.numbers[0] < CHUNK_DRIVES else 0
+    many[0] += WORST if number == 0 and drives.numbers[0] < DRIVES_PER_CHUNK else 0
     unknown = (drives.site == 2) & (number % 4 == 1)
     idle = np.full(n, number % 5 == 4)
     many[unknown | idle] = 0
@@ -162,7 +162,7 @@ def _exposure(km: float) -> Row:
 
 def _table(name: str, n: int, **columns: Any) -> pa.Table:
     """Return rows of a table of an audit; a single value is that of every row, a column that is not named is NULL."""
-    schema = empty_rows()[name].schema
+    schema = empty_tables()[name].schema
     made = []
     for each in schema:
         value = columns.pop(each.name, None)

@@ -15,7 +15,7 @@ from lxml import html
 
 from drivelint.audit.compact import RECEIPT_SCHEMA
 from drivelint.audit.store import LocalFolder
-from drivelint.audit.unpacked import Standing
+from drivelint.audit.unpacked import AuditProgress
 from drivelint.fleet_report import content as content_
 from drivelint.fleet_report import drive_pages, moment_pages
 from drivelint.fleet_report.audit_views import Audit, open_audits
@@ -247,7 +247,7 @@ def test_a_page_tells_what_was_lost_what_is_only_possible_and_what_could_not_be_
             con, drives, verdicts, [found("a", n_copies=100, n_stays=40, t_start_s=1.0, t_worst_s=1.0)], rules
         )
         con.register("receipts", RECEIPT_SCHEMA.empty_table())
-        audit = Audit("out", LocalFolder(Path("out")), {"settings": {}}, Standing("d"))
+        audit = Audit("out", LocalFolder(Path("out")), {"settings": {}}, AuditProgress("d"))
         told = content_.fleet_content(con, audit, None, ())
         assert drive_pages.choose_drives(con, None) == [drive_pages.page_name("a"), drive_pages.page_name("b")]
         made = dict(drive_pages.pages(con, audit, told.rules))
@@ -275,7 +275,7 @@ def test_an_overtake_under_two_profiles_counts_once_as_on_the_fleet_page() -> No
             con, [ego_drive("a")], [said("a", "fail", profile=row["profile"]) for row in twice], twice, [rule()]
         )
         con.register("receipts", RECEIPT_SCHEMA.empty_table())
-        audit = Audit("out", LocalFolder(Path("out")), {"settings": {}}, Standing("d"))
+        audit = Audit("out", LocalFolder(Path("out")), {"settings": {}}, AuditProgress("d"))
         told = content_.fleet_content(con, audit, None, ())
         drive_pages.choose_drives(con, None)
         ((_, made),) = drive_pages.pages(con, audit, told.rules)

@@ -10,7 +10,7 @@ import pytest
 
 from drivelint.audit.compact import RECEIPT_SCHEMA
 from drivelint.audit.store import LocalFolder
-from drivelint.audit.unpacked import Standing
+from drivelint.audit.unpacked import AuditProgress
 from drivelint.fleet.missing_signals import missing_signals
 from drivelint.fleet_report import content as content_
 from drivelint.fleet_report import page
@@ -163,7 +163,7 @@ def test_a_signal_that_decides_nothing_alone_is_not_told_with_zeros() -> None:
         needs = rule("a-room", profiles=[], requires=["indicator", "map"])
         audits.add_rows(con, drives, [said("a", "unknown", rule_id="a-room", reason_code="missing_map")], [], [needs])
         con.register("receipts", RECEIPT_SCHEMA.empty_table())
-        audit = Audit("out", LocalFolder(Path("out")), {"settings": {}}, Standing("d"))
+        audit = Audit("out", LocalFolder(Path("out")), {"settings": {}}, AuditProgress("d"))
         text = page.markdown(content_.fleet_content(con, audit, None, ())).decode()
     assert "no judgement by itself, 1 judgement together with other signals" in text
     assert "at most 0" not in text

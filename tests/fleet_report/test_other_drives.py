@@ -11,7 +11,7 @@ import duckdb
 import pytest
 
 from drivelint.audit.store import LocalFolder
-from drivelint.audit.unpacked import Standing
+from drivelint.audit.unpacked import AuditProgress
 from drivelint.errors import ExitCode
 from drivelint.fleet.rate_change import rate_changes
 from drivelint.fleet.rates import rates
@@ -54,7 +54,8 @@ def compared(base_also: tuple[str, ...] = (), new_also: tuple[str, ...] = ()) ->
         fleet(con, "base_", "r1", base_also)
         fleet(con, "", "r2", new_also)
         sides = [
-            Audit(name, LocalFolder(Path(name)), {"fail_on": "critical"}, Standing("d")) for name in ("new", "base")
+            Audit(name, LocalFolder(Path(name)), {"fail_on": "critical"}, AuditProgress("d"))
+            for name in ("new", "base")
         ]
         return difference(con, sides[0], sides[1], 50)
 
@@ -103,7 +104,7 @@ def test_a_rate_that_fell_or_that_does_not_gate_is_no_failure(disjoint: AuditDif
     with duckdb.connect() as con:
         fleet(con, "base_", "r2")
         fleet(con, "", "r1")
-        sides = [Audit(name, LocalFolder(Path(name)), {}, Standing("d")) for name in ("new", "base")]
+        sides = [Audit(name, LocalFolder(Path(name)), {}, AuditProgress("d")) for name in ("new", "base")]
         fell = difference(con, sides[0], sides[1], 50)
     assert fell.significant_changes
     assert difference_text.exit_code(fell, None) == ExitCode.OK
@@ -113,7 +114,7 @@ def test_audits_without_rates_or_without_an_end_are_no_pass(disjoint: AuditDiffe
     nothing = replace(disjoint, rates=[])
     assert difference_text.exit_code(nothing, None) == ExitCode.NOT_JUDGED
     assert "no rule has a rate in both" in difference_text.to_text(nothing, None)
-    unfinished = replace(disjoint.new, standing=Standing(None, 1, 1))
+    unfinished = replace(disjoint.new, standing=AuditProgress(None, 1, 1))
     running = replace(disjoint, new=unfinished, gating_rules={})
     assert difference_text.exit_code(running, None) == ExitCode.NOT_JUDGED
 
@@ -122,7 +123,7 @@ def test_findings_that_the_newer_audit_did_not_look_at_are_no_pass() -> None:
     with duckdb.connect() as con:
         fleet(con, "base_", "r1", ("shared",))
         audits.add_rows(con, [ego_drive("shared")], [said("shared", "pass")], [], RULES)
-        sides = [Audit(name, LocalFolder(Path(name)), {}, Standing("d")) for name in ("new", "base")]
+        sides = [Audit(name, LocalFolder(Path(name)), {}, AuditProgress("d")) for name in ("new", "base")]
         told = difference(con, sides[0], sides[1], 50)
     assert told.counts["lost"] == 2
     assert difference_text.exit_code(told, "critical") == ExitCode.NOT_JUDGED

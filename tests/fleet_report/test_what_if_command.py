@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from drivelint.audit import AuditRequest, JudgeSettings, audit
-from drivelint.audit.ask import ask
+from drivelint.audit.ask import run_query
 from drivelint.report.progress import Silent
 from tests.audit import fleet
 from tests.audit.here import InThisProcess
@@ -66,7 +66,7 @@ def judged(own: Own, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def by_release(out: Path) -> Counter[tuple[str, str]]:
     query = "SELECT tags['release'] AS r, verdict, count(*) AS n FROM verdicts JOIN drives USING (key) GROUP BY ALL"
-    return Counter({(row["r"], row["verdict"]): row["n"] for row in json.loads(ask(str(out), query, "json"))})
+    return Counter({(row["r"], row["verdict"]): row["n"] for row in json.loads(run_query(str(out), query, "json"))})
 
 
 @pytest.mark.slow

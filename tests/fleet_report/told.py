@@ -10,7 +10,7 @@ from lxml import html
 
 from drivelint.audit.compact import RECEIPT_SCHEMA
 from drivelint.audit.store import LocalFolder
-from drivelint.audit.unpacked import Standing
+from drivelint.audit.unpacked import AuditProgress
 from drivelint.fleet_report import content as content_
 from drivelint.fleet_report import page
 from drivelint.fleet_report.audit_views import Audit
@@ -34,7 +34,7 @@ class Told:
         with duckdb.connect() as con:
             audits.add_rows(con, drives, verdicts, findings, [ROOM, CONTACT])
             con.register("receipts", RECEIPT_SCHEMA.empty_table())
-            audit = Audit("out", LocalFolder(Path("out")), {"settings": settings}, Standing("d"))
+            audit = Audit("out", LocalFolder(Path("out")), {"settings": settings}, AuditProgress("d"))
             self.content = content_.fleet_content(con, audit, None, by)
         self.markdown = page.markdown(self.content).decode()
         self.html: Any = html.fromstring(page.html(self.content))

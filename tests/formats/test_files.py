@@ -10,7 +10,7 @@ import pytest
 from drivelint.convert import ConvertRequest, convert
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats import expand_traces
-from drivelint.own_files import RESULT_LOGS, OwnFiles
+from drivelint.own_files import RESULT_GLOBS, OwnFiles
 from drivelint.result.folder import manifest_bytes
 from drivelint.result.names import RESULT_FILE_GLOBS, TABLE_OF_FILE, TABLE_OF_PICTURE_FILE
 from tests.formats.logs import cars, mapping, read, table
@@ -78,7 +78,7 @@ def test_what_an_earlier_check_wrote_is_not_searched(tmp_path: Path) -> None:
 
 
 def test_every_file_of_a_result_that_has_the_suffix_of_a_log_is_known() -> None:
-    assert {name for name in RESULT_FILE_GLOBS if Path(name).suffix in {".parquet", ".mcap"}} == set(RESULT_LOGS)
+    assert {name for name in RESULT_FILE_GLOBS if Path(name).suffix in {".parquet", ".mcap"}} == set(RESULT_GLOBS)
 
 
 def test_what_the_list_of_an_audit_names_is_not_searched(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from time import monotonic
 from typing import TYPE_CHECKING, Final, Self
 
-from drivelint.audit.executors.local import computed_s
+from drivelint.audit.executors.local import processor_seconds
 from drivelint.computing import resident_bytes
 from tests.fuzz.outcome import Outcome
 from tests.fuzz.sources import removed, scratch
@@ -100,9 +100,9 @@ class Driver:
     def _excess(self, connection: Connection, limit_s: float) -> tuple[str, str] | None:
         """Wait for an answer. Return outcome and detail where the process computes, or stands still, for too long, or takes too much."""
         assert self._process is not None
-        began_s, began_at = computed_s(self._process.pid), monotonic()
+        began_s, began_at = processor_seconds(self._process.pid), monotonic()
         while not connection.poll(0.1):
-            took_s = computed_s(self._process.pid) - began_s
+            took_s = processor_seconds(self._process.pid) - began_s
             if took_s > limit_s or monotonic() - began_at > BUSY * limit_s:
                 return "hang", f"no answer within {limit_s:g} s of computing"
             if self._warm_bytes and (taken := resident_bytes(self._process.pid) - self._warm_bytes) > MOST_BYTES:

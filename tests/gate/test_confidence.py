@@ -13,7 +13,7 @@ import pytest
 from rich.console import Console
 
 from drivelint import demo, run
-from drivelint.arrays import with_columns
+from drivelint.arrays import replace_columns
 from drivelint.gate import GateInputs
 from drivelint.report import junit, markdown, sarif, terminal
 from drivelint.report.progress import Silent
@@ -41,7 +41,7 @@ def result(tmp_path_factory: pytest.TempPathFactory) -> Result:
 
 def copied(result: Result, n_copies: int | None, n_stays: int | None) -> Result:
     """Return a result whose finding has these copies."""
-    return replace(result, findings=with_columns(result.findings, {"n_copies": [n_copies], "n_stays": [n_stays]}))
+    return replace(result, findings=replace_columns(result.findings, {"n_copies": [n_copies], "n_stays": [n_stays]}))
 
 
 def gated(result: Result, confidence: float | None) -> tuple[int, str]:

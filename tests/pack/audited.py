@@ -9,9 +9,9 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
-from drivelint.audit.driver import empty_rows
-from drivelint.audit.summary import summed
-from drivelint.audit.worker import TABLES, said_of_rows
+from drivelint.audit.driver import empty_tables
+from drivelint.audit.summary import summary_of_all_drives
+from drivelint.audit.worker import TABLES, receipt_fields
 from drivelint.fleet_report.audit_views import open_packed_audit
 from drivelint.pack.audits.statement import statement
 from drivelint.pack.signature import envelope, private_key
@@ -79,11 +79,11 @@ def follow_rows(pack: Path) -> None:
     file = table_of(pack, "receipts")
     receipts = pq.read_table(file)
     stable = pq.read_table(pack / AUDIT / "rules.parquet")["rule_id"].combine_chunks()
-    tables = {table: pq.read_table(table_of(pack, table)).cast(empty_rows()[table].schema) for table in TABLES}
+    tables = {table: pq.read_table(table_of(pack, table)).cast(empty_tables()[table].schema) for table in TABLES}
     told = []
     for row in receipts.to_pylist():
         mine = {table: rows.filter(pc.equal(rows["key"], row["key"])) for table, rows in tables.items()}
-        said = said_of_rows(mine, stable) if row["status"] == "judged" else {}
+        said = receipt_fields(mine, stable) if row["status"] == "judged" else {}
         plain = {key: [*value.items()] if isinstance(value, dict) else value for key, value in said.items()}
         told.append({**row, **plain})
     pq.write_table(pa.Table.from_pylist(told, schema=receipts.schema), file)
@@ -92,8 +92,8 @@ def follow_rows(pack: Path) -> None:
 def follow_tables(pack: Path) -> None:
     """Let the summary and the hashes in `evidence.json` say what the changed tables say."""
     with open_packed_audit(pack / AUDIT) as (con, _):
-        counted = summed(con, 0)
-    change_json(pack / AUDIT / "summary.json", lambda told: told.update(counted.plain()))
+        counted = summary_of_all_drives(con, 0)
+    change_json(pack / AUDIT / "summary.json", lambda told: told.update(counted.file_content()))
     change_evidence(pack, lambda _told: None)
 
 

@@ -198,7 +198,7 @@ def test_the_evidence_of_an_audit_in_one_go_is_that_of_pack(packed: PackedAudit,
 
 def test_an_audit_that_has_not_ended_is_not_packed(packed: PackedAudit, tmp_path: Path) -> None:
     audit = shutil.copytree(packed.audit, tmp_path / "audit")
-    parts.begin(LocalFolder(audit), parts.ALL)
+    parts.record_begin(LocalFolder(audit), parts.ALL_DRIVES)
     with pytest.raises(UsageError, match="the audit has not ended"):
         make_pack(audit, tmp_path / "pack")
 

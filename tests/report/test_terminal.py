@@ -307,7 +307,7 @@ def test_the_page_of_a_rule_has_every_key_that_its_header_sets() -> None:
         ("window", lambda rule: rule.window_s is not None),
         ("quantifier", lambda rule: rule.subtype),
         ("combine", lambda rule: rule.combine != "each"),
-        ("applies", lambda rule: rule.applies.restricting or rule.applies.restricts_speed_limit),
+        ("applies", lambda rule: rule.applies.restricted_conditions or rule.applies.has_speed_limit_condition),
         ("exempt after", lambda rule: rule.exempt_after_s),
         ("merge gap", lambda rule: rule.merge_gap_s != 1),
         ("observes", lambda rule: rule.observes),

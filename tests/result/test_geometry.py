@@ -13,7 +13,7 @@ import pytest
 import shapely
 from shapely import affinity
 
-from drivelint.arrays import with_columns
+from drivelint.arrays import replace_columns
 from drivelint.audit.worker import TABLES
 from drivelint.report.outputs import write
 from drivelint.resources import folder as folder_of
@@ -196,7 +196,7 @@ def test_places_on_the_earth_are_said_to_be_so(result: Result, stem: str, primar
     table = TABLE_OF_FILE[stem]
     rows = getattr(result, stem)
     lon, lat = [8.4 + n / 1000 for n in range(rows.num_rows)], [49.0] * (rows.num_rows - 1) + [None]
-    placed = with_columns(rows, {"lon": lon, "lat": lat})
+    placed = replace_columns(rows, {"lon": lon, "lat": lat})
     path = tmp_path / "placed.parquet"
     path.write_bytes(parquet_bytes(placed, table))
     frame = opened(path)

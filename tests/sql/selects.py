@@ -71,7 +71,7 @@ def _shape(rule: Rule) -> str:
     """Return what decides which statements a rule has, and with which joins."""
     return repr((
         rule.kind, rule.subtype, rule.per_object, rule.per_profile, rule.combine, rule.quantifier, rule.has_column("ref_id"),
-        bool(rule.exempt_after_s), bool(rule.applies.restricting), sorted(rule.columns.get("applies", ())),
+        bool(rule.exempt_after_s), bool(rule.applies.restricted_conditions), sorted(rule.columns.get("applies", ())),
     ))  # fmt: skip
 
 

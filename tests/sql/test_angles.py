@@ -1,4 +1,4 @@
-"""Angles are wrapped in one place: `wrap_rad` in SQL (half turns: `box_turn_rad`), `arrays.wrapped` in Python.
+"""Angles are wrapped in one place: `wrap_rad` in SQL (half turns: `box_turn_rad`), `arrays.wrap_angles` in Python.
 
 In DuckDB 1.5.5 `fmod` has the sign of the divisor and `%` that of the dividend. In Python, numpy and C it is the other way round.
 """
@@ -14,7 +14,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drivelint.arrays import wrapped
+from drivelint.arrays import wrap_angles
 from drivelint.resources import folder
 from drivelint.sql import store
 from tests.shared_data import ROOT
@@ -60,7 +60,7 @@ def test_a_wrapped_angle_is_the_same_direction(values: list[float]) -> None:
         assert math.isclose(math.cos(turn - angle), 1.0, abs_tol=1e-9)
         assert -math.pi / 2 <= half <= math.pi / 2
         assert math.isclose(abs(math.cos(half - angle)), 1.0, abs_tol=1e-9)
-    ours = wrapped(np.array(values))
+    ours = wrap_angles(np.array(values))
     assert (np.abs(ours) <= np.pi).all()
     assert np.allclose(np.cos(ours - values), 1.0, atol=1e-9)
 

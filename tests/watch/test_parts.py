@@ -174,7 +174,7 @@ def test_the_check_at_the_end_judges_by_all_options_of_the_watch() -> None:
         each.name: not each.default if isinstance(each.default, bool) else OTHER_THAN_BY_DEFAULT[type(each.default)]
         for each in fields(JudgingOptions)
     }
-    checked = CheckOptions.judging(("log",), WatchOptions(source="log", **shared), Path("out"))
+    checked = CheckOptions.from_judging_options(("log",), WatchOptions(source="log", **shared), Path("out"))
     assert {name: getattr(checked, name) for name in shared} == shared
     assert (checked.traces, checked.out) == (("log",), Path("out"))
     both = {each.name for each in fields(WatchOptions)} & {each.name for each in fields(CheckOptions)}

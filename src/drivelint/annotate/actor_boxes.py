@@ -27,14 +27,14 @@ EGO_FRAME: Final = "base_link"
 """The frame that viewers follow by default."""
 EGO_COLOUR = Colour(0.13, 0.45, 0.95)
 VEHICLE_COLOUR = Colour(0.62, 0.66, 0.72)
-ON_FOOT_COLOUR = Colour(0.95, 0.78, 0.25)
-_WALKERS: Final = frozenset({"pedestrian", "bicycle", "animal"})
-_UNKNOWN_SIZE: Final = 1.0
-_HEIGHT: Final = 1.5
+VULNERABLE_COLOUR = Colour(0.95, 0.78, 0.25)
+_VULNERABLE_CLASSES: Final = frozenset({"pedestrian", "bicycle", "animal"})
+_SIZE_IF_UNKNOWN_M: Final = 1.0
+_HEIGHT_IF_UNKNOWN_M: Final = 1.5
 RecordChunk = tuple[bytes, "NDArray[np.uint64]"]
 
 
-def select_boxes(tracks: Tracks) -> tuple[NDArray[np.intp], int]:
+def select_box_rows(tracks: Tracks) -> tuple[NDArray[np.intp], int]:
     """Return the rows with a position and a heading, by time and actor, and n. Above `MAX_BOXES` rows, only every n-th step is included."""
     placed = np.flatnonzero(np.isfinite(tracks.x) & np.isfinite(tracks.y) & np.isfinite(tracks.yaw))
     every = max(1, -(-len(placed) // MAX_BOXES))
@@ -45,7 +45,7 @@ def select_boxes(tracks: Tracks) -> tuple[NDArray[np.intp], int]:
     return placed[order], every
 
 
-def messages(tracks: Tracks, rows: NDArray[np.intp], clock: LogClock, channel: int) -> Iterator[RecordChunk]:
+def scene_update_chunks(tracks: Tracks, rows: NDArray[np.intp], clock: LogClock, channel: int) -> Iterator[RecordChunk]:
     """Yield chunks of message records, each with its index (log time, offset): a `foxglove.SceneUpdate` per step."""
     if not len(rows):
         return
@@ -53,9 +53,9 @@ def messages(tracks: Tracks, rows: NDArray[np.intp], clock: LogClock, channel: i
     first = np.flatnonzero(np.diff(t_ns, prepend=t_ns[0] - 1))
     count = np.diff(first, append=len(rows))
     t_ns = t_ns[first]
-    log_time = clock.log_time(t_ns)
-    heads = _heads(tracks, _lifetime(t_ns))
-    width = np.array([len(head) for head in heads])[tracks.actor[rows]] + _tail_width()
+    log_time = clock.log_times(t_ns)
+    heads = _constant_box_bytes(tracks, _box_lifetime_ns(t_ns))
+    width = np.array([len(head) for head in heads])[tracks.actor[rows]] + _changing_bytes_per_box()
     size = np.add.reduceat(width, first)
     cuts = np.unique(np.searchsorted(np.cumsum(size), np.arange(0, size.sum(), CHUNK_BYTES)))
     for begin, end in zip(cuts, [*cuts[1:], len(first)], strict=True):
@@ -64,23 +64,25 @@ def messages(tracks: Tracks, rows: NDArray[np.intp], clock: LogClock, channel: i
         rows_of = rows[first[begin] : first[end - 1] + count[end - 1]]
         times, counts = log_time[begin:end], count[begin:end]
         starts = message_headers(channel, times, size[begin:end], int(begin))
-        tails = _tails(tracks, rows_of, np.repeat(times, counts))
-        records, place = _behind(starts, counts, heads, tracks.actor[rows_of], tails)
+        tails = _changing_box_bytes(tracks, rows_of, np.repeat(times, counts))
+        records, place = _join_headers_and_boxes(starts, counts, heads, tracks.actor[rows_of], tails)
         yield records, np.stack([times, place.astype(np.uint64)], axis=1)
 
 
-def ego_transforms(tracks: Tracks, rows: NDArray[np.intp], clock: LogClock, channel: int) -> Iterator[RecordChunk]:
+def ego_transform_chunks(
+    tracks: Tracks, rows: NDArray[np.intp], clock: LogClock, channel: int
+) -> Iterator[RecordChunk]:
     """Yield chunks of `foxglove.FrameTransform` records with the pose of the first ego, so that a viewer can follow it."""
     if not tracks.egos:
         return
     rows = rows[tracks.actor[rows] == tracks.names.index(tracks.egos[0])]
-    log_time = clock.log_time(tracks.t_ns[rows])
+    log_time = clock.log_times(tracks.t_ns[rows])
     z, half = np.nan_to_num(tracks.z[rows]), tracks.yaw[rows] / 2
     body = wire.join_columns(
         len(rows),
         wire.text(2, draw.MAP_FRAME) + wire.text(3, EGO_FRAME),
-        _doubles(4, tracks.x[rows], tracks.y[rows], z),
-        _doubles(5, np.sin(half), np.cos(half), first=3),
+        _fields_of_doubles(4, tracks.x[rows], tracks.y[rows], z),
+        _fields_of_doubles(5, np.sin(half), np.cos(half), first_number=3),
         wire.timestamps(1, log_time),
     )
     size = body.shape[1] + message_headers(channel, log_time[:0], log_time[:0].astype(np.int64), 0).shape[1]
@@ -104,7 +106,7 @@ def message_headers(channel: int, log_time: NDArray[np.uint64], size: NDArray[np
     return head.view(np.uint8).reshape(n, head.dtype.itemsize)
 
 
-def _behind(
+def _join_headers_and_boxes(
     starts: wire.Bytes, count: NDArray[np.int64], heads: list[bytes], actor: NDArray[np.int32], tails: wire.Bytes
 ) -> tuple[bytes, NDArray[np.int64]]:
     """Join each encoded message header of `starts` with its `count` boxes; return the bytes and the offset of each message.
@@ -129,20 +131,20 @@ def _behind(
     return out.tobytes(), place[is_start]
 
 
-def _lifetime(t_ns: Times) -> int:
+def _box_lifetime_ns(t_ns: Times) -> int:
     return int(MAX_GAP_PERIODS * float(np.median(np.diff(t_ns)))) if len(t_ns) > 1 else 0
 
 
-def _heads(tracks: Tracks, lifetime_ns: int) -> list[bytes]:
+def _constant_box_bytes(tracks: Tracks, lifetime_ns: int) -> list[bytes]:
     """Return the encoded part of each actor's box that is the same at every step: name, class, size and colour."""
     heads = []
     for name, kind, size, is_ego in zip(tracks.names, tracks.classes, tracks.sizes, tracks.is_ego, strict=True):
         length, width, height = (
             float(v) if np.isfinite(v) else d
-            for v, d in zip(size, (_UNKNOWN_SIZE, _UNKNOWN_SIZE, _HEIGHT), strict=True)
+            for v, d in zip(size, (_SIZE_IF_UNKNOWN_M, _SIZE_IF_UNKNOWN_M, _HEIGHT_IF_UNKNOWN_M), strict=True)
         )
-        shade = EGO_COLOUR if is_ego else ON_FOOT_COLOUR if kind in _WALKERS else VEHICLE_COLOUR
-        cube = draw.cube_without_pose(length, width, height, shade.faint(0.9))
+        shade = EGO_COLOUR if is_ego else VULNERABLE_COLOUR if kind in _VULNERABLE_CLASSES else VEHICLE_COLOUR
+        cube = draw.cube_without_pose(length, width, height, shade.with_opacity(0.9))
         facts = {
             "class": ("ego, " if is_ego else "") + (kind or "unknown"),
             "length": f"{size[0]:.2f} m",
@@ -150,16 +152,16 @@ def _heads(tracks: Tracks, lifetime_ns: int) -> list[bytes]:
         }
         lifetime = wire.time(4, lifetime_ns) if lifetime_ns else b""
         body = wire.text(2, draw.MAP_FRAME) + wire.text(3, name) + lifetime + draw.facts_fields(facts)
-        body += draw.cube_header(len(cube) + _POSE_WIDTH) + cube
-        heads.append(wire.varint(2 << 3 | 2) + wire.varint(len(body) + _tail_width()) + body)
+        body += draw.cube_header(len(cube) + _POSE_BYTES) + cube
+        heads.append(wire.varint(2 << 3 | 2) + wire.varint(len(body) + _changing_bytes_per_box()) + body)
     return heads
 
 
-def _tails(tracks: Tracks, rows: NDArray[np.intp], log_time: NDArray[np.uint64]) -> wire.Bytes:
+def _changing_box_bytes(tracks: Tracks, rows: NDArray[np.intp], log_time: NDArray[np.uint64]) -> wire.Bytes:
     """Return the encoded part of a box that changes, per row: the cube's pose (its last field), and the entity's time."""
     half = tracks.yaw[rows] / 2
     z = tracks.z[rows]
-    height = np.nan_to_num(tracks.sizes[tracks.actor[rows], 2], nan=_HEIGHT)
+    height = np.nan_to_num(tracks.sizes[tracks.actor[rows], 2], nan=_HEIGHT_IF_UNKNOWN_M)
     z = np.where(np.isfinite(z), z, height / 2)
     pose = _pose_fields(tracks.x[rows], tracks.y[rows], z, half)
     return np.concatenate([pose, wire.timestamps(1, log_time)], axis=1)
@@ -167,20 +169,23 @@ def _tails(tracks: Tracks, rows: NDArray[np.intp], log_time: NDArray[np.uint64])
 
 def _pose_fields(x: Floats, y: Floats, z: Floats, half_yaw: Floats) -> wire.Bytes:
     """Return one encoded pose field per row."""
-    where, turned = _doubles(1, x, y, z), _doubles(2, np.sin(half_yaw), np.cos(half_yaw), first=3)
+    where, turned = (
+        _fields_of_doubles(1, x, y, z),
+        _fields_of_doubles(2, np.sin(half_yaw), np.cos(half_yaw), first_number=3),
+    )
     head = wire.varint(1 << 3 | 2) + wire.varint(where.shape[1] + turned.shape[1])
     return wire.join_columns(len(x), head, where, turned)
 
 
-def _doubles(number: int, *columns: Floats, first: int = 1) -> wire.Bytes:
-    """Return, for each row, field `number`: a message whose fields, numbered from `first`, are doubles."""
-    keyed = [(wire.varint(n << 3 | 1), wire.double_column(values)) for n, values in enumerate(columns, first)]
-    head = wire.varint(number << 3 | 2) + wire.varint(9 * len(columns))
+def _fields_of_doubles(field_number: int, *columns: Floats, first_number: int = 1) -> wire.Bytes:
+    """Return, for each row, field `field_number`: a message whose fields, numbered from `first_number`, are doubles."""
+    keyed = [(wire.varint(n << 3 | 1), wire.double_column(values)) for n, values in enumerate(columns, first_number)]
+    head = wire.varint(field_number << 3 | 2) + wire.varint(9 * len(columns))
     return wire.join_columns(len(columns[0]), head, *(part for pair in keyed for part in pair))
 
 
-_POSE_WIDTH: Final = int(_pose_fields(*(np.zeros(1),) * 4).shape[1])
+_POSE_BYTES: Final = int(_pose_fields(*(np.zeros(1),) * 4).shape[1])
 
 
-def _tail_width() -> int:
-    return _POSE_WIDTH + int(wire.timestamps(1, np.zeros(1, np.uint64)).shape[1])
+def _changing_bytes_per_box() -> int:
+    return _POSE_BYTES + int(wire.timestamps(1, np.zeros(1, np.uint64)).shape[1])

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, BinaryIO
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.annotate.layout import layout
-from drivelint.annotate.measures import series_of
+from drivelint.annotate.layout import layout_json
+from drivelint.annotate.measures import margin_series
 from drivelint.annotate.road import Road
-from drivelint.annotate.write import Annotation, write
+from drivelint.annotate.write import AnnotatedDrive, write_log
 from drivelint.engine.barrier import refusal_of
 from drivelint.engine.batch import are_large
 from drivelint.errors import ChangedLogError, DriveLintError
@@ -28,14 +28,14 @@ if TYPE_CHECKING:
 
     import duckdb
 
-    from drivelint.annotate.measures import Series
+    from drivelint.annotate.measures import MarginSeries
     from drivelint.engine.batch import Drive
     from drivelint.road.map_reader import MapTables
 
 LAYOUT_FILE = "viewer-layout.json"
 """Panels and topics for import into Foxglove and Lichtblick, where topics are hidden until a user shows them."""
-_BUFFER = 1 << 20
-_OF_PARTS = ("evidence/overtake_space", "evidence/chain_point", "evidence/first_ego_measures")
+_BUFFER_BYTES = 1 << 20
+_PART_QUERIES = ("evidence/overtake_space", "evidence/chain_point", "evidence/first_ego_measures")
 """Queries on tables of one part of a batch: danger spaces in overtakes, the lane chains of these spaces, measures of the ego."""
 
 
@@ -43,7 +43,7 @@ class Annotator:
     """Writes `<folder>/<drive_id>.mcap` for every drive, and a layout for the viewer.
 
     `rules` is the run's rule table, `fail_on`, `strict` and `required` are as those of its result. A drive that cannot be
-    annotated keeps its verdicts: `note` is called with the drive and the reason. `release` frees unused memory of the database.
+    annotated keeps its verdicts: `note` is called with the drive and the reason. `release_memory` frees unused memory of the database.
     """
 
     def __init__(
@@ -55,7 +55,7 @@ class Annotator:
         strict: bool,
         required: tuple[str, ...] = (),
         note: Callable[[str], None],
-        release: Callable[[], None],
+        release_memory: Callable[[], None],
     ) -> None:
         self._folder = folder
         self._rules = rules
@@ -63,10 +63,10 @@ class Annotator:
         self._strict = strict
         self._required = required
         self._note = note
-        self._release = release
+        self._release_memory = release_memory
         self._roads: dict[str, Road] = {}
         self._parts: list[list[pa.Table]] = []
-        self._series: set[Series] = set()
+        self._series: set[MarginSeries] = set()
 
     def __call__(self, con: duckdb.DuckDBPyConnection, drives: Sequence[Drive], *, first: bool, last: bool) -> None:
         """Annotate the drives of a judged batch. If it is judged in parts, collect data, and annotate after the last part.
@@ -76,16 +76,16 @@ class Annotator:
         ids = [drive.trace.drive_id for drive in drives]
         if first:
             self._parts.clear()
-        self._parts.append([con.execute(sql, {"ids": ids}).to_arrow_table() for sql in map(statement, _OF_PARTS)])
+        self._parts.append([con.execute(sql, {"ids": ids}).to_arrow_table() for sql in map(statement, _PART_QUERIES)])
         if not last:
             return
         tables = [collect.verdicts(con, ids), collect.findings(con, ids), collect.drives(con, ids)]
         tables += [pa.concat_tables(parts) for parts in zip(*self._parts, strict=True)]
         tables.append(con.execute(statement("evidence/least_margin"), {"ids": ids}).to_arrow_table())
-        self._series |= series_of(tables[-1], self._rules.to_pylist())
+        self._series |= margin_series(tables[-1], self._rules.to_pylist())
         self._parts.clear()
         if are_large(drives):
-            self._release()
+            self._release_memory()
         for drive in drives:
             name = drive.trace.drive_id
             mine = (rows.filter(pc.equal(rows["drive_id"], name)) for rows in tables)
@@ -100,17 +100,19 @@ class Annotator:
                 required=self._required,
             )
             try:
-                road = self._road(drive.environment)
-                with _whole(self._folder / f"{name}.mcap") as file:
-                    write(file, Annotation(drive.trace, alone, spaces, chains, measures, margins, road, drive.geo))
+                road = self._cached_road(drive.environment)
+                with _open_for_atomic_write(self._folder / f"{name}.mcap") as file:
+                    write_log(
+                        file, AnnotatedDrive(drive.trace, alone, spaces, chains, measures, margins, road, drive.geo)
+                    )
             except (ChangedLogError, OutputError):
                 raise  # the log has changed after the verdicts, or no log can be written at all
             except Exception as error:  # noqa: BLE001 - the verdicts are kept, even if their annotation fails
                 self._note(f"not annotated: {refusal_of(drive.trace.path, error).error}")
-        with _whole(self._folder / LAYOUT_FILE) as file:
-            file.write(layout(self._series))
+        with _open_for_atomic_write(self._folder / LAYOUT_FILE) as file:
+            file.write(layout_json(self._series))
 
-    def _road(self, environment: MapTables | None) -> Road | None:
+    def _cached_road(self, environment: MapTables | None) -> Road | None:
         """Return the road of a map; only the road of the last map is cached."""
         if environment is None:
             return None
@@ -120,12 +122,12 @@ class Annotator:
 
 
 @contextmanager
-def _whole(path: Path) -> Iterator[BinaryIO]:
+def _open_for_atomic_write(path: Path) -> Iterator[BinaryIO]:
     """Open a file for writing, which gets its name only when it is complete. Errors: `OutputError`."""
     temporary = path.with_name(f".drivelint.{os.getpid()}.tmp")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        with temporary.open("wb", buffering=_BUFFER) as file:
+        with temporary.open("wb", buffering=_BUFFER_BYTES) as file:
             yield file
             file.flush()
             os.fsync(file.fileno())

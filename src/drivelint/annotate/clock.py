@@ -23,16 +23,16 @@ class LogClock:
     log_ns: NDArray[np.uint64]
     shift_ns: int = 0
 
-    def log_time(self, t_ns: NDArray[np.int64]) -> NDArray[np.uint64]:
+    def log_times(self, t_ns: NDArray[np.int64]) -> NDArray[np.uint64]:
         """Convert times of the trace to log times."""
         if not len(self.t_ns):
             return (t_ns + self.shift_ns).astype(np.uint64)
         frame = np.clip(np.searchsorted(self.t_ns, t_ns, side="right") - 1, 0, None)
         return self.log_ns[frame]
 
-    def at(self, t_ns: int) -> int:
+    def log_time_at(self, t_ns: int) -> int:
         """Convert one time of the trace to a log time."""
-        return int(self.log_time(np.array([t_ns], np.int64))[0])
+        return int(self.log_times(np.array([t_ns], np.int64))[0])
 
 
 def of_frames(t_ns: NDArray[np.int64], log_ns: NDArray[np.uint64]) -> LogClock:

@@ -30,9 +30,9 @@ ENTERED_COLOUR = Colour(0.90, 0.16, 0.16)
 OVERLAP_COLOUR = Colour(1.00, 0.62, 0.05)
 ROLE_COLOUR = Colour(0.95, 0.95, 0.95)
 MAX_STEPS: Final = 5_000
-_SAMPLES: Final = 24
-_UP_M: Final = 0.1  # above the lanes
-_ABOVE_M: Final = 1.5
+_POINTS_PER_EDGE: Final = 24
+_HEIGHT_ABOVE_LANE_M: Final = 0.1  # above the lanes
+_LABEL_HEIGHT_M: Final = 1.5
 _LEAST_LENGTH_M: Final = 0.1
 """Shorter spaces are not drawn."""
 
@@ -46,64 +46,75 @@ def messages(spaces: pa.Table, chains: pa.Table, tracks: Tracks, clock: LogClock
     every = max(1, -(-len(rows) // MAX_STEPS))
     by_time = group_rows(rows[::every], lambda row: int(row["t_ns"]))
     for ego in sorted({row["ego_id"] for row in rows}):
-        for t in _behind(tracks.times(ego), np.array([r["t_ns"] for r in rows if r["ego_id"] == ego], np.int64)):
+        for t in _steps_after_drawn_steps(
+            tracks.times(ego), np.array([r["t_ns"] for r in rows if r["ego_id"] == ego], np.int64)
+        ):
             by_time.setdefault(t, [])
-    line_of = cache(partial(_line, chains))
+    line_of = cache(partial(_centre_line, chains))
     times = np.unique(np.array([row["t_ns"] for row in rows], np.int64))
     step = {t: k for k, t in enumerate(times.tolist())}
     names = {name for row in rows for name in (row["ego_id"], row["ov_id"], *row["vbp_ids"]) if name is not None}
     poses = {name: tracks.poses_at(name, times) for name in names}
     out = []
     for t, shown in sorted(by_time.items()):
-        time = clock.at(t)
+        time = clock.log_time_at(t)
         entities = [
-            draw.entity(f"overtake of {row['ego_id']}", time, _spaces(row, line_of) + _roles(row, poses, step[t]))
+            draw.entity(
+                f"overtake of {row['ego_id']}",
+                time,
+                _danger_space_shapes(row, line_of) + _role_labels(row, poses, step[t]),
+            )
             for row in shown
         ]
-        out.append(Message(time, draw.deletion(time) + b"".join(entities)))
+        out.append(Message(time, draw.deletion_of_all(time) + b"".join(entities)))
     return out
 
 
-def _behind(times: Times, drawn_times: Times) -> list[int]:
+def _steps_after_drawn_steps(times: Times, drawn_times: Times) -> list[int]:
     """Return the ego's steps that follow a drawn step and are not drawn."""
     after = np.searchsorted(times, drawn_times, side="right")
     return [int(t) for t in np.setdiff1d(times[after[after < len(times)]], drawn_times)]
 
 
-def _line(chains: pa.Table, ego: str, chain: int) -> Floats:
+def _centre_line(chains: pa.Table, ego: str, chain: int) -> Floats:
     """Return a chain's centre line by station: station, x, y, z, and its direction as x and y."""
     rows = chains.filter(pc.and_(pc.equal(chains["ego_id"], ego), pc.equal(chains["chain_id"], chain)))
     columns = [floats(rows[name]) for name in ("s_m", "x_m", "y_m", "z_m", "tx", "ty")]
     return np.nan_to_num(np.stack(columns)[:, np.argsort(columns[0], kind="stable")])
 
 
-def _strip(line: Floats, start: float, end: float, d: float, half: float) -> tuple[Floats, Floats] | None:
-    """Return the left and right edge of a strip around the lateral offset `d`; None if the chain has no such stations."""
+def _strip_edges(
+    line: Floats, start_m: float, end_m: float, offset_m: float, half_width_m: float
+) -> tuple[Floats, Floats] | None:
+    """Return the left and right edge of a strip around the lateral offset `offset_m`; None if the chain has no such stations."""
     if not line.shape[1]:
         return None
-    start, end = max(start, line[0, 0]), min(end, line[0, -1])
-    if end - start < _LEAST_LENGTH_M:
+    start_m, end_m = max(start_m, line[0, 0]), min(end_m, line[0, -1])
+    if end_m - start_m < _LEAST_LENGTH_M:
         return None
-    s = np.linspace(start, end, _SAMPLES)
+    s = np.linspace(start_m, end_m, _POINTS_PER_EDGE)
     x, y, z, tx, ty = (np.interp(s, line[0], column) for column in line[1:])
-    left, right = (np.stack([x - ty * off, y + tx * off, z + _UP_M], axis=1) for off in (d + half, d - half))
+    left, right = (
+        np.stack([x - ty * off, y + tx * off, z + _HEIGHT_ABOVE_LANE_M], axis=1)
+        for off in (offset_m + half_width_m, offset_m - half_width_m)
+    )
     return left, right
 
 
-def _roles(row: dict[str, Any], poses: Mapping[str, ActorPoses], k: int) -> bytes:
+def _role_labels(row: dict[str, Any], poses: Mapping[str, ActorPoses], step: int) -> bytes:
     """Return the roles of the actors at one step, the k-th of `poses`, as texts above the boxes with known positions."""
     roles = [(row["ego_id"], "ego: " + row["stage"].replace("_", " ")), *((name, "VBP") for name in row["vbp_ids"])]
     if row["ov_id"] is not None:
         roles.append((row["ov_id"], "OV"))
     parts = []
     for name, role in roles:
-        x, y, z = (float(column[k]) for column in poses[name][:3])
+        x, y, z = (float(column[step]) for column in poses[name][:3])
         if math.isfinite(x) and math.isfinite(y):
-            parts.append(draw.label(x, y, (z if math.isfinite(z) else 0.0) + _ABOVE_M, role, ROLE_COLOUR))
+            parts.append(draw.label(x, y, (z if math.isfinite(z) else 0.0) + _LABEL_HEIGHT_M, role, ROLE_COLOUR))
     return b"".join(parts)
 
 
-def _spaces(row: dict[str, Any], line_of: Callable[[str, int], Floats]) -> bytes:
+def _danger_space_shapes(row: dict[str, Any], line_of: Callable[[str, int], Floats]) -> bytes:
     """Return the danger spaces of the ego and the oncoming vehicle (OV) at one step."""
     own = row["s_m"], row["d_m"], row["half_m"], row["sd_av_m"]
     theirs = row["ov_s_m"], row["ov_d_m"], row["ov_half_m"], row["sd_ov_m"]
@@ -111,10 +122,10 @@ def _spaces(row: dict[str, Any], line_of: Callable[[str, int], Floats]) -> bytes
     for (s, d, half, sd), direction, met in ((own, 1, row["av_met"]), (theirs, -1, row["ov_met"])):
         if None not in (row["chain_id"], s, d, half, sd):
             start, end = sorted((s, s + direction * sd))
-            if strip := _strip(line_of(row["ego_id"], row["chain_id"]), start, end, d, half):
+            if strip := _strip_edges(line_of(row["ego_id"], row["chain_id"]), start, end, d, half):
                 left, right = strip
                 colour = ENTERED_COLOUR if met else OVERLAP_COLOUR if row["overlap"] else FREE_COLOUR
                 around = np.concatenate([left, right[::-1]])
-                parts.append(draw.ribbon(left, right, colour.faint(0.3)))
-                parts.append(draw.line(around, colour, thickness=2.0, kind=foxglove.LINE_LOOP))
+                parts.append(draw.ribbon(left, right, colour.with_opacity(0.3)))
+                parts.append(draw.line(around, colour, thickness=2.0, line_type=foxglove.LINE_LOOP))
     return b"".join(parts)

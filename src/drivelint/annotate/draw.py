@@ -26,7 +26,7 @@ class Colour(NamedTuple):
     b: float
     a: float = 1.0
 
-    def faint(self, opacity: float) -> Colour:
+    def with_opacity(self, opacity: float) -> Colour:
         """Return the same colour with another opacity."""
         return self._replace(a=opacity)
 
@@ -42,54 +42,54 @@ def facts_fields(facts: dict[str, str]) -> bytes:
     return b"".join(wire.nested(6, wire.text(1, key) + wire.text(2, value)) for key, value in facts.items())
 
 
-def deletion(log_time: int) -> bytes:
+def deletion_of_all(log_time: int) -> bytes:
     """Return the deletion of everything shown before, as a field of a SceneUpdate."""
     return wire.nested(1, wire.time(1, log_time) + wire.integer(2, foxglove.DELETE_ALL))
 
 
 @cache
-def colour_field(number: int, value: Colour) -> bytes:
+def colour_field(field_number: int, colour: Colour) -> bytes:
     """Return a field that contains a colour."""
-    return wire.nested(number, wire.doubles(*value))
+    return wire.nested(field_number, wire.doubles(*colour))
 
 
-def pose(x: float, y: float, z: float, yaw: float = 0.0, *, number: int = 1) -> bytes:
+def pose(x: float, y: float, z: float, yaw: float = 0.0, *, field_number: int = 1) -> bytes:
     """Return a primitive's pose, rotated about the vertical axis: field 1 of all primitives except lines."""
     turned = wire.doubles(math.sin(yaw / 2), math.cos(yaw / 2), first=3)
-    return wire.nested(number, wire.nested(1, wire.doubles(x, y, z)) + wire.nested(2, turned))
+    return wire.nested(field_number, wire.nested(1, wire.doubles(x, y, z)) + wire.nested(2, turned))
 
 
-def line(xyz: Points, value: Colour, *, thickness: float, kind: int, pixels: bool = True) -> bytes:
+def line(xyz: Points, colour: Colour, *, thickness: float, line_type: int, pixels: bool = True) -> bytes:
     """Return a line. `thickness`: pixels, or metres without `pixels`. Points are relative to the first, which keeps them exact."""
-    origin = pose(*map(float, xyz[0]), number=2)
-    head = wire.integer(1, kind) + origin + wire.doubles(thickness, first=3) + wire.integer(4, int(pixels))
-    return wire.nested(_LINES, head + wire.points(5, xyz - xyz[0]) + colour_field(6, value))
+    origin = pose(*map(float, xyz[0]), field_number=2)
+    head = wire.integer(1, line_type) + origin + wire.doubles(thickness, first=3) + wire.integer(4, int(pixels))
+    return wire.nested(_LINES, head + wire.points(5, xyz - xyz[0]) + colour_field(6, colour))
 
 
-def ribbon(left: Points, right: Points, value: Colour) -> bytes:
+def ribbon(left: Points, right: Points, colour: Colour) -> bytes:
     """Return the area between two lines with the same number of points, as triangles."""
     origin, n = left[0], len(left)
     k = np.arange(n - 1, dtype=np.uint32)
     corners = np.stack([k, k + n, k + 1, k + 1, k + n, k + n + 1], axis=1)
     content = pose(*map(float, origin)) + wire.points(2, np.concatenate([left, right]) - origin)
-    return wire.nested(_TRIANGLES, content + colour_field(3, value) + wire.indices(5, corners.ravel()))
+    return wire.nested(_TRIANGLES, content + colour_field(3, colour) + wire.indices(5, corners.ravel()))
 
 
-def label(x: float, y: float, z: float, content: str, value: Colour) -> bytes:
+def label(x: float, y: float, z: float, text: str, colour: Colour) -> bytes:
     """Return a text that faces the viewer and has the same size at any distance."""
     look = wire.integer(2, 1) + wire.doubles(_LABEL_PX, first=3) + wire.integer(4, 1)
-    return wire.nested(_TEXTS, pose(x, y, z) + look + colour_field(5, value) + wire.text(6, content))
+    return wire.nested(_TEXTS, pose(x, y, z) + look + colour_field(5, colour) + wire.text(6, text))
 
 
-def arrow(foot: tuple[float, float, float], yaw: float, length: float, value: Colour) -> bytes:
+def arrow(foot: tuple[float, float, float], yaw: float, length: float, colour: Colour) -> bytes:
     """Return a horizontal arrow from a point in direction `yaw`."""
     shape = wire.doubles(0.6 * length, 0.15, 0.4 * length, 0.5, first=2)
-    return wire.nested(_ARROWS, pose(*foot, yaw) + shape + colour_field(6, value))
+    return wire.nested(_ARROWS, pose(*foot, yaw) + shape + colour_field(6, colour))
 
 
-def cube_without_pose(length: float, width: float, height: float, value: Colour) -> bytes:
+def cube_without_pose(length: float, width: float, height: float, colour: Colour) -> bytes:
     """Return size and colour of a cube; its pose must be added."""
-    return wire.nested(2, wire.doubles(length, width, height)) + colour_field(3, value)
+    return wire.nested(2, wire.doubles(length, width, height)) + colour_field(3, colour)
 
 
 def cube_header(size: int) -> bytes:

@@ -32,7 +32,7 @@ DRAW_BEFORE_NS: Final = 1_000_000_000  # a short event is drawn longer, so that 
 DRAW_AFTER_NS: Final = 2_000_000_000
 LABEL_OFFSET_M: Final = 9.0  # beside the ego: the role label is above it, and viewers that follow the ego show both
 MAX_LABEL_LINES: Final = 5
-_UNKNOWN_SIZE: Final = 1.0
+_SIZE_IF_UNKNOWN_M: Final = 1.0
 
 
 class Box(NamedTuple):
@@ -57,10 +57,10 @@ class Marker(NamedTuple):
     text: str
 
 
-class MarkerFrame(NamedTuple):
-    """A marker (`window`) at one step, with the boxes of ego and object; None: the box is unknown, or there is no object."""
+class MarkerAtStep(NamedTuple):
+    """A marker (`marker`) at one step, with the boxes of ego and object; None: the box is unknown, or there is no object."""
 
-    window: Marker
+    marker: Marker
     ego: Box | None
     object: Box | None
 
@@ -82,34 +82,34 @@ def markers(verdicts: pa.Table, findings: pa.Table, sense_by_rule: Mapping[str, 
     ]
 
 
-def messages(windows: Sequence[Marker], tracks: Tracks, clock: LogClock) -> list[Message]:
-    """Return the SceneUpdates of all markers (`windows`): one for every step of a marker, and an empty one after each marker."""
-    steps = [_steps(tracks, window) for window in windows]
+def messages(drawn_markers: Sequence[Marker], tracks: Tracks, clock: LogClock) -> list[Message]:
+    """Return the SceneUpdates of all markers (`drawn_markers`): one for every step of a marker, and an empty one after each marker."""
+    steps = [_steps_of_marker(tracks, window) for window in drawn_markers]
     every = max(1, -(-sum(len(times) for times, _ in steps) // MAX_STEPS))
-    frames_at: dict[int, list[MarkerFrame]] = {}
-    for window, (times, behind) in zip(windows, steps, strict=True):
+    frames_at: dict[int, list[MarkerAtStep]] = {}
+    for window, (times, behind) in zip(drawn_markers, steps, strict=True):
         thinned = times[::every]
-        ego = _boxes(tracks, window.ego_id, thinned)
-        other = _boxes(tracks, window.object_id, thinned)
+        ego = _boxes_of_actor(tracks, window.ego_id, thinned)
+        other = _boxes_of_actor(tracks, window.object_id, thinned)
         for k, t in enumerate(thinned.tolist()):
-            frames_at.setdefault(t, []).append(MarkerFrame(window, ego[k], other[k]))
+            frames_at.setdefault(t, []).append(MarkerAtStep(window, ego[k], other[k]))
         if behind is not None:
             frames_at.setdefault(behind, [])
     out = []
     for t, frames in sorted(frames_at.items()):
-        time = clock.at(t)
-        out.append(Message(time, draw.deletion(time) + b"".join(_entities(frames, time))))
+        time = clock.log_time_at(t)
+        out.append(Message(time, draw.deletion_of_all(time) + b"".join(_entities_at_step(frames, time))))
     return out
 
 
-def _steps(tracks: Tracks, window: Marker) -> tuple[Times, int | None]:
+def _steps_of_marker(tracks: Tracks, marker: Marker) -> tuple[Times, int | None]:
     """Return the ego's steps in the time range of a marker, and the next step after it."""
-    times = tracks.times(window.ego_id)
-    first, end = (int(i) for i in np.searchsorted(times, [window.start_ns, window.end_ns + 1]))
+    times = tracks.times(marker.ego_id)
+    first, end = (int(i) for i in np.searchsorted(times, [marker.start_ns, marker.end_ns + 1]))
     return times[first:end], int(times[end]) if end < len(times) else None
 
 
-def _boxes(tracks: Tracks, name: str | None, times: Times) -> list[Box | None]:
+def _boxes_of_actor(tracks: Tracks, name: str | None, times: Times) -> list[Box | None]:
     """Return an actor's box at each time; None if its position or heading is unknown."""
     if name is None:
         return [None] * len(times)
@@ -120,36 +120,39 @@ def _boxes(tracks: Tracks, name: str | None, times: Times) -> list[Box | None]:
     return [Box(*row[:4], p.length, p.width) if row[4] else None for row in zip(*columns, strict=True)]
 
 
-def _entities(frames: list[MarkerFrame], time: int) -> Iterator[bytes]:
+def _entities_at_step(step_markers: list[MarkerAtStep], time: int) -> Iterator[bytes]:
     """Yield the entities at one step: each pair of ego and object once, in the colour of its worst marker, and a label per ego."""
-    pairs: dict[tuple[str, str | None], MarkerFrame] = {}
-    egos: dict[str, list[MarkerFrame]] = {}
-    for frame in frames:
-        pairs.setdefault((frame.window.ego_id, frame.window.object_id), frame)
-        egos.setdefault(frame.window.ego_id, []).append(frame)
+    pairs: dict[tuple[str, str | None], MarkerAtStep] = {}
+    egos: dict[str, list[MarkerAtStep]] = {}
+    for frame in step_markers:
+        pairs.setdefault((frame.marker.ego_id, frame.marker.object_id), frame)
+        egos.setdefault(frame.marker.ego_id, []).append(frame)
     for (ego, other), frame in sorted(pairs.items(), key=lambda item: (item[0][0], item[0][1] or "")):
-        yield draw.entity(ego if other is None else f"{ego} and {other}", time, _pair(frame))
+        yield draw.entity(ego if other is None else f"{ego} and {other}", time, _pair_outlines(frame))
     for ego, ego_frames in sorted(egos.items()):
         if (box := ego_frames[0].ego) is not None:
             more = [f"and {len(ego_frames) - MAX_LABEL_LINES} more"] if len(ego_frames) > MAX_LABEL_LINES else []
-            text = "\n".join([*(one.window.text for one in ego_frames[:MAX_LABEL_LINES]), *more])
-            label = draw.label(box.x, box.y + LABEL_OFFSET_M, box.z + 2.0, text, ego_frames[0].window.colour)
+            text = "\n".join([*(one.marker.text for one in ego_frames[:MAX_LABEL_LINES]), *more])
+            label = draw.label(box.x, box.y + LABEL_OFFSET_M, box.z + 2.0, text, ego_frames[0].marker.colour)
             yield draw.entity(f"notes on {ego}", time, label)
 
 
-def _pair(frame: MarkerFrame) -> bytes:
+def _pair_outlines(step_marker: MarkerAtStep) -> bytes:
     """Return the outlines of both boxes and the line between them."""
-    boxes = [box for box in (frame.ego, frame.object) if box is not None]
-    parts = [draw.line(box_corners(box), frame.window.colour, thickness=3.0, kind=foxglove.LINE_LOOP) for box in boxes]
+    boxes = [box for box in (step_marker.ego, step_marker.object) if box is not None]
+    parts = [
+        draw.line(box_corners(box), step_marker.marker.colour, thickness=3.0, line_type=foxglove.LINE_LOOP)
+        for box in boxes
+    ]
     if len(boxes) == 2:
         ends = np.array([box[:3] for box in boxes])
-        parts.append(draw.line(ends, frame.window.colour, thickness=2.0, kind=foxglove.LINE_STRIP))
+        parts.append(draw.line(ends, step_marker.marker.colour, thickness=2.0, line_type=foxglove.LINE_STRIP))
     return b"".join(parts)
 
 
 def box_corners(box: Box) -> Floats:
     """Return the four corners of a box at its middle height."""
-    length, width = (v if np.isfinite(v) else _UNKNOWN_SIZE for v in (box.length, box.width))
+    length, width = (v if np.isfinite(v) else _SIZE_IF_UNKNOWN_M for v in (box.length, box.width))
     along, across = np.array([1, 1, -1, -1]) * length / 2, np.array([1, -1, -1, 1]) * width / 2
     c, s = np.cos(box.yaw), np.sin(box.yaw)
     return np.stack([box.x + c * along - s * across, box.y + s * along + c * across, np.full(4, box.z)], axis=1)

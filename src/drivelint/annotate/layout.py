@@ -11,21 +11,21 @@ from drivelint.annotate.measures import margin_topic
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from drivelint.annotate.measures import Series
+    from drivelint.annotate.measures import MarginSeries
 
 MAX_SERIES: Final = 10
 """The most lines of the plot, as a person cannot distinguish more; the margins of further rules are in their topics."""
-_MARGINS: Final = "Plot!drivelint-margins"
+_MARGIN_PLOT_ID: Final = "Plot!drivelint-margins"
 
 
-def layout(series: Iterable[Series]) -> bytes:
+def layout_json(series: Iterable[MarginSeries]) -> bytes:
     """Return the layout whose plot of margins shows the worst rules; the same series give the same bytes."""
     content = json.loads((Path(__file__).parent / "layout.json").read_bytes())
-    content["configById"][_MARGINS]["paths"] += [_path(one) for one in sorted(series)[:MAX_SERIES]]
+    content["configById"][_MARGIN_PLOT_ID]["paths"] += [_plot_line(one) for one in sorted(series)[:MAX_SERIES]]
     return json.dumps(content, indent=2).encode() + b"\n"
 
 
-def _path(series: Series) -> dict[str, Any]:
+def _plot_line(series: MarginSeries) -> dict[str, Any]:
     topic = f"/drivelint/{margin_topic(series.rule_id)}"
     profile = f" [{series.profile}]" if series.profile else ""
     only = f'{{profile=="{series.profile}"}}' if series.profile else ""

@@ -25,7 +25,7 @@ MAX_STEPS: Final = 50_000
 """If a drive has more steps, only every second, third ... step is written: no plot shows more points."""
 
 
-class Series(NamedTuple):
+class MarginSeries(NamedTuple):
     """The margins of one rule and profile: a line of a plot. Series are ordered by severity, then rule."""
 
     severity: int
@@ -37,7 +37,7 @@ class Series(NamedTuple):
 def measure_messages(rows: pa.Table, clock: LogClock) -> list[Message]:
     """Return the measures of one drive, one message per step; `rows`: result of `evidence/first_ego_measures.sql`, in time order."""
     every = max(1, -(-len(rows) // MAX_STEPS))
-    return _messages(rows.drop_columns("drive_id").to_pylist()[::every], clock)
+    return _json_messages(rows.drop_columns("drive_id").to_pylist()[::every], clock)
 
 
 def margin_messages(rows: pa.Table, clock: LogClock) -> dict[str, list[Message]]:
@@ -45,7 +45,8 @@ def margin_messages(rows: pa.Table, clock: LogClock) -> dict[str, list[Message]]
     found = rows.drop_columns("drive_id").to_pylist()
     by_rule = groupby(found, key=lambda row: str(row["rule_id"]))
     return {
-        rule: sorted(_messages(list(steps), clock), key=lambda message: message.log_time) for rule, steps in by_rule
+        rule: sorted(_json_messages(list(steps), clock), key=lambda message: message.log_time)
+        for rule, steps in by_rule
     }
 
 
@@ -54,19 +55,19 @@ def margin_topic(rule_id: str) -> str:
     return "margins/" + re.sub(r"[^\w/-]", "_", rule_id.replace(".", "/"))
 
 
-def series_of(rows: pa.Table, rules: Iterable[Mapping[str, Any]]) -> set[Series]:
+def margin_series(rows: pa.Table, rules: Iterable[Mapping[str, Any]]) -> set[MarginSeries]:
     """Return the series that have margins; `rows`: result of `evidence/least_margin.sql`."""
     about = {rule["rule_id"]: rule for rule in rules}
     measured = rows.filter(rows["margin"].is_valid()).select(["rule_id", "profile"])
     keys = measured.group_by(["rule_id", "profile"]).aggregate([]).to_pylist()
     return {
-        Series(SEVERITIES.index(rule["severity"]), rule["rule_id"], key["profile"] or "", rule["unit"] or "")
+        MarginSeries(SEVERITIES.index(rule["severity"]), rule["rule_id"], key["profile"] or "", rule["unit"] or "")
         for key in keys
         for rule in [about[key["rule_id"]]]
     }
 
 
-def _messages(rows: list[dict[str, Any]], clock: LogClock) -> list[Message]:
-    times = clock.log_time(np.array([row["t_ns"] for row in rows], np.int64)).tolist()
+def _json_messages(rows: list[dict[str, Any]], clock: LogClock) -> list[Message]:
+    times = clock.log_times(np.array([row["t_ns"] for row in rows], np.int64)).tolist()
     known = ({key: value for key, value in row.items() if replace_non_finite(value) is not None} for row in rows)
     return [Message(time, msgspec.json.encode(row)) for time, row in zip(times, known, strict=True)]

@@ -24,12 +24,12 @@ if TYPE_CHECKING:
     from drivelint.arrays import Floats
     from drivelint.road.geo_reference import GeoFrame
 
-STEP_NS: Final = 200_000_000
+POSITION_INTERVAL_NS: Final = 200_000_000
 """The interval of positions: the first position in each fifth of a second is written."""
-_SMOOTHED_M: Final = 0.1  # tolerance of the simplified outlines of lanes
+_SIMPLIFY_TOLERANCE_M: Final = 0.1  # tolerance of the simplified outlines of lanes
 _DECIMALS: Final = 7  # of a degree: a centimetre
-_FINDING: Final = ("finding_id", "rule_id", "profile", "severity", "margin", "unit", "ego_id", "object_id")
-_STYLES: Final = {
+_FINDING_FACTS: Final = ("finding_id", "rule_id", "profile", "severity", "margin", "unit", "ego_id", "object_id")
+_STYLE_OF_KIND: Final = {
     "finding": {"color": "#e02020"},
     "way": {"color": "#2173f2"},
     "lane": {"color": "#808590", "weight": 1},
@@ -41,73 +41,81 @@ def location_messages(tracks: Tracks, geo: GeoFrame, clock: LogClock, frame: str
 
     A map's projection has no heights above the ellipsoid: the altitude stays 0, and the type of the covariance 0, unknown.
     """
-    rows = _thinned(tracks, tracks.egos[0]) if tracks.egos else np.zeros(0, np.intp)
-    degrees = geo.degrees(_xy_at(tracks, rows))
+    rows = _thinned_rows(tracks, tracks.egos[0]) if tracks.egos else np.zeros(0, np.intp)
+    degrees = geo.degrees(_positions(tracks, rows))
     known = np.isfinite(degrees).all(axis=1)
-    times = clock.log_time(tracks.t_ns[rows])
+    times = clock.log_times(tracks.t_ns[rows])
     return [
         Message(time, wire.doubles(latitude, longitude) + wire.time(6, time) + wire.text(7, frame))
         for time, (longitude, latitude) in zip(times[known].tolist(), degrees[known].tolist(), strict=True)
     ]
 
 
-def geojson(
+def geojson_message(
     findings: pa.Table, tracks: Tracks, geo: GeoFrame, road: Road | None, sense_by_rule: Mapping[str, str]
 ) -> bytes:
     """Return a `foxglove.GeoJSON` with the drivable lanes near the paths of all actors, the paths of the egos, and the findings."""
-    shapes = [*_lanes(road, tracks), *_ways(tracks)]
+    shapes = [*_lane_outlines(road, tracks), *_ego_paths(tracks)]
     degrees = geo.degrees(np.concatenate([points for _, _, points in shapes] or [np.zeros((0, 2))]))
     ends = np.cumsum([len(points) for _, _, points in shapes])[:-1]
     features = []
     for (kind, name, _), points in zip(shapes, np.split(degrees, ends), strict=False):
         if np.isfinite(points).all():
-            line = _rounded(points)
+            line = _rounded_degrees(points)
             geometry = {"type": "LineString", "coordinates": line}
             if kind == "lane":
                 geometry = {"type": "Polygon", "coordinates": [line]}
             features.append(_feature(kind, geometry, {"name": name}))
     for row in findings.to_pylist():
         if row["lon"] is not None and row["lat"] is not None:
-            geometry = {"type": "Point", "coordinates": _rounded(np.array([row["lon"], row["lat"]]))}
-            facts = {key: row[key] for key in _FINDING if row[key] is not None}
+            geometry = {"type": "Point", "coordinates": _rounded_degrees(np.array([row["lon"], row["lat"]]))}
+            facts = {key: row[key] for key in _FINDING_FACTS if row[key] is not None}
             features.append(_feature("finding", geometry, {"name": headline(row, sense_by_rule), **facts}))
     return wire.nested(1, msgspec.json.encode({"type": "FeatureCollection", "features": features}))
 
 
 def _feature(kind: str, geometry: dict[str, Any], facts: dict[str, Any]) -> dict[str, Any]:
-    return {"type": "Feature", "geometry": geometry, "properties": {"kind": kind, **facts, "style": _STYLES[kind]}}
+    return {
+        "type": "Feature",
+        "geometry": geometry,
+        "properties": {"kind": kind, **facts, "style": _STYLE_OF_KIND[kind]},
+    }
 
 
-def _lanes(road: Road | None, tracks: Tracks) -> Iterator[tuple[str, str, Floats]]:
+def _lane_outlines(road: Road | None, tracks: Tracks) -> Iterator[tuple[str, str, Floats]]:
     known = np.isfinite(tracks.x) & np.isfinite(tracks.y)
     if road is None or not known.any():
         return
     for name, outline in road.drivable_outlines(tracks.x[known], tracks.y[known]):
-        yield "lane", name, shapely.get_coordinates(shapely.simplify(shapely.linearrings(outline), _SMOOTHED_M))
+        yield (
+            "lane",
+            name,
+            shapely.get_coordinates(shapely.simplify(shapely.linearrings(outline), _SIMPLIFY_TOLERANCE_M)),
+        )
 
 
-def _ways(tracks: Tracks) -> Iterator[tuple[str, str, Floats]]:
+def _ego_paths(tracks: Tracks) -> Iterator[tuple[str, str, Floats]]:
     """Yield each ego's path, split where its position is unknown for some time."""
     for name in tracks.egos:
-        rows, steps = _thinned(tracks, name), np.diff(tracks.times(name))
-        gap = max(MAX_GAP_PERIODS * float(np.median(steps)), 2 * STEP_NS) if len(steps) else 0.0
+        rows, steps = _thinned_rows(tracks, name), np.diff(tracks.times(name))
+        gap = max(MAX_GAP_PERIODS * float(np.median(steps)), 2 * POSITION_INTERVAL_NS) if len(steps) else 0.0
         for piece in np.split(rows, np.flatnonzero(np.diff(tracks.t_ns[rows]) > gap) + 1):
             if len(piece) > 1:
-                yield "way", name, _xy_at(tracks, piece)
+                yield "way", name, _positions(tracks, piece)
 
 
-def _thinned(tracks: Tracks, name: str) -> NDArray[np.intp]:
-    """Return the rows in which an actor has a position, at most one per `STEP_NS`."""
+def _thinned_rows(tracks: Tracks, name: str) -> NDArray[np.intp]:
+    """Return the rows in which an actor has a position, at most one per `POSITION_INTERVAL_NS`."""
     span = tracks.rows_by_actor[name]
     rows = np.arange(span.start, span.stop)
     rows = rows[np.isfinite(tracks.x[rows]) & np.isfinite(tracks.y[rows])]
-    _, first = np.unique((tracks.t_ns[rows] - tracks.t_ns[span.start]) // STEP_NS, return_index=True)
+    _, first = np.unique((tracks.t_ns[rows] - tracks.t_ns[span.start]) // POSITION_INTERVAL_NS, return_index=True)
     return rows[first]
 
 
-def _xy_at(tracks: Tracks, rows: NDArray[np.intp]) -> Floats:
+def _positions(tracks: Tracks, rows: NDArray[np.intp]) -> Floats:
     return np.stack([tracks.x[rows], tracks.y[rows]], axis=1)
 
 
-def _rounded(degrees: Floats) -> Any:
+def _rounded_degrees(degrees: Floats) -> Any:
     return np.round(degrees, _DECIMALS).tolist()

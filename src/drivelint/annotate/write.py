@@ -35,11 +35,11 @@ if TYPE_CHECKING:
     from drivelint.road.geo_reference import GeoFrame
 
 CHUNK_BYTES: Final = 1 << 20
-_TRANSFORMS: Final = ("FrameTransform", "FrameTransforms", "TFMessage", "tfMessage", "TransformStamped")
+_TRANSFORM_SCHEMAS: Final = ("FrameTransform", "FrameTransforms", "TFMessage", "tfMessage", "TransformStamped")
 
 
 @dataclass(frozen=True)
-class Annotation:
+class AnnotatedDrive:
     """The results of one drive that are written into its annotated log.
 
     `result` is the result as if the drive had been checked alone. `spaces` are the danger spaces in overtakes, `chains` the lane chains
@@ -57,21 +57,21 @@ class Annotation:
     geo: GeoFrame | None
 
 
-def write(file: BinaryIO, annotation: Annotation) -> None:
+def write_log(file: BinaryIO, drive: AnnotatedDrive) -> None:
     """Write the annotated log of one drive; messages of a damaged log are not copied. The same inputs give the same bytes.
 
     Errors: `TraceError` if the log cannot be copied.
     """
     sink = Sink(file)
-    log = annotation.trace.tables["data_log"].to_pylist()[0]
-    if is_mcap(annotation.trace.path) and not _is_damaged(annotation.trace):
-        path, sha256 = annotation.trace.path, log["sha256"]
+    log = drive.trace.tables["data_log"].to_pylist()[0]
+    if is_mcap(drive.trace.path) and not _is_damaged(drive.trace):
+        path, sha256 = drive.trace.path, log["sha256"]
         copy_log(path, sha256, sink)
         if path.is_dir() and identify(path).sha256 != sha256:
             raise ChangedLogError(f"{path}: the log changed while it was judged: check it again when it is complete")
     else:
         sink.begin(f"drivelint {__version__}")
-    _Writer(sink, annotation, int(log["t_start_ns"])).run()
+    _ChannelWriter(sink, drive, int(log["t_start_ns"])).write_all()
     sink.finish()
 
 
@@ -80,46 +80,46 @@ def _is_damaged(trace: Trace) -> bool:
     return not {LOST_TIME, "no_footer"}.isdisjoint(trace.tables["quality"]["check_id"].to_pylist())
 
 
-class _Writer:
+class _ChannelWriter:
     """Adds the channels of one drive to a sink, which contains a copy of the log or nothing yet."""
 
-    def __init__(self, sink: Sink, annotation: Annotation, t_start_ns: int) -> None:
+    def __init__(self, sink: Sink, drive: AnnotatedDrive, t_start_ns: int) -> None:
         self._sink = sink
-        self._annotation = annotation
+        self._drive = drive
         self._start_ns = t_start_ns
-        self._tracks = tracks_of(annotation.trace.tables)
-        self._rules = annotation.result.rules.to_pylist()
+        self._tracks = tracks_of(drive.trace.tables)
+        self._rules = drive.result.rules.to_pylist()
         self._sense_by_rule = {rule["rule_id"]: rule["sense"] for rule in self._rules}
-        frames = annotation.trace.frame_times
+        frames = drive.trace.frame_times
         self._clock = clock.of_frames(*frames) if frames else clock.of_trace(t_start_ns)
-        self._prefix = _free_prefix({channel.topic for channel in sink.channels.values()})
-        self._moves = any(schema.name.endswith(_TRANSFORMS) for schema in sink.schemas.values())
+        self._prefix = _free_topic_prefix({channel.topic for channel in sink.channels.values()})
+        self._has_transforms = any(schema.name.endswith(_TRANSFORM_SCHEMAS) for schema in sink.schemas.values())
 
-    def run(self) -> None:
+    def write_all(self) -> None:
         """Write every channel, then the metadata and the attachment."""
-        annotation, tracks, times, start = self._annotation, self._tracks, self._clock, self._start_ns
-        verdicts, findings, senses = annotation.result.verdicts, annotation.result.findings, self._sense_by_rule
-        boxes, every = actor_boxes.select_boxes(tracks)
+        drive, tracks, times, start = self._drive, self._tracks, self._clock, self._start_ns
+        verdicts, findings, senses = drive.result.verdicts, drive.result.findings, self._sense_by_rule
+        boxes, every = actor_boxes.select_box_rows(tracks)
         scene = foxglove.schema("SceneUpdate")
-        if annotation.road is not None and len(boxes):
-            at = times.at(start)
-            lanes = annotation.road.lanes_near(tracks.x[boxes], tracks.y[boxes], at)
+        if drive.road is not None and len(boxes):
+            at = times.log_time_at(start)
+            lanes = drive.road.lanes_near(tracks.x[boxes], tracks.y[boxes], at)
             self._write_messages("map", scene, [result_messages.Message(at, lanes)])
-        self._write_chunks("scene", scene, lambda channel: actor_boxes.messages(tracks, boxes, times, channel))
-        if not self._moves:  # no transforms are added to a log that has its own
+        self._write_chunks(
+            "scene", scene, lambda channel: actor_boxes.scene_update_chunks(tracks, boxes, times, channel)
+        )
+        if not self._has_transforms:  # no transforms are added to a log that has its own
             transform = foxglove.schema("FrameTransform")
             self._write_chunks(
-                "tf", transform, lambda channel: actor_boxes.ego_transforms(tracks, boxes, times, channel)
+                "tf", transform, lambda channel: actor_boxes.ego_transform_chunks(tracks, boxes, times, channel)
             )
-        self._write_messages(
-            "danger_spaces", scene, danger_spaces.messages(annotation.spaces, annotation.chains, tracks, times)
-        )
+        self._write_messages("danger_spaces", scene, danger_spaces.messages(drive.spaces, drive.chains, tracks, times))
         markers = finding_markers.markers(verdicts, findings, senses)
         self._write_messages("markers", scene, finding_markers.messages(markers, tracks, times))
         judged = result_messages.verdict_messages(verdicts, times, start)
-        self._write_messages("verdicts", result_messages.schema("verdict"), judged)
+        self._write_messages("verdicts", result_messages.message_schema("verdict"), judged)
         self._write_messages(
-            "findings", result_messages.schema("finding"), result_messages.finding_messages(findings, times)
+            "findings", result_messages.message_schema("finding"), result_messages.finding_messages(findings, times)
         )
         self._write_messages(
             "events", foxglove.schema("Event"), result_messages.event_messages(findings, times, senses)
@@ -127,22 +127,24 @@ class _Writer:
         said = result_messages.log_messages(verdicts, findings, times, start, senses)
         self._write_messages("log", foxglove.schema("Log"), said)
         self._write_messages(
-            "measures", result_messages.schema("measures"), measures.measure_messages(annotation.measures, times)
+            "measures", result_messages.message_schema("measures"), measures.measure_messages(drive.measures, times)
         )
-        for rule, margins in measures.margin_messages(annotation.margins, times).items():
-            self._write_messages(measures.margin_topic(rule), result_messages.schema("margin"), margins)
-        if annotation.geo:
-            self._on_earth(annotation.geo)
-        self._sink.add_metadata("drivelint", self._facts(every))
-        content = summary.render(annotation.result)
-        self._sink.add_attachment("summary.json", "application/json", content, times.at(start))
+        for rule, margins in measures.margin_messages(drive.margins, times).items():
+            self._write_messages(measures.margin_topic(rule), result_messages.message_schema("margin"), margins)
+        if drive.geo:
+            self._write_geographic_channels(drive.geo)
+        self._sink.add_metadata("drivelint", self._metadata(every))
+        content = summary.render(drive.result)
+        self._sink.add_attachment("summary.json", "application/json", content, times.log_time_at(start))
 
-    def _on_earth(self, geo: GeoFrame) -> None:
-        fixes = places.location_messages(self._tracks, geo, self._clock, "" if self._moves else actor_boxes.EGO_FRAME)
+    def _write_geographic_channels(self, geo: GeoFrame) -> None:
+        fixes = places.location_messages(
+            self._tracks, geo, self._clock, "" if self._has_transforms else actor_boxes.EGO_FRAME
+        )
         self._write_messages("location", foxglove.schema("LocationFix"), fixes)
-        findings, road = self._annotation.result.findings, self._annotation.road
-        layer = places.geojson(findings, self._tracks, geo, road, self._sense_by_rule)
-        at = self._clock.at(self._start_ns)
+        findings, road = self._drive.result.findings, self._drive.road
+        layer = places.geojson_message(findings, self._tracks, geo, road, self._sense_by_rule)
+        at = self._clock.log_time_at(self._start_ns)
         self._write_messages("geojson", foxglove.schema("GeoJSON"), [result_messages.Message(at, layer)])
 
     def _write_chunks(self, topic: str, schema: Schema, chunks: Callable[[int], Iterable[RecordChunk]]) -> None:
@@ -153,7 +155,7 @@ class _Writer:
     def _write_messages(self, topic: str, schema: Schema, messages: list[Message]) -> None:
         encoding = "json" if schema.encoding == "jsonschema" else "protobuf"
         channel = self._sink.add_channel(f"{self._prefix}/{topic}", encoding, schema)
-        for first, group in _cut(messages):
+        for first, group in _message_groups(messages):
             size = np.array([len(m.data) for m in group])
             log_time = np.array([m.log_time for m in group], np.uint64)
             heads = actor_boxes.message_headers(channel, log_time, size, first)
@@ -161,9 +163,9 @@ class _Writer:
             place = np.cumsum(size + heads.shape[1]) - size - heads.shape[1]
             self._sink.add_chunk(records, {channel: np.stack([log_time, place.astype(np.uint64)], axis=1)})
 
-    def _facts(self, every: int) -> dict[str, str]:
+    def _metadata(self, step_interval: int) -> dict[str, str]:
         """Return the basis of the verdicts: tool, log, map, rules with their versions."""
-        row = self._annotation.result.drives.to_pylist()[0]
+        row = self._drive.result.drives.to_pylist()[0]
         known = (
             "drive_id", "file_name", "sha256", "format", "environment_id", "map_name", "map_sha256", "handedness",
             "handedness_source",
@@ -176,12 +178,12 @@ class _Writer:
             "output_schema": str(OUTPUT_VERSION),
             **{key: str(row[key]) for key in known if row[key] is not None},
             **{f"rule {rule['rule_id']}": rule["rule_version"] for rule in self._rules},
-            **({"boxes": f"every {every}th step"} if every > 1 else {}),
+            **({"boxes": f"every {step_interval}th step"} if step_interval > 1 else {}),
             **({"time": f"log time = time of the trace + {shift} ns"} if shift else {}),
         }
 
 
-def _cut(messages: list[Message]) -> Iterator[tuple[int, list[Message]]]:
+def _message_groups(messages: list[Message]) -> Iterator[tuple[int, list[Message]]]:
     """Yield groups of messages, each of about `CHUNK_BYTES`, with the number of its first message."""
     first, size = 0, 0
     for k, message in enumerate(messages):
@@ -191,7 +193,7 @@ def _cut(messages: list[Message]) -> Iterator[tuple[int, list[Message]]]:
             first, size = k + 1, 0
 
 
-def _free_prefix(topics: set[str]) -> str:
+def _free_topic_prefix(topics: set[str]) -> str:
     """Return the first of /drivelint, /drivelint_2, ... that no topic of the log starts with: the log may already be annotated."""
     names = ("/drivelint" if n == 1 else f"/drivelint_{n}" for n in count(1))
     return next(name for name in names if not any(t == name or t.startswith(f"{name}/") for t in topics))

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING
 
 from drivelint import demo, option_values, run
 from drivelint.api import options
-from drivelint.api.arguments import typed
+from drivelint.api.arguments import with_argument_checks
 from drivelint.api.audit_result import AuditResult
 from drivelint.api.check_result import CheckResult
 from drivelint.api.compared import Comparison, diff
 from drivelint.api.explained import Explained
-from drivelint.api.keywords import errors_name_keywords
-from drivelint.api.progress import kept_notes
+from drivelint.api.keywords import rewrite_options_in_errors
+from drivelint.api.progress import note_keeper
 from drivelint.api.tables import Table
 from drivelint.api.trace_tables import TraceTables
 from drivelint.drive.trace import DriveInput
@@ -52,7 +52,7 @@ __all__ = [
 ]
 
 
-@typed
+@with_argument_checks
 def check(
     traces: Paths,
     *,
@@ -101,11 +101,11 @@ def check(
     progress bar. Errors: `DriveLintError` for invalid arguments, or if no drive could be judged. In the second case, `out` has a result
     with the reasons.
     """
-    with errors_name_keywords():
-        paths, folder = options.texts_of(traces), options.path(out)
+    with rewrite_options_in_errors():
+        paths, folder = options.to_texts(traces), options.to_path(out)
         if not paths:
             raise UsageError("no traces: name files, globs or folders")
-        chosen = options.texts_of(rules)
+        chosen = options.to_texts(rules)
         if rules is not None and not chosen:
             raise UsageError("rules names none: leave it out for the rules that are checked by default")
         if keep_db and folder is None:
@@ -113,20 +113,20 @@ def check(
         robustness = option_values.robustness_for(confidence, robustness)
         day = option_values.parse_today(today.isoformat() if isinstance(today, date) else today)
         gate_inputs = GateInputs.from_files(
-            options.path(baseline),
-            options.path(waivers),
+            options.to_path(baseline),
+            options.to_path(waivers),
             None,
             day,
             folder,
             confidence=None if confidence is None else float(confidence),
         )
-        pack = option_values.asked_pack(options.path(evidence), options.path(sign), folder, overwrite=overwrite)
+        pack = option_values.pack_request(options.to_path(evidence), options.to_path(sign), folder, overwrite=overwrite)
         settings = run.CheckOptions(
             traces=paths,
-            **options.map_input(
+            **options.map_input_fields(
                 map_=map, map_dir=map_dir, map_offset=map_offset, map_origin=map_origin, handedness=handedness
             ),
-            **options.drive_input(
+            **options.drive_input_fields(
                 ego=ego,
                 mapping=mapping,
                 topic=topic,
@@ -136,13 +136,13 @@ def check(
                 env=env,
             ),
             rules=chosen,
-            ignore=options.texts_of(ignore),
-            profiles=options.texts_of(profile),
-            params=options.assignments(param),
-            rules_dirs=tuple(Path(each) for each in options.texts_of(rules_dir)),
-            fail_on=options.one_of("fail_on", fail_on, options.FailOn),
+            ignore=options.to_texts(ignore),
+            profiles=options.to_texts(profile),
+            params=options.to_assignments(param),
+            rules_dirs=tuple(Path(each) for each in options.to_texts(rules_dir)),
+            fail_on=options.require_one_of("fail_on", fail_on, options.FailOn),
             strict=strict,
-            require=options.texts_of(require),
+            require=options.to_texts(require),
             min_judged=None if min_judged is None else float(min_judged),
             margins=margins,
             keep_db=keep_db,
@@ -154,7 +154,7 @@ def check(
             rule_timeout=rule_timeout,
         )
         scratch = TemporaryDirectory(prefix="drivelint-") if margins and folder is None else None
-        with outputs.working_folder(folder, overwrite=overwrite) as work, kept_notes(progress) as listener:
+        with outputs.working_folder(folder, overwrite=overwrite) as work, note_keeper(progress) as listener:
             place = work if scratch is None else Path(scratch.name)
 
             def gate_and_write(result: Result) -> Result:
@@ -164,7 +164,7 @@ def check(
                     outputs.write(result, folder, work, overwrite=overwrite)
                 return result
 
-            result = gate_and_write(_interruptible(replace(settings, out=place), listener, gate_and_write))
+            result = gate_and_write(_run_interruptible_check(replace(settings, out=place), listener, gate_and_write))
         if pack is not None:
             from drivelint.pack import write_pack
 
@@ -172,17 +172,19 @@ def check(
         return CheckResult(result, folder, tuple(listener.notes), scratch)
 
 
-def _interruptible(settings: run.CheckOptions, listener: NoteKeeper, keep: Callable[[Result], Result]) -> Result:
+def _run_interruptible_check(
+    settings: run.CheckOptions, listener: NoteKeeper, on_nothing_judged: Callable[[Result], Result]
+) -> Result:
     """Run a check and return its result. Errors: also `KeyboardInterrupt`, which DuckDB would hide in a `RuntimeError`."""
     try:
-        return run.check(settings, listener, keep=keep)
+        return run.check(settings, listener, on_nothing_judged=on_nothing_judged)
     except RuntimeError as error:
         if isinstance(error.__cause__, KeyboardInterrupt):
             raise error.__cause__ from None
         raise
 
 
-@typed
+@with_argument_checks
 def open(folder: AnyPath) -> CheckResult:  # noqa: A001 - read as drivelint.open
     """Return the result in a folder that `check --out` wrote.
 
@@ -194,17 +196,17 @@ def open(folder: AnyPath) -> CheckResult:  # noqa: A001 - read as drivelint.open
     return CheckResult(replace(result, run_options=run_options), place, result.notes)
 
 
-@typed
+@with_argument_checks
 def write_demo(folder: AnyPath) -> list[Path]:
     """Write six recorded drives and their road, `road.xodr`, into a folder, and return the paths of the files.
 
     Errors: `DriveLintError` if the folder cannot be written, or has a file of the same name that is not from an earlier demo.
     """
-    with errors_name_keywords():
+    with rewrite_options_in_errors():
         return demo.write(Path(folder))
 
 
-@typed
+@with_argument_checks
 def read_trace(
     path: AnyPath,
     *,
@@ -227,12 +229,12 @@ def read_trace(
     Errors: `DriveLintError` for a log that is missing, unreadable or has nothing to judge, an invalid mapping, or a map that cannot be
     read or does not cover the drive.
     """
-    with errors_name_keywords():
+    with rewrite_options_in_errors():
         asked = DriveInput(
-            **options.map_input(
+            **options.map_input_fields(
                 map_=map, map_dir=map_dir, map_offset=map_offset, map_origin=map_origin, handedness=handedness
             ),
-            **options.drive_input(
+            **options.drive_input_fields(
                 ego=ego,
                 mapping=mapping,
                 topic=topic,

@@ -36,7 +36,7 @@ def _are_paths(value: object) -> bool:
     return _is_path(value) or isinstance(value, Iterable)  # items of an iterator are checked later, when they are read
 
 
-_KINDS: Final[dict[str, tuple[Callable[[Any], bool], str]]] = {
+_CHECK_OF_TYPE: Final[dict[str, tuple[Callable[[Any], bool], str]]] = {
     "None": (lambda given: given is None, "None"),
     "bool": (lambda given: isinstance(given, bool | np.bool_), "True or False"),
     "str": (lambda given: isinstance(given, str), "a text"),
@@ -53,10 +53,10 @@ _KINDS: Final[dict[str, tuple[Callable[[Any], bool], str]]] = {
     "Pair": (lambda given: given is None or isinstance(given, str) or _are_numbers(given), "two numbers"),
     "tuple[float, ...]": (_are_numbers, "numbers"),
 }
-"""Annotation in a signature -> test of a value, and the name of the type in messages. `options.one_of` checks `Literal` types."""
+"""Annotation in a signature -> test of a value, and the name of the type in messages. `options.require_one_of` checks `Literal` types."""
 
 
-def typed(function: Callable[_P, _R]) -> Callable[_P, _R]:
+def with_argument_checks(function: Callable[_P, _R]) -> Callable[_P, _R]:
     """Return the function with argument checks: it raises `UsageError` for an unknown keyword or an argument of another type.
 
     Annotations are texts, since the functions' modules import `annotations` from `__future__`.
@@ -66,7 +66,7 @@ def typed(function: Callable[_P, _R]) -> Callable[_P, _R]:
     names = [
         name for name, each in signature.parameters.items() if name != "self" and each.kind != each.POSITIONAL_ONLY
     ]
-    type_names = {name: parts for name, parts in kinds.items() if set(parts) <= _KINDS.keys()}
+    type_names = {name: parts for name, parts in kinds.items() if set(parts) <= _CHECK_OF_TYPE.keys()}
 
     @wraps(function)
     def checked_call(*args: _P.args, **keywords: _P.kwargs) -> _R:
@@ -74,8 +74,8 @@ def typed(function: Callable[_P, _R]) -> Callable[_P, _R]:
             word = min(unknown)
             raise UsageError(f"{function.__name__}() has no argument {word!r}: {hint(word, names)}")
         for name, value in signature.bind(*args, **keywords).arguments.items():
-            if name in type_names and not any(_KINDS[part][0](value) for part in type_names[name]):
-                said = [_KINDS[part][1] for part in type_names[name] if part != "None"]
+            if name in type_names and not any(_CHECK_OF_TYPE[part][0](value) for part in type_names[name]):
+                said = [_CHECK_OF_TYPE[part][1] for part in type_names[name] if part != "None"]
                 raise UsageError(f"{name}={reprlib.repr(value)}: give {' or '.join(said)}")
         return function(*args, **keywords)
 

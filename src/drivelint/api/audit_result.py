@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 import pyarrow as pa
 
-from drivelint.api.arguments import typed
+from drivelint.api.arguments import with_argument_checks
 from drivelint.api.tables import Table, TableSet
 from drivelint.errors import UsageError
 from drivelint.fleet import rates
 from drivelint.fleet.distinct_logs import create_counted_views
 from drivelint.fleet_report import gated
 from drivelint.fleet_report.audit_views import is_audit, open_audits, path_or_url
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 from drivelint.report.outcome import headline
 from drivelint.report.outputs import REPORT_FORMATS
 from drivelint.result.counts import one_finding_per_event
@@ -24,7 +24,13 @@ from drivelint.result.model import exit_status
 if TYPE_CHECKING:
     from drivelint.api.options import AnyPath
 
-_SCHEMAS = {"verdicts": "verdict", "findings": "finding", "drives": "drive", "rules": "rule", "events": "finding"}
+_SCHEMA_OF_TABLE = {
+    "verdicts": "verdict",
+    "findings": "finding",
+    "drives": "drive",
+    "rules": "rule",
+    "events": "finding",
+}
 
 
 class AuditResult(TableSet):
@@ -42,7 +48,7 @@ class AuditResult(TableSet):
     events: Table
     logs: Table
 
-    @typed
+    @with_argument_checks
     def __init__(self, folder: AnyPath) -> None:
         """Open a folder that `audit --out` wrote. Errors: `DriveLintError` for a folder without an audit."""
         self._dest = path_or_url(Path(folder))
@@ -58,7 +64,7 @@ class AuditResult(TableSet):
                 f"SELECT drive_id, log, tags FROM {counted}drives ORDER BY ALL"
             ).to_arrow_table()
             self.notes = tuple(filter(None, [audit.warning]))
-        super().__init__(tables, schema_tables=_SCHEMAS)
+        super().__init__(tables, schema_tables=_SCHEMA_OF_TABLE)
         for name, table in self.tables.items():
             setattr(self, name, table)
 
@@ -72,7 +78,7 @@ class AuditResult(TableSet):
         """The reason for the exit code, in one sentence."""
         return exit_status(self._result).why
 
-    @typed
+    @with_argument_checks
     def rates(self, by: str | None = None) -> Table:
         """Return the rates of events per 100 km, per hour and per occasion, one row per rule and profile.
 
@@ -80,21 +86,21 @@ class AuditResult(TableSet):
         Errors: `DriveLintError` for a tag that no drive has.
         """
         with open_audits(self._dest) as (con, _, _):
-            rows = [_row(rate) for rate in rates.rates(con, by)]
+            rows = [_rate_row(rate) for rate in rates.rates(con, by)]
         return Table(pa.Table.from_pylist(rows))
 
-    @typed
+    @with_argument_checks
     def report(self, *, to: str) -> str:
         """Return a report as text. `to`: junit or sarif. For the pages of a fleet, use `drivelint report`."""
         if to not in gated.FORMATS:
-            raise UsageError(f"to={to!r}: of an audit there are {listed(gated.FORMATS)}")
+            raise UsageError(f"to={to!r}: of an audit there are {name_list(gated.FORMATS)}")
         return REPORT_FORMATS[to][1](self._result).decode()
 
     def __repr__(self) -> str:
         return f"<drivelint.AuditResult: {headline(self._result).sentence}; exit code {self.exit_code}>"
 
 
-def _row(rate: rates.Rate) -> dict[str, Any]:
+def _rate_row(rate: rates.Rate) -> dict[str, Any]:
     """Return a rate as a row, with its estimates as structs."""
     told = asdict(rate)
     for name in ("per_100km", "per_hour", "per_occasion", "per_ego"):

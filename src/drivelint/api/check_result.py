@@ -8,11 +8,11 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Final, overload
 
-from drivelint.api.arguments import typed
+from drivelint.api.arguments import with_argument_checks
 from drivelint.api.explained import Explained
-from drivelint.api.keywords import errors_name_keywords, in_keywords
-from drivelint.api.notebook import one_line, summary_html
-from drivelint.api.options import ReportFormat, one_of, path
+from drivelint.api.keywords import replace_options_by_keywords, rewrite_options_in_errors
+from drivelint.api.notebook import one_line_summary, summary_html
+from drivelint.api.options import ReportFormat, require_one_of, to_path
 from drivelint.api.tables import Table, TableSet
 from drivelint.api.timeline import Timeline, timeline
 from drivelint.errors import UsageError
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from drivelint.api.options import AnyPath
     from drivelint.result.model import Result
 
-_MARGINS: Final = "margins.parquet"
+_MARGINS_FILE: Final = "margins.parquet"
 
 
 class CheckResult(TableSet):
@@ -60,11 +60,11 @@ class CheckResult(TableSet):
         super().__init__({name: getattr(result, name) for name in kinds}, schema_tables=kinds)
         for name, table in self.tables.items():
             setattr(self, name, table)
-        self.notes = tuple(map(in_keywords, notes))
+        self.notes = tuple(map(replace_options_by_keywords, notes))
         self.folder = folder
         self._result = replace(result, margins_file=None)
         self._scratch = scratch  # the folder, with the margins, is removed with the last reference to the result
-        margins = result.margins_file if folder is None else folder / _MARGINS
+        margins = result.margins_file if folder is None else folder / _MARGINS_FILE
         self._margins_file = margins if margins is not None and margins.is_file() else None
 
     @property
@@ -80,7 +80,7 @@ class CheckResult(TableSet):
     @property
     def why(self) -> str:
         """The reason for the exit code, in one sentence."""
-        return in_keywords(exit_status(self._result).why)
+        return replace_options_by_keywords(exit_status(self._result).why)
 
     @property
     def margins(self) -> Table | None:
@@ -95,13 +95,13 @@ class CheckResult(TableSet):
     def report(self, path: None = None, *, to: ReportFormat = "html") -> str: ...
     @overload
     def report(self, path: AnyPath, *, to: ReportFormat = "html") -> Path: ...
-    @typed
+    @with_argument_checks
     def report(self, path: AnyPath | None = None, *, to: ReportFormat = "html") -> str | Path:
-        """Return a report as text; or, with `path`, write it to this file and return the path.
+        """Return a report as text; or, with `to_path`, write it to this file and return the path.
 
         `to`: html, junit, sarif, xqar, markdown. Errors: `DriveLintError` if the file cannot be written.
         """
-        _, render = outputs.REPORT_FORMATS[one_of("to", to, ReportFormat)]
+        _, render = outputs.REPORT_FORMATS[require_one_of("to", to, ReportFormat)]
         content = render(self._result)
         if path is None:
             return content.decode()
@@ -111,7 +111,7 @@ class CheckResult(TableSet):
         publish(file.parent, {file.name: content}, {})
         return file
 
-    @typed
+    @with_argument_checks
     def write(self, folder: AnyPath, *, overwrite: bool = False) -> Path:
         """Write the result files into a folder, as `check --out` does, and return the folder.
 
@@ -124,14 +124,14 @@ class CheckResult(TableSet):
         out = Path(folder)
         if self.folder is not None and out.resolve() == self.folder.resolve():
             return out
-        with errors_name_keywords(), outputs.working_folder(out, overwrite=overwrite) as work:
+        with rewrite_options_in_errors(), outputs.working_folder(out, overwrite=overwrite) as work:
             margins = None
             if work is not None and self._margins_file is not None:
-                margins = shutil.copyfile(self._margins_file, work / _MARGINS)
+                margins = shutil.copyfile(self._margins_file, work / _MARGINS_FILE)
             outputs.write(replace(self._result, margins_file=margins), out, overwrite=overwrite)
         return out
 
-    @typed
+    @with_argument_checks
     def explain(
         self,
         name: str,
@@ -150,12 +150,12 @@ class CheckResult(TableSet):
         `verdict` and `at` choose among several verdicts. `trace`, `map`: the new paths of the log and the map, if they were moved.
         Errors: `DriveLintError`.
         """
-        wanted = VerdictFilter(profile, _text(object), at, _text(ego), verdict)
+        wanted = VerdictFilter(profile, _text_or_none(object), at, _text_or_none(ego), verdict)
         with TemporaryDirectory(prefix="drivelint-") as scratch:
             folder = self.folder or self.write(scratch)
-            return Explained(explain(ExplainRequest(name, folder, wanted, path(trace), path(map))))
+            return Explained(explain(ExplainRequest(name, folder, wanted, to_path(trace), to_path(map))))
 
-    @typed
+    @with_argument_checks
     def timeline(self, finding: str) -> Timeline:
         """Return a finding over time: gap, speeds, accelerations, and the measured value of its rule.
 
@@ -163,8 +163,8 @@ class CheckResult(TableSet):
         """
         return timeline(self._result, finding)
 
-    def _queried(self) -> dict[str, Any]:
-        queried = super()._queried()
+    def _queryable_tables(self) -> dict[str, Any]:
+        queried = super()._queryable_tables()
         if self._margins_file is not None:
             import pyarrow.dataset as ds
 
@@ -172,11 +172,11 @@ class CheckResult(TableSet):
         return queried
 
     def __repr__(self) -> str:
-        return f"<drivelint.CheckResult: {one_line(self._result)}; exit code {self.exit_code}>"
+        return f"<drivelint.CheckResult: {one_line_summary(self._result)}; exit code {self.exit_code}>"
 
     def _repr_html_(self) -> str:
         return summary_html(self._result)
 
 
-def _text(value: str | int | None) -> str | None:
+def _text_or_none(value: str | int | None) -> str | None:
     return None if value is None else str(value)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from drivelint.api.check_result import CheckResult
 from drivelint.api.notebook import block_html
-from drivelint.api.options import FailOn, one_of
+from drivelint.api.options import FailOn, require_one_of
 from drivelint.errors import UsageError
 from drivelint.gate import compare_results, descriptions
 from drivelint.result.load import load_result
@@ -26,18 +26,20 @@ if TYPE_CHECKING:
 class Comparison:
     """The content of `drivelint diff` for two results."""
 
-    def __init__(self, difference: Difference, failing: list[ComparedFinding], least: str, gate: Gate | None) -> None:
-        self._difference, self._failing, self._least, self._gate = difference, failing, least, gate
+    def __init__(
+        self, difference: Difference, failing: list[ComparedFinding], least_severity: str, gate: Gate | None
+    ) -> None:
+        self._difference, self._failing, self._least_severity, self._gate = difference, failing, least_severity, gate
 
     @property
     def exit_code(self) -> int:
         """The exit code of `drivelint diff`. 1: a new finding that gates; 4: none, but an earlier finding is absent and not fixed."""
-        return int(descriptions.exit_code(self._difference, self._failing, self._least))
+        return int(descriptions.exit_code(self._difference, self._failing, self._least_severity))
 
     @property
     def text(self) -> str:
         """The text that `drivelint diff` prints."""
-        return descriptions.difference_text(self._difference, self._failing, self._least, self._gate)
+        return descriptions.difference_text(self._difference, self._failing, self._least_severity, self._gate)
 
     def findings(self) -> list[dict[str, Any]]:
         """Return every finding of both results. `standing`: new, changed, unchanged, fixed, elsewhere, unknown or lost."""
@@ -45,7 +47,7 @@ class Comparison:
 
     def data(self) -> dict[str, Any]:
         """Return the output of `drivelint diff --format json` as plain data."""
-        told: dict[str, Any] = json.loads(descriptions.to_json(self._difference, self._failing, self._least))
+        told: dict[str, Any] = json.loads(descriptions.to_json(self._difference, self._failing, self._least_severity))
         return told
 
     def __repr__(self) -> str:
@@ -60,13 +62,13 @@ def diff(base: CheckResult | AnyPath, new: CheckResult | AnyPath, *, fail_on: Fa
 
     `fail_on`: lowest severity of a new finding that causes exit code 1; None: the `fail_on` of the check `new`. Errors: `DriveLintError`.
     """
-    (earlier, base_name), (later, name) = _result(base, "base"), _result(new, "new")
-    least = later.fail_on if fail_on is None else one_of("fail_on", fail_on, FailOn)
+    (earlier, base_name), (later, name) = _load_result_and_name(base, "base"), _load_result_and_name(new, "new")
+    least = later.fail_on if fail_on is None else require_one_of("fail_on", fail_on, FailOn)
     found, failing = compare_results(earlier, later, (base_name, name), least)
     return Comparison(found, failing, least, later.gate)
 
 
-def _result(source: CheckResult | AnyPath, name: str) -> tuple[Result, str]:
+def _load_result_and_name(source: CheckResult | AnyPath, name: str) -> tuple[Result, str]:
     """Return a result and its name: the name of its folder, else `name`."""
     if isinstance(source, CheckResult):
         return source.result, name if source.folder is None else source.folder.resolve().name

@@ -18,21 +18,21 @@ _OPTION: Final = re.compile(
 
 
 @contextmanager
-def errors_name_keywords() -> Iterator[None]:
+def rewrite_options_in_errors() -> Iterator[None]:
     """Rewrite options in the message of an error inside the block as keywords: `--overwrite` becomes `overwrite=True`."""
     try:
         yield
     except DriveLintError as error:
-        error.args = tuple(in_keywords(part) if isinstance(part, str) else part for part in error.args)
+        error.args = tuple(replace_options_by_keywords(part) if isinstance(part, str) else part for part in error.args)
         raise
 
 
-def in_keywords(text: str) -> str:
+def replace_options_by_keywords(text: str) -> str:
     """Return a message with options changed to keywords; an option after its command (`check --out`) is not changed."""
-    return _OPTION.sub(_keyword, text)
+    return _OPTION.sub(_keyword_text, text)
 
 
-def _keyword(option: re.Match[str]) -> str:
+def _keyword_text(option: re.Match[str]) -> str:
     if option["command"]:
         return option[0]
     name = option["name"].replace("-", "_")

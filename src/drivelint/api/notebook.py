@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from drivelint.api.keywords import in_keywords
+from drivelint.api.keywords import replace_options_by_keywords
 from drivelint.report.html.environment import escape_for_page
 from drivelint.report.inputs import input_notes
 from drivelint.report.terminal_summary import gating_findings_worst_first, outcome_line
@@ -24,17 +24,17 @@ if TYPE_CHECKING:
 
     from drivelint.result.model import Result
 
-MOST_FINDINGS: Final = 10
-MOST_UNJUDGED_DRIVES: Final = 10
+MOST_LISTED_FINDINGS: Final = 10
+MOST_LISTED_UNJUDGED: Final = 10
 
 
-def one_line(result: Result) -> str:
+def one_line_summary(result: Result) -> str:
     """Return on one line: the outcome, whether the map fits, whether the logs are complete, and what was not judged."""
-    return f"{in_keywords(outcome_line(result))}; {_inputs(result)}"
+    return f"{replace_options_by_keywords(outcome_line(result))}; {_input_notes_text(result)}"
 
 
-def _inputs(result: Result) -> str:
-    return in_keywords(" | ".join(f"{note.label}: {note.words}" for note in input_notes(result)))
+def _input_notes_text(result: Result) -> str:
+    return replace_options_by_keywords(" | ".join(f"{note.label}: {note.words}" for note in input_notes(result)))
 
 
 def block_html(text: str) -> str:
@@ -60,14 +60,14 @@ def summary_html(result: Result) -> str:
             "measured": measured_values_text(row),
             "closing": "" if row["closing_mps"] is None else measure(row["closing_mps"], "m/s"),
         }
-        for row in found[:MOST_FINDINGS]
+        for row in found[:MOST_LISTED_FINDINGS]
     ]
     return _template().render(
-        verdict=in_keywords(outcome_line(result)),
+        verdict=replace_options_by_keywords(outcome_line(result)),
         exit_code=int(end.code),
-        why=in_keywords(end.why),
-        inputs=_inputs(result),
-        refused=[drive for drive in result.drives.to_pylist() if drive["status"] != "judged"][:MOST_UNJUDGED_DRIVES],
+        why=replace_options_by_keywords(end.why),
+        inputs=_input_notes_text(result),
+        refused=[drive for drive in result.drives.to_pylist() if drive["status"] != "judged"][:MOST_LISTED_UNJUDGED],
         verdicts={word.replace("_", " "): n for word, n in counts.verdict_counts(result.verdicts).items() if n},
         rows=rows,
         has_certainty=any(row["certainty"] for row in rows),

@@ -26,7 +26,7 @@ _WORDS = {True: "yes", False: "no"}
 _Word = TypeVar("_Word", bound=str)
 
 
-def texts_of(value: Paths | None) -> tuple[str, ...]:
+def to_texts(value: Paths | None) -> tuple[str, ...]:
     """Return one or several texts or paths as a tuple of texts."""
     if value is None:
         return ()
@@ -37,26 +37,26 @@ def texts_of(value: Paths | None) -> tuple[str, ...]:
     return tuple(fspath(each) for each in several)
 
 
-def path(value: AnyPath | None) -> Path | None:
+def to_path(value: AnyPath | None) -> Path | None:
     """Return the value as a `Path`; None stays None."""
     return None if value is None else Path(value)
 
 
-def assignments(value: Assignments) -> tuple[str, ...]:
+def to_assignments(value: Assignments) -> tuple[str, ...]:
     """Return `KEY=VALUE` for each entry of a dictionary; texts are returned unchanged."""
     if isinstance(value, Mapping):
         return tuple(f"{key}={_WORDS[v] if isinstance(v, bool) else v}" for key, v in value.items())
-    return texts_of(value)
+    return to_texts(value)
 
 
-def one_of(name: str, value: _Word, kind: Any) -> _Word:
-    """Return the word, if the `Literal` type `kind` contains it. Errors: `UsageError` with the nearest valid word."""
-    if value not in get_args(kind):
-        raise UsageError(f"{name}={value!r}: {hint(str(value), get_args(kind))}")
+def require_one_of(name: str, value: _Word, literal_type: Any) -> _Word:
+    """Return the word, if the `Literal` type `literal_type` contains it. Errors: `UsageError` with the nearest valid word."""
+    if value not in get_args(literal_type):
+        raise UsageError(f"{name}={value!r}: {hint(str(value), get_args(literal_type))}")
     return value
 
 
-def drive_input(
+def drive_input_fields(
     *,
     ego: str | int | None,
     mapping: AnyPath | None,
@@ -72,25 +72,25 @@ def drive_input(
         "mapping": None if mapping is None else fspath(mapping),
         "topic": topic,
         "sensor_range_m": sensor_range,
-        "visibility": one_of("visibility", visibility, Visibility),
-        "ego_size": option_values.parse_ego_size(_with_commas(ego_size)),
-        "env": assignments(env),
+        "visibility": require_one_of("visibility", visibility, Visibility),
+        "ego_size": option_values.parse_ego_size(_comma_separated(ego_size)),
+        "env": to_assignments(env),
     }
 
 
-def map_input(
+def map_input_fields(
     *, map_: AnyPath | None, map_dir: AnyPath | None, map_offset: Pair, map_origin: Pair, handedness: Handedness
 ) -> dict[str, Any]:
     """Return the fields of `DriveInput` about the map. Errors: `UsageError` for an invalid value."""
     return {
-        "map": path(map_),
-        "map_dir": path(map_dir),
-        "map_offset": option_values.parse_offset(_with_commas(map_offset)),
-        "map_origin": option_values.parse_origin(_with_commas(map_origin)),
-        "handedness": one_of("handedness", handedness, Handedness),
+        "map": to_path(map_),
+        "map_dir": to_path(map_dir),
+        "map_offset": option_values.parse_offset(_comma_separated(map_offset)),
+        "map_origin": option_values.parse_origin(_comma_separated(map_origin)),
+        "handedness": require_one_of("handedness", handedness, Handedness),
     }
 
 
-def _with_commas(value: str | tuple[float, ...] | None) -> str | None:
+def _comma_separated(value: str | tuple[float, ...] | None) -> str | None:
     """Return numbers in the format of the command line, so that the same parser checks them."""
     return value if value is None or isinstance(value, str) else ",".join(map(str, value))

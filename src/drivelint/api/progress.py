@@ -37,9 +37,9 @@ class NoteKeeper(Progress):
 
 
 @contextmanager
-def kept_notes(show: bool) -> Iterator[NoteKeeper]:
-    """Yield a progress object that stores notes; with `show`, it also shows the command line's progress bar on stderr."""
-    if not show:
+def note_keeper(show_bar: bool) -> Iterator[NoteKeeper]:
+    """Yield a progress object that stores notes; with `show_bar`, it also shows the command line's progress bar on stderr."""
+    if not show_bar:
         yield NoteKeeper(Silent())
         return
     with progress_bar() as shown:

@@ -122,7 +122,7 @@ class Table:
         return str(self.pl()._repr_html_())
 
 
-def _told_apart(names: Sequence[str]) -> list[str]:
+def _unique_names(names: Sequence[str]) -> list[str]:
     """Return unique column names: a repeated name gets a number, as DuckDB numbers the columns of a table."""
     told: list[str] = []
     for name in names:
@@ -152,7 +152,7 @@ class TableSet:
         """
         has_geometry = re.search(r"\bgeom(_lonlat)?\b|\bst_", query, re.IGNORECASE) is not None
         with store.open_as_is() if has_geometry else duckdb.connect() as con:
-            for name, rows in self._queried().items():
+            for name, rows in self._queryable_tables().items():
                 if has_geometry and name in self._shapes:
                     con.register("_wkb", with_geometry(rows, self._shapes[name]))
                     made = ", ".join(
@@ -168,9 +168,9 @@ class TableSet:
                 if answer is None or answer.description is None:
                     raise UsageError("the query returns nothing: give a SELECT or FROM")
                 rows = answer.to_arrow_table()
-                return Table(rows.rename_columns(_told_apart(rows.column_names)))
+                return Table(rows.rename_columns(_unique_names(rows.column_names)))
             except duckdb.Error as error:
                 raise UsageError(f"the query failed: {error}") from None  # the message has DuckDB's error already
 
-    def _queried(self) -> dict[str, Any]:
+    def _queryable_tables(self) -> dict[str, Any]:
         return {name: table.arrow() for name, table in self.tables.items()}

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
     from drivelint.result.text import Row
 
-_COLUMNS = (
+_VALUE_COLUMNS = (
     "gap_m", "ego_speed_mps", "ego_accel_mps2", "object_speed_mps", "object_accel_mps2", "observed", "required", "margin",
 )  # fmt: skip
 _PAGE = """{% import 'macros.html.j2' as m with context %}<!doctype html><html lang="en"><head><meta charset="utf-8">
@@ -89,7 +89,7 @@ def timeline(result: Result, name: str) -> Timeline:
         {
             "t_ns": pa.array(times, pa.int64()),
             "t_s": pa.array([(t_ns - start_ns) / 1e9 for t_ns in times], pa.float64()),
-            **{name: pa.array([values[t_ns].get(name) for t_ns in times], pa.float64()) for name in _COLUMNS},
+            **{name: pa.array([values[t_ns].get(name) for t_ns in times], pa.float64()) for name in _VALUE_COLUMNS},
         }
     )
     drawn = None if scene is None else strips(scene, row, course, finding.rule["observes"], start_ns)

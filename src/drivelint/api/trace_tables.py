@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     from drivelint.drive.trace import Trace
 
-_LANES: Final = "lane_shape"
+_LANE_TABLE: Final = "lane_shape"
 
 
 class TraceTables(TableSet):
@@ -34,8 +34,8 @@ class TraceTables(TableSet):
     lanes: Table
 
     def __init__(self, trace: Trace, lanes: pa.Table | None = None) -> None:
-        tables = {**trace.tables, "lanes": empty_table(_LANES) if lanes is None else lanes}
-        super().__init__(tables, schema_tables={"lanes": _LANES})
+        tables = {**trace.tables, "lanes": empty_table(_LANE_TABLE) if lanes is None else lanes}
+        super().__init__(tables, schema_tables={"lanes": _LANE_TABLE})
         for name, table in self.tables.items():
             setattr(self, name, table)
         self.drive_id = trace.drive_id

@@ -27,7 +27,7 @@ LEASE_S: Final = 60.0
 """Seconds without a heartbeat after which claims expire. The clocks of the machines must differ by less than that."""
 
 
-class Claim(Enum):
+class ClaimOutcome(Enum):
     """Which audit owns a drive after an attempt to claim it. `NO_WORK_LEFT`: the drive has its result, or this audit already judges it."""
 
     THIS_AUDIT = "this audit"
@@ -43,13 +43,13 @@ class Claims:
         self._lease_s = lease_s
         self._owner = uuid.uuid4().hex
         self._stop = threading.Event()
-        self.n_waiting = self.n_taken = 0
+        self.n_waiting = self.n_claimed = 0
 
     @contextmanager
-    def alive(self) -> Iterator[None]:
+    def keep_alive(self) -> Iterator[None]:
         """Write heartbeats until the block ends."""
-        self._sign()
-        beat = threading.Thread(target=self._beat, daemon=True)
+        self._write_heartbeat()
+        beat = threading.Thread(target=self._write_heartbeats, daemon=True)
         beat.start()
         try:
             yield
@@ -64,55 +64,55 @@ class Claims:
         Afterwards, `n_waiting` is the number of drives that other live audits have claimed; later these are done or free. The method never
         waits. The caller marks judged drives as done.
         """
-        self.n_waiting = self.n_taken = 0
+        self.n_waiting = self.n_claimed = 0
         left = iter(todo)
         while some := list(islice(left, TASK_DRIVES)):
             alive: dict[str, bool] = {}
             for drive in some:
-                claim, owner = self._take(drive)
-                if claim is Claim.NO_WORK_LEFT:
+                claim, owner = self._claim_drive(drive)
+                if claim is ClaimOutcome.NO_WORK_LEFT:
                     continue
-                if claim is Claim.ANOTHER_AUDIT:
+                if claim is ClaimOutcome.ANOTHER_AUDIT:
                     if owner not in alive:
                         alive[owner] = self._is_alive(owner)
                     if alive[owner]:
                         self.n_waiting += 1
                         continue
-                    self._results.write(_name(drive), self._claim())
-                self.n_taken += 1
+                    self._results.write(_claim_name(drive), self._claim_content())
+                self.n_claimed += 1
                 yield drive
 
-    def pause(self) -> None:
+    def wait_for_others(self) -> None:
         """Wait for other audits, after a pass that claimed no drive."""
         time.sleep(self._lease_s / 6)
 
     def mark_done(self, drives: Iterable[AuditDrive]) -> None:
         """Record that the results of these drives are written."""
         for drive in drives:
-            self._results.write(_name(drive), b'{"owner": ""}\n')
+            self._results.write(_claim_name(drive), b'{"owner": ""}\n')
 
-    def _take(self, drive: AuditDrive) -> tuple[Claim, str]:
+    def _claim_drive(self, drive: AuditDrive) -> tuple[ClaimOutcome, str]:
         """Claim a drive. Return the outcome, and the id of the audit that owns the drive; '' if the drive is done."""
-        if self._results.create(_name(drive), self._claim()):
-            return Claim.THIS_AUDIT, self._owner
-        content = self._results.read(_name(drive))
+        if self._results.create(_claim_name(drive), self._claim_content()):
+            return ClaimOutcome.THIS_AUDIT, self._owner
+        content = self._results.read(_claim_name(drive))
         owner = "" if content is None else str(json.loads(content)["owner"])
-        return (Claim.NO_WORK_LEFT if owner in {"", self._owner} else Claim.ANOTHER_AUDIT), owner
+        return (ClaimOutcome.NO_WORK_LEFT if owner in {"", self._owner} else ClaimOutcome.ANOTHER_AUDIT), owner
 
-    def _claim(self) -> bytes:
+    def _claim_content(self) -> bytes:
         return f'{{"owner": "{self._owner}"}}\n'.encode()
 
     def _is_alive(self, owner: str) -> bool:
         seen = self._results.read(f"claims/owners/{owner}.json")
         return seen is not None and time.time() - float(json.loads(seen)["at"]) < self._lease_s
 
-    def _sign(self) -> None:
+    def _write_heartbeat(self) -> None:
         self._results.write(f"claims/owners/{self._owner}.json", f'{{"at": {time.time()}}}\n'.encode())
 
-    def _beat(self) -> None:
+    def _write_heartbeats(self) -> None:
         while not self._stop.wait(self._lease_s / 6):
-            self._sign()
+            self._write_heartbeat()
 
 
-def _name(drive: AuditDrive) -> str:
+def _claim_name(drive: AuditDrive) -> str:
     return f"claims/{drive.source_id[:2]}/{drive.source_id}.json"

@@ -17,7 +17,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
-from drivelint.audit.driver import empty_rows
+from drivelint.audit.driver import empty_tables
 from drivelint.audit.model import Receipt, digest
 from drivelint.audit.worker import TABLES, batch_name, receipt_name
 from drivelint.errors import DriveLintError, UsageError
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 
     from drivelint.audit.store import ResultStore
 
-CHUNK_DRIVES: Final = 4_000
-MEMORY: Final = "1GB"
+DRIVES_PER_CHUNK: Final = 4_000
+MEMORY_LIMIT: Final = "1GB"
 RECEIPT_SCHEMA: Final = pa.schema(
     [
         *((name, pa.string()) for name in ("key", "source_id", "batch", "status", "log")),
@@ -53,7 +53,7 @@ RECEIPT_SCHEMA: Final = pa.schema(
     ]
 )
 _KEYS: Final = "key, ego_id, rule_id, profile NULLS FIRST, object_id NULLS FIRST, occurrence, ref_id NULLS FIRST, t_start_ns NULLS FIRST"
-_ORDER: Final = {"verdicts": _KEYS, "findings": f"{_KEYS}, finding_id", "drives": "key"}
+_ORDER_OF_TABLE: Final = {"verdicts": _KEYS, "findings": f"{_KEYS}, finding_id", "drives": "key"}
 
 
 def chunk_name(table: str, chunk: str) -> str:
@@ -61,7 +61,7 @@ def chunk_name(table: str, chunk: str) -> str:
     return f"tables/{table}/{chunk}.parquet"
 
 
-def chunks(results: ResultStore) -> list[str]:
+def chunk_ids(results: ResultStore) -> list[str]:
     """Return the ids of the complete chunks, sorted."""
     return sorted(Path(name).stem for name in results.names("tables/receipts"))
 
@@ -72,57 +72,59 @@ def compact(results: ResultStore, *, while_judging: bool = False) -> int:
     `while_judging`: workers may be writing, so only batches with all their receipts are packed.
     Only one process may compact an audit at a time. Errors: `OutputError`; `DriveLintError` for results that contradict each other.
     """
-    _remove_unfinished(results)
+    _remove_unfinished_chunks(results)
     n_packed = 0
-    with database() as con, TemporaryDirectory(prefix="drivelint-compact-") as home:
-        for receipts in loose_receipts(results, whole_batches=while_judging):
-            n_packed += _pack(results, con, receipts, Path(home))
+    with open_database() as con, TemporaryDirectory(prefix="drivelint-compact-") as downloads:
+        for receipts in unpacked_receipts(results, only_whole_batches=while_judging):
+            n_packed += _pack_receipts(results, con, receipts, Path(downloads))
     if not while_judging:
-        _remove_orphans(results)
+        _remove_unreceipted_batches(results)
     return n_packed
 
 
-def drop(results: ResultStore, keys: pa.Array) -> None:
+def remove_drives(results: ResultStore, keys: pa.Array) -> None:
     """Remove the drives with these keys from the chunks, so that they are judged again. No other process may compact meanwhile."""
-    with TemporaryDirectory(prefix="drivelint-compact-") as home:
-        for chunk in chunks(results) if len(keys) else ():
-            receipts = _read(results, "receipts", chunk, Path(home))
+    with TemporaryDirectory(prefix="drivelint-compact-") as downloads:
+        for chunk in chunk_ids(results) if len(keys) else ():
+            receipts = _read_chunk(results, "receipts", chunk, Path(downloads))
             kept = receipts.filter(pc.invert(pc.is_in(receipts["key"], value_set=keys)))
             if kept.num_rows == receipts.num_rows:
                 continue
             left = kept["key"].combine_chunks()
-            rows = {table: _read(results, table, chunk, Path(home)) for table in TABLES}
+            rows = {table: _read_chunk(results, table, chunk, Path(downloads)) for table in TABLES}
             rows = {table: of.filter(pc.is_in(of["key"], value_set=left)) for table, of in rows.items()}
             # remove the old receipts first: if killed in between, drives are judged again, but never exist twice
             results.delete([chunk_name("receipts", chunk), *(chunk_name(table, chunk) for table in TABLES)])
             if kept.num_rows:
-                _write_chunk(results, {table: _parquet(of) for table, of in rows.items()}, kept)
+                _write_chunk(results, {table: _parquet_bytes(of) for table, of in rows.items()}, kept)
 
 
 @contextmanager
-def database() -> Iterator[duckdb.DuckDBPyConnection]:
-    """Open a database in memory that writes to disk what exceeds `MEMORY`."""
+def open_database() -> Iterator[duckdb.DuckDBPyConnection]:
+    """Open a database in memory that writes to disk what exceeds `MEMORY_LIMIT`."""
     with TemporaryDirectory(prefix="drivelint-audit-") as spill, duckdb.connect() as con:
-        con.execute(f"SET memory_limit='{MEMORY}'")
+        con.execute(f"SET memory_limit='{MEMORY_LIMIT}'")
         con.execute("SET temp_directory=?", [spill])
         progress_bar.turn_off(con)
         con.execute("SET python_enable_replacements=false")
         yield con
 
 
-def create_views(con: duckdb.DuckDBPyConnection, results: ResultStore, home: Path, prefix: str = "") -> None:
+def create_views(con: duckdb.DuckDBPyConnection, results: ResultStore, downloads: Path, prefix: str = "") -> None:
     """Create the views `verdicts`, `findings`, `drives`, `rules` and `receipts` over all chunks.
 
-    Everything must be packed before. `home`: folder for copies of remote files. `prefix`: prefix of the view names.
+    Everything must be packed before. `downloads`: folder for copies of remote files. `prefix`: prefix of the view names.
     """
-    con.read_parquet(escaped([str(results.fetch("rules.parquet", home))])).create_view(f"{prefix}rules", replace=True)
-    ids = chunks(results)
+    con.read_parquet(escape_wildcards([str(results.fetch("rules.parquet", downloads))])).create_view(
+        f"{prefix}rules", replace=True
+    )
+    ids = chunk_ids(results)
     for table in (*TABLES, "receipts"):
-        files = [str(results.fetch(chunk_name(table, each), home)) for each in ids]
+        files = [str(results.fetch(chunk_name(table, each), downloads)) for each in ids]
         if files:
-            con.read_parquet(escaped(files)).create_view(f"{prefix}{table}", replace=True)
+            con.read_parquet(escape_wildcards(files)).create_view(f"{prefix}{table}", replace=True)
         else:
-            con.register("_empty", RECEIPT_SCHEMA.empty_table() if table == "receipts" else empty_rows()[table])
+            con.register("_empty", RECEIPT_SCHEMA.empty_table() if table == "receipts" else empty_tables()[table])
             con.execute(f"CREATE OR REPLACE TABLE _no_{prefix}{table} AS FROM _empty")
             con.execute(f"CREATE OR REPLACE VIEW {prefix}{table} AS FROM _no_{prefix}{table}")
 
@@ -137,7 +139,7 @@ def tables_digest(con: duckdb.DuckDBPyConnection) -> str:
     return digest(told)
 
 
-def loose_receipts(results: ResultStore, *, whole_batches: bool) -> Iterator[list[Receipt]]:
+def unpacked_receipts(results: ResultStore, *, only_whole_batches: bool) -> Iterator[list[Receipt]]:
     """Yield lists of some thousand receipts that are in no chunk. The receipts of one batch are in the same list."""
     by_batch: dict[str, list[Receipt]] = {}
     for name in sorted(results.names("receipts")):
@@ -153,31 +155,33 @@ def loose_receipts(results: ResultStore, *, whole_batches: bool) -> Iterator[lis
         by_batch.setdefault(receipt.batch, []).append(receipt)
     some: list[Receipt] = []
     for _, receipts in sorted(by_batch.items()):
-        if whole_batches and len(receipts) < receipts[0].n_in_batch:
+        if only_whole_batches and len(receipts) < receipts[0].n_in_batch:
             continue
         some += receipts
-        if len(some) >= CHUNK_DRIVES:
+        if len(some) >= DRIVES_PER_CHUNK:
             yield some
             some = []
     if some:
         yield some
 
 
-def _pack(results: ResultStore, con: duckdb.DuckDBPyConnection, receipts: Sequence[Receipt], home: Path) -> int:
+def _pack_receipts(
+    results: ResultStore, con: duckdb.DuckDBPyConnection, receipts: Sequence[Receipt], downloads: Path
+) -> int:
     """Write a chunk of these receipts and their rows, then remove the small files. Return the number of drives in the chunk."""
     lost = {batch for batch in {each.batch for each in receipts} if results.read(batch_name("drives", batch)) is None}
     if lost:  # the rows were removed: without a receipt, the drives are judged again
         results.delete(receipt_name(receipt.key) for receipt in receipts if receipt.batch in lost)
         receipts = [receipt for receipt in receipts if receipt.batch not in lost]
-    packed_keys = _packed_keys(results, con, receipts, home)
+    packed_keys = _packed_keys(results, con, receipts, downloads)
     new = [receipt for receipt in receipts if receipt.key not in packed_keys]
     if new:
         table = pa.Table.from_pylist([receipt_row(receipt) for receipt in new], schema=RECEIPT_SCHEMA).sort_by("key")
         con.register("_packed", table.select(["key", "batch"]))
         rows = {}
         for name in TABLES:
-            rows[name] = home / f"{name}.parquet"
-            packed = batch_rows(con, results, home, name, new)
+            rows[name] = downloads / f"{name}.parquet"
+            packed = batch_rows_query(con, results, downloads, name, new)
             written = con.execute(
                 f"COPY ({packed}) TO {quoted(rows[name])} (FORMAT parquet, COMPRESSION zstd)"
             ).fetchone()
@@ -192,25 +196,25 @@ def _pack(results: ResultStore, con: duckdb.DuckDBPyConnection, receipts: Sequen
     return len(new)
 
 
-def batch_rows(
-    con: duckdb.DuckDBPyConnection, results: ResultStore, home: Path, table: str, receipts: Sequence[Receipt]
+def batch_rows_query(
+    con: duckdb.DuckDBPyConnection, results: ResultStore, downloads: Path, table: str, receipts: Sequence[Receipt]
 ) -> str:
     """Return the SELECT that reads one table's rows from the batches of these receipts, for the drives in the relation `_packed`."""
-    files = {each.batch: str(results.fetch(batch_name(table, each.batch), home)) for each in receipts}
-    con.read_parquet(escaped(files.values()), filename=True).create_view("_rows", replace=True)
-    return statement("audit/packed", order=_ORDER[table])
+    files = {each.batch: str(results.fetch(batch_name(table, each.batch), downloads)) for each in receipts}
+    con.read_parquet(escape_wildcards(files.values()), filename=True).create_view("_rows", replace=True)
+    return statement("audit/packed", order=_ORDER_OF_TABLE[table])
 
 
 def _packed_keys(
-    results: ResultStore, con: duckdb.DuckDBPyConnection, receipts: Sequence[Receipt], home: Path
+    results: ResultStore, con: duckdb.DuckDBPyConnection, receipts: Sequence[Receipt], downloads: Path
 ) -> set[str]:
     """Return the keys that a chunk already contains, because a log was moved or a compaction was killed."""
-    ids = chunks(results)
+    ids = chunk_ids(results)
     if not ids:
         return set()
-    files = [str(results.fetch(chunk_name("receipts", each), home)) for each in ids]
+    files = [str(results.fetch(chunk_name("receipts", each), downloads)) for each in ids]
     con.register("_new", pa.table({"key": [r.key for r in receipts], "rows_sha256": [r.rows_sha256 for r in receipts]}))
-    con.read_parquet(escaped(files)).create_view("_old", replace=True)
+    con.read_parquet(escape_wildcards(files)).create_view("_old", replace=True)
     found = con.execute(statement("audit/known")).fetchall()
     con.unregister("_new")
     for key, there, here in found:
@@ -225,18 +229,18 @@ def _write_chunk(results: ResultStore, tables: dict[str, bytes], receipts: pa.Ta
     chunk = digest(receipts["key"].to_pylist())[:32]
     for table, content in tables.items():
         results.write(chunk_name(table, chunk), content)
-    results.write(chunk_name("receipts", chunk), _parquet(receipts))
+    results.write(chunk_name("receipts", chunk), _parquet_bytes(receipts))
 
 
-def _remove_unfinished(results: ResultStore) -> None:
+def _remove_unfinished_chunks(results: ResultStore) -> None:
     """Remove files of chunks without receipts. Their compaction was killed, and the small files still have their content."""
-    whole = set(chunks(results))
+    whole = set(chunk_ids(results))
     results.delete(
         name for table in TABLES for name in list(results.names(f"tables/{table}")) if Path(name).stem not in whole
     )
 
 
-def _remove_orphans(results: ResultStore) -> None:
+def _remove_unreceipted_batches(results: ResultStore) -> None:
     """Remove batches without a receipt. Their worker was killed, and their drives have no result."""
     used = {
         Receipt.from_json(content).batch
@@ -248,8 +252,8 @@ def _remove_orphans(results: ResultStore) -> None:
     )
 
 
-def _read(results: ResultStore, table: str, chunk: str, home: Path) -> pa.Table:
-    return pq.read_table(results.fetch(chunk_name(table, chunk), home), partitioning=None)
+def _read_chunk(results: ResultStore, table: str, chunk: str, downloads: Path) -> pa.Table:
+    return pq.read_table(results.fetch(chunk_name(table, chunk), downloads), partitioning=None)
 
 
 def receipt_row(receipt: Receipt) -> dict[str, Any]:
@@ -258,12 +262,12 @@ def receipt_row(receipt: Receipt) -> dict[str, Any]:
     return {**told, **{key: sorted(told[key].items()) for key in ("counts", "failed", "tags")}}
 
 
-def _parquet(rows: pa.Table) -> bytes:
+def _parquet_bytes(rows: pa.Table) -> bytes:
     sink = pa.BufferOutputStream()
     pq.write_table(rows.combine_chunks(), sink, compression="zstd")
     return bytes(sink.getvalue())
 
 
-def escaped(files: Iterable[str]) -> list[str]:
+def escape_wildcards(files: Iterable[str]) -> list[str]:
     """Return the paths with wildcard characters escaped for DuckDB."""
     return [file.replace("[", "[[]").replace("*", "[*]").replace("?", "[?]") for file in files]

@@ -19,7 +19,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from drivelint.audit.bucket import is_url
-from drivelint.audit.compact import chunk_name, chunks
+from drivelint.audit.compact import chunk_ids, chunk_name
 from drivelint.audit.store import open_store
 from drivelint.audit.worker import TABLES
 from drivelint.errors import UsageError
@@ -36,14 +36,14 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-NAMES: Final = ("rules", *TABLES, "receipts")
+TABLE_NAMES: Final = ("rules", *TABLES, "receipts")
 """The Delta tables in the order in which they are written. Receipts are written last, as in a chunk."""
-DIGEST: Final = "drivelint.digest"
+DIGEST_KEY: Final = "drivelint.digest"
 """The key in the metadata of a commit for the `digest` of the audit's summary."""
-_OPTIONS: Final = {"allow_http": "true", "retry_timeout": "20s"}
+_STORAGE_OPTIONS: Final = {"allow_http": "true", "retry_timeout": "20s"}
 _ATTEMPTS: Final = 6
 """Six attempts of 20 s make the two minutes after which a run gives up on a busy store."""
-_COLOUR: Final = re.compile(r"\x1b\[[0-9;]*m")
+_COLOUR_CODE: Final = re.compile(r"\x1b\[[0-9;]*m")
 """Colour codes in the error messages of deltalake."""
 
 
@@ -60,9 +60,9 @@ class DeltaChange(NamedTuple):
         return f"{dest}: {plural(self.n_added, 'file')} added to the Delta tables, {self.n_removed} removed"
 
 
-def ready(dest: str, out: str, run: str) -> None:
-    """Raise an error, before any drive is judged, if the tables of the audit in `out` cannot be written to `dest`. `run`: the audit's run
-    id.
+def require_writable(dest: str, out: str, run_id: str) -> None:
+    """Raise an error, before any drive is judged, if the tables of the audit in `out` cannot be written to `dest`. `run_id`: the audit's
+    run id.
 
     Errors: `UsageError` if deltalake is not installed, or if `dest` is a file, is within `out`, or has other tables; `OutputError`.
     """
@@ -74,40 +74,46 @@ def ready(dest: str, out: str, run: str) -> None:
         raise UsageError(f"--delta {dest}: lies within the audit: choose a folder outside {out}")
     if not is_url(dest) and Path(dest).exists() and not Path(dest).is_dir():
         raise UsageError(f"--delta {dest}: is a file: give a folder for the Delta tables")
-    for table in NAMES:
-        where = _where(dest, table)
-        _persistent(where, partial(_open_table, where, table, run))
+    for table in TABLE_NAMES:
+        where = _table_place(dest, table)
+        _run_with_retries(where, partial(_open_table, where, table, run_id))
 
 
-def write(
-    con: duckdb.DuckDBPyConnection, results: ResultStore, home: Path, dest: str, *, run: str, digest: str | None
+def write_tables(
+    con: duckdb.DuckDBPyConnection,
+    results: ResultStore,
+    downloads: Path,
+    dest: str,
+    *,
+    run_id: str,
+    digest: str | None,
 ) -> DeltaChange:
     """Make the Delta tables in `dest` equal to the packed tables, with one commit for each table that differs.
 
-    `con` has the views of `create_views`; `home` has local copies of the files. `digest`: the digest in the audit's summary. Only one
-    process may write an audit's tables at a time. Errors: `UsageError` for a table of another program; `OutputError`.
+    `con` has the views of `create_views`; `downloads` has local copies of the files. `digest`: the digest in the audit's summary.
+    Only one process may write an audit's tables at a time. Errors: `UsageError` for a table of another program; `OutputError`.
     """
-    ids = chunks(results)
+    ids = chunk_ids(results)
     n_added = n_removed = 0
-    for table in NAMES:
+    for table in TABLE_NAMES:
         names = ["rules.parquet"] if table == "rules" else [chunk_name(table, each) for each in ids]
-        files = {_content_name(file): file for file in (results.fetch(name, home) for name in names)}
+        files = {_file_name_by_hash(file): file for file in (results.fetch(name, downloads) for name in names)}
         schema = con.table(table).limit(0).to_arrow_table().schema
-        where = _where(dest, table)
-        job = partial(_write_table, where, table, files, schema, run=run, digest=digest)
-        done = _persistent(where, job)
+        where = _table_place(dest, table)
+        job = partial(_write_table, where, table, files, schema, run_id=run_id, digest=digest)
+        done = _run_with_retries(where, job)
         n_added, n_removed = n_added + done.n_added, n_removed + done.n_removed
     return DeltaChange(n_added, n_removed)
 
 
 def _write_table(
-    where: str, table: str, files: dict[str, Path], schema: pa.Schema, *, run: str, digest: str | None
+    where: str, table: str, files: dict[str, Path], schema: pa.Schema, *, run_id: str, digest: str | None
 ) -> DeltaChange:
     from deltalake import CommitProperties, Schema
     from deltalake.transaction import AddAction, RemoveAction, create_table_with_add_actions
 
-    store, there = open_store(where), _open_table(where, table, run)
-    active = {} if there is None else _active(there)
+    store, there = open_store(where), _open_table(where, table, run_id)
+    active = {} if there is None else _sizes_of_active_files(there)
     now = int(time.time() * 1000)
     added = []
     for name in sorted(files.keys() - active.keys()):
@@ -116,15 +122,15 @@ def _write_table(
         stats = json.dumps({"numRecords": pq.read_metadata(pa.BufferReader(content)).num_rows})
         added.append(AddAction(name, len(content), {}, now, data_change=True, stats=stats))
     removed = [RemoveAction(name, True, now, active[name], {}) for name in sorted(active.keys() - files.keys())]
-    about = CommitProperties(custom_metadata={DIGEST: digest})
+    about = CommitProperties(custom_metadata={DIGEST_KEY: digest})
     if there is None:
         create_table_with_add_actions(
-            _uri(where),
+            _table_uri(where),
             Schema.from_arrow(schema),
             added,
-            name=_name(table),
-            description=_description(run),
-            storage_options=_OPTIONS,
+            name=_delta_name(table),
+            description=_delta_description(run_id),
+            storage_options=_STORAGE_OPTIONS,
             commit_properties=about,
         )
     elif added or removed or _last_digest(store, there.version()) != digest:
@@ -132,23 +138,27 @@ def _write_table(
     return DeltaChange(len(added), len(removed))
 
 
-def _open_table(where: str, table: str, run: str) -> DeltaTable | None:
+def _open_table(where: str, table: str, run_id: str) -> DeltaTable | None:
     """Return the Delta table at `where`; None: there is none. Errors: `UsageError` for a table of another audit or program."""
     from deltalake import DeltaTable
     from deltalake.exceptions import TableNotFoundError
 
     try:
-        found = DeltaTable(_uri(where), storage_options=_OPTIONS)
+        found = DeltaTable(_table_uri(where), storage_options=_STORAGE_OPTIONS)
     except TableNotFoundError:
         return None
     about = found.metadata()
-    if (about.name, about.description) != (_name(table), _description(run)):
-        of = "by other rules, parameters or versions" if about.name == _name(table) else "that drivelint did not write"
+    if (about.name, about.description) != (_delta_name(table), _delta_description(run_id)):
+        of = (
+            "by other rules, parameters or versions"
+            if about.name == _delta_name(table)
+            else "that drivelint did not write"
+        )
         raise UsageError(f"{where}: has a Delta table {of}: choose another --delta")
     return found
 
 
-def _active(table: DeltaTable) -> dict[str, int]:
+def _sizes_of_active_files(table: DeltaTable) -> dict[str, int]:
     """Return the files of the table's newest version: name -> size in bytes."""
     told = pa.table(table.get_add_actions(flatten=True)).select(["path", "size_bytes"])
     return {row["path"]: row["size_bytes"] for row in told.to_pylist()}
@@ -158,27 +168,27 @@ def _last_digest(store: ResultStore, version: int) -> str | None:
     """Return the digest in the newest commit; None: it has none, or the commit file was deleted."""
     lines = (store.read(f"_delta_log/{version:020}.json") or b"").splitlines()
     found = [info for line in lines if (info := json.loads(line).get("commitInfo"))]
-    return found[0].get(DIGEST) if found else None
+    return found[0].get(DIGEST_KEY) if found else None
 
 
-def _content_name(file: Path) -> str:
+def _file_name_by_hash(file: Path) -> str:
     with file.open("rb") as content:
         return f"{hashlib.file_digest(content, 'sha256').hexdigest()}.parquet"
 
 
-def _name(table: str) -> str:
+def _delta_name(table: str) -> str:
     return f"drivelint {table}"
 
 
-def _description(run: str) -> str:
-    return f"audit {run}"
+def _delta_description(run_id: str) -> str:
+    return f"audit {run_id}"
 
 
-def _where(dest: str, table: str) -> str:
+def _table_place(dest: str, table: str) -> str:
     return f"{dest.rstrip('/')}/{table}"
 
 
-def _uri(where: str) -> str:
+def _table_uri(where: str) -> str:
     """Return the URI of a place. The path of a local folder may contain any character."""
     return where if is_url(where) else Path(where).absolute().as_uri()
 
@@ -187,7 +197,7 @@ def _absolute(place: str) -> str:
     return place.rstrip("/") if is_url(place) else str(Path(place).resolve())
 
 
-def _persistent(where: str, job: Callable[[], T]) -> T:
+def _run_with_retries(where: str, job: Callable[[], T]) -> T:
     """Run a job on a Delta table, and repeat it if it fails: deltalake does not repeat a request whose answer was cut off.
 
     The job reads the state of the table anew each time. Errors: `OutputError`.
@@ -199,6 +209,6 @@ def _persistent(where: str, job: Callable[[], T]) -> T:
             return job()
         except (DeltaError, OSError) as error:
             if attempt + 1 == _ATTEMPTS:
-                why = " ".join(_COLOUR.sub("", str(error)).split())[:300]
+                why = " ".join(_COLOUR_CODE.sub("", str(error)).split())[:300]
                 raise OutputError(f"{where}: the Delta table failed: {why}: run the same command again") from error
     raise AssertionError("unreachable")

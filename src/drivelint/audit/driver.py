@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     import pyarrow as pa
 
-    from drivelint.audit.executors import Executor, Outcome
+    from drivelint.audit.executors import Executor, TaskOutcome
     from drivelint.audit.model import JudgeSettings
     from drivelint.audit.store import ResultStore
 
@@ -35,27 +35,27 @@ MOST_ATTEMPTS: Final = 3
 """A drive is quarantined after this many workers died on it. From the second attempt on it is judged alone."""
 
 
-def task_size(n_drives: int, capacity: int) -> int:
+def max_drives_per_task(n_drives: int, capacity: int) -> int:
     """Return the largest number of drives that a task may have."""
     return max(LEAST_TASK_DRIVES, min(TASK_DRIVES, n_drives // (SUBMITTED_TASKS_PER_WORKER * capacity)))
 
 
-def tasks(
+def divide_into_tasks(
     drives: Iterable[AuditDrive],
     dest: str,
     run_id: str,
     settings: JudgeSettings,
     *,
-    ahead: int,
+    group_size: int,
     max_drives: int = TASK_DRIVES,
     n_small: int = 0,
 ) -> Iterator[Task]:
-    """Divide drives into tasks. Each group of `ahead` drives starts with its largest logs, so that no long log is left for the end.
+    """Divide drives into tasks. Each group of `group_size` drives starts with its largest logs, so that no long log is left for the end.
 
     The first `n_small` tasks are small, so that an audit that is interrupted early has some results.
     """
     left, n_cut = iter(drives), 0
-    while some := list(islice(left, ahead)):
+    while some := list(islice(left, group_size)):
         some.sort(key=lambda drive: (-drive.size, drive.log))
         part: list[AuditDrive] = []
         for drive in some:
@@ -73,13 +73,13 @@ def tasks(
 class Driver:
     """Runs tasks on an executor.
 
-    `tell` receives every receipt. `mark_done` receives the drives of a completed task. `busy` is called between tasks.
+    `on_receipt` receives every receipt. `mark_done` receives the drives of a completed task. `between_tasks` is called between tasks.
     """
 
     executor: Executor
     results: ResultStore
-    tell: Callable[[Receipt], None]
-    busy: Callable[[], None] = lambda: None
+    on_receipt: Callable[[Receipt], None]
+    between_tasks: Callable[[], None] = lambda: None
     mark_done: Callable[[tuple[AuditDrive, ...]], None] = lambda _drives: None
 
     def run(self, todo: Iterable[Task]) -> None:
@@ -104,15 +104,15 @@ class Driver:
                 n_running -= 1
                 if isinstance(outcome.error, DriveLintError) and not isinstance(outcome.error, InternalError):
                     raise outcome.error
-                if (why := _loss(outcome)) is not None:
-                    again.extend(self._after_loss(outcome.task, why))
+                if (why := _loss_reason(outcome)) is not None:
+                    again.extend(self._repeat_lost_task(outcome.task, why))
                 else:
                     self.mark_done(outcome.task.drives)
                 for receipt in outcome.receipts:
-                    self.tell(receipt)
-            self.busy()
+                    self.on_receipt(receipt)
+            self.between_tasks()
 
-    def _after_loss(self, task: Task, why: str) -> list[Task]:
+    def _repeat_lost_task(self, task: Task, why: str) -> list[Task]:
         """Return the tasks that repeat a lost task: one task per drive. If the task had only one drive, it is repeated until it is
         quarantined."""
         attempts = task.attempts + 1
@@ -121,7 +121,7 @@ class Driver:
         if attempts < MOST_ATTEMPTS:
             return [replace(task, attempts=attempts)]
         for receipt in self._quarantine(task.drives[0], f"{attempts} workers died on this drive: {why}"):
-            self.tell(receipt)
+            self.on_receipt(receipt)
         self.mark_done(task.drives)
         return []
 
@@ -152,7 +152,7 @@ class Driver:
         return write_batch(self.results, rows, [receipt])
 
 
-def _loss(outcome: Outcome) -> str | None:
+def _loss_reason(outcome: TaskOutcome) -> str | None:
     """Return why a task has no result; None: it has a result. An unexpected error, such as lack of memory, counts as caused by its
     drives."""
     if outcome.error is None:
@@ -161,7 +161,7 @@ def _loss(outcome: Outcome) -> str | None:
     return f"the worker met an unexpected error: {type(outcome.error).__name__}: {words}"
 
 
-def empty_rows() -> dict[str, pa.Table]:
+def empty_tables() -> dict[str, pa.Table]:
     """Return all tables of an audit, each with no rows."""
     nobody = AuditDrive("", DriveInput())
     return {

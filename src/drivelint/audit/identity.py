@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from drivelint import __version__, catalogue
-from drivelint.audit.bucket import as_url, download, look
+from drivelint.audit.bucket import download, find_object, url_of_path
 from drivelint.audit.model import digest
 from drivelint.engine.profiles import DEFAULT_PROFILES, load_profiles, profile_table
 from drivelint.receipts.inputs import file_sha256
@@ -64,9 +64,9 @@ class OptionHashes:
 
     def __init__(self) -> None:
         self._known: dict[str, str] = {}
-        self._file = cache(_file_sha256)
+        self._file = cache(_content_hash)
 
-    def of(self, options: DriveInput) -> str:
+    def hash_of(self, options: DriveInput) -> str:
         """Return the hash of a drive's options and of the content of its map and mapping.
 
         For a map that cannot be read, the hash uses its name; drives with that map are refused until it can be read.
@@ -83,10 +83,10 @@ class OptionHashes:
         return self._known[name]
 
 
-def _file_sha256(path: str) -> str:
+def _content_hash(path: str) -> str:
     where = Path(path)
-    if (url := as_url(where)) is not None:
-        found = look(url)
+    if (url := url_of_path(where)) is not None:
+        found = find_object(url)
         with TemporaryDirectory(prefix="drivelint-map-") as home:
             return f"unread {url}" if found is None else file_sha256(download(found, Path(home)))
     try:

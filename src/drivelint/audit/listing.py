@@ -9,7 +9,7 @@ import msgspec
 import pyarrow as pa
 
 from drivelint.audit import sources
-from drivelint.audit.bucket import is_url, look
+from drivelint.audit.bucket import find_object, is_url
 from drivelint.audit.identity import OptionHashes
 from drivelint.audit.model import AuditDrive, digest
 from drivelint.drive.trace import DriveInput
@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 
     import duckdb
 
-_AT_ONCE: Final = 20_000
+_ROWS_PER_INSERT: Final = 20_000
 
 
-def fill(
+def fill_listed_drives(
     con: duckdb.DuckDBPyConnection,
     source_names: Sequence[str],
     options: DriveInput,
@@ -37,7 +37,7 @@ def fill(
     for drive in sources.drives(source_names, options):
         if shard and int(digest(drive.log)[:8], 16) % shard[1] != shard[0] - 1:
             continue
-        options_id = hashes.of(drive.options)
+        options_id = hashes.hash_of(drive.options)
         size, stamp = (drive.size, drive.stamp) if drive.stamp else _size_and_stamp(drive.log)
         found = drive.with_ids(size, stamp, run_id, options_id)
         some.append(
@@ -51,16 +51,16 @@ def fill(
                 "tags": sorted(drive.tags.items()),
             }
         )
-        if len(some) >= _AT_ONCE:
-            _insert(con, some)
+        if len(some) >= _ROWS_PER_INSERT:
+            _insert_drives(con, some)
             some = []
     if some:
-        _insert(con, some)
+        _insert_drives(con, some)
     (n,) = con.execute("SELECT count(*) FROM _listed").fetchall()[0]
     return int(n)
 
 
-def _insert(con: duckdb.DuckDBPyConnection, rows: list[dict[str, Any]]) -> None:
+def _insert_drives(con: duckdb.DuckDBPyConnection, rows: list[dict[str, Any]]) -> None:
     text = ("source_id", "log", "stamp", "options_id", "options")
     schema = pa.schema(
         [(name, pa.string()) for name in text] + [("size", pa.int64()), ("tags", pa.map_(pa.string(), pa.string()))]
@@ -70,7 +70,7 @@ def _insert(con: duckdb.DuckDBPyConnection, rows: list[dict[str, Any]]) -> None:
     con.unregister("_some")
 
 
-def todo(con: duckdb.DuckDBPyConnection) -> Iterator[AuditDrive]:
+def unjudged_drives(con: duckdb.DuckDBPyConnection) -> Iterator[AuditDrive]:
     """Yield the listed drives that have no receipt, ordered by log."""
     rows = con.cursor().execute(statement("audit/todo"))
     for batch in rows.to_arrow_reader(1_000):
@@ -83,7 +83,7 @@ def todo(con: duckdb.DuckDBPyConnection) -> Iterator[AuditDrive]:
 def _size_and_stamp(log: str) -> tuple[int, str]:
     """Return a log's size in bytes, and the time of its last change or its ETag; (0, "") if the log cannot be read."""
     if is_url(log):
-        found = look(log)
+        found = find_object(log)
         return (0, "") if found is None else (found.size, found.e_tag)
     path = Path(log)
     try:

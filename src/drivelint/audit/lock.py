@@ -16,29 +16,29 @@ if TYPE_CHECKING:
 
     from drivelint.audit.store import ResultStore
 
-LAPSE_S: Final = 60.0
+LOCK_EXPIRY_S: Final = 60.0
 """Seconds without a heartbeat after which the lock of an object store expires. The lock of a folder ends with its process."""
-_NAME: Final = "lock.json"
+_LOCK_FILE: Final = "lock.json"
 
 
 @contextmanager
-def locked(results: ResultStore, *, shared: bool) -> Iterator[None]:
+def lock_results(results: ResultStore, *, shared: bool) -> Iterator[None]:
     """Lock a place while the block runs. `shared`: others may hold a shared lock too, such as shards, which do not pack.
 
     Errors: `UsageError` if another process holds a lock that excludes this one.
     """
     if isinstance(results, LocalFolder):
-        with _locked_folder(results, shared=shared):
+        with _lock_folder(results, shared=shared):
             yield
     elif shared:
         yield
     else:
-        with _locked_store(results):
+        with _lock_store(results):
             yield
 
 
 @contextmanager
-def _locked_folder(results: LocalFolder, *, shared: bool) -> Iterator[None]:
+def _lock_folder(results: LocalFolder, *, shared: bool) -> Iterator[None]:
     try:
         import fcntl
     except ImportError:  # Windows
@@ -54,22 +54,22 @@ def _locked_folder(results: LocalFolder, *, shared: bool) -> Iterator[None]:
 
 
 @contextmanager
-def _locked_store(results: ResultStore) -> Iterator[None]:
-    def sign() -> bytes:
+def _lock_store(results: ResultStore) -> Iterator[None]:
+    def heartbeat_content() -> bytes:
         return f'{{"at": {time.time()}}}\n'.encode()
 
-    if not results.create(_NAME, sign()):
-        seen = json.loads(results.read(_NAME) or b'{"at": 0}')["at"]
-        if time.time() - seen < LAPSE_S:
+    if not results.create(_LOCK_FILE, heartbeat_content()):
+        seen = json.loads(results.read(_LOCK_FILE) or b'{"at": 0}')["at"]
+        if time.time() - seen < LOCK_EXPIRY_S:
             raise _in_use_error(f"sign of life {time.time() - seen:.0f} s ago")
-        results.write(_NAME, sign())
+        results.write(_LOCK_FILE, heartbeat_content())
     stop = threading.Event()
 
-    def beat() -> None:
-        while not stop.wait(LAPSE_S / 6):
-            results.write(_NAME, sign())
+    def write_heartbeats() -> None:
+        while not stop.wait(LOCK_EXPIRY_S / 6):
+            results.write(_LOCK_FILE, heartbeat_content())
 
-    thread = threading.Thread(target=beat, daemon=True)
+    thread = threading.Thread(target=write_heartbeats, daemon=True)
     thread.start()
     try:
         yield
@@ -77,7 +77,7 @@ def _locked_store(results: ResultStore) -> Iterator[None]:
         stop.set()
         thread.join()
         with suppress(Exception):  # the lock expires by itself
-            results.delete([_NAME])
+            results.delete([_LOCK_FILE])
 
 
 def _in_use_error(where: str) -> UsageError:

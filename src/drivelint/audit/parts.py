@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from drivelint.audit.store import ResultStore
 
-ALL, CLAIM = "all", "claim"
+ALL_DRIVES, CLAIMED_DRIVES = "all", "claim"
 """The part names of an audit of all drives, and of audits that share their drives by claims. A shard has a name such as `2-of-3`."""
 
 
@@ -16,10 +16,10 @@ def part_name(shard: tuple[int, int] | None, *, claim: bool) -> str:
     """Return the name of an audit's part: a shard, a share by claims, or all drives."""
     if shard is not None:
         return f"{shard[0]}-of-{shard[1]}"
-    return CLAIM if claim else ALL
+    return CLAIMED_DRIVES if claim else ALL_DRIVES
 
 
-def begin(results: ResultStore, part: str) -> None:
+def record_begin(results: ResultStore, part: str) -> None:
     """Record that a part has begun. If it is a shard, record all other shards as expected."""
     _, is_shard, n = part.partition("-of-")
     for name in [f"{i}-of-{n}" for i in range(1, int(n) + 1)] if is_shard else [part]:
@@ -27,7 +27,7 @@ def begin(results: ResultStore, part: str) -> None:
     results.delete([f"parts/ended/{part}"])
 
 
-def ask(results: ResultStore, part: str, n_drives: int) -> None:
+def record_drive_count(results: ResultStore, part: str, n_drives: int) -> None:
     """Record how many drives a part that has begun has to judge."""
     results.write(f"parts/begun/{part}", f"{n_drives}\n".encode())
 
@@ -45,16 +45,16 @@ def n_expected_drives(results: ResultStore) -> int | None:
     return sum(map(int, counted)) if all(n.isdigit() for n in counted) else None
 
 
-def end(results: ResultStore, part: str) -> None:
+def record_end(results: ResultStore, part: str) -> None:
     """Record that a part has ended."""
     results.write(f"parts/ended/{part}", b"\n")
 
 
-def begun(results: ResultStore) -> set[str]:
+def begun_or_expected_parts(results: ResultStore) -> set[str]:
     """Return the names of the parts that have begun or are expected."""
     return {Path(name).name for name in results.names("parts/begun")}
 
 
 def unfinished_parts(results: ResultStore) -> list[str]:
     """Return the names of the parts that have begun or are expected, but have not ended."""
-    return sorted(begun(results) - {Path(name).name for name in results.names("parts/ended")})
+    return sorted(begun_or_expected_parts(results) - {Path(name).name for name in results.names("parts/ended")})

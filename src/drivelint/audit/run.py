@@ -15,16 +15,22 @@ from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.audit import delta, listing, parts, sealed
 from drivelint.audit.claims import LEASE_S, Claims
-from drivelint.audit.compact import compact, create_views, database, drop
-from drivelint.audit.driver import SUBMITTED_TASKS_PER_WORKER, TASK_DRIVES, Driver, task_size, tasks
+from drivelint.audit.compact import compact, create_views, open_database, remove_drives
+from drivelint.audit.driver import (
+    SUBMITTED_TASKS_PER_WORKER,
+    TASK_DRIVES,
+    Driver,
+    divide_into_tasks,
+    max_drives_per_task,
+)
 from drivelint.audit.executors.choice import open_executor
-from drivelint.audit.executors.local import deaf_to_ctrl_c, prepare_worker_process
+from drivelint.audit.executors.local import block_ctrl_c, prepare_worker_process
 from drivelint.audit.identity import rule_table, run_id, versions
-from drivelint.audit.lock import locked
+from drivelint.audit.lock import lock_results
 from drivelint.audit.model import JudgeSettings
-from drivelint.audit.sources import doubtful_tags
+from drivelint.audit.sources import tag_warnings
 from drivelint.audit.store import LocalFolder, open_store
-from drivelint.audit.summary import AuditSummary, summed, summed_receipts
+from drivelint.audit.summary import AuditSummary, summary_of_all_drives, sums_of_receipts
 from drivelint.audit.unpacked import SUMMARY_FILE
 from drivelint.drive.trace import DriveInput
 from drivelint.engine.default_rules import chosen_selectors
@@ -48,7 +54,7 @@ if TYPE_CHECKING:
 
 AUDIT_FILE: Final = "audit.json"
 RULES_FILE: Final = "rules.parquet"
-_LISTED: Final = "(FROM receipts SEMI JOIN _listed USING (source_id))"
+_LISTED_RECEIPTS: Final = "(FROM receipts SEMI JOIN _listed USING (source_id))"
 """The receipts that were packed before, of drives that this part of the audit lists."""
 RECEIPTS_PER_COMPACTION: Final = 4_000
 WORKER_BYTES: Final = 500_000_000
@@ -93,119 +99,129 @@ def audit(request: AuditRequest, progress: Progress, executor: Executor | None =
     """
     rules = chosen_selectors(request.settings.rules, request.settings.rules_dirs, request)
     request = replace(request, settings=replace(request.settings, rules=rules))
-    id_ = run_id(request.settings)
+    run_hash = run_id(request.settings)
     results = open_store(request.out)
     alone = request.shard is None and not request.claim
     if request.delta is not None:
         if not alone:
             raise UsageError("--delta needs packed tables: when all parts have ended, run drivelint merge --delta")
-        delta.ready(request.delta, request.out, id_)
-    was_whole = _create_or_check_settings(request, results, id_)
+        delta.require_writable(request.delta, request.out, run_hash)
+    was_unchanged = _create_or_check_settings(request, results, run_hash)
     if not alone and (request.retry_errors or request.prune):
         raise UsageError("--retry-errors and --prune remove results: use them without --shard and --claim")
     part = parts.part_name(request.shard, claim=request.claim)
-    with locked(results, shared=not alone):
-        parts.begin(results, part)
-        audit_summary = _audited(request, results, progress, id_=id_, executor=executor, was_whole=was_whole)
-        parts.end(results, part)
+    with lock_results(results, shared=not alone):
+        parts.record_begin(results, part)
+        audit_summary = _audit_under_lock(
+            request, results, progress, run_hash=run_hash, executor=executor, was_unchanged=was_unchanged
+        )
+        parts.record_end(results, part)
     return audit_summary
 
 
-def _audited(
+def _audit_under_lock(
     request: AuditRequest,
     results: ResultStore,
     progress: Progress,
     *,
-    id_: str,
+    run_hash: str,
     executor: Executor | None,
-    was_whole: bool,
+    was_unchanged: bool,
 ) -> AuditSummary:
-    """Run the audit while its lock is held. `was_whole`: the files of the earlier audit are known to be unchanged."""
+    """Run the audit while its lock is held. `was_unchanged`: the files of the earlier audit are known to be unchanged."""
     alone = request.shard is None and not request.claim
     if alone:
         if isinstance(results, LocalFolder):
-            results.sweep()
+            results.remove_unfinished_files()
         progress.stage("looking at earlier results", None)
-        sealed.require_rows_unchanged(results, request.out, packed=not was_whole)
+        sealed.require_rows_unchanged(results, request.out, packed=not was_unchanged)
         compact(results)
-    with database() as con, TemporaryDirectory(prefix="drivelint-audit-") as home:
+    with open_database() as con, TemporaryDirectory(prefix="drivelint-audit-") as downloads:
         progress.stage("listing", None)
-        n_drives = listing.fill(con, request.sources, _drive_input(request), id_, request.shard)
-        parts.ask(results, parts.part_name(request.shard, claim=request.claim), n_drives)
-        create_views(con, results, Path(home))
-        if alone and (n_stale := _drop_stale(con, results, retry=request.retry_errors)):
-            create_views(con, results, Path(home))
+        n_drives = listing.fill_listed_drives(con, request.sources, _drive_input(request), run_hash, request.shard)
+        parts.record_drive_count(results, parts.part_name(request.shard, claim=request.claim), n_drives)
+        create_views(con, results, Path(downloads))
+        if alone and (n_stale := _remove_stale_results(con, results, with_unjudged=request.retry_errors)):
+            create_views(con, results, Path(downloads))
             progress.note(f"{plural(n_stale, 'drive')} judged again: changed since, or not judged before")
-        n_absent = _absent(con, results, request, progress) if alone else 0
+        n_absent = _count_or_prune_absent(con, results, request, progress) if alone else 0
         if n_absent and request.prune:
-            create_views(con, results, Path(home))
+            create_views(con, results, Path(downloads))
         (n_known,) = con.execute("SELECT count(*) FROM _listed SEMI JOIN receipts USING (source_id)").fetchall()[0]
-        for doubt in _doubtful_tags(con):
+        for doubt in _tag_warnings(con):
             progress.note(doubt)
         progress.stage("auditing", n_drives)
         progress.advance(n_known)
-        if not alone and (n_stale := len(_stale(con, retry=False))):
+        if not alone and (n_stale := len(_stale_keys(con, with_unjudged=False))):
             raise UsageError(f"{plural(n_stale, 'log')} changed since: run the audit once without --shard and --claim")
-        audit_summary = _judge(request, con, results, progress, id_=id_, executor=executor)
+        audit_summary = _judge_remaining(request, con, results, progress, run_hash=run_hash, executor=executor)
         n_reused = n_known + audit_summary.reused
         if not alone:
-            return replace(audit_summary.plus(summed_receipts(con, _LISTED)), reused=n_reused)
-        audit_summary = _close(con, results, Path(home), n_reused)
+            return replace(audit_summary.plus(sums_of_receipts(con, _LISTED_RECEIPTS)), reused=n_reused)
+        audit_summary = _pack_and_seal(con, results, Path(downloads), n_reused)
         if request.delta is not None:
-            _write_delta(request.delta, con, results, Path(home), progress, id_=id_, audit_summary=audit_summary)
+            _write_delta(
+                request.delta, con, results, Path(downloads), progress, run_hash=run_hash, audit_summary=audit_summary
+            )
         return replace(audit_summary, n_asked=n_drives, n_absent=0 if request.prune else n_absent)
 
 
-def _doubtful_tags(con: duckdb.DuckDBPyConnection) -> Iterator[str]:
+def _tag_warnings(con: duckdb.DuckDBPyConnection) -> Iterator[str]:
     """Yield warnings about tags whose names look like a condition or an option of the manifest."""
     rows = con.execute("SELECT DISTINCT unnest(map_keys(tags)) FROM _listed ORDER BY 1").fetchall()
-    yield from doubtful_tags([name for (name,) in rows])
+    yield from tag_warnings([name for (name,) in rows])
 
 
-def _judge(
+def _judge_remaining(
     request: AuditRequest,
     con: duckdb.DuckDBPyConnection,
     results: ResultStore,
     progress: Progress,
     *,
-    id_: str,
+    run_hash: str,
     executor: Executor | None,
 ) -> AuditSummary:
     """Let workers judge the listed drives that have no receipt; return the summary of these drives."""
     audit_summary, fresh = AuditSummary(), 0
     claims = Claims(results, request.lease_s) if request.claim else None
 
-    def tell(receipt: Receipt) -> None:
+    def count_receipt(receipt: Receipt) -> None:
         nonlocal fresh
         fresh += not receipt.reused
-        audit_summary.count(receipt)
+        audit_summary.add_receipt(receipt)
         progress.advance()
         if receipt.status != "judged":
             progress.note(f"not judged: {receipt.reason}")
 
-    def busy() -> None:
+    def compact_if_due() -> None:
         nonlocal fresh
         if request.shard is None and claims is None and fresh >= RECEIPTS_PER_COMPACTION:
-            _compact_apart(request.out)
+            _compact_in_new_process(request.out)
             fresh = 0
 
     workers = executor or open_executor(
         request.cluster, workers=request.workers, memory=request.worker_memory, timeout_s=request.drive_timeout_s
     )
     try:
-        with claims.alive() if claims else nullcontext():
+        with claims.keep_alive() if claims else nullcontext():
             ahead = SUBMITTED_TASKS_PER_WORKER * workers.capacity * 16 if claims is None else TASK_DRIVES
             (n_left,) = con.execute("SELECT count(*) FROM _listed").fetchall()[0]
-            most = task_size(n_left, workers.capacity)
-            driver = Driver(workers, results, tell, busy, claims.mark_done if claims else lambda _drives: None)
+            most = max_drives_per_task(n_left, workers.capacity)
+            driver = Driver(
+                workers, results, count_receipt, compact_if_due, claims.mark_done if claims else lambda _drives: None
+            )
             while True:
-                todo = claims.claimed_drives(listing.todo(con)) if claims else listing.todo(con)
+                todo = claims.claimed_drives(listing.unjudged_drives(con)) if claims else listing.unjudged_drives(con)
                 settings, n_small = _settings_of_workers(request), workers.capacity
-                driver.run(tasks(todo, request.out, id_, settings, ahead=ahead, max_drives=most, n_small=n_small))
+                driver.run(
+                    divide_into_tasks(
+                        todo, request.out, run_hash, settings, group_size=ahead, max_drives=most, n_small=n_small
+                    )
+                )
                 if claims is None or not claims.n_waiting:
                     break
-                if not claims.n_taken:
-                    claims.pause()
+                if not claims.n_claimed:
+                    claims.wait_for_others()
     finally:
         workers.close()
     return audit_summary
@@ -220,44 +236,48 @@ def _settings_of_workers(request: AuditRequest) -> JudgeSettings:
     return replace(request.settings, memory=min(memory, left))
 
 
-def _compact_apart(out: str) -> None:
+def _compact_in_new_process(out: str) -> None:
     """Pack the complete results in a separate process, so that its memory does not add to the driver's. Errors: as `compact`."""
     context = multiprocessing.get_context("spawn")  # a fork would copy threads that hold locks
     with (
         suppress(BrokenProcessPool),  # if the process is killed, the next compaction packs its results
         ProcessPoolExecutor(1, context, initializer=prepare_worker_process, initargs=(os.getpid(),)) as apart,
     ):
-        with deaf_to_ctrl_c():
-            packing = apart.submit(_compact_there, out)
+        with block_ctrl_c():
+            packing = apart.submit(_compact_whole_batches, out)
         packing.result()
 
 
-def _compact_there(out: str) -> None:
+def _compact_whole_batches(out: str) -> None:
     compact(open_store(out), while_judging=True)
 
 
-def _drop_stale(con: duckdb.DuckDBPyConnection, results: ResultStore, *, retry: bool) -> int:
-    """Remove the results of changed logs; with `retry`, also those of drives that were not judged. Return how many were removed."""
-    stale = _stale(con, retry=retry)
-    drop(results, stale)
+def _remove_stale_results(con: duckdb.DuckDBPyConnection, results: ResultStore, *, with_unjudged: bool) -> int:
+    """Remove the results of changed logs; with `with_unjudged`, also those of drives that were not judged. Return how many were removed."""
+    stale = _stale_keys(con, with_unjudged=with_unjudged)
+    remove_drives(results, stale)
     return len(stale)
 
 
-def _stale(con: duckdb.DuckDBPyConnection, *, retry: bool) -> pa.Array:
-    return con.execute(statement("audit/stale"), {"retry": retry}).to_arrow_table()["key"].combine_chunks()
+def _stale_keys(con: duckdb.DuckDBPyConnection, *, with_unjudged: bool) -> pa.Array:
+    return con.execute(statement("audit/stale"), {"retry": with_unjudged}).to_arrow_table()["key"].combine_chunks()
 
 
-def _close(
-    con: duckdb.DuckDBPyConnection, results: ResultStore, home: Path, n_reused: int, missing_parts: Sequence[str] = ()
+def _pack_and_seal(
+    con: duckdb.DuckDBPyConnection,
+    results: ResultStore,
+    downloads: Path,
+    n_reused: int,
+    missing_parts: Sequence[str] = (),
 ) -> AuditSummary:
     """Pack everything, then write the summary and the list of files. Return the summary."""
     sealed.unseal(results)
     compact(results)
-    create_views(con, results, home)
-    told = told_of(results, "the audit") or {}
+    create_views(con, results, downloads)
+    told = read_audit_file(results, "the audit") or {}
     robust = bool(told.get("settings", {}).get("robustness"))
-    audit_summary = replace(summed(con, n_reused), missing_parts=list(missing_parts), robust=robust)
-    content = (json.dumps(audit_summary.plain(), indent=2, sort_keys=True) + "\n").encode()
+    audit_summary = replace(summary_of_all_drives(con, n_reused), missing_parts=list(missing_parts), robust=robust)
+    content = (json.dumps(audit_summary.file_content(), indent=2, sort_keys=True) + "\n").encode()
     sealed.seal(results, [AUDIT_FILE, RULES_FILE], content)
     return audit_summary
 
@@ -266,10 +286,10 @@ def _write_delta(
     dest: str,
     con: duckdb.DuckDBPyConnection,
     results: ResultStore,
-    home: Path,
+    downloads: Path,
     progress: Progress,
     *,
-    id_: str,
+    run_hash: str,
     audit_summary: AuditSummary,
 ) -> None:
     """Write the packed results to the Delta tables. Leave the tables unchanged if parts of the audit have not ended."""
@@ -277,7 +297,9 @@ def _write_delta(
         progress.note(f"{dest}: the Delta tables stay as they are: parts of the audit have not ended")
         return
     progress.stage("writing Delta tables", None)
-    progress.note(delta.write(con, results, home, dest, run=id_, digest=audit_summary.digest).text(dest))
+    progress.note(
+        delta.write_tables(con, results, downloads, dest, run_id=run_hash, digest=audit_summary.digest).text(dest)
+    )
 
 
 def merge(out: str, progress: Progress, delta_dest: str | None = None) -> AuditSummary:
@@ -286,60 +308,68 @@ def merge(out: str, progress: Progress, delta_dest: str | None = None) -> AuditS
     `delta_dest`: folder or URL prefix where the packed tables are also written as Delta tables. Errors: `UsageError`, `OutputError`.
     """
     results = open_store(out)
-    told = told_of(results, out)
+    told = read_audit_file(results, out)
     if told is None:
         raise UsageError(f"{out}: no audit is here: name the folder that `audit --out` wrote")
-    id_ = told["run_id"]
+    run_hash = told["run_id"]
     if delta_dest is not None:
-        delta.ready(delta_dest, out, id_)
+        delta.require_writable(delta_dest, out, run_hash)
     progress.stage("packing", None)
-    with locked(results, shared=False), database() as con, TemporaryDirectory(prefix="drivelint-audit-") as home:
+    with (
+        lock_results(results, shared=False),
+        open_database() as con,
+        TemporaryDirectory(prefix="drivelint-audit-") as downloads,
+    ):
         if isinstance(results, LocalFolder):
-            results.sweep()
-        sealed.require_rows_unchanged(results, out, packed=not _is_whole(results, out))
+            results.remove_unfinished_files()
+        sealed.require_rows_unchanged(results, out, packed=not _is_sealed(results, out))
         results.delete(list(results.names("claims")))
-        audit_summary = _close(con, results, Path(home), 0, parts.unfinished_parts(results))
+        audit_summary = _pack_and_seal(con, results, Path(downloads), 0, parts.unfinished_parts(results))
         if delta_dest is not None:
-            _write_delta(delta_dest, con, results, Path(home), progress, id_=id_, audit_summary=audit_summary)
+            _write_delta(
+                delta_dest, con, results, Path(downloads), progress, run_hash=run_hash, audit_summary=audit_summary
+            )
         return replace(audit_summary, n_asked=parts.n_expected_drives(results))
 
 
-def _absent(con: duckdb.DuckDBPyConnection, results: ResultStore, request: AuditRequest, progress: Progress) -> int:
+def _count_or_prune_absent(
+    con: duckdb.DuckDBPyConnection, results: ResultStore, request: AuditRequest, progress: Progress
+) -> int:
     """Return how many results belong to logs that are not among the sources; remove these results if the request says `prune`."""
     absent = con.execute(statement("audit/absent")).to_arrow_table()["key"].combine_chunks()
     if request.prune and len(absent):
-        drop(results, absent)
+        remove_drives(results, absent)
         progress.note(f"{plural(len(absent), 'result')} removed: their logs are not among the sources")
     return len(absent)
 
 
-def _create_or_check_settings(request: AuditRequest, results: ResultStore, id_: str) -> bool:
+def _create_or_check_settings(request: AuditRequest, results: ResultStore, run_hash: str) -> bool:
     """Write `audit.json` with the settings that determine the results; if it exists, check that its settings are the same.
 
     Return whether an audit exists that has ended and whose files are unchanged since then. Errors: `UsageError` if the existing audit used
     other rules, parameters or versions, or if its files were changed after it ended.
     """
-    told = {"run_id": id_, "versions": versions(), "settings": _plain(request.settings)}
+    told = {"run_id": run_hash, "versions": versions(), "settings": _settings_without_memory(request.settings)}
     told |= {name: getattr(request, name) for name in ("fail_on", "strict", "min_judged")}
     content = (json.dumps(told, indent=2, sort_keys=True, default=str) + "\n").encode()
-    was_whole = False
+    was_unchanged = False
     if not results.create(AUDIT_FILE, content):
-        there = told_of(results, request.out) or {}
-        if there.get("run_id") != id_:
+        there = read_audit_file(results, request.out) or {}
+        if there.get("run_id") != run_hash:
             changed = sorted(name for name, value in versions().items() if there.get("versions", {}).get(name) != value)
             why = f"other versions of {', '.join(changed)}" if changed else "other rules, parameters or profiles"
             raise UsageError(f"{request.out}: the audit there was made with {why}: choose another --out")
-        was_whole = _is_whole(results, request.out)
+        was_unchanged = _is_sealed(results, request.out)
         sealed.unseal(results)
         results.delete([SUMMARY_FILE, GATE_FILE])  # they describe the earlier results
         if request.shard is None and not request.claim:
             results.write(AUDIT_FILE, content)  # its `fail_on`, `strict` and `min_judged` may differ
     # The process that wrote audit.json may not have written the rules yet, or was killed before it could.
     results.create(RULES_FILE, parquet_bytes(rule_table(request.settings), "rule"))
-    return was_whole
+    return was_unchanged
 
 
-def told_of(results: ResultStore, dest: str) -> dict[str, Any] | None:
+def read_audit_file(results: ResultStore, dest: str) -> dict[str, Any] | None:
     """Return the content of `audit.json`; None: there is no audit. `dest`: the place, for the error message. Errors: `UsageError` for a
     damaged file."""
     content = results.read(AUDIT_FILE)
@@ -354,12 +384,12 @@ def told_of(results: ResultStore, dest: str) -> dict[str, Any] | None:
     )
 
 
-def _is_whole(results: ResultStore, dest: str) -> bool:
-    with TemporaryDirectory(prefix="drivelint-audit-") as home:
-        return sealed.require_unchanged(results, Path(home), dest)
+def _is_sealed(results: ResultStore, dest: str) -> bool:
+    with TemporaryDirectory(prefix="drivelint-audit-") as downloads:
+        return sealed.require_listed_files_unchanged(results, Path(downloads), dest)
 
 
-def _plain(settings: JudgeSettings) -> dict[str, Any]:
+def _settings_without_memory(settings: JudgeSettings) -> dict[str, Any]:
     return {key: value for key, value in vars(settings).items() if key != "memory"}
 
 

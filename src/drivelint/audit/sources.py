@@ -15,7 +15,7 @@ import pyarrow as pa
 import pyarrow.csv as pa_csv
 import pyarrow.parquet as pq
 
-from drivelint.audit.bucket import download, is_url, list_objects, look
+from drivelint.audit.bucket import download, find_object, is_url, list_objects
 from drivelint.audit.model import AuditDrive
 from drivelint.drive import conditions
 from drivelint.drive.conditions import CONDITION_VALUES
@@ -23,7 +23,7 @@ from drivelint.drive.trace import DriveInput
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats import expand_traces
 from drivelint.formats.files import TRACE_SUFFIXES, is_log_name, is_utf8
-from drivelint.phrases import hint, listed
+from drivelint.phrases import hint, name_list
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -31,15 +31,15 @@ if TYPE_CHECKING:
 OPTION_COLUMNS: Final = ("log", "map", "ego", "environment", "handedness", "mapping", "topic")
 """Columns of a manifest that are options, not tags: the log, its map, its ego, conditions (`weather=wet;light=night`), and other
 options."""
-_SIDES: Final = ("auto", "lht", "rht")
-_TABLE_NEVER_HAS: Final = frozenset({"map", "environment", "handedness", "mapping"})
+_HANDEDNESS_VALUES: Final = ("auto", "lht", "rht")
+_MANIFEST_ONLY_COLUMNS: Final = frozenset({"map", "environment", "handedness", "mapping"})
 """Columns that a manifest may have, but no table of states."""
 _LEAST_NUMBER_COLUMNS: Final = 3
 """A row of a table of states has at least this many numbers: a time and two coordinates."""
-_LINES: Final = 100
-_ALIKE: Final = 0.8
+_SAMPLE_LINES: Final = 100
+_LEAST_SIMILARITY: Final = 0.8
 """From this similarity on, the name of a tag counts as a misspelt column: `maps` does, `lap` does not."""
-_ROWS: Final = 10_000
+_BATCH_ROWS: Final = 10_000
 
 
 def drives(sources: Sequence[str], options: DriveInput) -> Iterator[AuditDrive]:
@@ -53,9 +53,9 @@ def drives(sources: Sequence[str], options: DriveInput) -> Iterator[AuditDrive]:
     logs: list[str] = []
     for source in sources:
         if is_url(source):
-            yield from _of_store(source, options)
+            yield from _drives_in_bucket(source, options)
         elif _is_manifest(Path(source), with_mapping=options.mapping is not None):
-            yield from _of_manifest(Path(source), source, options)
+            yield from _drives_of_manifest(Path(source), source, options)
         else:
             logs.append(source)
     if logs:
@@ -65,7 +65,7 @@ def drives(sources: Sequence[str], options: DriveInput) -> Iterator[AuditDrive]:
             yield AuditDrive(str(path), options)
 
 
-def with_manifests(
+def expand_manifests(
     traces: Sequence[str], options: DriveInput, note: Callable[[str], object] = lambda _: None
 ) -> tuple[tuple[str, ...], dict[Path, DriveInput]]:
     """Return the logs that `check` has to judge, and the options of logs that a manifest names. Each manifest in `traces` is replaced by
@@ -79,12 +79,14 @@ def with_manifests(
     logs: list[str] = []
     own: dict[Path, DriveInput] = {}
     for trace in traces:
-        if not _names_logs(Path(trace)):
+        if not _has_existing_log(Path(trace)):
             logs.append(trace)
             continue
-        for text in doubtful_tags([name for name in next(_rows(Path(trace)), {}) if name not in OPTION_COLUMNS]):
+        for text in tag_warnings(
+            [name for name in next(_manifest_rows(Path(trace)), {}) if name not in OPTION_COLUMNS]
+        ):
             note(text)
-        for drive in _of_manifest(Path(trace), trace, plain):
+        for drive in _drives_of_manifest(Path(trace), trace, plain):
             if own.setdefault(Path(drive.log), drive.options) != drive.options:
                 raise UsageError(
                     f"{trace}: names {drive.log} twice, with different options: drivelint audit judges it with both"
@@ -93,37 +95,37 @@ def with_manifests(
     return tuple(logs), own
 
 
-def doubtful_tags(names: Sequence[str]) -> Iterator[str]:
+def tag_warnings(names: Sequence[str]) -> Iterator[str]:
     """Yield warnings about tags whose name is a condition, or is similar to an option column."""
-    if of_conditions := listed([f"column {name}" for name in names if name in CONDITION_VALUES]):
+    if of_conditions := name_list([f"column {name}" for name in names if name in CONDITION_VALUES]):
         yield f"the manifest's {of_conditions} is only a tag: conditions of a drive stand in the column environment, such as weather=wet"
     for name in names:
         text = name.casefold()
         # swapping two letters of a short name lowers the similarity below that of `lap` and `map`
         turned = [each for each in OPTION_COLUMNS if each != text and sorted(each) == sorted(text)]
-        for meant in (*turned, *get_close_matches(text, OPTION_COLUMNS, n=1, cutoff=_ALIKE))[:1]:
+        for meant in (*turned, *get_close_matches(text, OPTION_COLUMNS, n=1, cutoff=_LEAST_SIMILARITY))[:1]:
             yield f"the manifest's column {name} is only a tag: did you mean {meant}?"
 
 
-def _names_logs(path: Path) -> bool:
+def _has_existing_log(path: Path) -> bool:
     if not path.is_file() or path.suffix.lower() not in {".parquet", ".csv"}:
         return False
     try:
-        first = next(_rows(path), {})
+        first = next(_manifest_rows(path), {})
     except UsageError:
         return False  # the reader of logs reports why it is no log either
     name = first.get("log", "")
     return bool(name) and (is_url(name) or _exists(path.parent / name))
 
 
-def _of_store(url: str, options: DriveInput) -> Iterator[AuditDrive]:
+def _drives_in_bucket(url: str, options: DriveInput) -> Iterator[AuditDrive]:
     """Yield the drives below a URL prefix, or of a manifest in the object store."""
-    one = look(url) if url.lower().endswith((".parquet", ".csv")) else None
+    one = find_object(url) if url.lower().endswith((".parquet", ".csv")) else None
     if one is not None:
         with TemporaryDirectory(prefix="drivelint-manifest-") as home:
             copy = download(one, Path(home))
             if _is_manifest(copy, with_mapping=options.mapping is not None):
-                yield from _of_manifest(copy, url, options)
+                yield from _drives_of_manifest(copy, url, options)
                 return
     found = [one] if one is not None else list_objects(url)
     n = 0
@@ -163,15 +165,15 @@ def _is_manifest(path: Path, *, with_mapping: bool) -> bool:
             raise UsageError(
                 f"{path}: a manifest needs a column log: its column {name!r} names logs: rename that column to log"
             )
-    if not with_mapping and (not _TABLE_NEVER_HAS.isdisjoint(names) or not _may_have_states(path)):
+    if not with_mapping and (not _MANIFEST_ONLY_COLUMNS.isdisjoint(names) or not _may_have_actor_states(path)):
         apart = "; separate them by commas" if re.search(r"[;\t]", "".join(names)) else ""
         raise UsageError(
-            f"{path}: a manifest needs a column log: its columns are {listed([name for name in names if name], 6)}{apart}"
+            f"{path}: a manifest needs a column log: its columns are {name_list([name for name in names if name], 6)}{apart}"
         )
     return False
 
 
-def _may_have_states(path: Path) -> bool:
+def _may_have_actor_states(path: Path) -> bool:
     """Return whether a table can contain states: a first row, or the Parquet types, must allow a time and a position. A CSV without rows
     counts as yes."""
     if path.suffix.lower() == ".parquet":
@@ -179,7 +181,7 @@ def _may_have_states(path: Path) -> bool:
         numbers = sum(pa.types.is_primitive(each) and not pa.types.is_boolean(each) for each in types)
         return numbers >= _LEAST_NUMBER_COLUMNS or any(map(pa.types.is_nested, types))
     with path.open(encoding="utf-8-sig", errors="replace") as file:
-        some = [re.split(r"[,;\t]", line) for line in islice(file, 1, _LINES)]
+        some = [re.split(r"[,;\t]", line) for line in islice(file, 1, _SAMPLE_LINES)]
     rows = [row for row in some if any(cell.strip() for cell in row)]
     return not rows or any(sum(map(_is_number, row)) >= _LEAST_NUMBER_COLUMNS for row in rows)
 
@@ -208,66 +210,66 @@ def _first_row(path: Path) -> dict[str, Any]:
         return {}
 
 
-def _of_manifest(path: Path, manifest_name: str, options: DriveInput) -> Iterator[AuditDrive]:
-    for number, row in enumerate(_rows(path), start=1):
+def _drives_of_manifest(path: Path, manifest_name: str, options: DriveInput) -> Iterator[AuditDrive]:
+    for number, row in enumerate(_manifest_rows(path), start=1):
         log = row.pop("log")
         if not log:
             raise UsageError(f"{manifest_name}, row {number}: no log: fill the column log")
         try:
-            _require_values(row, options)
+            _require_valid_options(row, options)
         except UsageError as error:
             raise UsageError(f"{manifest_name}, row {number} ({log}): {error}: nothing was judged yet") from error
         own: dict[str, Any] = {}
         if place := row.pop("map", None):
-            own |= {"map": Path(_beside(manifest_name, place)), "map_dir": None}
+            own |= {"map": Path(_resolve_path(manifest_name, place)), "map_dir": None}
         if ego := row.pop("ego", None):
             own["ego"] = ego
         if env := row.pop("environment", None):
-            own["env"] = (*options.env, *_parts(env))
+            own["env"] = (*options.env, *_split_conditions(env))
         if (mapping := row.pop("mapping", None)) and (Path(path).parent / mapping).is_file():
-            mapping = _beside(manifest_name, mapping)
+            mapping = _resolve_path(manifest_name, mapping)
         said = {"mapping": mapping, "handedness": row.pop("handedness", None), "topic": row.pop("topic", None)}
         own |= {name: value for name, value in said.items() if value}
         tags = {name: value for name, value in sorted(row.items()) if value}
-        yield AuditDrive(_beside(manifest_name, log), replace(options, **own), tags)
+        yield AuditDrive(_resolve_path(manifest_name, log), replace(options, **own), tags)
 
 
-def _require_values(row: Mapping[str, str], options: DriveInput) -> None:
+def _require_valid_options(row: Mapping[str, str], options: DriveInput) -> None:
     """Raise `UsageError` for option values of a row that are invalid, before any drive is judged."""
     try:
-        conditions.parse((*options.env, *_parts(row.get("environment", ""))))
+        conditions.parse((*options.env, *_split_conditions(row.get("environment", ""))))
     except UsageError as error:
         raise UsageError(str(error).replace("--env", "environment", 1)) from error
     side = row.get("handedness", "")
-    if side and side not in _SIDES:
-        raise UsageError(f"handedness {side!r}: {hint(side, _SIDES)}")
+    if side and side not in _HANDEDNESS_VALUES:
+        raise UsageError(f"handedness {side!r}: {hint(side, _HANDEDNESS_VALUES)}")
 
 
-def _parts(environment: str) -> tuple[str, ...]:
+def _split_conditions(environment: str) -> tuple[str, ...]:
     return tuple(part.strip() for part in environment.split(";") if part.strip())
 
 
-def _rows(path: Path) -> Iterator[dict[str, str]]:
+def _manifest_rows(path: Path) -> Iterator[dict[str, str]]:
     """Yield the rows of a manifest with all cells as text; a missing cell is ''."""
     try:
         if path.suffix.lower() == ".parquet":
             with path.open("rb") as opened, pq.ParquetFile(opened) as file:
-                for batch in file.iter_batches(_ROWS):
-                    yield from _as_text(batch.to_pylist())
+                for batch in file.iter_batches(_BATCH_ROWS):
+                    yield from _rows_as_text(batch.to_pylist())
         else:
             with path.open("rb") as opened, pa_csv.open_csv(opened) as reader:
                 for batch in reader:
-                    yield from _as_text(batch.to_pylist())
+                    yield from _rows_as_text(batch.to_pylist())
     except (OSError, ValueError) as error:
         raise UsageError(f"{path}: not a manifest that can be read: {error}") from error
 
 
-def _as_text(rows: list[dict[str, Any]]) -> Iterator[dict[str, str]]:
+def _rows_as_text(rows: list[dict[str, Any]]) -> Iterator[dict[str, str]]:
     for row in rows:
         yield {name: "" if value is None else str(value) for name, value in row.items()}
 
 
-def _beside(manifest: str, place: str) -> str:
+def _resolve_path(manifest: str, place: str) -> str:
     """Return a path in a manifest, resolved against the manifest's folder; a URL or an absolute path stays unchanged."""
     if is_url(place):
         return place

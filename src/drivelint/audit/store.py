@@ -57,7 +57,7 @@ class LocalFolder:
         """See `ResultStore.create`."""
         path = self.root / name
         try:
-            temporary = self._staged(path, content)
+            temporary = self._write_temporary_file(path, content)
             try:
                 os.link(temporary, path)  # unlike a rename, this fails if the name exists
             except FileExistsError:
@@ -66,17 +66,17 @@ class LocalFolder:
                 temporary.unlink(missing_ok=True)
             _sync_folder(path.parent)
         except OSError as error:
-            raise self._failed(error) from error
+            raise self._output_error(error) from error
         return True
 
     def write(self, name: str, content: bytes) -> None:
         """See `ResultStore.write`."""
         path = self.root / name
         try:
-            self._staged(path, content).replace(path)
+            self._write_temporary_file(path, content).replace(path)
             _sync_folder(path.parent)
         except OSError as error:
-            raise self._failed(error) from error
+            raise self._output_error(error) from error
 
     def read(self, name: str) -> bytes | None:
         """See `ResultStore.read`."""
@@ -85,7 +85,7 @@ class LocalFolder:
         except FileNotFoundError:
             return None
         except OSError as error:
-            raise self._failed(error) from error
+            raise self._output_error(error) from error
 
     def names(self, prefix: str) -> Iterator[str]:
         """See `ResultStore.names`. Files that are being written are left out."""
@@ -96,7 +96,7 @@ class LocalFolder:
             except FileNotFoundError:
                 continue
             except OSError as error:
-                raise self._failed(error) from error
+                raise self._output_error(error) from error
             for entry in entries:
                 if entry.is_dir():
                     todo.append(Path(entry.path))
@@ -109,13 +109,13 @@ class LocalFolder:
             for name in names:
                 (self.root / name).unlink(missing_ok=True)
         except OSError as error:
-            raise self._failed(error) from error
+            raise self._output_error(error) from error
 
     def fetch(self, name: str, folder: Path) -> Path:  # noqa: ARG002 - as in `ResultStore`
         """See `ResultStore.fetch`."""
         return self.root / name
 
-    def adopt(self, name: str, finished: Path) -> None:
+    def move_into_store(self, name: str, finished: Path) -> None:
         """Move a complete local file into the store under a name."""
         path = self.root / name
         try:
@@ -126,21 +126,21 @@ class LocalFolder:
             temporary.replace(path)
             _sync_folder(path.parent)
         except OSError as error:
-            raise self._failed(error) from error
+            raise self._output_error(error) from error
 
-    def sweep(self) -> None:
+    def remove_unfinished_files(self) -> None:
         """Remove unfinished files of killed writers. No process may write meanwhile."""
         for file in self.root.rglob(".*.tmp"):
             file.unlink(missing_ok=True)
 
-    def _staged(self, path: Path, content: bytes) -> Path:
+    def _write_temporary_file(self, path: Path, content: bytes) -> Path:
         path.parent.mkdir(parents=True, exist_ok=True)
         temporary = path.with_name(f".{path.name}.{uuid.uuid4().hex}.tmp")
         temporary.write_bytes(content)
         _sync_file(temporary)
         return temporary
 
-    def _failed(self, error: OSError) -> OutputError:
+    def _output_error(self, error: OSError) -> OutputError:
         return OutputError(
             f"{self.root}: cannot write the results: {error.strerror or error}: free the disk or choose another --out"
         )

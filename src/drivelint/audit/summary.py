@@ -11,7 +11,7 @@ import pyarrow.compute as pc
 from drivelint.audit.compact import tables_digest
 from drivelint.errors import ExitCode
 from drivelint.fleet.distinct_logs import COUNTED_PREFIX, create_counted_views
-from drivelint.phrases import listed, plural
+from drivelint.phrases import name_list, plural
 from drivelint.reasons.signals import UNRECORDED_PREFIX
 from drivelint.result.certainty import LEAST_KEEPING_SHARE
 from drivelint.result.counts import SEVERITIES
@@ -27,9 +27,9 @@ MOST_LISTED_RULES: Final = 5
 MOST_LISTED_REASONS: Final = 3
 MOST_LISTED_COPIES: Final = 3
 MOST_LISTED_LOGS: Final = 3
-_NAMES_IN_FILE: Final = {"n_judged": "judged", "n_refused": "refused"}
+_KEY_IN_FILE: Final = {"n_judged": "judged", "n_refused": "refused"}
 """Fields that have another name in `summary.json`."""
-_UNDECIDED: Final = "nothing failed, because nothing could be decided"
+_UNDECIDED_REASON: Final = "nothing failed, because nothing could be decided"
 
 
 @dataclass
@@ -88,7 +88,7 @@ class AuditSummary:
         """The number of drives; logs with the same content count once."""
         return self.n_drives - self.copies - self.copies_not_judged
 
-    def count(self, receipt: Receipt) -> None:
+    def add_receipt(self, receipt: Receipt) -> None:
         """Add the drive of a receipt to the sums."""
         self.n_drives += 1
         self.reused += receipt.reused
@@ -104,9 +104,9 @@ class AuditSummary:
         self.errors += receipt.counts.get("error", 0)
         self.beyond_limits += receipt.beyond_limits
 
-    def plain(self) -> dict[str, Any]:
+    def file_content(self) -> dict[str, Any]:
         """Return the content of `summary.json`: name -> value."""
-        return {_NAMES_IN_FILE.get(name, name): value for name, value in vars(self).items()}
+        return {_KEY_IN_FILE.get(name, name): value for name, value in vars(self).items()}
 
     def plus(self, second: AuditSummary) -> AuditSummary:
         """Return the sums of both summaries, without the counts that only a whole audit has."""
@@ -172,16 +172,16 @@ class AuditSummary:
         if self.off_map:
             return f"the map does not fit {self.off_map} of {plural(self.n_contents, 'drive')}"
         if self.missing_parts:
-            return f"parts have not ended: {listed(self.missing_parts)}"
+            return f"parts have not ended: {name_list(self.missing_parts)}"
         return self.undecided or (
             f"{plural(self.unknown, 'verdict')} unknown (--strict)" if self.unknown else "no drive was judged"
         )
 
 
-def summed_receipts(con: duckdb.DuckDBPyConnection, of: str) -> AuditSummary:
-    """Return the sums over receipts. `of`: a relation with the columns of `receipts`."""
-    (row,) = con.execute(statement("audit/summed", of=of)).to_arrow_table().to_pylist()
-    return AuditSummary(**row, failed=dict(con.execute(statement("audit/failed", of=of)).fetchall()))
+def sums_of_receipts(con: duckdb.DuckDBPyConnection, receipts_relation: str) -> AuditSummary:
+    """Return the sums over receipts. `receipts_relation`: a relation with the columns of `receipts`."""
+    (row,) = con.execute(statement("audit/summed", of=receipts_relation)).to_arrow_table().to_pylist()
+    return AuditSummary(**row, failed=dict(con.execute(statement("audit/failed", of=receipts_relation)).fetchall()))
 
 
 class LogList(NamedTuple):
@@ -191,7 +191,7 @@ class LogList(NamedTuple):
     logs: list[str]
 
 
-def logs_that_are(con: duckdb.DuckDBPyConnection, flag: str) -> LogList:
+def logs_with_flag(con: duckdb.DuckDBPyConnection, flag: str) -> LogList:
     """Return the logs with the flag `lossy` or `off_map`; logs with the same content count once. Receipts of older audits may lack
     `off_map`."""
     if flag not in con.table("receipts").columns:
@@ -200,7 +200,7 @@ def logs_that_are(con: duckdb.DuckDBPyConnection, flag: str) -> LogList:
     return LogList(len(rows), [log for (log,) in rows[:MOST_LISTED_LOGS]])
 
 
-def summed(con: duckdb.DuckDBPyConnection, n_reused: int) -> AuditSummary:
+def summary_of_all_drives(con: duckdb.DuckDBPyConnection, n_reused: int) -> AuditSummary:
     """Return the summary of all drives with receipts. `n_reused`: drives that had a result before this run."""
     create_counted_views(con)
     event = statement("fleet/event", of=COUNTED_PREFIX, least_share=str(LEAST_KEEPING_SHARE))
@@ -212,7 +212,7 @@ def summed(con: duckdb.DuckDBPyConnection, n_reused: int) -> AuditSummary:
     (totals,) = con.execute(statement("fleet/totals")).to_arrow_table().to_pylist()
     findings = broken.group_by("severity").aggregate([("n_findings", "sum")]).to_pylist()
     return replace(
-        summed_receipts(con, "receipts"),
+        sums_of_receipts(con, "receipts"),
         reused=n_reused,
         **contacts.to_pylist()[0],
         copies=totals["copies"] - totals["copies_not_judged"],
@@ -228,10 +228,10 @@ def summed(con: duckdb.DuckDBPyConnection, n_reused: int) -> AuditSummary:
         broken=broken.slice(0, MOST_LISTED_RULES).to_pylist(),
         unknown_for=unknown_for.slice(0, MOST_LISTED_REASONS).to_pylist(),
         not_judged=not_judged.slice(0, MOST_LISTED_REASONS).to_pylist(),
-        undecided=_UNDECIDED if is_undecided else None,
+        undecided=_UNDECIDED_REASON if is_undecided else None,
         n_broken=broken.num_rows,
         n_unknown_for=unknown_for.num_rows,
-        lossy_logs=logs_that_are(con, "lossy").logs,
-        off_map_logs=logs_that_are(con, "off_map").logs,
+        lossy_logs=logs_with_flag(con, "lossy").logs,
+        off_map_logs=logs_with_flag(con, "off_map").logs,
         copied=con.execute(statement("audit/copied"), {"most": MOST_LISTED_COPIES}).to_arrow_table().to_pylist(),
     )

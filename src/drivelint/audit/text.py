@@ -18,21 +18,23 @@ def summary_text(
     audit_summary: AuditSummary,
     out: str,
     code: ExitCode,
-    gate: Iterable[str] = (),
+    gate_lines: Iterable[str] = (),
     *,
     fail_on: str = "critical",
-    why: str = "",
+    gate_reason: str = "",
 ) -> str:
     """Return the text: drives, findings by severity, broken rules, unknown verdicts, drives that were not judged, the gate, and next
     commands.
 
-    `why`: the reason for the exit code if a gate determines it.
+    `gate_reason`: the reason for the exit code if a gate determines it.
     """
-    return "\n".join(map(one_line, _lines(audit_summary, out, code, gate, fail_on=fail_on, why=why)))
+    return "\n".join(
+        map(one_line, _summary_lines(audit_summary, out, code, gate_lines, fail_on=fail_on, gate_reason=gate_reason))
+    )
 
 
-def _lines(
-    audit_summary: AuditSummary, out: str, code: ExitCode, gate: Iterable[str], *, fail_on: str, why: str
+def _summary_lines(
+    audit_summary: AuditSummary, out: str, code: ExitCode, gate_lines: Iterable[str], *, fail_on: str, gate_reason: str
 ) -> Iterator[str]:
     n_refused = audit_summary.n_refused - audit_summary.copies_not_judged
     yield f"{plural(audit_summary.n_contents, 'drive')} of {audit_summary.hours:,.2f} h; their egos drove {audit_summary.km:,.2f} km"
@@ -47,7 +49,7 @@ def _lines(
     yield ", ".join(state for state in states if state)
     yield from _log_lines("lossy", audit_summary.lossy_logs, audit_summary.lossy)
     yield from _log_lines("map does not fit", audit_summary.off_map_logs, audit_summary.off_map)
-    yield from _copies(audit_summary, out)
+    yield from _duplicate_log_lines(audit_summary, out)
     if audit_summary.missing_parts:
         of = (
             ""
@@ -56,7 +58,7 @@ def _lines(
         )
         yield f"INCOMPLETE: these parts have not ended: {', '.join(audit_summary.missing_parts)}: {of}run the same commands again"
     elif audit_summary.n_asked is not None and audit_summary.n_asked != audit_summary.n_drives:
-        yield f"asked for: {plural(audit_summary.n_asked, 'log')}{_difference(audit_summary)}"
+        yield f"asked for: {plural(audit_summary.n_asked, 'log')}{_result_count_difference(audit_summary)}"
     if audit_summary.digest is None:
         yield f"when all parts have ended: drivelint merge {out}"
         return
@@ -66,13 +68,13 @@ def _lines(
         if audit_summary.robust
         else "not examined (--robustness examines it)"
     )
-    yield f"findings: {', '.join(found)}{_contacts(audit_summary)}; certainty: {sure}"
-    yield from _broken(audit_summary, out)
-    yield from _unknown(audit_summary, out)
-    yield from _not_judged(audit_summary, out)
+    yield f"findings: {', '.join(found)}{_contact_phrases(audit_summary)}; certainty: {sure}"
+    yield from _broken_rule_lines(audit_summary, out)
+    yield from _unknown_reason_lines(audit_summary, out)
+    yield from _unjudged_drive_lines(audit_summary, out)
     yield from [audit_summary.undecided] if audit_summary.undecided else []
-    yield from gate
-    yield f"exit {int(code)}: {why or audit_summary.exit_reason(code, fail_on)}"
+    yield from gate_lines
+    yield f"exit {int(code)}: {gate_reason or audit_summary.exit_reason(code, fail_on)}"
     yield f"rows     {(audit_summary.digest or '')[:12]} (digest of all rows: equal for equal results, see summary.json)"
     if not audit_summary.n_judged:
         return  # without a judged drive, these commands show nothing
@@ -81,7 +83,7 @@ def _lines(
     yield "explain  drivelint check LOG --map MAP --out DIR: its findings have the same ids; then drivelint explain ID --in DIR"
 
 
-def _broken(audit_summary: AuditSummary, out: str) -> Iterator[str]:
+def _broken_rule_lines(audit_summary: AuditSummary, out: str) -> Iterator[str]:
     """Yield lines about the rules that were broken most often."""
     for row in audit_summary.broken:
         yield f"  {row['severity']:<8} {row['rule_id']}: {plural(row['n_findings'], 'finding')} in {plural(row['n_drives'], 'drive')}"
@@ -90,7 +92,7 @@ def _broken(audit_summary: AuditSummary, out: str) -> Iterator[str]:
         yield f'  and {plural(more, "more rule")}: drivelint sql {out} "{query}"'
 
 
-def _unknown(audit_summary: AuditSummary, out: str) -> Iterator[str]:
+def _unknown_reason_lines(audit_summary: AuditSummary, out: str) -> Iterator[str]:
     """Yield lines about the most frequent reasons for unknown verdicts."""
     if audit_summary.unknown_for:
         yield f"unknown: {audit_summary.unknown} verdicts of stable rules"
@@ -102,7 +104,7 @@ def _unknown(audit_summary: AuditSummary, out: str) -> Iterator[str]:
         yield f'  and {plural(more, "more reason")}: drivelint sql {out} "{query}"'
 
 
-def _not_judged(audit_summary: AuditSummary, out: str) -> Iterator[str]:
+def _unjudged_drive_lines(audit_summary: AuditSummary, out: str) -> Iterator[str]:
     """Yield lines about drives that could not be judged, with the reason."""
     if left := audit_summary.n_refused + audit_summary.quarantined - audit_summary.copies_not_judged:
         yield f"not judged: {plural(left, 'drive')}"
@@ -122,7 +124,7 @@ def _log_lines(label: str, logs: list[str], n: int) -> Iterator[str]:
         yield f"  {label}: {', '.join(logs)}{f' and {n - len(logs)} more' if n > len(logs) else ''}"
 
 
-def _copies(audit_summary: AuditSummary, out: str) -> Iterator[str]:
+def _duplicate_log_lines(audit_summary: AuditSummary, out: str) -> Iterator[str]:
     """Yield how many logs have the same content as another log, and the first of them."""
     n = audit_summary.copies + audit_summary.copies_not_judged
     if not n:
@@ -130,13 +132,13 @@ def _copies(audit_summary: AuditSummary, out: str) -> Iterator[str]:
     has = "has" if n == 1 else "have"
     yield f"{plural(n, 'more log')} {has} the same content as another log: logs with the same content count once"
     for row in audit_summary.copied:
-        yield f"  {row['log']}: {_repeated(row)}"
+        yield f"  {row['log']}: {_repetition_phrase(row)}"
     if audit_summary.copied and (more := n - len(audit_summary.copied)):
         query = "SELECT sha256, list(log) FROM drives WHERE sha256 IS NOT NULL GROUP BY ALL HAVING count(*) > 1"
         yield f'  and {more} more: drivelint sql {out} "{query}"'
 
 
-def _repeated(row: dict[str, Any]) -> str:
+def _repetition_phrase(row: dict[str, Any]) -> str:
     """Return a phrase that says how a result repeats an earlier one."""
     if row["log"] != row["other"]:
         return f"a copy of {row['other']}"
@@ -145,13 +147,13 @@ def _repeated(row: dict[str, Any]) -> str:
     return "judged again, with another ego or map, or under other conditions"
 
 
-def _contacts(audit_summary: AuditSummary) -> str:
+def _contact_phrases(audit_summary: AuditSummary) -> str:
     """Return in how many drives an ego touched something, and in how many other drives it possibly did."""
     numbers = (("CONTACT", audit_summary.contacts), ("possible contact", audit_summary.contacts_possible))
     return "".join(f"; {words} in {plural(n, 'drive')}" for words, n in numbers if n)
 
 
-def _difference(audit_summary: AuditSummary) -> str:
+def _result_count_difference(audit_summary: AuditSummary) -> str:
     parts = []
     if audit_summary.n_absent:
         parts.append(

@@ -12,14 +12,14 @@ import pyarrow.parquet as pq
 from drivelint.audit import parts
 from drivelint.audit.compact import (
     RECEIPT_SCHEMA,
-    batch_rows,
+    batch_rows_query,
+    chunk_ids,
     chunk_name,
-    chunks,
     create_views,
-    loose_receipts,
     receipt_row,
+    unpacked_receipts,
 )
-from drivelint.audit.driver import empty_rows
+from drivelint.audit.driver import empty_tables
 from drivelint.audit.worker import TABLES, batch_name
 from drivelint.errors import UsageError
 from drivelint.phrases import plural
@@ -32,18 +32,18 @@ if TYPE_CHECKING:
     from drivelint.audit.store import ResultStore
 
 SUMMARY_FILE: Final = "summary.json"
-AT_WORK: Final = "an audit is running there and has just packed results: repeat the query"
+RUNNING_AUDIT_MESSAGE: Final = "an audit is running there and has just packed results: repeat the query"
 
 
-class Standing(NamedTuple):
-    """The progress of an audit. `digest`: hash of all rows; None: the audit has not ended. `n_loose`: how many of the `n_results` results
-    are not packed yet.
+class AuditProgress(NamedTuple):
+    """The progress of an audit. `digest`: hash of all rows; None: the audit has not ended. `n_unpacked`: how many of the `n_results`
+    results are not packed yet.
 
     `n_asked`: drives of the unfinished parts, or of all parts if none is unfinished; None: not known.
     """
 
     digest: str | None
-    n_loose: int = 0
+    n_unpacked: int = 0
     n_results: int = 0
     n_asked: int | None = None
     missing_parts: tuple[str, ...] = ()
@@ -51,34 +51,36 @@ class Standing(NamedTuple):
     @property
     def warning(self) -> str:
         """A sentence about the progress of the audit; '' if it has ended."""
-        if self.digest is not None and not self.n_loose and not self.missing_parts:
+        if self.digest is not None and not self.n_unpacked and not self.missing_parts:
             return ""
         of = "" if self.n_asked is None else f" of {self.n_asked}"
         more = f"{self.n_results}{of} drives have a result; "
         more += (
-            f"{plural(self.n_loose, 'judged drive')} {'is' if self.n_loose == 1 else 'are'} not packed yet; "
-            if self.n_loose
+            f"{plural(self.n_unpacked, 'judged drive')} {'is' if self.n_unpacked == 1 else 'are'} not packed yet; "
+            if self.n_unpacked
             else ""
         )
         again = (
             "give the same audit again"
-            if self.missing_parts in {(), (parts.ALL,)}
+            if self.missing_parts in {(), (parts.ALL_DRIVES,)}
             else (f"parts without an end: {', '.join(self.missing_parts)}; give them again, then drivelint merge")
         )
         return f"the audit has not ended: {more}{again}, to have all"
 
 
-def views_of_all(con: duckdb.DuckDBPyConnection, results: ResultStore, home: Path, prefix: str = "") -> Standing:
+def create_views_of_all_results(
+    con: duckdb.DuckDBPyConnection, results: ResultStore, downloads: Path, prefix: str = ""
+) -> AuditProgress:
     """Create the views of `create_views` over all results, including results that are not packed. `prefix`: as in `create_views`.
 
     Errors: `UsageError` if the results are being packed, or a file was removed or changed.
     """
     inner = f"packed_{prefix}"
     try:
-        create_views(con, results, home, inner)
-        loose = _unpacked(con, results, inner)
+        create_views(con, results, downloads, inner)
+        loose = _unpacked_receipts_with_rows(con, results, inner)
         for table in (*TABLES, "receipts"):
-            _fill(con, results, home, table, loose)
+            _fill_unpacked_rows(con, results, downloads, table, loose)
             con.execute(f"CREATE OR REPLACE TABLE loose_{prefix}{table} AS FROM _loose")
             both = f"FROM {inner}{table}" + (f" UNION ALL BY NAME FROM loose_{prefix}{table}" if loose else "")
             con.execute(f"CREATE OR REPLACE VIEW {prefix}{table} AS {both}")
@@ -90,40 +92,46 @@ def views_of_all(con: duckdb.DuckDBPyConnection, results: ResultStore, home: Pat
             raise UsageError(
                 "a file that files.json lists is missing there: audit the drives again into another --out"
             ) from error
-        raise UsageError(AT_WORK) from error
+        raise UsageError(RUNNING_AUDIT_MESSAGE) from error
     except (duckdb.Error, ValueError) as error:
         why = " ".join(str(error).split())[:300]
         raise UsageError(
             f"a file there was changed since drivelint audit wrote it ({why}): audit the drives again into another --out"
         ) from error
     unfinished_parts = parts.unfinished_parts(results)
-    return Standing(told.get("digest"), len(loose), n, parts.n_expected_drives(results), tuple(unfinished_parts))
+    return AuditProgress(told.get("digest"), len(loose), n, parts.n_expected_drives(results), tuple(unfinished_parts))
 
 
-def n_results(results: ResultStore, home: Path) -> int:
+def n_results(results: ResultStore, downloads: Path) -> int:
     """Return the number of drives that have a result."""
     n = sum(1 for _ in results.names("receipts"))
-    for each in chunks(results):
-        n += pq.read_metadata(results.fetch(chunk_name("receipts", each), home)).num_rows
+    for each in chunk_ids(results):
+        n += pq.read_metadata(results.fetch(chunk_name("receipts", each), downloads)).num_rows
     return n
 
 
-def _unpacked(con: duckdb.DuckDBPyConnection, results: ResultStore, inner: str) -> list[Receipt]:
+def _unpacked_receipts_with_rows(
+    con: duckdb.DuckDBPyConnection, results: ResultStore, packed_prefix: str
+) -> list[Receipt]:
     """Return the receipts that are in no chunk and whose rows exist."""
-    known = {key for (key,) in con.execute(f"SELECT key FROM {inner}receipts").fetchall()}
-    found = [each for some in loose_receipts(results, whole_batches=False) for each in some if each.key not in known]
+    known = {key for (key,) in con.execute(f"SELECT key FROM {packed_prefix}receipts").fetchall()}
+    found = [
+        each for some in unpacked_receipts(results, only_whole_batches=False) for each in some if each.key not in known
+    ]
     there = {name.rpartition("/")[2] for name in results.names(f"batches/{TABLES[-1]}")}
     return [each for each in found if batch_name("", each.batch).rpartition("/")[2] in there]
 
 
-def _fill(con: duckdb.DuckDBPyConnection, results: ResultStore, home: Path, table: str, loose: list[Receipt]) -> None:
+def _fill_unpacked_rows(
+    con: duckdb.DuckDBPyConnection, results: ResultStore, downloads: Path, table: str, unpacked: list[Receipt]
+) -> None:
     """Create the table `_loose` with the rows of these receipts."""
-    receipts = pa.Table.from_pylist([receipt_row(each) for each in loose], schema=RECEIPT_SCHEMA)
-    if table == "receipts" or not loose:
-        con.register("_some", receipts if table == "receipts" else empty_rows()[table])
+    receipts = pa.Table.from_pylist([receipt_row(each) for each in unpacked], schema=RECEIPT_SCHEMA)
+    if table == "receipts" or not unpacked:
+        con.register("_some", receipts if table == "receipts" else empty_tables()[table])
         con.execute("CREATE OR REPLACE TABLE _loose AS FROM _some")
         con.unregister("_some")
         return
     con.register("_packed", receipts.select(["key", "batch"]))
-    con.execute(f"CREATE OR REPLACE TABLE _loose AS {batch_rows(con, results, home, table, loose)}")
+    con.execute(f"CREATE OR REPLACE TABLE _loose AS {batch_rows_query(con, results, downloads, table, unpacked)}")
     con.unregister("_packed")

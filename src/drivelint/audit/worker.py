@@ -60,33 +60,33 @@ class Judge:
         params = catalogue.parse_params(rules, settings.params)
         profiles = profile_table(load_profiles(settings.rules_dirs), settings.profiles)
         store.insert(self._con, "profile", profiles)
-        self._stable = pa.array([rule.id for rule in rules if rule.status == "stable"], pa.string())
+        self._stable_rule_ids = pa.array([rule.id for rule in rules if rule.status == "stable"], pa.string())
         errors = MeasurementErrors() if settings.robustness else None
         self._memory = Memory(self._con, memory)
         self._session = JudgingSession(
             self._con, rules, params, None, memory=self._memory, errors=errors, copies_of_all=True
         )
         self._n_tasks = 0
-        self._library, self._maps = cache(MapLibrary), cache(self._map)
-        self._home = Path(self._stack.enter_context(TemporaryDirectory(prefix="drivelint-worker-")))
-        self._folder = self._home
+        self._library, self._maps = cache(MapLibrary), cache(self._download_map)
+        self._worker_folder = Path(self._stack.enter_context(TemporaryDirectory(prefix="drivelint-worker-")))
+        self._task_folder = self._worker_folder
 
     def judge(self, task: Task) -> list[Receipt]:
         """Judge the drives of a task that have no receipt yet. Write the tables, then the receipts. Return the receipts of all drives of
         the task."""
-        with TemporaryDirectory(dir=self._home) as folder:
-            self._folder = Path(folder)
-            receipts = self._judge(task, open_store(task.dest))
+        with TemporaryDirectory(dir=self._worker_folder) as folder:
+            self._task_folder = Path(folder)
+            receipts = self._judge_drives(task, open_store(task.dest))
         self._n_tasks += 1
         if self._n_tasks % TASKS_PER_RELEASE == 0:
             self._memory.release()
         return receipts
 
-    def _judge(self, task: Task, results: ResultStore) -> list[Receipt]:
+    def _judge_drives(self, task: Task, results: ResultStore) -> list[Receipt]:
         receipts: list[Receipt] = []
         read: dict[str, tuple[AuditDrive, Drive | RefusedLog]] = {}
         for drive in task.drives:
-            key, found = self._read(drive, task.run_id, results)
+            key, found = self._read_drive(drive, task.run_id, results)
             if isinstance(found, Receipt):
                 receipts.append(found)
             elif key in read:  # the same log twice in one task is judged once
@@ -102,14 +102,16 @@ class Judge:
                 if name not in ids:
                     ids.add(name)
                     part[key] = read.pop(key)
-            receipts += self._judge_part(part, results)
+            receipts += self._judge_distinct_drives(part, results)
         return receipts
 
-    def _read(self, drive: AuditDrive, run_id: str, results: ResultStore) -> tuple[str, Receipt | Drive | RefusedLog]:
+    def _read_drive(
+        self, drive: AuditDrive, run_id: str, results: ResultStore
+    ) -> tuple[str, Receipt | Drive | RefusedLog]:
         """Return the key of a drive, and its receipt if one exists, else the drive that was read or the refusal of its log."""
         path, key = Path(drive.log), drive.source_id
         try:
-            path, options = self._at_hand(drive)
+            path, options = self._download_inputs(drive)
             identity = identify(path)
             # includes the file name, with which the ids of the drive and its findings begin, and the tags, which are in the drive's row
             key = digest([run_id, drive.options_id, identity.sha256, identity.file_name, drive.tags])
@@ -121,25 +123,25 @@ class Judge:
         except BaseException as error:  # noqa: BLE001 - some libraries raise errors that are not an Exception
             return key, refusal_of(path, error)
 
-    def _at_hand(self, drive: AuditDrive) -> tuple[Path, DriveInput]:
+    def _download_inputs(self, drive: AuditDrive) -> tuple[Path, DriveInput]:
         """Return the local path of the log, and the drive's options with the local path of the map. Both files are downloaded if they are
         in a bucket."""
         options = drive.options
-        if options.map is not None and (url := bucket.as_url(options.map)) is not None:
+        if options.map is not None and (url := bucket.url_of_path(options.map)) is not None:
             options = replace(options, map=self._maps(url))
         if not bucket.is_url(drive.log):
             return Path(drive.log), options
-        return bucket.download(bucket.Object(drive.log, drive.size, drive.stamp), self._folder), options
+        return bucket.download(bucket.BucketObject(drive.log, drive.size, drive.stamp), self._task_folder), options
 
-    def _map(self, url: str) -> Path:
-        found = bucket.look(url)
+    def _download_map(self, url: str) -> Path:
+        found = bucket.find_object(url)
         if found is None:
             raise MapError(f"map {url}: no such object: check the URL")
-        home = self._home / "maps" / digest(url)
+        home = self._worker_folder / "maps" / digest(url)
         home.mkdir(parents=True)
         return bucket.download(found, home)
 
-    def _judge_part(
+    def _judge_distinct_drives(
         self, part: Mapping[str, tuple[AuditDrive, Drive | RefusedLog]], results: ResultStore
     ) -> list[Receipt]:
         """Judge drives that all have different ids together, write the results, and return the receipts."""
@@ -164,7 +166,7 @@ class Judge:
                 one = {
                     "verdicts": told["verdicts"].slice(0, 0),
                     "findings": told["findings"].slice(0, 0),
-                    "drives": collect.unjudged_drive(path.stem, path.name, str(found.error), _sha256(path)),
+                    "drives": collect.unjudged_drive(path.stem, path.name, str(found.error), _log_sha256(path)),
                 }
             else:
                 name = found.trace.drive_id
@@ -173,10 +175,10 @@ class Judge:
             marked = {table: with_key(one[table], key, drive if table == "drives" else None) for table in TABLES}
             for table, of in marked.items():
                 rows[table].append(of)
-            receipts.append(self._receipt(key, drive, marked))
+            receipts.append(self._receipt_of_rows(key, drive, marked))
         return write_batch(results, {table: pa.concat_tables(of) for table, of in rows.items()}, receipts)
 
-    def _receipt(self, key: str, drive: AuditDrive, rows: Mapping[str, pa.Table]) -> Receipt:
+    def _receipt_of_rows(self, key: str, drive: AuditDrive, rows: Mapping[str, pa.Table]) -> Receipt:
         return Receipt(
             key=key,
             source_id=drive.source_id,
@@ -186,7 +188,7 @@ class Judge:
             stamp=drive.stamp,
             tags=drive.tags,
             options=drive.options_json,
-            **said_of_rows(rows, self._stable),
+            **receipt_fields(rows, self._stable_rule_ids),
         )
 
     def close(self) -> None:
@@ -194,27 +196,27 @@ class Judge:
         self._stack.close()
 
 
-_warm: dict[JudgeSettings, Judge] = {}
+_judge_of_settings: dict[JudgeSettings, Judge] = {}
 
 
 def run_task(task: Task) -> list[Receipt]:
     """Judge a task in this process, and keep its database open for the next task. Errors: `OutputError`, `UsageError`, `RuleError`."""
-    warm_up(task.settings)
+    open_judge(task.settings)
     with ExitStack() as after_error:
         # an error may leave the database in any state, so the next task gets a new one
-        after_error.callback(lambda: _warm.pop(task.settings).close())
-        receipts = _warm[task.settings].judge(task)
+        after_error.callback(lambda: _judge_of_settings.pop(task.settings).close())
+        receipts = _judge_of_settings[task.settings].judge(task)
         after_error.pop_all()
     return receipts
 
 
-def warm_up(settings: JudgeSettings) -> None:
+def open_judge(settings: JudgeSettings) -> None:
     """Open the database in which this process judges with these settings, unless it is already open."""
-    if settings not in _warm:
-        for judge in _warm.values():
+    if settings not in _judge_of_settings:
+        for judge in _judge_of_settings.values():
             judge.close()
-        _warm.clear()
-        _warm[settings] = Judge(settings)
+        _judge_of_settings.clear()
+        _judge_of_settings[settings] = Judge(settings)
 
 
 def with_key(rows: pa.Table, key: str, drive: AuditDrive | None) -> pa.Table:
@@ -229,11 +231,11 @@ def with_key(rows: pa.Table, key: str, drive: AuditDrive | None) -> pa.Table:
     return made
 
 
-def said_of_rows(rows: Mapping[str, pa.Table], stable: pa.Array) -> dict[str, Any]:
-    """Return the fields of a receipt that follow from a drive's rows. `stable`: the ids of the stable rules."""
+def receipt_fields(rows: Mapping[str, pa.Table], stable_rule_ids: pa.Array) -> dict[str, Any]:
+    """Return the fields of a receipt that follow from a drive's rows. `stable_rule_ids`: the ids of the stable rules."""
     (about,) = rows["drives"].to_pylist()
     verdicts = rows["verdicts"]
-    gating = verdicts.filter(pc.is_in(verdicts["rule_id"], value_set=stable))
+    gating = verdicts.filter(pc.is_in(verdicts["rule_id"], value_set=stable_rule_ids))
     limited = pc.is_in(verdicts["reason_code"], value_set=pa.array(LIMIT_ERROR_CODES, pa.string()))
     return {
         "status": "judged" if about["status"] == "judged" else "refused",
@@ -246,10 +248,10 @@ def said_of_rows(rows: Mapping[str, pa.Table], stable: pa.Array) -> dict[str, An
         "rows_sha256": rows_sha256(rows),
         "km": about["km"],
         "duration_s": about["duration_s"] or 0.0,
-        "counts": _counts(verdicts, "verdict"),
-        "failed": _counts(gating.filter(pc.equal(gating["verdict"], "fail")), "severity"),
-        "unknown": _counts(gating, "verdict").get("unknown", 0),
-        "beyond_limits": _counts(verdicts.filter(limited), "verdict").get("error", 0),
+        "counts": _rows_per_value(verdicts, "verdict"),
+        "failed": _rows_per_value(gating.filter(pc.equal(gating["verdict"], "fail")), "severity"),
+        "unknown": _rows_per_value(gating, "verdict").get("unknown", 0),
+        "beyond_limits": _rows_per_value(verdicts.filter(limited), "verdict").get("error", 0),
     }
 
 
@@ -259,7 +261,7 @@ def rows_sha256(rows: Mapping[str, pa.Table]) -> str:
     whole = hashlib.sha256()
     for table in TABLES:
         kept = [name for name in rows[table].column_names if name not in {"log", "tags"}]
-        whole.update(_parquet(rows[table].select(kept)))
+        whole.update(_parquet_bytes(rows[table].select(kept)))
     return whole.hexdigest()
 
 
@@ -270,7 +272,7 @@ def write_batch(results: ResultStore, rows: Mapping[str, pa.Table], receipts: Se
     differ.
     """
     batch = digest(sorted(receipt.key for receipt in receipts))[:32]
-    files = {batch_name(table, batch): _parquet(rows[table]) for table in TABLES}
+    files = {batch_name(table, batch): _parquet_bytes(rows[table]) for table in TABLES}
     for name, content in files.items():
         results.write(name, content)
     counted: list[Receipt] = []
@@ -302,7 +304,7 @@ def receipt_name(key: str) -> str:
     return f"receipts/{key[:2]}/{key}.json"
 
 
-def _sha256(log: Path) -> str | None:
+def _log_sha256(log: Path) -> str | None:
     """Return the hash of a refused log, which identifies copies of the log; None if the log cannot be read."""
     try:
         return identify(log).sha256
@@ -315,12 +317,12 @@ def _require_unchanged(path: Path, identity: Identity) -> None:
         raise TraceError(f"{path}: changed while it was read: audit it again when it is whole")
 
 
-def _parquet(rows: pa.Table) -> bytes:
+def _parquet_bytes(rows: pa.Table) -> bytes:
     sink = io.BytesIO()
     pq.write_table(rows.combine_chunks(), sink, compression="zstd")
     return sink.getvalue()
 
 
-def _counts(rows: pa.Table, column: str) -> dict[str, int]:
+def _rows_per_value(rows: pa.Table, column: str) -> dict[str, int]:
     counted = rows.group_by(column).aggregate([([], "count_all")]).to_pylist()
     return {row[column]: row["count_all"] for row in sorted(counted, key=lambda row: str(row[column]))}

@@ -39,7 +39,7 @@ import msgspec
 import yaml
 
 from drivelint.casefile import merged_cases
-from drivelint.casefile.scene import Row, column_of, complete_scene, refuse_wrong_word
+from drivelint.casefile.scene import Row, column_and_factor, complete_scene, refuse_wrong_word
 from drivelint.catalogue.rule_words import parameter_problem
 from drivelint.errors import RuleError
 from drivelint.phrases import nearest_word
@@ -84,15 +84,15 @@ class Case(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True
         return said or {name for name in CATEGORIES if re.search(rf"(^|_){name}(_|$)", re.sub(r"[^a-z_]", "", words))}
 
 
-class WordLoader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[misc]  # builds without libyaml lack it
+class OnOffAsTextLoader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore[misc]  # builds without libyaml lack it
     """A YAML loader that reads `off` and `on` as strings, not as booleans, because an indicator may be `off`."""
 
 
-WordLoader.yaml_implicit_resolvers = {
+OnOffAsTextLoader.yaml_implicit_resolvers = {
     first: [(tag, pattern) for tag, pattern in resolvers if tag != "tag:yaml.org,2002:bool"]
     for first, resolvers in yaml.SafeLoader.yaml_implicit_resolvers.items()
 }
-WordLoader.add_implicit_resolver("tag:yaml.org,2002:bool", re.compile(r"^(?:true|false)$"), list("tf"))
+OnOffAsTextLoader.add_implicit_resolver("tag:yaml.org,2002:bool", re.compile(r"^(?:true|false)$"), list("tf"))
 
 
 def read_cases(rule: Rule) -> list[Case]:
@@ -110,7 +110,7 @@ def read_cases(rule: Rule) -> list[Case]:
     except UnicodeDecodeError as error:
         raise RuleError(f"{file}:1: not UTF-8 at byte {error.start}") from error
     try:
-        cases = _parsed(file, text)
+        cases = _parse_cases(file, text)
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         line = (
@@ -129,7 +129,7 @@ def read_cases(rule: Rule) -> list[Case]:
             raise RuleError(
                 f"{case_location(rule, case)}: params: {rule.id} has no parameter {strange[0]!r}; it has: {known}"
             )
-        with _with_location(rule, case):
+        with _add_location_to_errors(rule, case):
             _refuse_wrong_words(rule, case)
         if "capability" not in rule.reads and (idle := sorted(set(case.missing_signals) - set(rule.requires))):
             raise RuleError(f"{case_location(rule, case)}: missing: {rule.id} does not require {idle[0]!r}")
@@ -141,7 +141,7 @@ def _refuse_wrong_words(rule: Rule, case: Case) -> None:
     expected = [{"verdict": case.expect}] if isinstance(case.expect, str) else case.expect
     for row in expected:
         for name, value in row.items():
-            refuse_wrong_word("verdict", column_of("verdict", name, "expect")[0], value, "expect")
+            refuse_wrong_word("verdict", column_and_factor("verdict", name, "expect")[0], value, "expect")
     for name, value in case.params.items():
         if problem := parameter_problem(rule.sections, name, value):
             raise RuleError(f"params.{name}: {problem}")
@@ -155,9 +155,9 @@ def cases_path(rule: Rule) -> Path:
     return rule.path.with_suffix(".cases.yml")
 
 
-def _parsed(file: Path, text: str) -> list[Case]:
+def _parse_cases(file: Path, text: str) -> list[Case]:
     """Return the cases of a file, each with its line. Errors: `RuleError`, `yaml.YAMLError`."""
-    loader = WordLoader(text)
+    loader = OnOffAsTextLoader(text)
     root = loader.get_single_node()
     raw = loader.construct_document(root) if root else None
     if not isinstance(raw, list):
@@ -172,11 +172,13 @@ def _parsed(file: Path, text: str) -> list[Case]:
         try:
             cases.append(msgspec.convert({**item, "line": line}, Case))
         except msgspec.ValidationError as error:
-            raise RuleError(f"{file}:{line}: case {item.get('name')!r}: {error}{_key_meant(str(error))}") from error
+            raise RuleError(
+                f"{file}:{line}: case {item.get('name')!r}: {error}{_similar_key_hint(str(error))}"
+            ) from error
     return cases
 
 
-def _key_meant(message: str) -> str:
+def _similar_key_hint(message: str) -> str:
     """Return a hint with the valid key most similar to the unknown key in msgspec's message; '' if there is none."""
     unknown = re.search(r"unknown field `([^`]+)`$", message)
     keys = [about.encode_name for about in msgspec.structs.fields(Case) if about.name != "line"]
@@ -196,13 +198,13 @@ def run_cases(rule: Rule) -> list[CaseResult]:
     results = [run_case(rule, case) for case in cases]
     if all(result.ok for result in results):  # else judging them together gives no new information
         mixed, codes = run_merged_cases(rule, cases)
-        never = unused_reasons(rule, codes)
+        never = unused_reasons_message(rule, codes)
         results += [CaseResult("all cases together", not mixed, mixed), CaseResult("reasons", not never, never)]
     problem = coverage_problem(cases)
     return [*results, CaseResult("kinds of case", not problem, problem and f"{cases_path(rule)}:{problem}")]
 
 
-def unused_reasons(rule: Rule, codes: AbstractSet[str]) -> str:
+def unused_reasons_message(rule: Rule, codes: AbstractSet[str]) -> str:
     """Return a message with the reasons that the rule's SQL can give but no case gave (`codes`: reasons in the cases); '' for none."""
     never = sorted(rule.reason_codes - codes)
     return f"{cases_path(rule)}:1: no case has the reason {', '.join(never)}" if never else ""
@@ -227,8 +229,8 @@ def coverage_problem(cases: Sequence[Case]) -> str:
 
 def run_case(rule: Rule, case: Case) -> CaseResult:
     """Judge one case by this rule alone, and compare the outcome with `expect`. Errors: `RuleError` with file, line and case."""
-    with _with_location(rule, case):
-        message = difference(case, judge(rule, case))
+    with _add_location_to_errors(rule, case):
+        message = outcome_difference(case, judge_case(rule, case))
     of_pairs = rule.kind == "invariant" and rule.per_object and "applies" not in rule.sections
     if message and of_pairs and "pair" not in case.given_tables:
         message += (
@@ -243,7 +245,7 @@ def case_location(rule: Rule, case: Case) -> str:
 
 
 @contextmanager
-def _with_location(rule: Rule, case: Case) -> Iterator[None]:
+def _add_location_to_errors(rule: Rule, case: Case) -> Iterator[None]:
     """Add the location of the case to errors raised inside."""
     try:
         yield
@@ -251,15 +253,15 @@ def _with_location(rule: Rule, case: Case) -> Iterator[None]:
         raise RuleError(f"{case_location(rule, case)}: {error}") from error
 
 
-def difference(case: Case, outcome: merged_cases.CaseOutcome) -> str:
+def outcome_difference(case: Case, outcome: merged_cases.CaseOutcome) -> str:
     """Return how an outcome differs from what the case expects, in one line; '' if it does not."""
-    message = _difference(case.expect, outcome.verdicts)
+    message = _row_difference(case.expect, outcome.verdicts)
     if not message and case.findings not in {None, len(outcome.findings)}:
         message = f"expected {case.findings} findings, got {len(outcome.findings)}"
     return message
 
 
-def judge(rule: Rule, case: Case) -> merged_cases.CaseOutcome:
+def judge_case(rule: Rule, case: Case) -> merged_cases.CaseOutcome:
     """Judge one case alone. Errors: `RuleError` for tables, columns or values that cannot be understood."""
     return merged_cases.judge([rule], complete_scene(rule, case.given_tables, case.missing_signals), case.params)[
         rule.id
@@ -270,7 +272,7 @@ def numbered_cases(rule: Rule, cases: Sequence[Case]) -> list[merged_cases.Numbe
     """Return the scenes of all cases, to be judged together. Errors: `RuleError` with file, line and case."""
     found = []
     for no, case in enumerate(cases):
-        with _with_location(rule, case):
+        with _add_location_to_errors(rule, case):
             scene = complete_scene(rule, case.given_tables, case.missing_signals)
             found.append(merged_cases.NumberedCase(no, scene, case.params))
     return found
@@ -281,7 +283,7 @@ def merged_cases_difference(
 ) -> tuple[Case, str] | None:
     """Return the first merged case whose outcome differs from what the case expects, and the difference; None if all agree."""
     found = ((cases[each.no], merged_cases.outcome_of_case(outcome, each.no)) for each in numbered)
-    return next(((case, message) for case, rows in found if (message := difference(case, rows))), None)
+    return next(((case, message) for case, rows in found if (message := outcome_difference(case, rows))), None)
 
 
 def run_merged_cases(
@@ -296,7 +298,7 @@ def run_merged_cases(
     codes: set[str] = set()
     for key, where in keys.items():
         for group in merged_cases.mergeable_groups(everybody, key):
-            outcome = merged_cases.judge([rule], merged_cases.merge(group, key), group[0].params)[rule.id]
+            outcome = merged_cases.judge([rule], merged_cases.merge_cases(group, key), group[0].params)[rule.id]
             for row in [*outcome.verdicts, *outcome.findings]:
                 if row["cause_code"] is not None:
                     codes.update(codes_in(row["cause_code"], json.loads(row["cause_args"] or "{}")))
@@ -306,9 +308,9 @@ def run_merged_cases(
     return "", codes
 
 
-def _difference(expect: str | Sequence[Mapping[str, Any]], rows: Sequence[Row]) -> str:
+def _row_difference(expect: str | Sequence[Mapping[str, Any]], rows: Sequence[Row]) -> str:
     """Return how the rows differ from `expect`, in one line; '' if they do not."""
-    got = "; ".join(_brief(row) for row in rows)
+    got = "; ".join(_row_text(row) for row in rows)
     if isinstance(expect, str):
         wrong = [row for row in rows if row["verdict"] != expect]
         return f"expected {expect}, got {got}" if wrong or not rows else ""
@@ -316,15 +318,15 @@ def _difference(expect: str | Sequence[Mapping[str, Any]], rows: Sequence[Row]) 
         return f"expected {len(expect)} rows, got {len(rows)}: {got}"
     for n, (wanted, row) in enumerate(zip(expect, rows, strict=True)):
         for name, value in wanted.items():
-            column, scale = column_of("verdict", name, "expect")
-            same = value in row[column] if name == "reason" else _same(value, row[column], scale)
+            column, scale = column_and_factor("verdict", name, "expect")
+            same = value in row[column] if name == "reason" else _is_same_value(value, row[column], scale)
             if not same:
                 shown = row[column] if scale == 1 or row[column] is None else row[column] / scale
-                return f"row {n}: expected {name} = {value!r}, got {shown!r}: {_brief(row)}"
+                return f"row {n}: expected {name} = {value!r}, got {shown!r}: {_row_text(row)}"
     return ""
 
 
-def _same(expected_value: Any, actual_value: Any, scale: int) -> bool:
+def _is_same_value(expected_value: Any, actual_value: Any, scale: int) -> bool:
     if (
         isinstance(expected_value, bool)
         or expected_value is None
@@ -339,6 +341,6 @@ def _same(expected_value: Any, actual_value: Any, scale: int) -> bool:
     return abs(float(expected_value) - float(actual_value)) <= 0.5 * 10.0**-decimals + 1e-9
 
 
-def _brief(row: Row) -> str:
+def _row_text(row: Row) -> str:
     who = " ".join(str(row[c]) for c in ("profile", "object_id") if row[c] is not None)
     return f"{row['verdict']} ({row['reason_code']}{', ' + who if who else ''}: {row['reason']})"

@@ -17,7 +17,7 @@ import duckdb
 from drivelint.casefile import mutation, run_cases
 from drivelint.casefile.scene import case_database
 from drivelint.catalogue import read_rule
-from drivelint.catalogue.check import complained_line, complaint
+from drivelint.catalogue.check import error_message, line_of_error
 from drivelint.catalogue.load import rule_files, rule_id_of
 from drivelint.catalogue.rule_file import PACK_NAME, RULE_NAME
 from drivelint.errors import ExitCode, RuleError, UsageError
@@ -33,8 +33,8 @@ if TYPE_CHECKING:
 
     Say = Callable[[str], None]
 
-_LOOK_S: Final = 0.5
-"""The time between two checks of `watch` for changed files."""
+_POLL_S: Final = 0.5
+"""The time between two checks of `repeat_tests_on_changes` for changed files."""
 
 
 def new_rule(rule_id: str, root: Path, kind: str) -> tuple[Path, Path]:
@@ -67,125 +67,125 @@ def new_rule(rule_id: str, root: Path, kind: str) -> tuple[Path, Path]:
     return sql, cases
 
 
-def case_test(root: Path | None, only: Sequence[str], say: Say) -> ExitCode:
-    """Judge each rule by its cases, and `say` a line for each rule and for each failed case.
+def case_test(root: Path | None, rule_globs: Sequence[str], print_line: Say) -> ExitCode:
+    """Judge each rule by its cases, and print a line for each rule and for each failed case.
 
     Return USAGE if a rule or its cases were refused, else FAILED if a case failed.
     """
     code = ExitCode.OK
-    for rule in _rules(root, only):
+    for rule in _read_selected_rules(root, rule_globs):
         try:
             if isinstance(rule, RuleError):
                 raise rule
             results = run_cases(rule)
         except RuleError as error:
-            say(f"REFUSED {error}")
+            print_line(f"REFUSED {error}")
             code = ExitCode.USAGE
             continue
         failed = [f"     {result.message}" for result in results if not result.ok]
         first = f"{'FAIL' if failed else 'ok  '} {rule.id}: {len(results) - len(failed)} of {len(results)} checks"
-        say("\n".join([first, *failed]))
+        print_line("\n".join([first, *failed]))
         code = max(code, ExitCode.FAILED if failed else ExitCode.OK)
     return code
 
 
-def watch(
+def repeat_tests_on_changes(
     test: Callable[[Path | None, Sequence[str], Say], ExitCode],
     root: Path | None,
-    only: Sequence[str],
-    say: Say,
-    over: Event,
+    rule_globs: Sequence[str],
+    print_line: Say,
+    stop: Event,
 ) -> ExitCode:
-    """Test the rules, then, until `over` is set, each rule whose file or cases change; return the code of the last test."""
-    code, before = test(root, only, say), _stamps(root)
-    say("waiting for changes; press Ctrl-C to end")
-    while not over.wait(_LOOK_S):
-        now = _stamps(root)
-        changed = {_rule_file(file) for file, _ in now.items() ^ before.items()}
+    """Test the rules, then, until `stop` is set, each rule whose file or cases change; return the code of the last test."""
+    code, before = test(root, rule_globs, print_line), _change_times(root)
+    print_line("waiting for changes; press Ctrl-C to end")
+    while not stop.wait(_POLL_S):
+        now = _change_times(root)
+        changed = {_rule_file_of(file) for file, _ in now.items() ^ before.items()}
         before = now
-        for file in sorted(file for file in changed if file.is_file() and _is_chosen(file, only)):
-            code = test(file, (), say)
+        for file in sorted(file for file in changed if file.is_file() and _is_selected(file, rule_globs)):
+            code = test(file, (), print_line)
     return code
 
 
-def _stamps(root: Path | None) -> dict[Path, int]:
+def _change_times(root: Path | None) -> dict[Path, int]:
     """Return the times of the last change of all files of rules and cases; a file that is being replaced is left out."""
     found = {}
-    for file in _files(root):
+    for file in _rule_files(root):
         for each in (file, file.with_suffix(".cases.yml")):
             with suppress(OSError):
                 found[each] = each.stat().st_mtime_ns
     return found
 
 
-def mutation_test(root: Path | None, only: Sequence[str], say: Say) -> ExitCode:
-    """Judge each rule's mutants by its cases, and `say` the counts and the mutants that no case noticed.
+def mutation_test(root: Path | None, rule_globs: Sequence[str], print_line: Say) -> ExitCode:
+    """Judge each rule's mutants by its cases, and print the counts and the mutants that no case noticed.
 
     Return USAGE if a rule was refused, else FAILED if a mutant of a stable rule survives without being listed, or a list is outdated.
     """
-    found = list(_rules(root, only))
+    found = list(_read_selected_rules(root, rule_globs))
     refused = [error for error in found if isinstance(error, RuleError)]
     rules = [rule for rule in found if not isinstance(rule, RuleError)]
     for error in refused:
-        say(f"REFUSED {error}")
+        print_line(f"REFUSED {error}")
     results = []
     for result in mutation.judge_all_mutants(rules, os.cpu_count() or 1):
-        say(mutation.result_text(result))
+        print_line(mutation.result_text(result))
         results.append(result)
-    is_part = bool(only) or (root is not None and root.is_file())
-    strange = [] if is_part or refused else mutation.entries_without_rule(rules)
+    is_part = bool(rule_globs) or (root is not None and root.is_file())
+    strange = [] if is_part or refused else mutation.unknown_rule_messages(rules)
     for line in strange:
-        say(f"FAIL {line}")
-    say(mutation.summary(results))
+        print_line(f"FAIL {line}")
+    print_line(mutation.summary_line(results))
     enough = is_part or mutation.noticed_share(results) >= mutation.LEAST_NOTICED_SHARE
     good = enough and not strange and all(result.ok for result in results)
     return ExitCode.USAGE if refused else ExitCode.OK if good else ExitCode.FAILED
 
 
-def _rules(root: Path | None, only: Sequence[str]) -> Iterator[Rule | RuleError]:
-    """Yield the rules of a folder (None: the shipped rules) that `only` selects; for an invalid rule, yield the error.
+def _read_selected_rules(root: Path | None, rule_globs: Sequence[str]) -> Iterator[Rule | RuleError]:
+    """Yield the rules of a folder (None: the shipped rules) that `rule_globs` selects; for an invalid rule, yield the error.
 
-    `root` may also be the file of one rule, or of its cases. Errors: `UsageError` if `only` selects no rule.
+    `root` may also be the file of one rule, or of its cases. Errors: `UsageError` if `rule_globs` selects no rule.
     """
-    found = _files(root)
-    chosen = [file for file in found if _is_chosen(file, only)]
+    found = _rule_files(root)
+    chosen = [file for file in found if _is_selected(file, rule_globs)]
     if not chosen:
-        raise UsageError(f"--rules {', '.join(only)}: none of the {len(found)} rules here has such an id")
+        raise UsageError(f"--rules {', '.join(rule_globs)}: none of the {len(found)} rules here has such an id")
     for file in chosen:
         try:
             rule = read_rule(file)
-            _check_plans(rule)
+            _check_query_plans(rule)
         except RuleError as error:
             yield error
         else:
             yield rule
 
 
-def _files(root: Path | None) -> Sequence[Path]:
+def _rule_files(root: Path | None) -> Sequence[Path]:
     """Return the rule files of a folder, or of a file of a rule or its cases. Errors: `UsageError` for another file."""
     if root is None or not root.is_file():
         return rule_files(root or folder("queries") / "assertions")
-    if not _rule_file(root).is_file():
+    if not _rule_file_of(root).is_file():
         raise UsageError(f"{root}: neither a rule nor the cases of a rule: name PACK/NAME.sql, or a folder of packs")
-    return [_rule_file(root)]
+    return [_rule_file_of(root)]
 
 
-def _rule_file(file: Path) -> Path:
+def _rule_file_of(file: Path) -> Path:
     """Return the rule's file, given that file or the file of the rule's cases."""
     return file.with_name(file.name.removesuffix(".cases.yml").removesuffix(".sql") + ".sql")
 
 
-def _is_chosen(file: Path, only: Sequence[str]) -> bool:
-    return not only or any(fnmatchcase(rule_id_of(file), name) for name in only)
+def _is_selected(file: Path, rule_globs: Sequence[str]) -> bool:
+    return not rule_globs or any(fnmatchcase(rule_id_of(file), name) for name in rule_globs)
 
 
-def _check_plans(rule: Rule) -> None:
+def _check_query_plans(rule: Rule) -> None:
     """Raise `RuleError` if the rule's SQL does not fit the tables, or has a join that compares every row with every other row."""
     try:
         plans = query_plans(case_database(), rule)
     except duckdb.Error as error:
-        line = complained_line(error, rule.path.read_text(encoding="utf-8"))
-        raise RuleError(f"{rule.path}:{line or 1}: {complaint(error)}") from error
+        line = line_of_error(error, rule.path.read_text(encoding="utf-8"))
+        raise RuleError(f"{rule.path}:{line or 1}: {error_message(error)}") from error
     for plan in plans:
         _, found, below = plan.partition("BLOCKWISE_NL_JOIN")
         tables = " and ".join(name for name in rule.reads if re.search(rf"\.{name}\b", below)) or "two tables"

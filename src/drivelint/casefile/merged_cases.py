@@ -9,7 +9,7 @@ from __future__ import annotations
 from functools import cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from drivelint.casefile.scene import Row, case_database, fill
+from drivelint.casefile.scene import Row, case_database, insert_rows
 from drivelint.evaluate import evaluate
 from drivelint.sql.store import column_comments
 
@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 MERGE_KEYS = {"drive_id": "drives of one database", "ego_id": "egos of one drive"}
 """The key columns that distinguish merged cases, and the meaning of the cases in the merged scene, in words."""
 
-_MARKED = ("drive_id", "ego_id", "environment_id")
+_NUMBERED_COLUMNS = ("drive_id", "ego_id", "environment_id")
 _FINDING_ORDER = "drive_id, ego_id, t_start_ns, profile NULLS LAST, object_id NULLS LAST, occurrence"
-_ORDER = (
+_VERDICT_ORDER = (
     "drive_id, ego_id, coalesce(t_ref_ns, t_start_ns) NULLS LAST, profile NULLS LAST, object_id NULLS LAST, occurrence"
 )
 
@@ -54,10 +54,10 @@ def judge(rules: Sequence[Rule], scene: Scene, params: Mapping[str, Any]) -> dic
     tables = [*scene, "verdict", "finding", "margin"]
     try:
         for table, rows in scene.items():
-            fill(con, table, rows)
+            insert_rows(con, table, rows)
         evaluate(con, rules, {rule.id: params for rule in rules})
         outcomes = {rule.id: CaseOutcome([], []) for rule in rules}
-        for row in con.execute(f"FROM verdict ORDER BY {_ORDER}").to_arrow_table().to_pylist():
+        for row in con.execute(f"FROM verdict ORDER BY {_VERDICT_ORDER}").to_arrow_table().to_pylist():
             outcomes[row["rule_id"]].verdicts.append(row)
         for row in con.execute(f"FROM finding ORDER BY {_FINDING_ORDER}").to_arrow_table().to_pylist():
             outcomes[row["rule_id"]].findings.append(row)
@@ -73,56 +73,56 @@ def mergeable_groups(members: Sequence[NumberedCase], key: str) -> list[list[Num
     """
     groups: dict[str, list[NumberedCase]] = {}
     for member in members:
-        shared = {t: rows for t, rows in member.scene.items() if not _is_apart(t, member.scene, key)}
+        shared = {t: rows for t, rows in member.scene.items() if not _may_hold_several_cases(t, member.scene, key)}
         groups.setdefault(repr((sorted(member.params.items()), sorted(shared.items()))), []).append(member)
     return list(groups.values())
 
 
-def _is_apart(table: str, scene: Scene, key: str) -> bool:
+def _may_hold_several_cases(table: str, scene: Scene, key: str) -> bool:
     """Return whether one table can contain the rows of several cases, distinguished by the key."""
     names = {name for row in scene[table] for name in row}
     if key == "drive_id":
-        return key in names or _of_the_map(table)
+        return key in names or _is_map_table(table)
     egos = {row["ego_id"] for row in scene["clock"]}
     # also if its rows are about actors that are all egos
     return key in names or ("actor_id" in names and {row.get("actor_id") for row in scene[table]} <= egos)
 
 
 @cache
-def _of_the_map(table: str) -> bool:
+def _is_map_table(table: str) -> bool:
     return "environment_id" in column_comments()[table] and "drive_id" not in column_comments()[table]
 
 
-def merge(cases: Sequence[NumberedCase], key: str) -> Scene:
+def merge_cases(cases: Sequence[NumberedCase], key: str) -> Scene:
     """Return the tables of all cases as one scene, in which the case's number precedes each key."""
     merged: Scene = {}
     for member in cases:
         for table, rows in member.scene.items():
-            if _is_apart(table, member.scene, key):
-                merged.setdefault(table, []).extend(_marked(row, table, key, member.no) for row in rows)
+            if _may_hold_several_cases(table, member.scene, key):
+                merged.setdefault(table, []).extend(_row_with_case_number(row, table, key, member.no) for row in rows)
             else:
                 merged[table] = rows  # the same rows in every case
     return merged
 
 
-def _marked(row: Row, table: str, key: str, no: int) -> Row:
+def _row_with_case_number(row: Row, table: str, key: str, case_number: int) -> Row:
     marked = dict(row)
     keys = (key, "environment_id") if key == "drive_id" else (key if key in row else "actor_id",)
-    if _of_the_map(table):
+    if _is_map_table(table):
         marked.setdefault("environment_id", "")
     for name in keys:
         if marked.get(name) is not None:
-            marked[name] = f"{no}:{marked[name]}"
+            marked[name] = f"{case_number}:{marked[name]}"
     return marked
 
 
-def outcome_of_case(outcome: CaseOutcome, no: int) -> CaseOutcome:
-    """Return the rows of case `no` from an outcome of merged cases, with the original keys."""
-    mark = f"{no}:"
+def outcome_of_case(outcome: CaseOutcome, case_number: int) -> CaseOutcome:
+    """Return the rows of case `case_number` from an outcome of merged cases, with the original keys."""
+    mark = f"{case_number}:"
     found = CaseOutcome([], [])
     for rows, mine in zip(outcome, found, strict=True):
         for row in rows:
-            marked = {name: row[name] for name in _MARKED if isinstance(row.get(name), str)}
+            marked = {name: row[name] for name in _NUMBERED_COLUMNS if isinstance(row.get(name), str)}
             if any(text.startswith(mark) for text in marked.values()):
                 mine.append(row | {name: text.removeprefix(mark) for name, text in marked.items()})
     return found

@@ -36,16 +36,16 @@ NodePath = tuple[str | int, ...]
 
 OPPOSITE = {">": "<=", ">=": "<", "<": ">=", "<=": ">"}
 BOUNDARY_SWAP = {">": ">=", ">=": ">", "<": "<=", "<=": "<"}
-_TURNED = {
+_REVERSED_COMPARISON = {
     "COMPARE_LESSTHAN": "COMPARE_GREATERTHANOREQUALTO",
     "COMPARE_LESSTHANOREQUALTO": "COMPARE_GREATERTHAN",
     "COMPARE_GREATERTHAN": "COMPARE_LESSTHANOREQUALTO",
     "COMPARE_GREATERTHANOREQUALTO": "COMPARE_LESSTHAN",
 }
 _CLAUSES = {"where_clause": "WHERE", "having": "HAVING", "qualify": "QUALIFY", "condition": "ON"}
-_SECONDS = ("window_s", "exempt_after_s", "merge_gap_s")
-_THRESHOLD = (0.9, 1.1)
-_WINDOW = (0.5, 2.0)
+_WINDOW_FIELDS = ("window_s", "exempt_after_s", "merge_gap_s")
+_THRESHOLD_FACTORS = (0.9, 1.1)
+_WINDOW_FACTORS = (0.5, 2.0)
 
 
 class Mutant(NamedTuple):
@@ -59,14 +59,19 @@ def mutants(rule: Rule) -> list[Mutant]:
     """Return all mutants of a rule, each with a unique name of its fault (a second fault with the same text gets `#2`)."""
     seen: Counter[str] = Counter()
     found: list[Mutant] = []
-    for fault, wrong in (*_of_the_sense(rule), *_of_the_params(rule), *_of_the_windows(rule), *_of_the_sql(rule)):
+    for fault, wrong in (
+        *_mutants_of_sense(rule),
+        *_mutants_of_params(rule),
+        *_mutants_of_windows(rule),
+        *_mutants_of_sql(rule),
+    ):
         seen[fault] += 1
         name = fault if seen[fault] == 1 else f"{fault} #{seen[fault]}"
         found.append(Mutant(name, msgspec.structs.replace(wrong, id=f"{rule.id}~{len(found)}")))
     return found
 
 
-def _of_the_sense(rule: Rule) -> Iterator[Mutant]:
+def _mutants_of_sense(rule: Rule) -> Iterator[Mutant]:
     if rule.sense == "holds":
         sql = f"SELECT * REPLACE (NOT holds AS holds) FROM (\n{rule.sections['condition']}\n)"
         yield Mutant("NOT holds", _with_section(rule, "condition", sql))
@@ -75,57 +80,57 @@ def _of_the_sense(rule: Rule) -> Iterator[Mutant]:
         yield Mutant(f"sense {rule.sense} -> {sense}", msgspec.structs.replace(rule, sense=sense))
 
 
-def _of_the_params(rule: Rule) -> Iterator[Mutant]:
-    windows = {getattr(rule, field) for field in _SECONDS}
+def _mutants_of_params(rule: Rule) -> Iterator[Mutant]:
+    windows = {getattr(rule, field) for field in _WINDOW_FIELDS}
     for name, param in rule.params.items():
         if isinstance(param.default, bool | str) or param.default == 0:
             continue
-        for factor in _WINDOW if name in windows else _THRESHOLD:
+        for factor in _WINDOW_FACTORS if name in windows else _THRESHOLD_FACTORS:
             changed = msgspec.structs.replace(param, default=param.default * factor)
             wrong = msgspec.structs.replace(rule, params={**rule.params, name: changed})
             yield Mutant(f"params.{name} * {factor:g}", wrong)
 
 
-def _of_the_windows(rule: Rule) -> Iterator[Mutant]:
+def _mutants_of_windows(rule: Rule) -> Iterator[Mutant]:
     said = rule.path.read_text(encoding="utf-8")
-    for field in _SECONDS:
+    for field in _WINDOW_FIELDS:
         seconds = getattr(rule, field)
         if isinstance(seconds, str) or not seconds or f"\n-- {field} =" not in said:
             continue
-        for factor in _WINDOW:
+        for factor in _WINDOW_FACTORS:
             yield Mutant(f"{field} * {factor:g}", msgspec.structs.replace(rule, **{field: seconds * factor}))
 
 
-def _of_the_sql(rule: Rule) -> Iterator[Mutant]:
+def _mutants_of_sql(rule: Rule) -> Iterator[Mutant]:
     for section, sql in rule.sections.items():
         tree = syntax_tree(sql)
-        for place in _places(tree["statements"][0]["node"]):
-            for fault, changed in _faults(tree, *place):
-                yield Mutant(f"@{section} {fault}", _with_section(rule, section, _sql(changed)))
+        for place in _deciding_nodes(tree["statements"][0]["node"]):
+            for fault, changed in _faulty_trees(tree, *place):
+                yield Mutant(f"@{section} {fault}", _with_section(rule, section, _tree_sql(changed)))
 
 
 def _with_section(rule: Rule, name: str, sql: str) -> Rule:
     return msgspec.structs.replace(rule, sections={**rule.sections, name: sql})
 
 
-def _places(root: Node) -> list[tuple[NodePath, Node]]:
+def _deciding_nodes(root: Node) -> list[tuple[NodePath, Node]]:
     """Return every node that can change a verdict, in the order of the text, each with its path in the tree."""
-    wording = _columns(root, frozenset({"reason", "reason_code"}))
+    wording = _column_paths(root, frozenset({"reason", "reason_code"}))
     found: list[tuple[NodePath, Node]] = []
     todo: list[tuple[NodePath, Any]] = [((), root)]
     while todo:
-        way, part = todo.pop()
-        if way in wording:
+        node_path, part = todo.pop()
+        if node_path in wording:
             continue
         if isinstance(part, dict):
-            found.append((way, part))
-            todo += [((*way, key), part[key]) for key in reversed(part)]
+            found.append((node_path, part))
+            todo += [((*node_path, key), part[key]) for key in reversed(part)]
         elif isinstance(part, list):
-            todo += [((*way, i), part[i]) for i in range(len(part) - 1, -1, -1)]
+            todo += [((*node_path, i), part[i]) for i in range(len(part) - 1, -1, -1)]
     return found
 
 
-def _outputs(root: Node) -> list[NodePath]:
+def _output_select_paths(root: Node) -> list[NodePath]:
     """Return the paths of the SELECT nodes that produce the statement's columns: the root or the branches of a UNION."""
     if root["type"] == "SELECT_NODE":
         return [()]
@@ -134,64 +139,64 @@ def _outputs(root: Node) -> list[NodePath]:
     branches: list[NodePath] = (
         [("left",), ("right",)] if "left" in root else [("children", i) for i in range(len(root["children"]))]
     )
-    return [(*branch, *way) for branch in branches for way in _outputs(_at(root, branch))]
+    return [(*branch, *node_path) for branch in branches for node_path in _output_select_paths(_node_at(root, branch))]
 
 
-def _columns(root: Node, names: frozenset[str]) -> set[NodePath]:
+def _column_paths(root: Node, names: frozenset[str]) -> set[NodePath]:
     """Return the paths of the expressions for the statement's columns with these names."""
-    outputs = _outputs(root)
+    outputs = _output_select_paths(root)
     if not outputs:
         return set()
-    first = _at(root, outputs[0])["select_list"]
+    first = _node_at(root, outputs[0])["select_list"]
     chosen = [i for i, item in enumerate(first) if column_name(item) in names]
-    return {(*way, "select_list", i) for way in outputs for i in chosen}
+    return {(*node_path, "select_list", i) for node_path in outputs for i in chosen}
 
 
-def _at(root: Any, way: NodePath) -> Any:
-    for key in way:
+def _node_at(root: Any, node_path: NodePath) -> Any:
+    for key in node_path:
         root = root[key]
     return root
 
 
-def _faults(tree: Node, way: NodePath, node: Node) -> Iterator[tuple[str, Node]]:
+def _faulty_trees(tree: Node, node_path: NodePath, node: Node) -> Iterator[tuple[str, Node]]:
     """Yield the faults of one node, each as its text and the changed tree."""
-    if (turned := _TURNED.get(str(node.get("type")))) is not None:
-        yield f"turned: {_text(node)}", _replaced(tree, way, node | {"type": turned})
-    if _is_threshold(tree, way, node):
-        for factor in _THRESHOLD:
-            yield f"{_text(node)} * {factor:g}", _replaced(tree, way, _scaled(node, factor))
+    if (turned := _REVERSED_COMPARISON.get(str(node.get("type")))) is not None:
+        yield f"turned: {_node_sql(node)}", _replace_node(tree, node_path, node | {"type": turned})
+    if _is_threshold(tree, node_path, node):
+        for factor in _THRESHOLD_FACTORS:
+            yield f"{_node_sql(node)} * {factor:g}", _replace_node(tree, node_path, _scale_node(node, factor))
     for key, words in _CLAUSES.items():
         clause = node.get(key)
         if isinstance(clause, dict) and (key != "condition" or node.get("type") == "JOIN"):
-            yield from _without_terms(tree, (*way, key), clause, words)
+            yield from _trees_without_a_term(tree, (*node_path, key), clause, words)
     using = node.get("using_columns") or []
     for i, column in enumerate(using):
         rest = node | {"using_columns": using[:i] + using[i + 1 :]}
         if not rest["using_columns"]:
-            rest |= {"condition": _expression("true")}
-        yield f"USING without: {column}", _replaced(tree, way, rest)
+            rest |= {"condition": _parse_expression("true")}
+        yield f"USING without: {column}", _replace_node(tree, node_path, rest)
 
 
-def _without_terms(tree: Node, way: NodePath, clause: Node, words: str) -> Iterator[tuple[str, Node]]:
+def _trees_without_a_term(tree: Node, node_path: NodePath, clause: Node, words: str) -> Iterator[tuple[str, Node]]:
     terms = clause["children"] if clause["type"] == "CONJUNCTION_AND" else [clause]
     for i, term in enumerate(terms):
         rest = terms[:i] + terms[i + 1 :]
-        new = clause | {"children": rest} if len(rest) > 1 else rest[0] if rest else _expression("true")
-        yield f"{words} without: {_text(term)}", _replaced(tree, way, new)
+        new = clause | {"children": rest} if len(rest) > 1 else rest[0] if rest else _parse_expression("true")
+        yield f"{words} without: {_node_sql(term)}", _replace_node(tree, node_path, new)
 
 
-def _is_threshold(tree: Node, way: NodePath, node: Node) -> bool:
+def _is_threshold(tree: Node, node_path: NodePath, node: Node) -> bool:
     kind = node.get("class")
     if kind == "CONSTANT":
-        return _is_number(node["value"])
+        return _is_threshold_number(node["value"])
     if kind == "FUNCTION" and not node["children"] and node["function_name"].lower() in macros():
         return True
     if kind in {None, "PARAMETER"}:
         return False
-    return way in _columns(tree["statements"][0]["node"], frozenset({"required"}))
+    return node_path in _column_paths(tree["statements"][0]["node"], frozenset({"required"}))
 
 
-def _is_number(value: Node) -> bool:
+def _is_threshold_number(value: Node) -> bool:
     if value.get("is_null") or isinstance(value["value"], bool) or not isinstance(value["value"], int | float):
         return False
     info = value["type"].get("type_info") or {}
@@ -199,41 +204,41 @@ def _is_number(value: Node) -> bool:
     return number not in {0, 1, *(10.0**n for n in range(3, 19))}
 
 
-def _replaced(tree: Node, way: NodePath, new: Node) -> Node:
+def _replace_node(tree: Node, node_path: NodePath, new: Node) -> Node:
     changed: Node = copy.deepcopy(tree)
-    _at(changed["statements"][0]["node"], way[:-1])[way[-1]] = copy.deepcopy(new)
+    _node_at(changed["statements"][0]["node"], node_path[:-1])[node_path[-1]] = copy.deepcopy(new)
     return changed
 
 
-def _scaled(node: Node, factor: float) -> Node:
-    product: Node = copy.deepcopy(_expression(f"1 * {factor}::DOUBLE"))
+def _scale_node(node: Node, factor: float) -> Node:
+    product: Node = copy.deepcopy(_parse_expression(f"1 * {factor}::DOUBLE"))
     product["children"][0] = node | {"alias": ""}
     return product | {"alias": node.get("alias", "")}
 
 
 @cache
-def _expression(sql: str) -> Node:
+def _parse_expression(sql: str) -> Node:
     node: Node = syntax_tree(f"SELECT {sql}")["statements"][0]["node"]["select_list"][0]
     return node
 
 
-def _text(node: Node) -> str:
+def _node_sql(node: Node) -> str:
     tree = copy.deepcopy(syntax_tree("SELECT 1"))
     tree["statements"][0]["node"]["select_list"] = [node | {"alias": ""}]
-    return _bare(_sql(tree).removeprefix("SELECT "))
+    return _without_brackets(_tree_sql(tree).removeprefix("SELECT "))
 
 
-def _bare(text: str) -> str:
+def _without_brackets(text: str) -> str:
     """Return an expression without the brackets that DuckDB prints around it."""
-    while text.startswith("(") and text.endswith(")") and _balanced(text[1:-1]):
+    while text.startswith("(") and text.endswith(")") and _has_balanced_brackets(text[1:-1]):
         text = text[1:-1]
     return text
 
 
-def _balanced(text: str) -> bool:
+def _has_balanced_brackets(text: str) -> bool:
     depths = list(accumulate(((letter == "(") - (letter == ")") for letter in text), initial=0))
     return min(depths) == depths[-1] == 0
 
 
-def _sql(tree: Node) -> str:
+def _tree_sql(tree: Node) -> str:
     return str(parser().execute("SELECT json_deserialize_sql(?::JSON)", [json.dumps(tree)]).fetchall()[0][0])

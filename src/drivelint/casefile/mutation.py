@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import msgspec
 
 from drivelint.casefile import case_location, merged_cases_difference, numbered_cases, read_cases
-from drivelint.casefile.merged_cases import MERGE_KEYS, judge, merge, mergeable_groups
+from drivelint.casefile.merged_cases import MERGE_KEYS, judge, merge_cases, mergeable_groups
 from drivelint.casefile.mutants import mutants
 from drivelint.errors import RuleError
 from drivelint.phrases import plural
@@ -72,7 +72,7 @@ class _Survivor(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     reason: str
 
 
-class _Survivors(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class _SurvivorsFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     survivor: list[_Survivor] = []
 
 
@@ -104,7 +104,7 @@ def result_text(result: MutationResult) -> str:
     )
 
 
-def summary(results: Sequence[MutationResult]) -> str:
+def summary_line(results: Sequence[MutationResult]) -> str:
     """Return the counts of all results in one line."""
     if not results:
         return "no rule was tested"
@@ -125,40 +125,44 @@ def judge_mutants(rule: Rule) -> MutationResult:
     problem = ""
     wrong = mutants(rule)
     try:
-        listed = tuple(entry.mutant for entry in _read(rule.path.parent / SURVIVORS_FILE) if entry.rule == rule.id)
-        survivors = tuple(mutant.fault for mutant in _survivors(rule, wrong))
+        listed = tuple(
+            entry.mutant for entry in _read_survivors(rule.path.parent / SURVIVORS_FILE) if entry.rule == rule.id
+        )
+        survivors = tuple(mutant.fault for mutant in _surviving_mutants(rule, wrong))
     except RuleError as error:
         problem = str(error)
     return MutationResult(rule.id, rule.status == "stable", len(wrong), survivors, listed, problem)
 
 
-def _survivors(rule: Rule, alive: list[Mutant]) -> list[Mutant]:
+def _surviving_mutants(rule: Rule, candidates: list[Mutant]) -> list[Mutant]:
     cases = read_cases(rule)
     everybody = numbered_cases(rule, cases)
     for key, where in MERGE_KEYS.items():
         for group in mergeable_groups(everybody, key):
-            outcomes = judge([rule, *(mutant.rule for mutant in alive)], merge(group, key), group[0].params)
+            outcomes = judge([rule, *(mutant.rule for mutant in candidates)], merge_cases(group, key), group[0].params)
             if wrong := merged_cases_difference(cases, group, outcomes[rule.id]):
                 place = case_location(rule, wrong[0])
                 raise RuleError(f"{place}: {wrong[1]} (the rule itself, its cases judged as {where}: see rules test)")
-            alive = [mutant for mutant in alive if not merged_cases_difference(cases, group, outcomes[mutant.rule.id])]
-    return alive
+            candidates = [
+                mutant for mutant in candidates if not merged_cases_difference(cases, group, outcomes[mutant.rule.id])
+            ]
+    return candidates
 
 
-def entries_without_rule(rules: Sequence[Rule]) -> list[str]:
+def unknown_rule_messages(rules: Sequence[Rule]) -> list[str]:
     """Return a line per entry of the packs' `survivors.toml` with an unknown rule. Errors: `RuleError` for an invalid file."""
     known = {rule.id for rule in rules}
     return [
         f"{pack / SURVIVORS_FILE}: there is no rule {name!r} here"
         for pack in dict.fromkeys(rule.path.parent for rule in rules)
-        for name in sorted({entry.rule for entry in _read(pack / SURVIVORS_FILE)} - known)
+        for name in sorted({entry.rule for entry in _read_survivors(pack / SURVIVORS_FILE)} - known)
     ]
 
 
-def _read(file: Path) -> list[_Survivor]:
+def _read_survivors(file: Path) -> list[_Survivor]:
     if not file.is_file():
         return []
     try:
-        return msgspec.convert(parse_toml(file.read_text(encoding="utf-8")), _Survivors).survivor
+        return msgspec.convert(parse_toml(file.read_text(encoding="utf-8")), _SurvivorsFile).survivor
     except (tomllib.TOMLDecodeError, msgspec.ValidationError) as error:
         raise RuleError(f"{file}: {error}") from error

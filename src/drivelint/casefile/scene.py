@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 _DRIVE, _EGO = "d", "e"
 _NUMBER = r"-?\d+(?:\.\d+)?"
 _RANGE = re.compile(rf"({_NUMBER})\s*\.\.\s*({_NUMBER})(?:\s+by\s+(\d+(?:\.\d+)?))?")
-_DURATIONS = frozenset({"period_ns", "max_gap_ns", "dt_ns"})
+_DURATION_COLUMNS = frozenset({"period_ns", "max_gap_ns", "dt_ns"})
 
 Row = dict[str, Any]
 
@@ -37,7 +37,7 @@ def case_database() -> duckdb.DuckDBPyConnection:
 
 
 @cache
-def _tables() -> dict[str, dict[str, Any]]:
+def _column_defaults() -> dict[str, dict[str, Any]]:
     """Return, by table and column, the default of a NOT NULL column; None for a column that may be NULL."""
     zero = {"VARCHAR": "", "BOOLEAN": False, "DOUBLE": 0.0}
     tables: dict[str, dict[str, Any]] = {}
@@ -49,11 +49,11 @@ def _tables() -> dict[str, dict[str, Any]]:
 
 def complete_scene(rule: Rule, given_tables: Mapping[str, Any], missing_signals: Sequence[str]) -> dict[str, list[Row]]:
     """Return the rows of each table: the rows in the case, and rows derived from these. Errors: `RuleError`."""
-    scene = {table: _rows(table, blocks) for table, blocks in given_tables.items()}
+    scene = {table: _table_rows(table, blocks) for table, blocks in given_tables.items()}
     clock = scene.pop("clock", [{}])
-    scene["step"] = _steps(scene, clock[0].get("max_gap_ns"))
-    scene["clock"] = _clocks(scene["step"], clock)
-    scene["ego_condition"] = _engaged(scene["step"], scene.get("ego_condition", ()))
+    scene["step"] = _step_rows(scene, clock[0].get("max_gap_ns"))
+    scene["clock"] = _clock_rows(scene["step"], clock)
+    scene["ego_condition"] = _condition_rows(scene["step"], scene.get("ego_condition", ()))
     subjects = [(row["drive_id"], row["ego_id"]) for row in scene["clock"]]
     logged = {row["drive_id"] for row in scene.get("data_log", ())}
     new = [{"drive_id": d, "sha256": f"hash of {d}"} for d in dict.fromkeys(d for d, _ in subjects) if d not in logged]
@@ -74,24 +74,24 @@ def complete_scene(rule: Rule, given_tables: Mapping[str, Any], missing_signals:
     return scene
 
 
-def _rows(table: str, blocks: Any) -> list[Row]:
+def _table_rows(table: str, blocks: Any) -> list[Row]:
     """Return the rows that the blocks of one table describe. Errors: `RuleError`."""
-    if table not in _tables():
-        raise RuleError(f"given: there is no table {table!r}; {hint(table, _tables())}")
+    if table not in _column_defaults():
+        raise RuleError(f"given: there is no table {table!r}; {hint(table, _column_defaults())}")
     rows: list[Row] = []
     for block in blocks if isinstance(blocks, list) else [blocks]:
         if not isinstance(block, dict):
             raise RuleError(f"given: {table}: a block is 'column: value' pairs, not {block!r}")
-        rows += _block(table, block, f"given: {table}")
+        rows += _block_rows(table, block, f"given: {table}")
     return rows
 
 
-def _block(table: str, block: Mapping[str, Any], where: str) -> list[Row]:
+def _block_rows(table: str, block: Mapping[str, Any], where: str) -> list[Row]:
     columns: dict[str, Any] = {}
     for name, value in block.items():
-        column, scale = column_of(table, name, where)
+        column, scale = column_and_factor(table, name, where)
         refuse_wrong_word(table, column, value, where)
-        columns[column] = _values(value, scale)
+        columns[column] = _values_in_column_unit(value, scale)
     lengths = {len(v) for v in columns.values() if isinstance(v, list)}
     if len(lengths) > 1:
         raise RuleError(f"{where}: columns of different length: {', '.join(str(n) for n in sorted(lengths))}")
@@ -101,17 +101,17 @@ def _block(table: str, block: Mapping[str, Any], where: str) -> list[Row]:
         if callable(value):
             columns[column] = value(n)
         elif isinstance(value, dict):
-            columns[column] = _by_time(value, times, f"{where}.{column}")
+            columns[column] = _values_by_time(value, times, f"{where}.{column}")
         elif not isinstance(value, list):
             columns[column] = [value] * n
     defaults = {"drive_id": _DRIVE, "ego_id": _EGO}
-    known = {c: v for c, v in defaults.items() if c in _tables()[table] and c not in columns}
+    known = {c: v for c, v in defaults.items() if c in _column_defaults()[table] and c not in columns}
     return [known | {column: values[i] for column, values in columns.items()} for i in range(n)]
 
 
-def column_of(table: str, name: str, where: str) -> tuple[str, int]:
+def column_and_factor(table: str, name: str, where: str) -> tuple[str, int]:
     """Return the column for a name in a case, and the factor of its values: for `t_s`, `t_ns` and 1e9. Errors: `RuleError`."""
-    columns = _tables()[table]
+    columns = _column_defaults()[table]
     if name in columns:
         return name, 1
     if name.endswith("_s") and f"{name[:-2]}_ns" in columns:
@@ -129,12 +129,12 @@ def refuse_wrong_word(table: str, column: str, value: Any, where: str) -> None:
     known = store.word_columns()[table].get(column)
     if known is None:
         return
-    for word in _texts(value, known.field):
+    for word in _texts_in_value(value, known.field):
         if wrong := known.vocabulary.problem(word):
             raise RuleError(f"{where}.{column}: {wrong}")
 
 
-def _texts(value: Any, field: str) -> Iterator[str]:
+def _texts_in_value(value: Any, field: str) -> Iterator[str]:
     """Yield the texts in a value; with `field`, only the texts under this key in its STRUCTs."""
     if isinstance(value, dict):
         inner = [(value[field], "")] if field in value else [(part, field) for part in value.values()]
@@ -143,36 +143,36 @@ def _texts(value: Any, field: str) -> Iterator[str]:
     if isinstance(value, str) and not field:
         yield value
     for part, wanted in inner:
-        yield from _texts(part, wanted)
+        yield from _texts_in_value(part, wanted)
 
 
-def _spread(first: Decimal, last: Decimal, scale: int, n: int) -> list[float | int]:
+def _evenly_spaced_values(first: Decimal, last: Decimal, scale: int, n: int) -> list[float | int]:
     step = (last - first) / max(n - 1, 1)
-    return [_scaled(first + step * i, scale) for i in range(n)]
+    return [_scale_value(first + step * i, scale) for i in range(n)]
 
 
-def _scaled(value: Decimal, scale: int) -> float | int:
+def _scale_value(value: Decimal, scale: int) -> float | int:
     return round(value * scale) if scale != 1 else float(value)
 
 
-def _values(value: Any, scale: int) -> Any:
+def _values_in_column_unit(value: Any, scale: int) -> Any:
     """Return a value in the column's unit: a list, a scalar, a mapping by time, or for `a..b` a function of the number of rows."""
     if isinstance(value, list):
-        return [_values(item, scale) for item in value]
+        return [_values_in_column_unit(item, scale) for item in value]
     if isinstance(value, dict):
-        return {key: _values(item, scale) for key, item in value.items()}
+        return {key: _values_in_column_unit(item, scale) for key, item in value.items()}
     if isinstance(value, str) and (match := _RANGE.fullmatch(value.strip())):
         first, last = Decimal(match[1]), Decimal(match[2])
         if match[3] is None:
-            return partial(_spread, first, last, scale)
+            return partial(_evenly_spaced_values, first, last, scale)
         step = Decimal(match[3])
-        return [_scaled(first + step * i, scale) for i in range(int((last - first) / step + Decimal("1e-9")) + 1)]
+        return [_scale_value(first + step * i, scale) for i in range(int((last - first) / step + Decimal("1e-9")) + 1)]
     if scale != 1 and isinstance(value, int | float) and not isinstance(value, bool):
-        return _scaled(Decimal(str(value)), scale)
+        return _scale_value(Decimal(str(value)), scale)
     return value
 
 
-def _by_time(value: Mapping[Any, Any], times: Any, where: str) -> list[Any]:
+def _values_by_time(value: Mapping[Any, Any], times: Any, where: str) -> list[Any]:
     """Return the value of each row by its time; later entries take precedence."""
     if not isinstance(times, list):
         raise RuleError(f"{where}: a value by time needs the times: t_s as a list or range")
@@ -189,20 +189,22 @@ def _by_time(value: Mapping[Any, Any], times: Any, where: str) -> list[Any]:
     return rows
 
 
-def _steps(scene: Mapping[str, Sequence[Row]], max_gap_ns: int | None) -> list[Row]:
+def _step_rows(scene: Mapping[str, Sequence[Row]], max_gap_ns: int | None) -> list[Row]:
     """Return the rows of `step` for each drive and ego, from the scene's table `step` or from the times in other tables."""
-    grids = {t: rows for t, rows in scene.items() if rows and _is_grid(t)}
+    grids = {t: rows for t, rows in scene.items() if rows and _has_row_per_step(t)}
     sources = {"step": scene["step"]} if "step" in scene else grids
     times: dict[tuple[str, str], set[int]] = {}
     for row in (row for rows in (sources or scene).values() for row in rows):
-        names = ["t_ns"] if sources else [name for name in row if name.endswith("_ns") and name not in _DURATIONS]
+        names = (
+            ["t_ns"] if sources else [name for name in row if name.endswith("_ns") and name not in _DURATION_COLUMNS]
+        )
         used = {row[name] for name in names if row.get(name) is not None}
         times.setdefault((row.get("drive_id", _DRIVE), row.get("ego_id", _EGO)), set()).update(used)
     said = {(row["drive_id"], row["ego_id"], row["t_ns"]): row for row in scene.get("step", ())}
     steps: list[Row] = []
     for (drive, ego), moments in times.items():
         ordered = sorted(moments)
-        gap = max_gap_ns or _period(ordered) * 5 // 2
+        gap = max_gap_ns or _median_period_ns(ordered) * 5 // 2
         seg = 0
         for k, t in enumerate(ordered):
             dt = t - ordered[k - 1] if k else None
@@ -212,7 +214,7 @@ def _steps(scene: Mapping[str, Sequence[Row]], max_gap_ns: int | None) -> list[R
     return steps
 
 
-def _engaged(steps: Iterable[Row], condition_rows: Iterable[Row]) -> list[Row]:
+def _condition_rows(steps: Iterable[Row], condition_rows: Iterable[Row]) -> list[Row]:
     """Return the conditions of every step; the default of `engaged` is true, other conditions are unknown by default."""
     keys = ("drive_id", "ego_id", "t_ns")
     said = {tuple(row.get(key) for key in keys): row for row in condition_rows}
@@ -220,17 +222,17 @@ def _engaged(steps: Iterable[Row], condition_rows: Iterable[Row]) -> list[Row]:
     return [{**dict(zip(keys, key, strict=True)), "engaged": True, **said.get(key, {})} for key in at]
 
 
-def _is_grid(table: str) -> bool:
+def _has_row_per_step(table: str) -> bool:
     """Return whether a table has a row per step of the ego. Without such a table, the times of events are the steps."""
-    columns = _tables()[table]
+    columns = _column_defaults()[table]
     return {"ego_id", "t_ns"} <= columns.keys() and ("occurrence" not in columns or table.endswith("_step"))
 
 
-def _period(ordered: Sequence[int]) -> int:
+def _median_period_ns(ordered: Sequence[int]) -> int:
     return int(median(b - a for a, b in pairwise(ordered))) if len(ordered) > 1 else 100_000_000
 
 
-def _clocks(steps: Iterable[Row], clock_rows: Sequence[Row]) -> list[Row]:
+def _clock_rows(steps: Iterable[Row], clock_rows: Sequence[Row]) -> list[Row]:
     """Return one clock row per drive and ego; values of the case replace the defaults."""
     times: dict[tuple[str, str], list[int]] = {}
     for row in steps:
@@ -239,14 +241,14 @@ def _clocks(steps: Iterable[Row], clock_rows: Sequence[Row]) -> list[Row]:
     clocks = []
     for drive, ego in dict.fromkeys([*times, *said]):
         used = sorted(times.get((drive, ego), [0]))
-        period = _period(used)
+        period = _median_period_ns(used)
         own = {c: v for c, v in said.get((drive, ego), {}).items() if v is not None}
         clock = {"drive_id": drive, "ego_id": ego, "period_ns": period, "max_gap_ns": period * 5 // 2}
         clocks.append(clock | {"t_start_ns": used[0], "t_end_ns": used[-1]} | own)
     return clocks
 
 
-def fill(con: duckdb.DuckDBPyConnection, table: str, rows: Sequence[Row]) -> None:
+def insert_rows(con: duckdb.DuckDBPyConnection, table: str, rows: Sequence[Row]) -> None:
     """Insert rows into a table; missing NOT NULL columns get the default of their type.
 
     Errors: `RuleError` for a value that does not fit its column.
@@ -255,7 +257,7 @@ def fill(con: duckdb.DuckDBPyConnection, table: str, rows: Sequence[Row]) -> Non
 
     if not rows:
         return
-    defaults = {column: default for column, default in _tables()[table].items() if default is not None}
+    defaults = {column: default for column, default in _column_defaults()[table].items() if default is not None}
     names = dict.fromkeys([*defaults, *(c for row in rows for c in row)])
     try:
         store.insert(con, table, pa.table({c: [row.get(c, defaults.get(c)) for row in rows] for c in names}))

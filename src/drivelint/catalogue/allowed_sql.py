@@ -14,13 +14,13 @@ ENGINE_TABLES: Final = frozenset({"reference", "reference_step"})
 """Tables that the engine makes for a rule: its reference points, and the steps at which each reference point is judged."""
 
 _FACTS: Final = toml_beside(__file__, "allowed.toml")
-NODES, SOURCES, EXPRESSIONS, TABLE_FUNCTIONS, REFUSED_NAMES, ORDERED = (
+NODES, SOURCES, EXPRESSIONS, TABLE_FUNCTIONS, REFUSED_NAMES, NEEDING_ORDER_BY = (
     frozenset[str](_FACTS[name])
     for name in ("nodes", "sources", "expressions", "table_functions", "refused_names", "ordered")
 )
-_STOCK: Final = frozenset[str](chain.from_iterable(_FACTS["functions"].values()))
+_DUCKDB_FUNCTIONS: Final = frozenset[str](chain.from_iterable(_FACTS["functions"].values()))
 _MACRO = re.compile(r"\bMACRO\s+(\w+)", re.IGNORECASE)
-_OUTPUTS = ("verdict", "evidence", "output")  # files of schemas/ with tables that a run writes
+_OUTPUT_SCHEMAS = ("verdict", "evidence", "output")  # files of schemas/ with tables that a run writes
 
 
 @cache
@@ -32,11 +32,11 @@ def macros() -> frozenset[str]:
 @cache
 def functions() -> frozenset[str]:
     """Return the names of the functions and macros that a rule may call, in lower case."""
-    return _STOCK | macros()
+    return _DUCKDB_FUNCTIONS | macros()
 
 
 @cache
 def tables() -> frozenset[str]:
     """Return the tables that a rule may read: the tables of `schemas/` except outputs, and `ENGINE_TABLES`."""
-    outputs = {table for file in _OUTPUTS for table in store.column_comments(file)}
+    outputs = {table for file in _OUTPUT_SCHEMAS for table in store.column_comments(file)}
     return frozenset(store.column_comments().keys() - outputs) | ENGINE_TABLES

@@ -22,11 +22,19 @@ from drivelint.sql.syntax import branches, column_name, offset_of, parser, synta
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-__all__ = ["ENGINE_TABLES", "Query", "check_query", "complained_line", "complaint", "noted", "refuse"]
+__all__ = [
+    "ENGINE_TABLES",
+    "Query",
+    "check_query",
+    "collect_problems",
+    "error_message",
+    "line_of_error",
+    "raise_problems",
+]
 
 Node = dict[str, Any]
 
-_DEEP = "too deeply nested to be checked: split it into CTEs"
+_TOO_DEEP = "too deeply nested to be checked: split it into CTEs"
 
 
 class Query(NamedTuple):
@@ -58,26 +66,26 @@ class GivenReason(NamedTuple):
     place: str
 
 
-class _Text(NamedTuple):
+class _SqlText(NamedTuple):
     """SQL, with its file and the line of the file on which it begins."""
 
     sql: str
     file: str
     line: int
 
-    def at(self, offset: int | None) -> str:
+    def place_at(self, offset: int | None) -> str:
         """Return `file:line` of a byte offset in the SQL; the first line of the SQL if the offset is None."""
         before = b"" if offset is None else self.sql.encode()[:offset]
         return f"{self.file}:{self.line + before.count(10)}"
 
-    def of(self, error: duckdb.Error) -> str:
+    def place_of_error(self, error: duckdb.Error) -> str:
         """Return `file:line` of an error of DuckDB."""
         line = re.search(r"^LINE (\d+):", str(error), re.MULTILINE)
         return f"{self.file}:{self.line + (int(line[1]) - 1 if line else 0)}"
 
 
 @contextmanager
-def noted(problems: list[str]) -> Iterator[None]:
+def collect_problems(problems: list[str]) -> Iterator[None]:
     """Add the message of a `RuleError` inside the block to the problems, so that an author sees all problems."""
     try:
         yield
@@ -85,19 +93,19 @@ def noted(problems: list[str]) -> Iterator[None]:
         problems.append(str(error))
 
 
-def refuse(problems: Sequence[str]) -> None:
+def raise_problems(problems: Sequence[str]) -> None:
     """Raise `RuleError` with one line per problem, if there are problems."""
     if problems:
         raise RuleError("\n".join(dict.fromkeys(problems)))
 
 
-def complaint(error: duckdb.Error) -> str:
+def error_message(error: duckdb.Error) -> str:
     """Return DuckDB's error message on one line, with the names that it suggests, without its SQL excerpt."""
     said = re.split(r"^LINE \d+:", str(error), maxsplit=1, flags=re.MULTILINE)[0]
     return " ".join(said.split())
 
 
-def complained_line(error: duckdb.Error, text: str) -> int | None:
+def line_of_error(error: duckdb.Error, text: str) -> int | None:
     """Return the line number in the file `text` of the SQL excerpt in DuckDB's error; None if no line or several lines match.
 
     DuckDB's own line number is useless if the failed statement was composed from parts of the file.
@@ -115,59 +123,63 @@ def check_query(sql: str, file: str, line: int = 1) -> Query:
     Errors: `RuleError` with file and line if the section is not exactly one SELECT, or uses an element that `allowed_sql` does not list.
     Also for a CTE with the name of a table, or with a name that begins with `_`, like the engine's tables.
     """
-    text = _Text(sql, file, line)
-    statement, node = _parsed(text)
-    found = _SyntaxFindings(text)
+    text = _SqlText(sql, file, line)
+    statement, node = _parse_select(text)
+    found = _SyntaxCollector(text)
     for part, ctes in walk(node):
-        found.meet(part, ctes)
-    refuse(found.refusals)
+        found.visit(part, ctes)
+    raise_problems(found.refusals)
     parameters = frozenset(statement.named_parameters)
-    places = found.tables | {f"${name}": text.at(_parameter(text.sql, name)) for name in parameters}
+    places = found.tables | {f"${name}": text.place_at(_parameter_offset(text.sql, name)) for name in parameters}
     try:
         needs = tables_needing_rows(node) & found.tables.keys()
     except RecursionError as error:
-        raise RuleError(f"{text.at(0)}: {_DEEP}") from error
+        raise RuleError(f"{text.place_at(0)}: {_TOO_DEEP}") from error
     names = frozenset(found.column_names)
     return Query(
         frozenset(found.tables),
         parameters,
-        _columns(node),
+        _result_columns(node),
         places,
         tuple(found.reasons),
         needs,
         names,
-        _is_by_name(node),
+        _is_union_by_name(node),
     )
 
 
-def _parsed(text: _Text) -> tuple[duckdb.Statement, Node]:
+def _parse_select(text: _SqlText) -> tuple[duckdb.Statement, Node]:
     try:
         statements = parser().extract_statements(text.sql)
         if len(statements) > 1:
             second = text.sql.encode().find(statements[1].query.strip().encode())
-            raise RuleError(f"{text.at(second)}: a section is exactly one SELECT, found {len(statements)} statements")
+            raise RuleError(
+                f"{text.place_at(second)}: a section is exactly one SELECT, found {len(statements)} statements"
+            )
         if not statements or statements[0].type != duckdb.StatementType.SELECT:
-            raise RuleError(f"{text.at(0)}: a section is exactly one SELECT, and this is none")
+            raise RuleError(f"{text.place_at(0)}: a section is exactly one SELECT, and this is none")
         tree = syntax_tree(text.sql)
     except duckdb.Error as error:
-        raise RuleError(f"{text.of(error)}: {complaint(error)}") from error
+        raise RuleError(f"{text.place_of_error(error)}: {error_message(error)}") from error
     except RecursionError as error:
-        raise RuleError(f"{text.at(0)}: {_DEEP}") from error
+        raise RuleError(f"{text.place_at(0)}: {_TOO_DEEP}") from error
     if tree.get("error") or len(tree["statements"]) != 1:
-        raise RuleError(f"{text.at(0)}: only a plain SELECT can be checked: {tree.get('error_message', 'none here')}")
+        raise RuleError(
+            f"{text.place_at(0)}: only a plain SELECT can be checked: {tree.get('error_message', 'none here')}"
+        )
     return statements[0], tree["statements"][0]["node"]
 
 
-def _parameter(sql: str, name: str) -> int | None:
+def _parameter_offset(sql: str, name: str) -> int | None:
     """Return the byte offset of a parameter's first use, which the syntax tree does not contain."""
     found = re.search(rf"\${re.escape(name)}\b", sql)
     return len(sql[: found.start()].encode()) if found else None
 
 
-class _SyntaxFindings:
+class _SyntaxCollector:
     """Collects from a syntax tree: forbidden elements (`refusals`), tables (name -> `file:line`), column names and reasons."""
 
-    def __init__(self, text: _Text) -> None:
+    def __init__(self, text: _SqlText) -> None:
         self._text = text
         self.refusals: list[str] = []
         self.tables: dict[str, str] = {}
@@ -175,51 +187,51 @@ class _SyntaxFindings:
         self.column_names: set[str] = set()
         self._worded: set[int] = set()
 
-    def meet(self, part: Node, ctes: frozenset[str]) -> None:
+    def visit(self, part: Node, ctes: frozenset[str]) -> None:
         """Process one node. `ctes`: names of the CTEs in its scope."""
         kind = part.get("type")
         if part.get("sample"):
-            self._refuse(part, "a sample differs every time: a rule may not use one")
+            self._add_refusal(part, "a sample differs every time: a rule may not use one")
         modifiers = {each["type"] for each in part.get("modifiers") or ()}
         if modifiers & {"LIMIT_MODIFIER", "LIMIT_PERCENT_MODIFIER"} and "ORDER_MODIFIER" not in modifiers:
-            self._refuse(part, "LIMIT without ORDER BY returns different rows every time: add ORDER BY")
+            self._add_refusal(part, "LIMIT without ORDER BY returns different rows every time: add ORDER BY")
         if part.get("ref_type") == "POSITIONAL":
-            self._refuse(part, "POSITIONAL JOIN depends on the order of rows, which is not fixed")
+            self._add_refusal(part, "POSITIONAL JOIN depends on the order of rows, which is not fixed")
         if "class" in part:
-            self._expression(part)
+            self._visit_expression(part)
         elif kind == "BASE_TABLE":
-            self._table(part, ctes)
+            self._visit_table(part, ctes)
         elif kind == "TABLE_FUNCTION":
             name = str(part["function"]["function_name"]).lower()
             if name not in allowed_sql.TABLE_FUNCTIONS | allowed_sql.macros():
-                self._refuse(part["function"], f"table function {name}() is not allowed in a rule")
-        elif _is_foreign(part):
-            self._refuse(part, f"{_plain(kind)} is not allowed in a rule: write a plain SELECT")
+                self._add_refusal(part["function"], f"table function {name}() is not allowed in a rule")
+        elif _is_forbidden_node(part):
+            self._add_refusal(part, f"{_kind_in_words(kind)} is not allowed in a rule: write a plain SELECT")
         for entry in part.get("cte_map", {}).get("map", ()):
-            self._cte(entry)
+            self._visit_cte(entry)
 
-    def _expression(self, part: Node) -> None:
+    def _visit_expression(self, part: Node) -> None:
         kind = part["class"]
         if kind not in allowed_sql.EXPRESSIONS:
-            self._refuse(part, f"{_plain(kind)} is not allowed in a rule")
+            self._add_refusal(part, f"{_kind_in_words(kind)} is not allowed in a rule")
         name = str(part.get("function_name", "")).lower()
         if name and name not in allowed_sql.functions():
             near = nearest_word(name, allowed_sql.functions())
             meant = f"; did you mean {near}()?" if near else ""
-            self._refuse(
+            self._add_refusal(
                 part,
                 f"function {name}() is not allowed in a rule{meant}: only functions that always return the same value and "
                 "use nothing but the tables, and the library's macros",
             )
-        if name in allowed_sql.ORDERED and not _is_ordered(part):
-            self._refuse(
+        if name in allowed_sql.NEEDING_ORDER_BY and not _has_order_by(part):
+            self._add_refusal(
                 part, f"{name}() without ORDER BY returns a different row every time: add ORDER BY, or write max(...)"
             )
         if name == "why":
-            place = self._text.at(offset_of(part))
+            place = self._text.place_at(offset_of(part))
             code, *rest = part["children"]
-            arguments = _fields(rest[0]) if rest else frozenset[str]()
-            self.reasons += [GivenReason(each, arguments, place) for each in _results(code)]
+            arguments = _struct_fields(rest[0]) if rest else frozenset[str]()
+            self.reasons += [GivenReason(each, arguments, place) for each in _possible_texts(code)]
             # columns that are used only in the text of a reason decide nothing; the walk visits a parent before its children
             self._worded.update(id(each) for each, _ in walk(part["children"]) if each.get("class") == "COLUMN_REF")
         if kind == "COLUMN_REF" and id(part) not in self._worded:
@@ -227,55 +239,57 @@ class _SyntaxFindings:
         if kind == "COLUMN_REF" and len(part["column_names"]) == 1:
             word = part["column_names"][0].lower()
             if word in allowed_sql.REFUSED_NAMES:
-                self._refuse(part, f"{word} does not return the same value every time: a rule may not use it")
+                self._add_refusal(part, f"{word} does not return the same value every time: a rule may not use it")
 
-    def _table(self, part: Node, ctes: frozenset[str]) -> None:
+    def _visit_table(self, part: Node, ctes: frozenset[str]) -> None:
         name = part["table_name"].lower()
         whole = ".".join(word for word in (part["catalog_name"], part["schema_name"], name) if word)
         if part.get("at_clause"):
-            self._refuse(part, "AT (...) is not allowed in a rule")
+            self._add_refusal(part, "AT (...) is not allowed in a rule")
         if whole in ctes:
             return
         if whole not in allowed_sql.tables():
             near = hint(whole, allowed_sql.tables())
             known = near if near.startswith("did") else "they read the tables of schemas/*.sql only"
-            self._refuse(part, f"there is no table {whole!r} for rules; {known}")
+            self._add_refusal(part, f"there is no table {whole!r} for rules; {known}")
             return
-        self.tables.setdefault(name, self._text.at(part["query_location"]))
+        self.tables.setdefault(name, self._text.place_at(part["query_location"]))
 
-    def _cte(self, entry: Node) -> None:
+    def _visit_cte(self, entry: Node) -> None:
         name = str(entry["key"]).lower()
         if name in allowed_sql.tables() or name.startswith("_"):
             select = entry["value"]["query"]["node"]
-            self._refuse(select, f"rename the CTE {name!r}: it hides a table, or begins with _ like the engine's own")
+            self._add_refusal(
+                select, f"rename the CTE {name!r}: it hides a table, or begins with _ like the engine's own"
+            )
 
-    def _refuse(self, part: Node, message: str) -> None:
-        self.refusals.append(f"{self._text.at(offset_of(part))}: {message}")
+    def _add_refusal(self, part: Node, message: str) -> None:
+        self.refusals.append(f"{self._text.place_at(offset_of(part))}: {message}")
 
 
-def _is_ordered(part: Node) -> bool:
+def _has_order_by(part: Node) -> bool:
     """Return whether an aggregate or a window function has an ORDER BY."""
     return bool(part.get("orders") or (part.get("order_bys") or {}).get("orders"))
 
 
-def _results(part: Node) -> list[str]:
+def _possible_texts(part: Node) -> list[str]:
     """Return the texts that an expression may return: a constant, or the constants in the branches of a CASE."""
     if part["class"] == "CONSTANT":
         return [str(part["value"]["value"])]
     if part["class"] != "CASE":
         return []
     branches = [*(check["then_expr"] for check in part["case_checks"]), part["else_expr"]]
-    return [text for branch in branches for text in _results(branch)]
+    return [text for branch in branches for text in _possible_texts(branch)]
 
 
-def _fields(part: Node) -> frozenset[str] | None:
+def _struct_fields(part: Node) -> frozenset[str] | None:
     """Return the field names of a STRUCT literal; None for another expression."""
     if str(part.get("function_name", "")).lower() != "struct_pack":
         return None
     return frozenset(str(child["alias"]) for child in part["children"])
 
 
-def _is_foreign(part: Node) -> bool:
+def _is_forbidden_node(part: Node) -> bool:
     """Return whether a node is a source of rows or a query of a type that a rule may not use."""
     kind = str(part.get("type"))
     if {"alias", "sample"} <= part.keys():
@@ -283,11 +297,11 @@ def _is_foreign(part: Node) -> bool:
     return kind.endswith("_NODE") and kind not in allowed_sql.NODES
 
 
-def _plain(kind: object) -> str:
+def _kind_in_words(kind: object) -> str:
     return str(kind).removesuffix("_NODE").removesuffix("_REF").replace("_", " ")
 
 
-def _is_by_name(node: Node) -> bool:
+def _is_union_by_name(node: Node) -> bool:
     """Return whether a query is a UNION BY NAME, or its first branch is one."""
     while node["type"] == "SET_OPERATION_NODE":
         if node["setop_type"] == "UNION_BY_NAME":
@@ -296,7 +310,7 @@ def _is_by_name(node: Node) -> bool:
     return False
 
 
-def _columns(node: Node) -> tuple[str, ...] | None:
+def _result_columns(node: Node) -> tuple[str, ...] | None:
     """Return the column names of a SELECT, or of the first branch of a UNION; None if a column has no name or is a `*`."""
     while node["type"] == "SET_OPERATION_NODE":
         node = branches(node)[0]

@@ -24,9 +24,9 @@ Kind = Literal["invariant", "execution", "precondition", "postcondition"]
 Seconds = float | str
 """Seconds, or the name of the rule's parameter with the seconds."""
 
-_NAME = re.compile(r"[a-z][a-z0-9_]*")
-_TABLE = re.compile(r"\s*\[([^\[\]=,]+)\]\s*(?:#.*)?$")
-_KEY = re.compile(r"\s*([\w.\"' \t-]+?)\s*=")
+_PARAM_NAME = re.compile(r"[a-z][a-z0-9_]*")
+_TABLE_LINE = re.compile(r"\s*\[([^\[\]=,]+)\]\s*(?:#.*)?$")
+_KEY_LINE = re.compile(r"\s*([\w.\"' \t-]+?)\s*=")
 
 
 class Param(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -54,23 +54,23 @@ class Conditions(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The greatest speed limit in m/s, inclusive."""
 
     @property
-    def restricting(self) -> dict[str, tuple[str, ...]]:
+    def restricted_conditions(self) -> dict[str, tuple[str, ...]]:
         """Return condition -> allowed values, for the conditions that restrict the rule."""
         return {name: getattr(self, name) for name in conditions.CONDITION_VALUES if getattr(self, name)}
 
     @property
-    def restricts_speed_limit(self) -> bool:
+    def has_speed_limit_condition(self) -> bool:
         """Whether the speed limit restricts the rule."""
         return self.limit_min_mps is not None or self.limit_max_mps is not None
 
 
-CONTACT: Final = "contact"
+CONTACT_TAG: Final = "contact"
 """Tag of the rules whose findings are contacts, found from touching boxes or from the speeds."""
-STANDING: Final = "standing"
+STANDING_TAG: Final = "standing"
 """Tag of the rules that also judge an ego that never moves."""
-EXCUSES: Final = "excuses"
+EXCUSES_TAG: Final = "excuses"
 """Tag of the rules that may be kept although their title is false. The hypothesis states the excuse, such as overtaking."""
-ROAD_USERS: Final = "road_users"
+ROAD_USERS_SIGNAL: Final = "road_users"
 """The signal that every rule about other actors needs: the log records the actors around the ego."""
 
 
@@ -120,7 +120,7 @@ class Header(msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=Tr
     """Reason code -> its text, for codes that only this rule gives by the macro `why`."""
 
 
-_OF: Final = {"params": Param, "applies": Conditions, "reasons": ReasonText}
+_STRUCT_OF_TABLE: Final = {"params": Param, "applies": Conditions, "reasons": ReasonText}
 
 
 def json_schema() -> dict[str, Any]:
@@ -142,13 +142,13 @@ def parse_header(text: str, where: str) -> Header:
     try:
         header = msgspec.convert(raw, Header)
     except msgspec.ValidationError as error:
-        raise _explained(error, text, where) from error
+        raise _rule_error(error, text, where) from error
     if problems := [*_kind_problems(header), *_word_problems(header), *_number_problems(header)]:
-        raise RuleError("\n".join(f"{where}:{line_of(text, key)}: {message}" for key, message in problems))
+        raise RuleError("\n".join(f"{where}:{line_of_key(text, key)}: {message}" for key, message in problems))
     return header
 
 
-def _explained(error: msgspec.ValidationError, text: str, where: str) -> RuleError:
+def _rule_error(error: msgspec.ValidationError, text: str, where: str) -> RuleError:
     """Convert msgspec's error to a `RuleError` on one line, with file, line and the nearest known key."""
     message = str(error)
     place = re.search(r"at `\$\.?([^`]*)`", message)
@@ -157,17 +157,17 @@ def _explained(error: msgspec.ValidationError, text: str, where: str) -> RuleErr
     keys = re.sub(r"\[[^\]]*\]", ".*", path)
     if not unknown and (word := re.match(r"Invalid enum value '(.*)'", message)) and path in Header.__struct_fields__:
         words = get_args(get_type_hints(Header)[path])
-        return RuleError(f"{where}:{line_of(text, keys)}: {path} = {word[1]!r}: {hint(word[1], words)}")
+        return RuleError(f"{where}:{line_of_key(text, keys)}: {path} = {word[1]!r}: {hint(word[1], words)}")
     if not unknown:
-        return RuleError(f"{where}:{line_of(text, keys)}: header: {message}")
+        return RuleError(f"{where}:{line_of_key(text, keys)}: header: {message}")
     key = unknown[1]
-    known = _OF.get(re.split(r"\W", path)[0], Header)
+    known = _STRUCT_OF_TABLE.get(re.split(r"\W", path)[0], Header)
     nearest = hint(key, known.__struct_fields__)
-    line = line_of(text, f"{keys}.{key}" if keys else key)
+    line = line_of_key(text, f"{keys}.{key}" if keys else key)
     return RuleError(f"{where}:{line}: unknown key {key!r} in the header; {nearest}")
 
 
-def line_of(text: str, key: str) -> int:
+def line_of_key(text: str, key: str) -> int:
     """Return the line of the header that sets a key, such as `reads` or `params.near_m.unit`; `*` in the key matches any name.
 
     If no line sets the key, return the line of the table or key that would contain it, else 1.
@@ -176,17 +176,17 @@ def line_of(text: str, key: str) -> int:
     table: list[str] = []
     best, depth = 1, 0
     for n, line in enumerate(text.splitlines(), 1):
-        head, said = _TABLE.match(line), _KEY.match(line)
+        head, said = _TABLE_LINE.match(line), _KEY_LINE.match(line)
         if head:
-            table = _parts(head[1])
-        path = table if head else [*table, *_parts(said[1])] if said else []
+            table = _split_key(head[1])
+        path = table if head else [*table, *_split_key(said[1])] if said else []
         fits = len(path) <= len(wanted) and all(want in {"*", part} for want, part in zip(wanted, path, strict=False))
         if fits and len(path) > depth:
             best, depth = n, len(path)
     return best
 
 
-def _parts(name: str) -> list[str]:
+def _split_key(name: str) -> list[str]:
     return [part.strip(" \t'\"") for part in name.split(".")]
 
 
@@ -223,14 +223,14 @@ def _word_problems(h: Header) -> Iterator[tuple[str, str]]:
     if not h.reads:
         yield "reads", "reads must name the tables that the rule reads"
     for name in h.params:
-        if not _NAME.fullmatch(name):
+        if not _PARAM_NAME.fullmatch(name):
             yield f"params.{name}", f"parameter {name!r}: use lower-case letters, digits and _, a letter first"
     for key, words in (("requires", h.requires), ("pass_requires", h.pass_requires)):
         yield from ((key, f"{key}: {wrong}") for word in words if (wrong := signals.unknown_signal_message(word)))
     known = vocabularies()["rule_tag"]
     yield from (("tags", f"tags: {wrong}") for word in h.tags if (wrong := known.problem(word)))
     yield from (("law", f"law: {wrong}") for word in h.law if (wrong := conditions.value_problem("nation", word)))
-    for name, words in h.applies.restricting.items():
+    for name, words in h.applies.restricted_conditions.items():
         problems = (conditions.value_problem(name, word) for word in words)
         yield from ((f"applies.{name}", f"[applies] {wrong}") for wrong in problems if wrong)
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
-class _Pack(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class _PackFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     title: str
 
 
@@ -27,7 +27,7 @@ def load_rules(dirs: Sequence[Path] = ()) -> dict[str, Rule]:
     Errors: `RuleError` with file and line, also for two rules with the same id and for a folder without rules.
     """
     rules: dict[str, Rule] = {}
-    for file, is_shipped in _all_files(dirs):
+    for file, is_shipped in _all_rule_files(dirs):
         rule = read_rule(file, with_words=not is_shipped)
         if rule.id in rules:
             raise RuleError(
@@ -42,11 +42,11 @@ def load_rule(rule_id: str, dirs: Sequence[Path] = ()) -> Rule | None:
 
     Errors: `RuleError` with file and line, also for a folder without rules.
     """
-    files = ((file, is_shipped) for file, is_shipped in _all_files(dirs) if rule_id_of(file) == rule_id)
+    files = ((file, is_shipped) for file, is_shipped in _all_rule_files(dirs) if rule_id_of(file) == rule_id)
     return next((read_rule(file, with_words=not is_shipped) for file, is_shipped in files), None)
 
 
-def _all_files(dirs: Sequence[Path]) -> Iterator[tuple[Path, bool]]:
+def _all_rule_files(dirs: Sequence[Path]) -> Iterator[tuple[Path, bool]]:
     """Yield each rule file, and whether it is shipped with drivelint."""
     for n, root in enumerate((folder("queries") / "assertions", *dirs)):
         yield from ((file, n == 0) for file in rule_files(root))
@@ -70,11 +70,11 @@ def rule_id_of(file: Path) -> str:
 
 def _pack_folder(file: Path) -> Path:
     """Return the folder of a rule file; for a symbolic link, the folder of its target."""
-    return file.resolve().parent if file.is_symlink() else _resolved(file.parent)
+    return file.resolve().parent if file.is_symlink() else _resolve_folder(file.parent)
 
 
 @cache
-def _resolved(path: Path) -> Path:
+def _resolve_folder(path: Path) -> Path:
     return path.resolve()
 
 
@@ -87,30 +87,32 @@ def read_rule(file: Path, *, with_words: bool = True) -> Rule:
     pack = _pack_folder(file)
     if not file.is_file():
         raise RuleError(f"{file}: a rule must be a file, but this is not one")
-    return _known_rule(file, pack.name, _title(pack), file.read_bytes(), with_words=with_words)
+    return _cached_rule(file, pack.name, _pack_title(pack), file.read_bytes(), with_words=with_words)
 
 
-_RULES: Final = Memo[Rule]("rules", Rule)
+_RULE_MEMO: Final = Memo[Rule]("rules", Rule)
 """Cached rules, by file and content: reading and checking all rules takes longer than judging by one rule."""
 
 
 @lru_cache(maxsize=1024)  # a process may load the same rules many times, and they seldom change
-def _known_rule(file: Path, pack: str, pack_title: str, content: bytes, *, with_words: bool) -> Rule:
+def _cached_rule(file: Path, pack: str, pack_title: str, content: bytes, *, with_words: bool) -> Rule:
     def parse_rule() -> Rule:
         from drivelint.catalogue.rule_file import checked_rule  # imported here, since it imports the SQL parser
 
         return checked_rule(file, pack, pack_title, content, with_words=with_words)
 
-    return _RULES.of("\0".join([str(file), pack, pack_title, str(with_words), content.decode("latin-1")]), parse_rule)
+    return _RULE_MEMO.find_or_compute(
+        "\0".join([str(file), pack, pack_title, str(with_words), content.decode("latin-1")]), parse_rule
+    )
 
 
 @cache
-def _title(folder_: Path) -> str:
+def _pack_title(folder_: Path) -> str:
     """Return the title of a pack from its `pack.toml`; '' without this file. Errors: `RuleError` for an invalid file."""
     file = folder_ / "pack.toml"
     if not file.is_file():
         return ""
     try:
-        return msgspec.toml.decode(file.read_bytes(), type=_Pack).title
+        return msgspec.toml.decode(file.read_bytes(), type=_PackFile).title
     except (msgspec.MsgspecError, UnicodeDecodeError, RecursionError) as error:
         raise RuleError(f'{file}: {error}: write title = "...", the subject of the pack') from error

@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 
     from drivelint.catalogue.rule import Rule
 
-KEYS: Final = ("drive_id", "ego_id", "t_ns", "object_id", "profile")
-_REQUIRED: Final = frozenset({"drive_id", "ego_id", "t_ns"})
+KEY_COLUMNS: Final = ("drive_id", "ego_id", "t_ns", "object_id", "profile")
+_REQUIRED_COLUMNS: Final = frozenset({"drive_id", "ego_id", "t_ns"})
 
 
 class RequirementParts(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -38,7 +38,7 @@ class RequirementParts(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     @property
     def keys(self) -> tuple[str, ...]:
         """The key columns that the SELECT returns."""
-        return tuple(key for key in KEYS if key in (check_query(self.sql, "parts").columns or ()))
+        return tuple(key for key in KEY_COLUMNS if key in (check_query(self.sql, "parts").columns or ()))
 
     @property
     def parameters(self) -> frozenset[str]:
@@ -69,6 +69,6 @@ def read_parts(rule: Rule) -> RequirementParts | None:
     if strange := sorted(query.parameters - rule.params.keys()):
         raise RuleError(f"{file}: ${strange[0]} is no parameter of the rule")
     columns = set(query.columns or ())
-    if not columns >= _REQUIRED or columns - set(KEYS) != found.parts.keys():
+    if not columns >= _REQUIRED_COLUMNS or columns - set(KEY_COLUMNS) != found.parts.keys():
         raise RuleError(f"{file}: the SELECT must return drive_id, ego_id, t_ns and the columns that [parts] names")
     return found

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path  # noqa: TC003 - msgspec looks the field types up when it needs them
 
-from drivelint.catalogue.header import ROAD_USERS, Header
+from drivelint.catalogue.header import ROAD_USERS_SIGNAL, Header
 
 
 class Rule(Header, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -42,7 +42,7 @@ class Rule(Header, frozen=True, forbid_unknown_fields=True, kw_only=True):
         """Whether the rule reads about other actors than the ego, or returns their ids; true if a section's columns are unknown (`*`)."""
         whole = self.columns.keys() >= self.sections.keys()
         return (
-            ROAD_USERS in self.needed_signals
+            ROAD_USERS_SIGNAL in self.needed_signals
             or not whole
             or any("object_id" in columns for columns in self.columns.values())
         )
@@ -52,7 +52,7 @@ class Rule(Header, frozen=True, forbid_unknown_fields=True, kw_only=True):
         """The signals that the rule needs: `requires`, and `road_users` if it is about other actors."""
         from drivelint.sql.derivations import with_sources  # imported here, since it imports the database
 
-        return (*self.requires, *((ROAD_USERS,) if "pair" in with_sources(self.reads) else ()))
+        return (*self.requires, *((ROAD_USERS_SIGNAL,) if "pair" in with_sources(self.reads) else ()))
 
     def has_column(self, column: str) -> bool:
         """Return whether the condition returns this column."""

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import msgspec
 
-from drivelint.catalogue.check import ENGINE_TABLES, Query, check_query, noted, refuse
-from drivelint.catalogue.header import Header, line_of, parse_header
+from drivelint.catalogue.check import ENGINE_TABLES, Query, check_query, collect_problems, raise_problems
+from drivelint.catalogue.header import Header, line_of_key, parse_header
 from drivelint.catalogue.rule import Rule
-from drivelint.catalogue.rule_words import check_words
+from drivelint.catalogue.rule_words import refuse_wrong_words
 from drivelint.errors import RuleError
 from drivelint.phrases import hint, nearest_word
 from drivelint.reasons.reason_text import texts_of_shared_codes
@@ -24,12 +24,12 @@ if TYPE_CHECKING:
 PACK_NAME = re.compile(r"[a-z0-9][a-z0-9_-]*")
 RULE_NAME = re.compile(r"[a-z0-9][a-z0-9._-]*")
 SECTIONS = ("applies", "reference", "condition", "anchor")
-_MARK = re.compile(r"^--\s*@(\S+)\s*$")
-_HIDDEN = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]")
+_SECTION_MARK = re.compile(r"^--\s*@(\S+)\s*$")
+_HIDDEN_CHARACTER = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]")
 """Characters that end a line invisibly, control a terminal or reverse the reading order."""
-_KEYS = ("drive_id", "ego_id", "t_ns")
-_MEASURES = ("object_id", "ref_id", "profile", "observed", "required", "holds", "applies", "at_least", "error")
-_CONDITION = (*_KEYS, *_MEASURES, "reason_code", "reason")
+_KEY_COLUMNS = ("drive_id", "ego_id", "t_ns")
+_MEASURE_COLUMNS = ("object_id", "ref_id", "profile", "observed", "required", "holds", "applies", "at_least", "error")
+_CONDITION_COLUMNS = (*_KEY_COLUMNS, *_MEASURE_COLUMNS, "reason_code", "reason")
 
 
 class Section(NamedTuple):
@@ -55,29 +55,31 @@ def checked_rule(file: Path, pack: str, pack_title: str, content: bytes, *, with
         text = content.decode("utf-8")
     except UnicodeDecodeError as error:
         raise RuleError(f"{file}: not UTF-8 at byte {error.start}") from error
-    if hidden := _HIDDEN.search(text):
+    if hidden := _HIDDEN_CHARACTER.search(text):
         line = text.count("\n", 0, hidden.start()) + 1
         raise RuleError(f"{file}:{line}: the character U+{ord(hidden[0]):04X} hides what the rule does: remove it")
     toml, sections = split_sections(text, str(file))
     problems: list[str] = []
-    with noted(problems):
+    with collect_problems(problems):
         header = parse_header(toml, str(file))
     queries: dict[str, Query] = {}
     for name, section in sections.items():
-        with noted(problems):
+        with collect_problems(problems):
             queries[name] = check_query(section.sql, str(file), section.sql_line)
-    refuse(problems)
+    raise_problems(problems)
     if header.reference is not None:
-        event = sections["reference"] = _event_table(header.reference, sections, file, line_of(toml, "reference"))
+        event = sections["reference"] = _event_table_section(
+            header.reference, sections, file, line_of_key(toml, "reference")
+        )
         queries["reference"] = check_query(event.sql, str(file), event.sql_line)
-    problems += _check_sections(header, sections, queries, file)
-    problems += _check_reads(header, queries, f"{file}:{line_of(toml, 'reads')}")
-    problems += _check_params(header, queries, file, toml)
-    problems += _check_reasons(header, queries, file, toml)
+    problems += _section_problems(header, sections, queries, file)
+    problems += _reads_problems(header, queries, f"{file}:{line_of_key(toml, 'reads')}")
+    problems += _param_problems(header, queries, file, toml)
+    problems += _reason_problems(header, queries, file, toml)
     if with_words:
-        with noted(problems):
-            _check_words(header, sections, file, toml)
-    refuse(problems)
+        with collect_problems(problems):
+            _refuse_wrong_words(header, sections, file, toml)
+    raise_problems(problems)
     return Rule(
         **msgspec.structs.asdict(header),
         id=f"{pack}.{file.stem}",
@@ -92,12 +94,12 @@ def checked_rule(file: Path, pack: str, pack_title: str, content: bytes, *, with
             if query.columns is not None and not (name == "reference" and query.by_name)
         },
         reason_codes=frozenset(reason.code for query in queries.values() for reason in query.reasons),
-        quantities=_quantities(header, queries),
+        quantities=_used_quantities(header, queries),
         occasion_needs=next((queries[name].needs for name in ("reference", "applies") if name in queries), frozenset()),
     )
 
 
-def _quantities(header: Header, queries: dict[str, Query]) -> frozenset[str]:
+def _used_quantities(header: Header, queries: dict[str, Query]) -> frozenset[str]:
     """Return the quantities of actors that a rule uses: existence, identity, and the quantities of the columns that it names."""
     declared = store.column_quantities()
     # an event table named in the header provides all its columns: only columns that other sections name count
@@ -119,14 +121,14 @@ def split_sections(text: str, where: str) -> tuple[str, dict[str, Section]]:
     Errors: `RuleError` for SQL before the first section, and for an unknown, repeated, empty or missing section.
     """
     lines = text.splitlines()
-    marks = [(n, match[1]) for n, line in enumerate(lines) if (match := _MARK.match(line))]
+    marks = [(n, match[1]) for n, line in enumerate(lines) if (match := _SECTION_MARK.match(line))]
     header_end = marks[0][0] if marks else len(lines)
     header = [_uncomment(line, n, where) for n, line in enumerate(lines[:header_end], 1)]
     sections: dict[str, Section] = {}
     ends = [n for n, _ in marks[1:]] + [len(lines)]
     for (start, name), end in zip(marks, ends, strict=False):
         if name not in SECTIONS:
-            raise RuleError(f"{where}:{start + 1}: unknown section @{name}; {hint(name, SECTIONS, sign='@')}")
+            raise RuleError(f"{where}:{start + 1}: unknown section @{name}; {hint(name, SECTIONS, prefix='@')}")
         if name in sections:
             raise RuleError(f"{where}:{start + 1}: section @{name} stands twice")
         below = lines[start + 1 : end]
@@ -150,21 +152,21 @@ def _uncomment(line: str, n: int, where: str) -> str:
     return line[2:].removeprefix(" ")
 
 
-def _event_table(table: str, sections: dict[str, Section], file: Path, line: int) -> Section:
+def _event_table_section(table: str, sections: dict[str, Section], file: Path, line: int) -> Section:
     """Return the section @reference that the header's `reference = "table"` abbreviates: a SELECT of that whole event table."""
     if "reference" in sections:
         raise RuleError(
             f"{file}:{sections['reference'].line}: the header names an event table already: drop it or @reference"
         )
     columns = store.column_comments().get(table, {})
-    if not set(_KEYS) <= columns.keys():
+    if not set(_KEY_COLUMNS) <= columns.keys():
         raise RuleError(
             f"{file}:{line}: reference = {table!r} is no event table: it needs the columns drive_id, ego_id, t_ns"
         )
     return Section(f"SELECT {', '.join(columns)} FROM {table}", line, line)
 
 
-def _check_sections(
+def _section_problems(
     header: Header, sections: dict[str, Section], queries: dict[str, Query], file: Path
 ) -> Iterator[str]:
     """Yield the problems of missing or surplus sections, and of each section's columns."""
@@ -181,20 +183,20 @@ def _check_sections(
         )
     measured = ("holds",) if header.sense == "holds" else ("observed", "required")
     contracts: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
-        "condition": ((*_KEYS, *measured), _CONDITION),
-        "applies": (_KEYS, (*_KEYS, "object_id", "episode", "applies", "reason")),
+        "condition": ((*_KEY_COLUMNS, *measured), _CONDITION_COLUMNS),
+        "applies": (_KEY_COLUMNS, (*_KEY_COLUMNS, "object_id", "episode", "applies", "reason")),
         "anchor": (("ref_id", "t_ns"), ("ref_id", "drive_id", "ego_id", "t_ns")),
     }
     for name, query in queries.items():
         where = f"{file}:{sections[name].line}: @{name}"
         if name != "reference":
-            yield from _check_columns(query.columns, *contracts[name], where)
-        elif query.columns is not None and ("ref_id" in query.columns or not set(_KEYS) <= set(query.columns)):
+            yield from _column_problems(query.columns, *contracts[name], where)
+        elif query.columns is not None and ("ref_id" in query.columns or not set(_KEY_COLUMNS) <= set(query.columns)):
             yield (f"{where} must return drive_id, ego_id, t_ns and no ref_id (the engine numbers it)")
-    yield from _check_condition(header, queries["condition"], f"{file}:{sections['condition'].line}: @condition")
+    yield from _condition_problems(header, queries["condition"], f"{file}:{sections['condition'].line}: @condition")
 
 
-def _check_columns(
+def _column_problems(
     columns: tuple[str, ...] | None, required_columns: tuple[str, ...], allowed_columns: tuple[str, ...], where: str
 ) -> Iterator[str]:
     if columns is None:
@@ -208,7 +210,7 @@ def _check_columns(
         yield (f"{where} returns the unknown column {stray[0]!r}; {hint(stray[0], allowed_columns)}")
 
 
-def _check_condition(header: Header, query: Query, where: str) -> Iterator[str]:
+def _condition_problems(header: Header, query: Query, where: str) -> Iterator[str]:
     """Yield contradictions between condition and header: sense, reference, and `combine`."""
     columns = query.columns or ()
     wrong = {"observed", "required", "at_least", "error"} if header.sense == "holds" else {"holds"}
@@ -220,8 +222,9 @@ def _check_condition(header: Header, query: Query, where: str) -> Iterator[str]:
         yield (f"{where}: combine = {header.combine!r} needs the column object_id")
 
 
-def _check_reads(header: Header, queries: dict[str, Query], reads: str) -> Iterator[str]:
-    """Yield differences between the header's `reads` and the tables that the SQL reads. `reads`: `file:line` of that key."""
+def _reads_problems(header: Header, queries: dict[str, Query], place_of_reads: str) -> Iterator[str]:
+    """Yield differences between the header's `place_of_reads` and the tables that the SQL reads. `place_of_reads`: `file:line` of that
+    key."""
     given = {"condition": ENGINE_TABLES, "anchor": frozenset({"reference"})} if header.kind != "invariant" else {}
     for name, query in queries.items():
         if early := sorted(query.tables & ENGINE_TABLES - given.get(name, frozenset())):
@@ -231,10 +234,10 @@ def _check_reads(header: Header, queries: dict[str, Query], reads: str) -> Itera
         if undeclared := sorted(query.tables - ENGINE_TABLES - said):
             yield (f"{query.places[undeclared[0]]}: reads does not match the SQL: add {', '.join(undeclared)} to reads")
     if idle := sorted(said.difference(*(query.tables for query in queries.values()))):
-        yield (f"{reads}: reads does not match the SQL: remove {', '.join(idle)}")
+        yield (f"{place_of_reads}: reads does not match the SQL: remove {', '.join(idle)}")
 
 
-def _check_params(header: Header, queries: dict[str, Query], file: Path, toml: str) -> Iterator[str]:
+def _param_problems(header: Header, queries: dict[str, Query], file: Path, toml: str) -> Iterator[str]:
     for query in queries.values():
         if strange := sorted(query.parameters - header.params.keys()):
             name = strange[0]
@@ -247,21 +250,21 @@ def _check_params(header: Header, queries: dict[str, Query], file: Path, toml: s
     used |= {s for s in (header.window_s, header.exempt_after_s, header.merge_gap_s) if isinstance(s, str)}
     if unused := sorted(header.params.keys() - used):
         yield (
-            f"{file}:{line_of(toml, f'params.{unused[0]}')}: parameter {unused[0]!r} is never used: bind it as ${unused[0]}"
+            f"{file}:{line_of_key(toml, f'params.{unused[0]}')}: parameter {unused[0]!r} is never used: bind it as ${unused[0]}"
         )
 
 
-def _check_words(header: Header, sections: dict[str, Section], file: Path, toml: str) -> None:
+def _refuse_wrong_words(header: Header, sections: dict[str, Section], file: Path, toml: str) -> None:
     def place(part: str, offset: int) -> str:
         if part not in sections:
-            return f"{file}:{line_of(toml, part)}"
+            return f"{file}:{line_of_key(toml, part)}"
         before = sections[part].sql.encode()[:offset]
         return f"{file}:{sections[part].sql_line + before.count(10)}"
 
-    check_words({name: section.sql for name, section in sections.items()}, header.params, place)
+    refuse_wrong_words({name: section.sql for name, section in sections.items()}, header.params, place)
 
 
-def _check_reasons(header: Header, queries: dict[str, Query], file: Path, toml: str) -> Iterator[str]:
+def _reason_problems(header: Header, queries: dict[str, Query], file: Path, toml: str) -> Iterator[str]:
     """Yield the problems of reason codes: codes without a text, texts without their arguments, and unused codes."""
     known = {**texts_of_shared_codes(), **header.reasons}
     given = [reason for query in queries.values() for reason in query.reasons]
@@ -272,5 +275,5 @@ def _check_reasons(header: Header, queries: dict[str, Query], file: Path, toml: 
         if arguments is not None and (absent := sorted(known[code].required_arguments - arguments)):
             yield (f"{place}: the words of {code!r} need the argument {absent[0]!r}: add it to why({code!r}, {{...}})")
     if unused := sorted(header.reasons.keys() - {reason.code for reason in given}):
-        line = line_of(toml, f"reasons.{unused[0]}")
+        line = line_of_key(toml, f"reasons.{unused[0]}")
         yield (f"{file}:{line}: the reason {unused[0]!r} is never used: use it in why({unused[0]!r}), or remove it")

@@ -15,22 +15,24 @@ if TYPE_CHECKING:
     from drivelint.sql.word_scope import Relation
 
 
-def check_words(sections: Mapping[str, str], params: Mapping[str, Param], place: Callable[[str, int], str]) -> None:
+def refuse_wrong_words(
+    sections: Mapping[str, str], params: Mapping[str, Param], place_of: Callable[[str, int], str]
+) -> None:
     """Check the words in the SQL of a rule's sections, and in the defaults of its parameters.
 
-    `place`: function from a section and a byte offset in its SQL, or from `params.NAME.default` and 0, to `file:line`.
+    `place_of`: function from a section and a byte offset in its SQL, or from `params.NAME.default` and 0, to `file:line`.
     Errors: `RuleError` for the first wrong word, with the nearest valid word.
     """
     try:
-        found = _check_sections(sections)
+        found = _checked_queries(sections)
     except RecursionError as error:
-        raise RuleError(f"{place('condition', 0)}: too deeply nested to be checked: split it into CTEs") from error
+        raise RuleError(f"{place_of('condition', 0)}: too deeply nested to be checked: split it into CTEs") from error
     for name, checked in found.items():
         for wrong in sorted(checked.wrong, key=lambda each: each.offset or 0):
-            raise RuleError(f"{place(name, wrong.offset or 0)}: {wrong.message}")
+            raise RuleError(f"{place_of(name, wrong.offset or 0)}: {wrong.message}")
     for name, param in params.items():
         if problem := parameter_problem(sections, name, param.default):
-            raise RuleError(f"{place(f'params.{name}.default', 0)}: parameter {name!r}: {problem}")
+            raise RuleError(f"{place_of(f'params.{name}.default', 0)}: parameter {name!r}: {problem}")
 
 
 def parameter_problem(sections: Mapping[str, str], name: str, value: object) -> str | None:
@@ -38,14 +40,14 @@ def parameter_problem(sections: Mapping[str, str], name: str, value: object) -> 
     if not isinstance(value, str):
         return None
     given = Words(literals={value: Literal(None)}, direct=True)
-    for checked in _check_sections(sections).values():
+    for checked in _checked_queries(sections).values():
         for other in checked.parameters.get(name, ()):
             for wrong in wrong_words(given, other):
                 return wrong.message
     return None
 
 
-def _check_sections(sections: Mapping[str, str]) -> dict[str, word_check.CheckedQuery]:
+def _checked_queries(sections: Mapping[str, str]) -> dict[str, word_check.CheckedQuery]:
     """Return section -> its checked query. For the other sections, the engine's tables have the columns of @reference."""
     found: dict[str, word_check.CheckedQuery] = {}
     tables: dict[str, Relation] = {}

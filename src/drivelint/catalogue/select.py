@@ -25,7 +25,7 @@ import msgspec
 
 from drivelint.drive import conditions
 from drivelint.errors import UsageError
-from drivelint.phrases import hint, listed
+from drivelint.phrases import hint, name_list
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
@@ -52,11 +52,11 @@ def select_rules(
     contains the id. Errors: `UsageError` if a selector matches no rule, or no rule is left.
     """
     if include:
-        chosen = {rule.id: rule for selector in include for rule in _matching(rules, selector)}
+        chosen = {rule.id: rule for selector in include for rule in _matching_rules(rules, selector)}
     else:
         chosen = {rule.id: rule for rule in rules.values() if rule.pack == default_pack and rule.status == "stable"}
     for selector in ignore:
-        for rule in _matching(rules, selector):
+        for rule in _matching_rules(rules, selector):
             chosen.pop(rule.id, None)
     if not chosen:
         raise UsageError("no rule is left to check: see `drivelint rules list` and choose with --rules")
@@ -84,10 +84,10 @@ def required_rules(
     selected, a selector without a selected rule, or a selector without a stable rule, since other rules do not gate.
     """
     chosen = {rule.id for rule in selected}
-    left_out = {rule.id for selector in ignore for rule in _matching(rules, selector)}
+    left_out = {rule.id for selector in ignore for rule in _matching_rules(rules, selector)}
     found: set[str] = set()
     for selector in required:
-        stable = {rule.id for rule in _matching(rules, selector) if rule.status == "stable"}
+        stable = {rule.id for rule in _matching_rules(rules, selector) if rule.status == "stable"}
         if not stable:
             raise UsageError(f"--require {selector!r}: is not a stable rule, and other rules cannot fail a run")
         # a selector such as a severity matches rules of every pack: only the selected rules of the run are required
@@ -95,15 +95,15 @@ def required_rules(
         if not stable & chosen and not lacking:
             raise UsageError(f"--require {selector!r}: --ignore excludes all of its rules")
         if lacking and (selector in rules or not stable & chosen):
-            raise UsageError(f"--require {selector!r}: not selected by --rules: {listed(lacking, 3)}")
+            raise UsageError(f"--require {selector!r}: not selected by --rules: {name_list(lacking, 3)}")
         found |= stable & chosen
     return tuple(sorted(found))
 
 
-def _matching(rules: Mapping[str, Rule], selector: str) -> list[Rule]:
+def _matching_rules(rules: Mapping[str, Rule], selector: str) -> list[Rule]:
     """Return the rules that match every comma-separated part of the selector."""
     parts = [part.strip() for part in selector.split(",")]
-    found = [{rule.id for rule in _matching_part(rules, part)} for part in parts]
+    found = [{rule.id for rule in _rules_matching_part(rules, part)} for part in parts]
     both = set.intersection(*found)
     if not both and len(parts) > 1:
         raise UsageError(
@@ -112,32 +112,36 @@ def _matching(rules: Mapping[str, Rule], selector: str) -> list[Rule]:
     return [rules[rule_id] for rule_id in sorted(both)]
 
 
-def _matching_part(rules: Mapping[str, Rule], part: str) -> list[Rule]:
+def _rules_matching_part(rules: Mapping[str, Rule], part: str) -> list[Rule]:
     """Return the rules that match one part of a selector. Errors: `UsageError` if no rule, pack or glob matches."""
     if part in rules:
         return [rules[part]]
     method, colon, word = part.partition(":")
     if colon:
-        return [rule for rule in _by_method(rules, method, word) if rule.status != "deprecated" or word == rule.status]
+        return [
+            rule
+            for rule in _rules_with_property(rules, method, word)
+            if rule.status != "deprecated" or word == rule.status
+        ]
     found = [rule for rule in rules.values() if part in {"all", rule.pack} or fnmatchcase(rule.id, part)]
     if not found:
         known = [*rules, *(rule.pack for rule in rules.values())]
         raise UsageError(
-            f"no rule, pack or glob matches {part!r}{_nearest(part, known)} (rules of your own: --rules-dir DIR)"
+            f"no rule, pack or glob matches {part!r}{_nearest_hint(part, known)} (rules of your own: --rules-dir DIR)"
         )
     return [rule for rule in found if rule.status != "deprecated"]
 
 
-def _by_method(rules: Mapping[str, Rule], method: str, word: str) -> list[Rule]:
-    """Return the rules with this word for a property (`method`). Errors: `UsageError` that lists valid properties or words."""
-    if method not in _METHODS:
-        raise UsageError(f"rules are not selected by {method!r}; {hint(method, _METHODS)}")
-    words = {rule.id: _METHODS[method](rule) for rule in rules.values()}
+def _rules_with_property(rules: Mapping[str, Rule], property_name: str, word: str) -> list[Rule]:
+    """Return the rules with this word for a property (`property_name`). Errors: `UsageError` that lists valid properties or words."""
+    if property_name not in _WORDS_OF_PROPERTY:
+        raise UsageError(f"rules are not selected by {property_name!r}; {hint(property_name, _WORDS_OF_PROPERTY)}")
+    words = {rule.id: _WORDS_OF_PROPERTY[property_name](rule) for rule in rules.values()}
     found = [rules[rule_id] for rule_id, mine in words.items() if word.casefold() in mine]
     if not found:
         known = sorted({name for mine in words.values() for name in mine})
         shown = f"; known are {', '.join(known)}" if len(known) <= _MAX_LISTED_WORDS else ""
-        raise UsageError(f"no rule has the {method} {word!r}{_nearest(word, known) or shown}")
+        raise UsageError(f"no rule has the {property_name} {word!r}{_nearest_hint(word, known) or shown}")
     return found
 
 
@@ -148,19 +152,22 @@ def clause_names(rule: Rule) -> set[str]:
     return {name.rstrip(".").casefold() for name in [*named, *inside]}
 
 
-def _header_word(name: str, rule: Rule) -> set[str]:
+def _words_of_header_field(name: str, rule: Rule) -> set[str]:
     return {getattr(rule, name)} - {None}
 
 
-_METHODS: Final[dict[str, Callable[[Rule], set[str]]]] = {
-    **{name: partial(_header_word, name) for name in ("kind", "subtype", "severity", "status", "legal", "derivation")},
+_WORDS_OF_PROPERTY: Final[dict[str, Callable[[Rule], set[str]]]] = {
+    **{
+        name: partial(_words_of_header_field, name)
+        for name in ("kind", "subtype", "severity", "status", "legal", "derivation")
+    },
     "clause": clause_names,
     "requires": lambda rule: set(rule.requires),
 }
 _MAX_LISTED_WORDS: Final = 12
 
 
-def _nearest(word: str, candidates: Iterable[str]) -> str:
+def _nearest_hint(word: str, candidates: Iterable[str]) -> str:
     """Return '; did you mean ...?' or ''. A word that is part of a rule's id also suggests this rule."""
     names = {name: name for name in candidates}
     names |= {name.split(".", 1)[1]: name for name in list(names) if "." in name}
@@ -183,12 +190,12 @@ def parse_params(rules: Iterable[Rule], settings: Sequence[str]) -> dict[str, di
         if not equals or not dot:
             raise UsageError(f"--param {setting!r}: write RULE.PARAM=VALUE")
         if rule_id not in known:
-            raise UsageError(f"--param {setting!r}: no rule {rule_id!r} is loaded{_nearest(rule_id, known)}")
+            raise UsageError(f"--param {setting!r}: no rule {rule_id!r} is loaded{_nearest_hint(rule_id, known)}")
         params = known[rule_id].params
         if param not in params:
             names = ", ".join(params) or "none"
             raise UsageError(f"--param {setting!r}: {rule_id} has no parameter {param!r}; it has: {names}")
-        value = _typed(text.strip(), params[param].default, setting)
+        value = _parse_value(text.strip(), params[param].default, setting)
         from drivelint.catalogue.rule_words import parameter_problem  # imported here, since it imports the SQL parser
 
         if problem := parameter_problem(known[rule_id].sections, param, value):
@@ -197,7 +204,7 @@ def parse_params(rules: Iterable[Rule], settings: Sequence[str]) -> dict[str, di
     return values
 
 
-def _typed(text: str, default: float | bool | str, setting: str) -> float | bool | str:
+def _parse_value(text: str, default: float | bool | str, setting: str) -> float | bool | str:
     if isinstance(default, bool):
         words = {"true": True, "false": False}
         if text.lower() not in words:

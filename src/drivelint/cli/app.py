@@ -28,12 +28,12 @@ from drivelint.errors import (
     DriveLintError,
     ExitCode,
     UsageError,
-    least_limit_bytes,
-    of_the_machine,
+    describe_machine_error,
+    least_memory_limit_bytes,
 )
-from drivelint.phrases import inert, inert_json, inert_line
+from drivelint.phrases import terminal_safe, terminal_safe_json, terminal_safe_line
 from drivelint.settings import find_settings, read_settings
-from drivelint.without_pandas import leave_out_pandas
+from drivelint.without_pandas import block_pandas_import
 
 if TYPE_CHECKING:
     from typer.models import CommandInfo
@@ -117,7 +117,7 @@ def inspect(
     )
     found = run_interruptible(lambda: inspection.inspect(request))
     if format_ == "json":
-        typer.echo(inert_json(inspection.to_json(found)))
+        typer.echo(terminal_safe_json(inspection.to_json(found)))
     else:
         from drivelint.inspect.text import render
 
@@ -166,8 +166,8 @@ def convert(
     else:
         written = run_interruptible(lambda: converter.convert(request))
     for note in written.notes:
-        typer.echo(f"drivelint: {inert_line(note)}", err=True)
-    typer.echo(inert(converter.summary_text(written)))
+        typer.echo(f"drivelint: {terminal_safe_line(note)}", err=True)
+    typer.echo(terminal_safe(converter.summary_text(written)))
 
 
 app.command(cls=GroupedCommand)(watching.watch)
@@ -193,9 +193,9 @@ def main() -> NoReturn:
     from typer.exceptions import TyperException
 
     streams.prepare()
-    if (limit := least_limit_bytes()) is not None and limit < LEAST_ADDRESS_SPACE_BYTES:
+    if (limit := least_memory_limit_bytes()) is not None and limit < LEAST_ADDRESS_SPACE_BYTES:
         _fail(f"a limit of {limit / 1e6:.0f} MB of memory (ulimit -v) is too low: raise it", ExitCode.TEMPFAIL)
-    leave_out_pandas()
+    block_pandas_import()
     ending_signals.install()
     gc.set_threshold(GARBAGE_AFTER)
     try:
@@ -215,9 +215,9 @@ def main() -> NoReturn:
     except Exception as error:  # noqa: BLE001 - Python's exit code for it would be 1, which means a failed rule
         import traceback
 
-        if (told := of_the_machine(error)) is not None:
+        if (told := describe_machine_error(error)) is not None:
             _fail(*told)
-        streams.say(inert(traceback.format_exc().rstrip()))
+        streams.say(terminal_safe(traceback.format_exc().rstrip()))
         _fail(f"internal error: {type(error).__name__}: {error}: please report it", ExitCode.NOT_JUDGED)
     if code == ExitCode.INTERRUPTED:
         streams.say("drivelint: error: interrupted")
@@ -278,5 +278,5 @@ def _settings() -> dict[str, Any]:
 
 
 def _fail(message: str, code: ExitCode) -> NoReturn:
-    streams.say(f"drivelint: error: {inert_line(message)}")
+    streams.say(f"drivelint: error: {terminal_safe_line(message)}")
     sys.exit(int(code))

@@ -13,7 +13,7 @@ from drivelint.cli.console import progress as bar
 from drivelint.cli.console import run_interruptible
 from drivelint.cli.options import argument, option
 from drivelint.errors import DriveLintError, UsageError
-from drivelint.phrases import inert, inert_line, plural
+from drivelint.phrases import plural, terminal_safe, terminal_safe_line
 from drivelint.settings import find_settings
 
 Delta = Annotated[
@@ -162,7 +162,7 @@ def audit(
         cluster=cluster,
         delta=delta,
     )
-    pack = option_values.asked_pack(evidence, sign, out, whole=shard is None and not claim)
+    pack = option_values.pack_request(evidence, sign, out, has_all_drives=shard is None and not claim)
     with bar(quiet) as progress:
         try:
             counted = run_interruptible(lambda: audited(request, progress))
@@ -174,7 +174,7 @@ def audit(
         result = gated.apply_gate(out, gate)
         code, told = gated.exit_code(result, counted), list(gated.gate_lines(result))
         why = gated.exit_reason(result, code)
-    typer.echo(inert(summary_text(counted, out, code, told, fail_on=fail_on, why=why)))
+    typer.echo(terminal_safe(summary_text(counted, out, code, told, fail_on=fail_on, gate_reason=why)))
     if pack is not None:
         packs.write_and_tell(pack, err=True)
     raise typer.Exit(int(code))
@@ -191,10 +191,10 @@ def _stored_results_sentence(out: str) -> str:
         with TemporaryDirectory(prefix="drivelint-kept-") as home:
             n = n_results(open_store(out), Path(home))
     except (DriveLintError, OSError):  # the user wants to stop, so an error of the store is not reported
-        return f"results so far stay in {inert_line(out)}: the same command continues with the rest"
+        return f"results so far stay in {terminal_safe_line(out)}: the same command continues with the rest"
     if not n:
-        return f"no drive has a result in {inert_line(out)} yet, because drives are judged in groups: the same command begins again"
-    kept = f"{plural(n, 'drive')} {'has' if n == 1 else 'have'} a result, which stays in {inert_line(out)}"
+        return f"no drive has a result in {terminal_safe_line(out)} yet, because drives are judged in groups: the same command begins again"
+    kept = f"{plural(n, 'drive')} {'has' if n == 1 else 'have'} a result, which stays in {terminal_safe_line(out)}"
     return f"{kept}: the same command continues with the rest"
 
 
@@ -211,7 +211,7 @@ def merge(
     with bar(False) as progress:
         counted = run_interruptible(lambda: merged(dest, progress, delta))
     code = counted.exit_code("never", strict=False)
-    typer.echo(inert(summary_text(counted, dest, code, fail_on="never")))
+    typer.echo(terminal_safe(summary_text(counted, dest, code, fail_on="never")))
     raise typer.Exit(int(code))
 
 
@@ -229,9 +229,9 @@ def sql(
     format_: Annotated[options.SqlFormat, option("--format", None, "Format of the output on stdout.")] = "text",
 ) -> None:
     """Query the tables of an audit or a check with SQL. Nothing is changed."""
-    from drivelint.audit.ask import ask
+    from drivelint.audit.ask import run_query
 
     def warn(warning: str) -> None:
-        typer.echo(f"drivelint: {inert_line(warning)}", err=True)
+        typer.echo(f"drivelint: {terminal_safe_line(warning)}", err=True)
 
-    typer.echo(ask(dest, query, format_, warn), nl=False)
+    typer.echo(run_query(dest, query, format_, warn), nl=False)

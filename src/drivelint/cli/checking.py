@@ -15,7 +15,7 @@ from drivelint.cli.console import rich_text, run_interruptible, say_kept, say_no
 from drivelint.cli.options import Texts, argument, option
 from drivelint.cli.restart import Restart
 from drivelint.errors import UsageError
-from drivelint.phrases import inert_json, inert_line
+from drivelint.phrases import terminal_safe_json, terminal_safe_line
 from drivelint.settings import find_settings
 
 if TYPE_CHECKING:
@@ -172,7 +172,7 @@ def check(
     from drivelint.report.outputs import working_folder, write
     from drivelint.result.model import exit_status
 
-    pack = option_values.asked_pack(evidence, sign, out, overwrite=overwrite)
+    pack = option_values.pack_request(evidence, sign, out, overwrite=overwrite)
     refuse_own_baseline(baseline, out)
     settings = run.CheckOptions(
         traces=tuple(traces),
@@ -239,7 +239,7 @@ def _settings_file(*, quiet: bool) -> Path | None:
     """Return the settings file that applies, and print its name unless the run is quiet."""
     file = find_settings()
     if file is not None and not quiet:
-        streams.say(f"drivelint: settings: {inert_line(str(file))}")
+        streams.say(f"drivelint: settings: {terminal_safe_line(str(file))}")
     return file
 
 
@@ -247,10 +247,10 @@ def _with_manifests(settings: CheckOptions, *, packed: bool) -> CheckOptions:
     """Return the settings with manifests replaced by the logs that they name. Errors: `UsageError`."""
     if not any(trace.lower().endswith((".csv", ".parquet")) for trace in settings.traces):
         return settings
-    from drivelint.audit.sources import with_manifests
+    from drivelint.audit.sources import expand_manifests
 
-    logs, manifest_options = with_manifests(
-        settings.traces, settings, lambda text: streams.say(f"drivelint: {inert_line(text)}")
+    logs, manifest_options = expand_manifests(
+        settings.traces, settings, lambda text: streams.say(f"drivelint: {terminal_safe_line(text)}")
     )
     if manifest_options and packed:
         raise UsageError(
@@ -273,7 +273,9 @@ def _judge(
     if jobs > 1:
         from drivelint import parallel
 
-        return parallel.check(settings, jobs, progress, interruption=interruption, deaf_rules=deaf_rules, keep=keep)
+        return parallel.check(
+            settings, jobs, progress, interruption=interruption, deaf_rules=deaf_rules, on_nothing_judged=keep
+        )
     from drivelint import run
 
     return run.check(settings, progress, interruption, deaf_rules, keep)
@@ -285,6 +287,6 @@ def _stdout(result: Result, format_: options.Format, out: Path | None, *, verbos
     from drivelint.result.one_line import result_on_one_line
 
     if format_ == "json":
-        return inert_json(summary.render(result).decode())
+        return terminal_safe_json(summary.render(result).decode())
     told = result_on_one_line(result)
     return rich_text(lambda width: terminal.render(told, None if out is None else str(out), width, verbose=verbose))

@@ -8,7 +8,7 @@ import typer
 
 from drivelint.cli.console import run_interruptible
 from drivelint.errors import UsageError
-from drivelint.phrases import inert, inert_json, inert_line, listed
+from drivelint.phrases import name_list, terminal_safe, terminal_safe_json, terminal_safe_line
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -30,7 +30,7 @@ def report_check(folder: Path, to: str, base_url: str | None) -> None:
     result = load_result(folder)
     warn_of_partial(folder, result)
     add_file(folder, name, render(result) if base_url is None else markdown.render(result, base_url))
-    typer.echo(inert_line(str(folder / name)))
+    typer.echo(terminal_safe_line(str(folder / name)))
 
 
 def write_incident_sheet(request: IncidentRequest) -> None:
@@ -41,11 +41,11 @@ def write_incident_sheet(request: IncidentRequest) -> None:
     from drivelint.incident import other_drives, write_incident
 
     for path in run_interruptible(lambda: write_incident(request)):
-        typer.echo(inert_line(str(path)))
+        typer.echo(terminal_safe_line(str(path)))
     if others := other_drives(request):
         name = request.name
-        message = f"{name} also has findings in {listed(others)}: the sheet is about the worst; choose another with {name}@DRIVE"
-        typer.echo(f"drivelint: {inert_line(message)}", err=True)
+        message = f"{name} also has findings in {name_list(others)}: the sheet is about the worst; choose another with {name}@DRIVE"
+        typer.echo(f"drivelint: {terminal_safe_line(message)}", err=True)
 
 
 def diff_checks(base: Path, new: Path, format_: str, fail_on: str | None) -> None:
@@ -62,13 +62,13 @@ def diff_checks(base: Path, new: Path, format_: str, fail_on: str | None) -> Non
     least = later.fail_on if fail_on is None else fail_on
     difference, failing = compare_results(earlier, later, (base.resolve().name, new.resolve().name), least)
     if format_ == "json":
-        typer.echo(inert_json(descriptions.to_json(difference, failing, least)))
+        typer.echo(terminal_safe_json(descriptions.to_json(difference, failing, least)))
     elif format_ == "markdown":
         from drivelint.report import markdown
 
         typer.echo(markdown.render_difference(difference, failing, least, later.gate))
     else:
-        typer.echo(inert(descriptions.difference_text(difference, failing, least, later.gate)))
+        typer.echo(terminal_safe(descriptions.difference_text(difference, failing, least, later.gate)))
     raise typer.Exit(int(descriptions.exit_code(difference, failing, least)))
 
 
@@ -77,4 +77,4 @@ def warn_of_partial(folder: Path, result: Result) -> None:
     if result.interrupted:
         from drivelint.result.model import interruption_sentence
 
-        typer.echo(f"drivelint: {inert_line(str(folder))}: {interruption_sentence(result.drives)}", err=True)
+        typer.echo(f"drivelint: {terminal_safe_line(str(folder))}: {interruption_sentence(result.drives)}", err=True)

@@ -12,7 +12,7 @@ import typer
 
 from drivelint.cli import ending_signals
 from drivelint.errors import DriveLintError
-from drivelint.phrases import inert, inert_line, plural
+from drivelint.phrases import plural, terminal_safe, terminal_safe_line
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -54,7 +54,9 @@ def run_interruptible(job: Callable[[], T], interrupt: Callable[[], None] | None
 def say_nothing_kept(out: Path | None, *, judged_none: bool) -> None:
     """Print on stderr why an interrupted check has no result, and that its folder contains none."""
     why = "nothing was judged yet" if judged_none else "stopped at once: nothing is kept"
-    typer.echo(f"drivelint: {why}{'' if out is None else f'; {inert_line(str(out))} contains no result'}", err=True)
+    typer.echo(
+        f"drivelint: {why}{'' if out is None else f'; {terminal_safe_line(str(out))} contains no result'}", err=True
+    )
 
 
 @contextmanager
@@ -71,14 +73,15 @@ def tells_of_earlier(out: Path | None) -> Iterator[None]:
             and not (out / "summary.json").is_file()
         ):
             typer.echo(
-                f"drivelint: the result of an earlier run is now in {inert_line(str(out / EARLIER_FOLDER))}", err=True
+                f"drivelint: the result of an earlier run is now in {terminal_safe_line(str(out / EARLIER_FOLDER))}",
+                err=True,
             )
         raise
 
 
 def say_kept(statuses: Sequence[str], out: Path | None) -> None:
     """Print how many drives an interrupted check has judged and kept."""
-    where = "" if out is None else f" in {inert_line(str(out))}"
+    where = "" if out is None else f" in {terminal_safe_line(str(out))}"
     kept = f"kept {statuses.count('judged')} of {plural(len(statuses), 'drive')}{where}"
     typer.echo(f"drivelint: {kept}", err=True)
 
@@ -99,7 +102,7 @@ def _inert_console() -> type[Console]:
     class InertConsole(Console):
         def render(self, *args: Any, **options: Any) -> Iterator[Segment]:
             for segment in super().render(*args, **options):
-                yield segment if segment.control else segment._replace(text=inert(segment.text))
+                yield segment if segment.control else segment._replace(text=terminal_safe(segment.text))
 
     return InertConsole
 
@@ -120,4 +123,4 @@ def rich_text(content: RenderableType | Callable[[int], RenderableType], *, soft
         console.print(content(console.width) if callable(content) else content, soft_wrap=soft_wrap)
     if terminal:
         return captured.get()
-    return "\n".join(inert(line.rstrip()) for line in captured.get().split("\n")).rstrip("\n") + "\n"
+    return "\n".join(terminal_safe(line.rstrip()) for line in captured.get().split("\n")).rstrip("\n") + "\n"

@@ -12,7 +12,7 @@ from drivelint.cli import options  # noqa: TC001 - Typer looks the annotations u
 from drivelint.cli.console import progress, run_interruptible
 from drivelint.cli.options import argument, option
 from drivelint.errors import UsageError
-from drivelint.phrases import inert, inert_json, inert_line, listed
+from drivelint.phrases import name_list, terminal_safe, terminal_safe_json, terminal_safe_line
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -36,7 +36,7 @@ def report_audit(
     from drivelint.fleet_report.drive_pages import DEFAULT_N_DRIVES
 
     if to not in (*page.FORMATS, *gated.FORMATS):
-        known = listed([*page.FORMATS, *gated.FORMATS])
+        known = name_list([*page.FORMATS, *gated.FORMATS])
         raise UsageError(f"--to {to}: an audit can be reported as {known}; the other formats are for a check")
     if to in gated.FORMATS:
         if by or baseline is not None or drive_pages is not None or moments is not None:
@@ -46,7 +46,7 @@ def report_audit(
             )
         name, audit = run_interruptible(lambda: gated.write_report(dest, to))
         _warn(audit)
-        typer.echo(inert_line(f"{dest.rstrip('/')}/{name}"))
+        typer.echo(terminal_safe_line(f"{dest.rstrip('/')}/{name}"))
         return
     if (drive_pages is not None or moments is not None) and to != "html":
         raise UsageError("--drive-pages and --moments are for --to html: the other formats are one file")
@@ -59,7 +59,7 @@ def report_audit(
             )
         )
     _warn(audit)
-    typer.echo(inert_line(f"{dest.rstrip('/')}/{name}"))
+    typer.echo(terminal_safe_line(f"{dest.rstrip('/')}/{name}"))
 
 
 def diff_audits(base: str, new: str, format_: str, fail_on: str | None, rows: Path | None) -> None:
@@ -80,11 +80,11 @@ def diff_audits(base: str, new: str, format_: str, fail_on: str | None, rows: Pa
                 write_finding_rows(con, rows)
         least = difference_text.gating_severity(found, fail_on)
         if format_ == "json":
-            typer.echo(inert_json(difference_text.to_json(found, least)))
+            typer.echo(terminal_safe_json(difference_text.to_json(found, least)))
         elif format_ == "markdown":
             typer.echo(difference_text.to_text(found, least, markdown=True))
         else:
-            typer.echo(inert(difference_text.to_text(found, least)))
+            typer.echo(terminal_safe(difference_text.to_text(found, least)))
         raise typer.Exit(int(difference_text.exit_code(found, least)))
 
     run_interruptible(compared)
@@ -109,7 +109,7 @@ def what_if(
     from drivelint.fleet_report.what_if import to_json, to_text, what_if_in_audit
 
     asked = run_interruptible(lambda: what_if_in_audit(path_or_url(dest), setting, by))
-    typer.echo(inert_json(to_json(asked)) if format_ == "json" else inert(to_text(asked)))
+    typer.echo(terminal_safe_json(to_json(asked)) if format_ == "json" else terminal_safe(to_text(asked)))
     raise typer.Exit(int(asked.exit_code))
 
 
@@ -127,19 +127,19 @@ def trend(
     from drivelint.fleet_report.trend import audit_trend, to_json, to_text
 
     def warn(warning: str) -> None:
-        typer.echo(f"drivelint: {inert_line(warning)}", err=True)
+        typer.echo(f"drivelint: {terminal_safe_line(warning)}", err=True)
 
     found = run_interruptible(lambda: audit_trend([path_or_url(Path(dest)) for dest in dests], warn))
     if format_ == "json":
-        typer.echo(inert_json(to_json(found)))
+        typer.echo(terminal_safe_json(to_json(found)))
     elif format_ == "markdown":
         typer.echo(to_text(found, markdown=True))
     else:
-        typer.echo(inert(to_text(found)))
+        typer.echo(terminal_safe(to_text(found)))
     raise typer.Exit(int(found.exit_code))
 
 
 def _warn(audit: Audit) -> None:
     """Print an audit's warning on stderr, such as that it has not ended."""
     if audit.warning:
-        typer.echo(f"drivelint: {inert_line(audit.warning)}", err=True)
+        typer.echo(f"drivelint: {terminal_safe_line(audit.warning)}", err=True)

@@ -12,7 +12,7 @@ from drivelint.cli import options  # noqa: TC001 - Typer looks the annotations u
 from drivelint.cli.console import run_interruptible
 from drivelint.cli.options import argument, option
 from drivelint.errors import ExitCode
-from drivelint.phrases import inert, inert_line, plural
+from drivelint.phrases import plural, terminal_safe, terminal_safe_line
 
 if TYPE_CHECKING:
     from drivelint.pack import PackRequest
@@ -99,14 +99,14 @@ def write_and_tell(request: PackRequest, *, err: bool = False) -> None:
     pages = sum(name.endswith(".html") for name in told.get("incidents", ()))
     sheets = f"; {plural(pages, 'incident sheet')}" if pages else ""
     said = f"{signed}; {n} of {len(findings)} findings have SQL that computes their margin{less}{sheets}"
-    typer.echo(f"{inert_line(str(request.out))}: {said}", err=err)
+    typer.echo(f"{terminal_safe_line(str(request.out))}: {said}", err=err)
     for finding in findings:
         if finding["without_sql_because"]:
             why = f"  {finding['finding_id']} {finding['rule_id']}: no SQL, because {finding['without_sql_because']}"
-            typer.echo(inert_line(why), err=err)
+            typer.echo(terminal_safe_line(why), err=err)
     if left_out := [name for name in told["left_out"] if name.startswith("incidents/")]:
         why = "sheets of findings that the result does not contain, and PDFs without an HTML page"
-        typer.echo(inert_line(f"  left out of the pack ({why}): {', '.join(left_out)}"), err=err)
+        typer.echo(terminal_safe_line(f"  left out of the pack ({why}): {', '.join(left_out)}"), err=err)
 
 
 def verify(
@@ -152,9 +152,9 @@ def verify(
     )  # fmt: skip
     found = run_interruptible(lambda: verified(request))
     for note in found.notes:
-        typer.echo(f"drivelint: {inert_line(note)}", err=True)
+        typer.echo(f"drivelint: {terminal_safe_line(note)}", err=True)
     for problem in found.problems:
-        typer.echo(f"{problem.kind}: {inert_line(problem.subject)}")
+        typer.echo(f"{problem.kind}: {terminal_safe_line(problem.subject)}")
     if not found.problems:
-        typer.echo(inert(found.sentence))
+        typer.echo(terminal_safe(found.sentence))
     raise typer.Exit(int(ExitCode.FAILED if found.problems else ExitCode.OK))

@@ -12,7 +12,7 @@ from drivelint.cli import checks, completion, fleets, options
 from drivelint.cli.console import print_rich, run_interruptible
 from drivelint.cli.options import argument, option
 from drivelint.errors import UsageError
-from drivelint.phrases import inert_json
+from drivelint.phrases import terminal_safe_json
 
 
 def report(
@@ -212,6 +212,6 @@ def explain(
     checks.warn_of_partial(folder, load_result(folder))
     found = run_interruptible(lambda: explained(request))
     if format_ == "json":
-        typer.echo(inert_json(to_json(found)))
+        typer.echo(terminal_safe_json(to_json(found)))
     else:
         print_rich(lambda width: render(found, width))

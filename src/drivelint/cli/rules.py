@@ -11,7 +11,7 @@ import typer
 from drivelint.cli import completion, options
 from drivelint.cli.console import print_rich, progress, run_interruptible
 from drivelint.cli.options import Texts, argument, option
-from drivelint.phrases import inert, inert_json
+from drivelint.phrases import terminal_safe, terminal_safe_json
 
 app = typer.Typer(help="List, show, write and test the rules.", rich_markup_mode=None)
 
@@ -34,7 +34,7 @@ def list_(
     known = load_rules(tuple(rules_dir or ()))
     rules = select_rules(known, selectors, ()) if selectors else list(known.values())
     if format_ == "json":
-        typer.echo(inert_json(rules_text.rules_as_json(rules)))
+        typer.echo(terminal_safe_json(rules_text.rules_as_json(rules)))
     else:
         print_rich(lambda width: rules_text.rules_table(rules, width))
 
@@ -98,7 +98,7 @@ def page_(
 
     rules = load_rules((folder,) if folder else ()).values()
     packs = folder or shipped("queries") / "assertions"
-    text = inert(render_markdown([rule for rule in rules if rule.path.is_relative_to(packs)], packs))
+    text = terminal_safe(render_markdown([rule for rule in rules if rule.path.is_relative_to(packs)], packs))
     if out is None:
         typer.echo(text, nl=False)
     else:
@@ -136,12 +136,12 @@ def run_tests(
         shown.stage("judging mutants")
 
         def say(text: str) -> None:
-            typer.echo(inert(text), file=out)
+            typer.echo(terminal_safe(text), file=out)
             shown.advance()
 
         over, names = Event(), tuple(only or ())
         if watch:
-            code = run_interruptible(lambda: commands.watch(test, folder, names, say, over), over.set)
+            code = run_interruptible(lambda: commands.repeat_tests_on_changes(test, folder, names, say, over), over.set)
         else:
             code = run_interruptible(lambda: test(folder, names, say))
         raise typer.Exit(int(code))
@@ -167,6 +167,6 @@ def scene(
     from drivelint.scene.judge import scene_test
 
     code = scene_test(
-        file, tuple(only or ()), tuple(rules_dir or ()), lambda text: typer.echo(inert(text)), out=out, to=to
+        file, tuple(only or ()), tuple(rules_dir or ()), lambda text: typer.echo(terminal_safe(text)), out=out, to=to
     )
     raise typer.Exit(int(code))

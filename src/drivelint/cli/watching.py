@@ -14,7 +14,7 @@ from drivelint.cli.console import progress as bar
 from drivelint.cli.console import run_interruptible, say_nothing_kept, tells_of_earlier
 from drivelint.cli.options import Texts, argument, option
 from drivelint.cli.streams import ReaderLeftError
-from drivelint.phrases import inert_json
+from drivelint.phrases import terminal_safe_json
 from drivelint.temporary import temporary_folder
 
 if TYPE_CHECKING:
@@ -194,7 +194,7 @@ class _Printer:
         """Print a message as one line of JSON."""
         try:
             if not self.has_left:
-                typer.echo(inert_json(json.dumps(message, ensure_ascii=False, allow_nan=False)))
+                typer.echo(terminal_safe_json(json.dumps(message, ensure_ascii=False, allow_nan=False)))
         except ReaderLeftError:
             self.has_left = True
 

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.arrays import wrapped
+from drivelint.arrays import wrap_angles
 from drivelint.drive.order import track_starts
 from drivelint.drive.trace import ACTOR_CLASSES, SIZE_COLUMNS, Doubt, QualityFinding
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -84,7 +84,7 @@ def from_states(states: States) -> tuple[Actors, list[QualityFinding]]:
     findings = []
     if varying:
         ids = sorted(varying)
-        message = f"box size changes over the log ({listed(ids)}): the median is used throughout"
+        message = f"box size changes over the log ({name_list(ids)}): the median is used throughout"
         findings.append(QualityFinding.of_actors("size_varies", "warning", message, ids))
     return Actors(states.ids, classes, sizes), findings
 
@@ -130,7 +130,7 @@ def resolve_sizes(states: States, actors: Actors) -> list[QualityFinding]:
         ),
     ):
         if ids := _names(actors, rows):
-            findings.append(QualityFinding.of_actors(check, "warning", text.format(listed(ids)), ids))
+            findings.append(QualityFinding.of_actors(check, "warning", text.format(name_list(ids)), ids))
     return findings + _implausible(states, actors)
 
 
@@ -138,7 +138,7 @@ def _moving_along(states: States) -> list[str]:
     """Return the ids of the actors that move along their heading, forwards or backwards."""
     vx, vy = states.velocity
     moving = np.isfinite(states.numbers["yaw_rad"]) & (np.hypot(vx, vy) > DIRECTION_LEAST_MPS)
-    off = np.abs(wrapped(2.0 * (states.numbers["yaw_rad"] - np.arctan2(vy, vx)))) / 2.0
+    off = np.abs(wrap_angles(2.0 * (states.numbers["yaw_rad"] - np.arctan2(vy, vx)))) / 2.0
     n, n_along = (
         np.bincount(states.actor[rows], minlength=len(states.ids)) for rows in (moving, moving & (off < ALONG_RAD))
     )
@@ -157,7 +157,7 @@ def _implausible(states: States, actors: Actors) -> list[QualityFinding]:
     starts = track_starts(states.actor)
     ends = np.r_[starts[1:], len(states)] - 1
     message = (
-        f"size that no {'vehicle' if len(ids) > 1 else actors.classes[actors.ids.index(ids[0])]} has: {listed(ids)}"
+        f"size that no {'vehicle' if len(ids) > 1 else actors.classes[actors.ids.index(ids[0])]} has: {name_list(ids)}"
     )
     doubts = tuple(
         Doubt(name, "size", int(states.t_ns[first]), int(states.t_ns[last]))

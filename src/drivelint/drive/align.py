@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.arrays import wrapped
+from drivelint.arrays import wrap_angles
 from drivelint.drive.order import LONGEST_PERIOD_NS, MAX_GAP_PERIODS, sorted_states
 from drivelint.drive.trace import STATE_COLUMNS, QualityFinding, States
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
     from drivelint.arrays import Times
@@ -52,7 +52,7 @@ def align_to_ego(states: States, egos: list[str]) -> tuple[States, list[QualityF
     if not names:
         return states, []
     message = (
-        f"actors that are sampled at other times than the ego ({listed(names)}): their states are interpolated at its steps, "
+        f"actors that are sampled at other times than the ego ({name_list(names)}): their states are interpolated at its steps, "
         f"between samples no more than {MAX_GAP_PERIODS * longest / 1e9:g} s apart"
     )
     finding = QualityFinding.of_actors("aligned", "info", message, names)
@@ -101,9 +101,9 @@ def _at_steps(states: States, span: slice, grid: Times, own_ns: int, log_ns: tup
     numbers = {name: values[rows] for name, values in states.numbers.items()}
     for name in STATE_COLUMNS:
         values = states.numbers[name]
-        rise = wrapped(values[later] - values[rows]) if name == "yaw_rad" else values[later] - values[rows]
+        rise = wrap_angles(values[later] - values[rows]) if name == "yaw_rad" else values[later] - values[rows]
         numbers[name] = np.where(share > 0.0, values[rows] + share * rise, values[rows])
-    numbers["yaw_rad"] = wrapped(numbers["yaw_rad"])
+    numbers["yaw_rad"] = wrap_angles(numbers["yaw_rad"])
     age_s = np.where(inside, 0.0, (steps - t_ns[before]) / 1e9)
     for place, velocity in _PLACE_AND_VELOCITY:
         numbers[place] = np.where(inside, numbers[place], numbers[place] + age_s * numbers[velocity])

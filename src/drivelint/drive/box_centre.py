@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.arrays import turned, wrapped
+from drivelint.arrays import rotate_vectors, wrap_angles
 from drivelint.drive.order import steps, time_derivative
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ def lever_to_centre(forward: Floats, left: Floats, yaw: Floats) -> Floats:
     `forward` and `left` (n): how far the centre is ahead and to the left of the point, in metres; `yaw` (n): headings in radians. If both
     distances are 0, the heading may be unknown.
     """
-    lever = np.stack(turned(forward, left, yaw))
+    lever = np.stack(rotate_vectors(forward, left, yaw))
     lever[:, (forward == 0.0) & (left == 0.0)] = 0.0
     return lever
 
@@ -44,7 +44,7 @@ def yaw_rates(states: States, yaw: Floats) -> Floats:
     step = steps(states.take(order))
     along = yaw[order]
     with np.errstate(invalid="ignore"):
-        turns = wrapped(np.diff(along)) - np.diff(along)
+        turns = wrap_angles(np.diff(along)) - np.diff(along)
     # a step to another track or to an unknown heading must not change the sum of full turns
     unwrapped = along + np.r_[0.0, np.cumsum(np.where(step.same & np.isfinite(turns), turns, 0.0))]
     rates = np.empty(len(states))

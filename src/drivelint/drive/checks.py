@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.arrays import wrapped
+from drivelint.arrays import wrap_angles
 from drivelint.drive.order import MAX_GAP_PERIODS, displacements, integral_per_step, known_motion, sums_over
 from drivelint.drive.trace import MOTOR_VEHICLES, QualityFinding
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
     from drivelint.arrays import Floats, Mask
@@ -86,7 +86,7 @@ def _sizes(actors: Actors) -> list[QualityFinding]:
         ("length_below_width", long_kind & (length < width), "shorter than wide: {}: length and width may be swapped"),
     ):
         if ids := [actors.ids[i] for i in np.flatnonzero(rows)]:
-            findings.append(QualityFinding.of_actors(check, "warning", text.format(listed(ids)), ids))
+            findings.append(QualityFinding.of_actors(check, "warning", text.format(name_list(ids)), ids))
     return findings
 
 
@@ -210,7 +210,7 @@ def _yaw(states: States, actors: Actors) -> list[QualityFinding]:
     )
     speed = np.hypot(vx, vy)
     moving = (speed > YAW_CHECK_LEAST_MPS) & long_kind[states.actor] & ~np.isnan(yaw)
-    off = np.abs(wrapped(yaw - np.arctan2(vy, vx)))
+    off = np.abs(wrap_angles(yaw - np.arctan2(vy, vx)))
     wrong = moving & (off > YAW_MISMATCH_RAD)
     backwards = wrong & (off > REVERSING_RAD) & (speed < REVERSING_MPS)
     forwards = np.bincount(states.actor[moving & ~wrong], minlength=len(states.ids)) > 0

@@ -15,12 +15,12 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.arrays import wrapped
+from drivelint.arrays import wrap_angles
 from drivelint.drive.jumps import COUNT_PREFIX, MOTION_COLUMNS, MOVING_MPS, NO_SPLIT, SplitTracks, set_unknown
 from drivelint.drive.order import displacements, integral_per_step, known_motion, sums_until
 from drivelint.drive.trace import MOTOR_VEHICLES, QualityFinding
 from drivelint.drive.velocity import Tracklets, sample_noise
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -105,7 +105,7 @@ def resolve(
     findings += states.findings(turned, "heading_turned", "warning", text)
     text = COUNT_PREFIX + "the heading is at an angle to the motion: the heading is unknown"
     findings += states.findings(sideways, "heading_unknown", "warning", text)
-    yaw = np.where(turned, wrapped(yaw + np.pi), yaw)
+    yaw = np.where(turned, wrap_angles(yaw + np.pi), yaw)
     states.numbers["yaw_rad"] = np.where(sideways, np.nan, yaw)
     return findings
 
@@ -139,7 +139,7 @@ def _upon_others(
         others = sorted({states.ids[i] for i in states.actor[other_row[rows]]})
         times = np.unique(rejected_states.t_ns[place[rows]])
         message = (
-            f"a position of {name} that is not credible overlaps {listed(others)}: whether they touched is unknown"
+            f"a position of {name} that is not credible overlaps {name_list(others)}: whether they touched is unknown"
         )
         findings.append(QualityFinding("jumps_onto", "warning", message, len(times), int(times[0]), name))
     return findings
@@ -286,11 +286,11 @@ def _headings(states: States, step: Steps, actors: Actors) -> tuple[Mask, Mask]:
     kinds = dict(zip(actors.ids, actors.classes, strict=True))
     long_kind = np.array([kinds.get(name) in DIRECTED_CLASSES for name in states.ids], np.bool_)[states.actor]
     speed = np.hypot(vx, vy)
-    off = np.abs(wrapped(yaw - np.arctan2(vy, vx)))
+    off = np.abs(wrap_angles(yaw - np.arctan2(vy, vx)))
     moving = long_kind & (speed > MOVING_MPS) & np.isfinite(yaw)
     backwards = moving & (off > BACKWARDS_RAD)
     across = moving & (speed > SIDEWAYS_MPS) & (off > SIDEWAYS_RAD) & ~backwards
-    turn = np.where(step.same, np.abs(wrapped(np.diff(yaw))), 0.0)
+    turn = np.where(step.same, np.abs(wrap_angles(np.diff(yaw))), 0.0)
     nothing = np.zeros(n, np.bool_)
     if not (backwards.any() or across.any()):
         return nothing, nothing

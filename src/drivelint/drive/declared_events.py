@@ -33,7 +33,7 @@ def with_headlight_events(events: pa.Table | None, states: States) -> pa.Table |
     import pyarrow as pa
     import pyarrow.compute as pc
 
-    from drivelint.arrays import spelled
+    from drivelint.arrays import words_of_codes
 
     codes = states.codes.get(HEADLIGHTS)
     if codes is None or not (codes >= 0).any():
@@ -47,9 +47,9 @@ def with_headlight_events(events: pa.Table | None, states: States) -> pa.Table |
     lamps = pa.table(
         {
             "t_ns": states.t_ns[rows],
-            "actor_id": spelled(states.actor[rows], states.ids),
+            "actor_id": words_of_codes(states.actor[rows], states.ids),
             "event": pa.repeat(pa.scalar(HEADLIGHTS), len(rows)),
-            "value": spelled(codes[rows], HEADLIGHT_STATES),
+            "value": words_of_codes(codes[rows], HEADLIGHT_STATES),
         }
     )
     return lamps if events is None else pa.concat_tables([events.select(lamps.column_names), lamps])

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 from drivelint.drive.trace import ASSUMED_SIZE, MOTOR_VEHICLES, SIZE_COLUMNS, QualityFinding
 from drivelint.errors import TraceError
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -40,19 +40,21 @@ def choose(
         return _every(path, actors)
     if ego_option is not None:
         if ego_option not in ids:
-            raise TraceError(f"{path}: no actor {ego_option!r} in this log: use --ego ID (ids: {listed(actors.ids)})")
+            raise TraceError(
+                f"{path}: no actor {ego_option!r} in this log: use --ego ID (ids: {name_list(actors.ids)})"
+            )
         return [ego_option], []
     egos = sorted(ids.intersection(named_egos))
     if not egos:
         absent = "the log does not name the ego"
         if named_egos:
-            absent = f"the log's ego {listed([repr(each) for each in named_egos])} has no states"
-        message = f"no ego: {absent}: use --ego ID or --ego all (ids: {listed(actors.ids)})"
+            absent = f"the log's ego {name_list([repr(each) for each in named_egos])} has no states"
+        message = f"no ego: {absent}: use --ego ID or --ego all (ids: {name_list(actors.ids)})"
         if not ego_required:
             return [], [QualityFinding("no_ego", "warning", message)]
         raise TraceError(f"{path}: {message}")
     if len(egos) > 1:
-        message = f"the log names {len(egos)} egos ({listed(egos)}): each is judged; choose one with --ego ID"
+        message = f"the log names {len(egos)} egos ({name_list(egos)}): each is judged; choose one with --ego ID"
         return egos, [QualityFinding("ego_count", "warning", message, len(egos))]
     return egos, []
 
@@ -84,8 +86,8 @@ def _every(path: Path, actors: Actors) -> tuple[list[str], list[QualityFinding]]
     unknown = [i for i, kind in zip(actors.ids, actors.classes, strict=True) if kind is None]
     if not egos:
         why = "no actor's class is known" if len(unknown) == len(actors.ids) else "no actor is a motor vehicle"
-        raise TraceError(f"{path}: no ego: {why}: use --ego ID or --ego all (ids: {listed(actors.ids)})")
+        raise TraceError(f"{path}: no ego: {why}: use --ego ID or --ego all (ids: {name_list(actors.ids)})")
     if not unknown:
         return egos, []
-    message = f"actors without a known class are not judged as egos ({listed(unknown)})"
+    message = f"actors without a known class are not judged as egos ({name_list(unknown)})"
     return egos, [QualityFinding("ego_count", "warning", message, len(unknown))]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyarrow as pa
 
-from drivelint.arrays import spelled, wrapped
+from drivelint.arrays import words_of_codes, wrap_angles
 from drivelint.drive import absence, checks, contradiction, ego, jumps
 from drivelint.drive import actors as actor_rows
 from drivelint.drive.align import align_to_ego
@@ -31,7 +31,7 @@ from drivelint.drive.trace import (
     Trace,
 )
 from drivelint.errors import TraceError
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 from drivelint.sql.store import arrow_schemas, owned_table
 
 if TYPE_CHECKING:
@@ -130,7 +130,7 @@ def _tracks(
         states = sorted_states(states)
         step = steps(states)
     if "yaw_rad" in states.numbers:
-        states.numbers["yaw_rad"] = wrapped(states.numbers["yaw_rad"])
+        states.numbers["yaw_rad"] = wrap_angles(states.numbers["yaw_rad"])
     return states, step, split, findings
 
 
@@ -156,11 +156,11 @@ def _tables(
             "is_ego": [name in egos for name in actors.ids],
         },
         "actor_state": {
-            "actor_id": spelled(states.actor, states.ids),
+            "actor_id": words_of_codes(states.actor, states.ids),
             "t_ns": states.t_ns,
             **{name: _nullable(states.numbers[name]) for name in STATE_COLUMNS},
-            "indicator": spelled(states.codes.get("indicator", unknown), INDICATORS),
-            "brake_light": spelled(states.codes.get("brake_light", unknown), BRAKE_LIGHTS),
+            "indicator": words_of_codes(states.codes.get("indicator", unknown), INDICATORS),
+            "brake_light": words_of_codes(states.codes.get("brake_light", unknown), BRAKE_LIGHTS),
         },
         "signal_state": _distinct(recording.signals, "signal_id", "t_ns", "state"),
         "declared_event": _distinct(
@@ -235,7 +235,7 @@ def _lights(states: States, egos: list[str]) -> list[QualityFinding]:
         n, of = int(unknown.sum()), int(is_ego.sum())
         if n == 0:
             continue
-        message = f"the {light_name} of the ego ({listed(egos)}) is unknown in {n} of {of} states: rules that need it are unknown"
+        message = f"the {light_name} of the ego ({name_list(egos)}) is unknown in {n} of {of} states: rules that need it are unknown"
         only = egos[0] if len(egos) == 1 else None
         findings.append(QualityFinding(f"no_{column}", "info", message, n, int(states.t_ns[unknown].min()), only))
     return findings

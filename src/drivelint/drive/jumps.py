@@ -14,7 +14,7 @@ import numpy as np
 
 from drivelint.drive.outliers import outlier_samples
 from drivelint.drive.trace import STATE_COLUMNS, QualityFinding
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -178,7 +178,10 @@ def _renamed(
             ids.append(name)
             alias[name] = states.ids[i]
     if alias:
-        message = f"the track continues at another place after a jump: from there on it counts as another actor ({listed(sorted(alias))})"
+        message = (
+            "the track continues at another place after a jump: from there on it counts as another actor "
+            f"({name_list(sorted(alias))})"
+        )
         findings.append(QualityFinding("track_parted", "warning", message, len(alias), actor_id=None))
     states.ids, states.actor = ids, actor
     return alias

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.arrays import with_columns
+from drivelint.arrays import replace_columns
 
 if TYPE_CHECKING:
     from drivelint.drive.trace import Trace
@@ -55,7 +55,7 @@ def _log_of(log: pa.Table, states: pa.Table) -> pa.Table:
     span = pc.min_max(states["t_ns"]).as_py()
     start, utc = log["t_start_ns"][0].as_py(), log["utc_start_ns"][0].as_py()
     later = None if utc is None or start is None else utc + span["min"] - start
-    return with_columns(
+    return replace_columns(
         log,
         {
             "t_start_ns": [span["min"]],

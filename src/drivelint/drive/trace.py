@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 import numpy as np
 
 from drivelint.drive import conditions
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 from drivelint.sql.words import Quantity, words
 
 if TYPE_CHECKING:
@@ -205,7 +205,7 @@ def single_map(maps: Mapping[bytes, str]) -> tuple[bytes | None, tuple[QualityFi
     """Return the log's only OpenDRIVE map, or None with a finding if there are several. `maps`: map text -> topic that first had it."""
     if len(maps) > 1:
         message = (
-            f"the log has {len(maps)} different OpenDRIVE maps (topics {listed(sorted(maps.values()))}), and "
+            f"the log has {len(maps)} different OpenDRIVE maps (topics {name_list(sorted(maps.values()))}), and "
             "none is used: keep only one in the log"
         )
         return None, (QualityFinding.unusable_map(message),)
@@ -294,7 +294,7 @@ class States:
         if not n:
             return []
         ids = [self.ids[i] for i in np.unique(self.actor[rows])]
-        message = text.format(n=n, of=len(self), ids=listed(ids))
+        message = text.format(n=n, of=len(self), ids=name_list(ids))
         only = ids[0] if len(ids) == 1 else None
         doubts = () if quantity is None else self.doubts(rows, quantity)
         return [QualityFinding(check_id, severity, message, n, int(self.t_ns[rows].min()), only, doubts=doubts)]

@@ -27,7 +27,7 @@ def judge_apart(session: JudgingSession, drives: Sequence[Drive], refusals: list
     except InterruptedRunError:
         raise
     except Exception as error:
-        if isinstance(error, DriveLintError) and error.is_of_the_run:
+        if isinstance(error, DriveLintError) and error.is_about_whole_run:
             raise
         if len(drives) == 1:
             refusals.append(refusal_of(drives[0].trace.path, error))

@@ -28,7 +28,7 @@ def refusal_of(path: Path, error: BaseException) -> RefusedLog:
     Errors: the error itself, if it is an interruption or an error of the whole run.
     """
     if isinstance(error, DriveLintError):
-        if error.is_of_the_run:
+        if error.is_about_whole_run:
             raise error
         return RefusedLog(path, error)
     if isinstance(error, duckdb.OutOfMemoryException | MemoryError):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import pyarrow as pa
 
-from drivelint.arrays import floats, turned, with_columns, wrapped
+from drivelint.arrays import floats, replace_columns, rotate_vectors, wrap_angles
 from drivelint.drive.finish import with_quality_finding
 from drivelint.drive.trace import QualityFinding
 from drivelint.engine.earth import frame_of_log, frame_of_map
@@ -62,15 +62,15 @@ def move_into_map_frame(trace: Trace, environment: MapTables) -> Trace:
     angle = np.full(len(xy), turn)
     angle[placed] = np.arctan2(*(beside - there).T[::-1])
     columns["x_m"][placed], columns["y_m"][placed] = there.T
-    columns["yaw_rad"] = wrapped(columns["yaw_rad"] + angle)
+    columns["yaw_rad"] = wrap_angles(columns["yaw_rad"] + angle)
     for x, y in (("vx_mps", "vy_mps"), ("ax_mps2", "ay_mps2")):
         if x in columns:
-            columns[x], columns[y] = turned(columns[x], columns[y], angle)
+            columns[x], columns[y] = rotate_vectors(columns[x], columns[y], angle)
     message = (
         f"the log's coordinates are {log_frame.reference!r}, the map's {map_frame.reference!r}: the log is moved into the map's, turned by "
         f"{math.degrees(turn):.4f} degrees, lengths times {stretch:.5f}"
     )
-    moved = replace(now, tables={**trace.tables, "actor_state": with_columns(states, columns)})
+    moved = replace(now, tables={**trace.tables, "actor_state": replace_columns(states, columns)})
     return with_quality_finding(moved, QualityFinding("moved_to_map", "info", message))
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import MapError
 from drivelint.formats.map_registry import READERS_BY_ROOT, read_source, root_element_name
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 from drivelint.road.geo_reference import reference_of, same_reference
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ class MapFolder:
         for n, (_, name) in enumerate(found, 2):
             if name not in self._files:
                 raise MapError(
-                    f"{file}:{n}: there is no map {name!r} in {self.folder}; it has {listed(list(self._files))}"
+                    f"{file}:{n}: there is no map {name!r} in {self.folder}; it has {name_list(list(self._files))}"
                 )
         return found
 

@@ -27,7 +27,7 @@ from drivelint.engine import common_frame, map_fit
 from drivelint.engine.map_folder import MANIFEST, MapFolder
 from drivelint.errors import MapError, UsageError
 from drivelint.formats.map_registry import load_map, read_source
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 from drivelint.road import geo_reference
 from drivelint.road.driving_side import correction_hint, opposite_side
 from drivelint.road.map_reader import MapSource
@@ -218,7 +218,7 @@ class MapLibrary:
         besides = f" ({len(unread)} could not be read, the first: {unread[0]})" if unread else ""
         if fitting:
             raise MapError(
-                f"{maps.folder}: {listed([s.name for s in fitting])} are all of the place of {trace.path.name}{besides}: "
+                f"{maps.folder}: {name_list([s.name for s in fitting])} are all of the place of {trace.path.name}{besides}: "
                 f"name its map in {maps.folder / MANIFEST}"
             )
         self._without_map[trace.path] = (

@@ -9,7 +9,7 @@ import duckdb
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.arrays import with_columns
+from drivelint.arrays import replace_columns
 from drivelint.engine.batch import BATCH_STATES, are_few, are_large, skipped_egos_by_part
 from drivelint.engine.derive import derive
 from drivelint.engine.earth import place_rows
@@ -319,7 +319,7 @@ def _on_map(drive: Drive) -> pa.Table:
     found: dict[str, str | float | None] = {"environment_id": place}
     if geo:
         found |= {"geo_reference": geo.reference, "geo_x_m": geo.x_m, "geo_y_m": geo.y_m, "geo_yaw_rad": geo.yaw_rad}
-    return with_columns(log, {name: [value] * log.num_rows for name, value in found.items()})
+    return replace_columns(log, {name: [value] * log.num_rows for name, value in found.items()})
 
 
 def _drive_ids(drives: Iterable[Drive]) -> list[str]:

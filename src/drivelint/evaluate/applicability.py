@@ -20,7 +20,7 @@ ENGAGED = "(w.ego_id IS NULL OR e.engaged)"
 
 def has_conditions(rule: Rule) -> bool:
     """Return whether the rule's header contains any condition."""
-    return bool(rule.applies.restricting) or rule.applies.restricts_speed_limit
+    return bool(rule.applies.restricted_conditions) or rule.applies.has_speed_limit_condition
 
 
 def fragments(rule: Rule, alias: str, time: str, check_engagement: bool) -> dict[str, str]:
@@ -50,7 +50,7 @@ def bound_values(rule: Rule) -> dict[str, object]:
         "_limit_min": None if least is None else least - ROUNDING_MPS,
         "_limit_max": None if most is None else most + ROUNDING_MPS,
     }
-    for name, words in rule.applies.restricting.items():
+    for name, words in rule.applies.restricted_conditions.items():
         values[f"_is_{name}"] = conditions.with_narrower_values(words)
         values[f"_may_{name}"] = conditions.broader_values(words)
     return values
@@ -59,12 +59,12 @@ def bound_values(rule: Rule) -> dict[str, object]:
 def _terms(rule: Rule, check_engagement: bool) -> dict[str, str]:
     """Return condition -> its SQL (true, false or NULL), with the automated driver's engagement first."""
     found = {"engaged": ENGAGED} if check_engagement else {}
-    for name in rule.applies.restricting:
+    for name in rule.applies.restricted_conditions:
         found[name] = (
             f"CASE WHEN list_contains($_is_{name}, e.{name}) THEN true "
             f"WHEN e.{name} IS NOT NULL AND NOT list_contains($_may_{name}, e.{name}) THEN false END"
         )
     limits = ((">= $_limit_min", rule.applies.limit_min_mps), ("<= $_limit_max", rule.applies.limit_max_mps))
-    if rule.applies.restricts_speed_limit:
+    if rule.applies.has_speed_limit_condition:
         found["limit"] = " AND ".join(f"e.limit_mps {bound}" for bound, mps in limits if mps is not None)
     return found

@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from threading import Event, Lock, Thread
 from typing import TYPE_CHECKING, Final, Literal, NoReturn, Protocol
 
-from drivelint.computing import Work, resident_bytes
+from drivelint.computing import ProcessorClock, resident_bytes
 from drivelint.receipts.events import report_not_repeatable
 
 if TYPE_CHECKING:
@@ -123,7 +123,7 @@ class RuleLimits:
         self, con: duckdb.DuckDBPyConnection, rule_id: str, rule_run: RunningRule, alone: bool, thread: int
     ) -> None:
         seconds = self.allowed_s or 0.0
-        work, before = Work(thread), resident_bytes()
+        work, before = ProcessorClock(thread), resident_bytes()
         patience = 0.0
         most: int | None = None  # the memory of the process above which the rule gets no more time to react
         while not rule_run.over.wait(min(_LOOK_S, seconds)):

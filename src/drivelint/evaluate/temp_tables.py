@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
-from drivelint.catalogue.header import CONTACT, ROAD_USERS, STANDING
+from drivelint.catalogue.header import CONTACT_TAG, ROAD_USERS_SIGNAL, STANDING_TAG
 from drivelint.drive import conditions
 from drivelint.evaluate import applicability
 from drivelint.reasons.signals import SIGNALS_OF_FEW_LOGS
@@ -61,11 +61,11 @@ def _rules(bindings: Sequence[Binding]) -> pa.Table:
         rule, sources = binding.rule, with_sources(binding.rule.reads)
         row = {"rule_no": binding.no, "rule_id": rule.id, "rule_version": rule.version}
         row |= {name: getattr(rule, name) for name in told}
-        row |= {"of_others": ROAD_USERS in rule.needed_signals, "of_hidden": "hidden" in sources}
+        row |= {"of_others": ROAD_USERS_SIGNAL in rule.needed_signals, "of_hidden": "hidden" in sources}
         row |= {
             "of_lanes": bool({"registration", "way"} & set(rule.requires)),
-            "of_contact": CONTACT in rule.tags,
-            "of_standing": STANDING in rule.tags,
+            "of_contact": CONTACT_TAG in rule.tags,
+            "of_standing": STANDING_TAG in rule.tags,
         }
         row |= {"by_object": rule.combine == "each", "eventually": rule.quantifier == "eventually"}
         row |= {"merge_ns": binding.values(["_merge_ns"])["_merge_ns"]}
@@ -77,7 +77,7 @@ def _rules(bindings: Sequence[Binding]) -> pa.Table:
 def _needs(bindings: Sequence[Binding]) -> pa.Table:
     return pa.Table.from_pylist([
         {
-            "rule_no": b.no, "pos": pos, "signal": signal, "is_assumed": signal == ROAD_USERS,
+            "rule_no": b.no, "pos": pos, "signal": signal, "is_assumed": signal == ROAD_USERS_SIGNAL,
             "may_be_unrecorded": signal in SIGNALS_OF_FEW_LOGS and not b.rule.is_named,
         }
         for b in bindings
@@ -95,7 +95,7 @@ def _allowed_words(bindings: Sequence[Binding]) -> pa.Table:
     columns = ("rule_no", "code", "condition", "word")
     rows = []
     for b in bindings:
-        asked = [("outside_conditions", *each) for each in b.rule.applies.restricting.items()]
+        asked = [("outside_conditions", *each) for each in b.rule.applies.restricted_conditions.items()]
         if b.rule.law:
             asked.append(("other_nation", "nation", b.rule.law))
         for code, condition, words in asked:

@@ -112,7 +112,7 @@ def explain(request: ExplainRequest) -> Explanation:
             "rule_id": rule.id,
             "rule_version": rule.version,
             **{key: getattr(rule, key) for key in _RULE},
-            "applies": rule.applies.restricting,
+            "applies": rule.applies.restricted_conditions,
         },
         drive=about,
         verdict={**row, "judged_anew": now},

@@ -9,7 +9,7 @@ import duckdb
 import msgspec
 import pyarrow as pa
 
-from drivelint.arrays import with_columns
+from drivelint.arrays import replace_columns
 from drivelint.engine.batch import BATCH_STATES
 from drivelint.engine.derive import derive
 from drivelint.engine.memory import Memory
@@ -77,7 +77,7 @@ class Sandbox:
         for table in drives[0].trace.tables:
             rows = pa.concat_tables([drive.trace.tables[table] for drive in drives])
             if table == "data_log":
-                rows = with_columns(rows, {"environment_id": [place] * rows.num_rows})
+                rows = replace_columns(rows, {"environment_id": [place] * rows.num_rows})
             self._insert(table, rows)
 
     def _derive(self) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import duckdb
 
-from drivelint.arrays import with_columns
+from drivelint.arrays import replace_columns
 from drivelint.drive.finish import TRACE_TABLES
 from drivelint.drive.trace import Trace
 from drivelint.engine.batch import Drive, drive_with_map
@@ -96,7 +96,7 @@ def with_ego(drive: Drive, ego_id: str) -> Drive:
     """Return the drive with this actor as its ego."""
     actors = drive.trace.tables["actor"]
     is_ego = [name == ego_id for name in actors["actor_id"].to_pylist()]
-    tables = {**drive.trace.tables, "actor": with_columns(actors, {"is_ego": is_ego})}
+    tables = {**drive.trace.tables, "actor": replace_columns(actors, {"is_ego": is_ego})}
     return replace(drive, trace=replace(drive.trace, tables=tables))
 
 

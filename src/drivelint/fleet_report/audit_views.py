@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 import pyarrow as pa
 
-from drivelint.audit.bucket import as_url
-from drivelint.audit.compact import database
-from drivelint.audit.run import AUDIT_FILE, told_of
-from drivelint.audit.sealed import require_as_written
+from drivelint.audit.bucket import url_of_path
+from drivelint.audit.compact import open_database
+from drivelint.audit.run import AUDIT_FILE, read_audit_file
+from drivelint.audit.sealed import require_audit_unchanged
 from drivelint.audit.store import open_store
-from drivelint.audit.unpacked import views_of_all
+from drivelint.audit.unpacked import create_views_of_all_results
 from drivelint.audit.worker import TABLES
 from drivelint.errors import UsageError
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     import duckdb
 
     from drivelint.audit.store import ResultStore
-    from drivelint.audit.unpacked import Standing
+    from drivelint.audit.unpacked import AuditProgress
 
 BASE_PREFIX: Final = "base_"
 """The prefix of the earlier audit's views; the views of the other audit have no prefix."""
@@ -41,7 +41,7 @@ class Audit:
     dest: str
     results: ResultStore
     audit_json: dict[str, Any]
-    standing: Standing
+    standing: AuditProgress
 
     @property
     def digest(self) -> str | None:
@@ -73,7 +73,7 @@ class Audit:
 
 def path_or_url(path: Path) -> str:
     """Return the place of results, a URL or a path, as text."""
-    return as_url(path) or str(path)
+    return url_of_path(path) or str(path)
 
 
 def is_audit(dest: str) -> bool:
@@ -87,7 +87,7 @@ def open_audits(dest: str, base: str | None = None) -> Iterator[tuple[duckdb.Duc
 
     Errors: `UsageError` if there is no audit, or if its files were changed.
     """
-    with database() as con, TemporaryDirectory(prefix="drivelint-views-") as home:
+    with open_database() as con, TemporaryDirectory(prefix="drivelint-views-") as home:
         audit = _open_audit(con, dest, Path(home) / "new", "")
         yield con, audit, None if base is None else _open_audit(con, base, Path(home) / "base", BASE_PREFIX)
 
@@ -100,7 +100,7 @@ def open_audit_without_logs(
 
     Errors: as `open_audits`.
     """
-    with database() as con, TemporaryDirectory(prefix="drivelint-views-") as home:
+    with open_database() as con, TemporaryDirectory(prefix="drivelint-views-") as home:
         audit = _open_audit(con, dest, Path(home) / "new", _ALL_LOGS_PREFIX)
         con.register("left_out_log", pa.table({"sha256": pa.array(sha256s, pa.string())}))
         con.execute(
@@ -117,7 +117,7 @@ def open_audit_without_logs(
 def open_packed_audit(folder: Path) -> Iterator[tuple[duckdb.DuckDBPyConnection, Audit]]:
     """Open the audit in an evidence pack. Changed files are not detected here, because `verify` checks them itself. Errors: as
     `open_audits`."""
-    with database() as con, TemporaryDirectory(prefix="drivelint-views-") as home:
+    with open_database() as con, TemporaryDirectory(prefix="drivelint-views-") as home:
         yield con, _open_audit(con, str(folder), Path(home) / "new", "", is_packed=True)
 
 
@@ -135,9 +135,9 @@ def _open_audit(
 ) -> Audit:
     views_folder.mkdir()
     results = open_store(dest)
-    told = told_of(results, dest)
+    told = read_audit_file(results, dest)
     if told is None:
         raise UsageError(f"{dest}: no audit is here: name the folder that audit --out wrote")
     if not is_packed:
-        require_as_written(results, views_folder, dest)
-    return Audit(dest, results, told, views_of_all(con, results, views_folder, views_prefix))
+        require_audit_unchanged(results, views_folder, dest)
+    return Audit(dest, results, told, create_views_of_all_results(con, results, views_folder, views_prefix))

@@ -6,8 +6,8 @@ import shlex
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.audit.summary import LogList, logs_that_are
-from drivelint.catalogue.header import CONTACT
+from drivelint.audit.summary import LogList, logs_with_flag
+from drivelint.catalogue.header import CONTACT_TAG
 from drivelint.fleet.coverage import Coverage, coverage
 from drivelint.fleet.distinct_logs import COUNTED_PREFIX, create_counted_views, subject
 from drivelint.fleet.missing_signals import SignalGaps, missing_signals
@@ -165,8 +165,8 @@ def fleet_content(
         n_without_rate=with_findings["without_rate"],
         contacts=touched,
         not_judged=query_rows(con, "not_judged", {"most": MAX_DRIVES}),
-        lossy=logs_that_are(con, "lossy"),
-        off_map=logs_that_are(con, "off_map"),
+        lossy=logs_with_flag(con, "lossy"),
+        off_map=logs_with_flag(con, "off_map"),
         worst_value=worst_tag_value(con, found),
         by_tag=[rates_by_tag(con, tag) for tag in dict.fromkeys(tags)],
         coverage=coverage(con),
@@ -178,6 +178,6 @@ def fleet_content(
 
 def _sort_key_by_severity(rate: Rate, rules: dict[str, Row]) -> tuple[Any, ...]:
     rule = rules[rate.rule_id]
-    severity = SEVERITIES.index(rule["severity"]), CONTACT not in rule["tags"]
+    severity = SEVERITIES.index(rule["severity"]), CONTACT_TAG not in rule["tags"]
     n = rate.findings + rate.findings_of_unknown
     return (not n, severity, -(rate.per_100km.rate or 0.0), -n, rate.rule_id, rate.profile or "")

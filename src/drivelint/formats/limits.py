@@ -12,7 +12,7 @@ import traceback
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, TypeVar
 
-from drivelint.computing import Work, resident_bytes
+from drivelint.computing import ProcessorClock, resident_bytes
 from drivelint.receipts.events import report_not_repeatable
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ class _ReadingWatch:
         self.seconds, self.bytes = BASE_CPU_S + n_bytes * CPU_S_PER_FILE_BYTE, memory_limit_bytes(n_bytes)
         self.excess = ""
         self._reader = threading.get_ident()
-        self._work, self._before = Work(threading.get_native_id()), resident_bytes()
+        self._work, self._before = ProcessorClock(threading.get_native_id()), resident_bytes()
         self._over, self._lock = threading.Event(), threading.Lock()
 
     def begin(self) -> None:

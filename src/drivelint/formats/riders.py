@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.arrays import turned
+from drivelint.arrays import rotate_vectors
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -46,7 +46,7 @@ def join_riders(
     low = np.fmin(np.fmin.reduceat(low, first, axis=1), -size[:, thing] / 2)
     high = np.fmax(np.fmax.reduceat(high, first, axis=1), size[:, thing] / 2)
     ahead, left, up = (low + high) / 2
-    dx, dy = turned(ahead, left, boxes["yaw_rad"][thing])
+    dx, dy = rotate_vectors(ahead, left, boxes["yaw_rad"][thing])
     for name, values in (("x_m", dx), ("y_m", dy), ("z_m", up), ("yaw_rad", np.zeros(len(thing)))):
         boxes[name][keeper] = boxes[name][thing] + values
     riders = np.unique(actor[keeper]).tolist()
@@ -90,7 +90,7 @@ def _is_over(on: Indices, under: Indices, boxes: dict[str, Floats]) -> Mask:
 
 def _relative_position(on: Indices, under: Indices, boxes: dict[str, Floats]) -> tuple[Floats, Floats]:
     x, y = boxes["x_m"], boxes["y_m"]
-    return turned(x[on] - x[under], y[on] - y[under], -boxes["yaw_rad"][under])
+    return rotate_vectors(x[on] - x[under], y[on] - y[under], -boxes["yaw_rad"][under])
 
 
 def _extents(on: Indices, under: Indices, boxes: dict[str, Floats]) -> tuple[Floats, Floats]:

@@ -14,7 +14,7 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from drivelint import __version__
-from drivelint.catalogue.header import CONTACT
+from drivelint.catalogue.header import CONTACT_TAG
 from drivelint.engine.memory import DEFAULT_MEMORY
 from drivelint.engine.robustness.copies import MeasurementErrors
 from drivelint.explain.source import open_drive, with_ego
@@ -78,7 +78,9 @@ def other_drives(request: IncidentRequest) -> list[str]:
         return []
     every = result.findings.select(["rule_id", "drive_id"]).to_pylist()
     same = (
-        contacts(result) if request.name == CONTACT else [each for each in every if each["rule_id"] == row["rule_id"]]
+        contacts(result)
+        if request.name == CONTACT_TAG
+        else [each for each in every if each["rule_id"] == row["rule_id"]]
     )
     return sorted({each["drive_id"] for each in same} - {row["drive_id"]})
 

@@ -7,7 +7,7 @@ from collections import Counter
 from textwrap import shorten
 from typing import TYPE_CHECKING, Final
 
-from drivelint.catalogue.header import EXCUSES
+from drivelint.catalogue.header import EXCUSES_TAG
 from drivelint.incident.words import SENSE, amount, how_sure, measured_text, minus, profile, required
 from drivelint.phrases import plural
 from drivelint.result.certainty import certainty
@@ -53,7 +53,7 @@ def kept_line(rule: Row, rows: Sequence[Row], span: tuple[int, int], start_ns: i
     """
     row = min(rows, key=lambda r: (r["margin"] is None, r["margin"] or 0.0, r["t_worst_ns"] or 0))
     said, about = quoted(rule), [_stretches(rows, span, start_ns)]
-    if EXCUSES not in rule["tags"] and rule["observes"] and row["observed"] is not None:
+    if EXCUSES_TAG not in rule["tags"] and rule["observes"] and row["observed"] is not None:
         whom = f" with {row['object_id']}:" if row["object_id"] is not None else ""
         least = "at least " if row["cause_code"] == LOWER_BOUND else ""
         said = minus(f"{rule['observes']}{whom} {least}{amount(row['observed'], row['unit'])}")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.catalogue.header import CONTACT, EXCUSES
+from drivelint.catalogue.header import CONTACT_TAG, EXCUSES_TAG
 from drivelint.incident.breaches import broken_line, kept_line, quoted, without_advice
 from drivelint.incident.fitting import Reason
 from drivelint.report.html.reasons import summarise_reasons, verdict_reason
@@ -52,8 +52,8 @@ def conduct(
         for rule, rows in rest.items()
         if rule not in undecided and rule not in elsewhere and any(row["verdict"] == "pass" for row in rows)
     ]
-    touched |= any(CONTACT in rules[rule]["tags"] for rule in broken)
-    beside = [rule for rule in kept if touched and CONTACT in rules[rule]["tags"]]
+    touched |= any(CONTACT_TAG in rules[rule]["tags"] for rule in broken)
+    beside = [rule for rule in kept if touched and CONTACT_TAG in rules[rule]["tags"]]
     kept = [rule for rule in kept if rule not in beside]
     passed = {rule: [row for row in rest[rule] if row["verdict"] == "pass"] for rule in (*kept, *beside)}
     lines = {rule: kept_line(rules[rule], rows, span, start_ns) for rule, rows in passed.items()}
@@ -64,14 +64,14 @@ def conduct(
             )
             for rule in broken
         ],
-        "kept": [lines[rule] for rule in kept if EXCUSES not in rules[rule]["tags"]],
-        "excused": [lines[rule] for rule in kept if EXCUSES in rules[rule]["tags"]],
+        "kept": [lines[rule] for rule in kept if EXCUSES_TAG not in rules[rule]["tags"]],
+        "excused": [lines[rule] for rule in kept if EXCUSES_TAG in rules[rule]["tags"]],
         "reasons": _reasons(undecided, rules),
     }
     return {
         "n": {"broken": len(broken), "kept": len(kept), "undecided": len(undecided)},
         **parts,
-        "only_hit": bool(broken) and all(CONTACT in rules[rule]["tags"] for rule in broken),
+        "only_hit": bool(broken) and all(CONTACT_TAG in rules[rule]["tags"] for rule in broken),
         "beside": [lines[rule] for rule in beside],
         "elsewhere": len(elsewhere - undecided.keys()),
         "never": len(rules) - len(broken) - len(undecided) - len(passed) - len(elsewhere - undecided.keys()),
@@ -109,5 +109,5 @@ def _reasons(undecided: Mapping[str, Sequence[Row]], rules: Mapping[str, Row]) -
         why = summarise_reasons(reason._replace(text=without_advice(reason.text)) for reason in given)
         of_rules.setdefault(why, set()).update(row["rule_id"] for row in rows)  # reasons may differ only in advice
     told = [Reason(why, tuple(quoted(rules[rule]) for rule in sorted(found))) for why, found in of_rules.items()]
-    contacts = {quoted(rule) for rule in rules.values() if CONTACT in rule["tags"]}
+    contacts = {quoted(rule) for rule in rules.values() if CONTACT_TAG in rule["tags"]}
     return sorted(told, key=lambda reason: (contacts.isdisjoint(reason.titles), -len(reason.titles), reason))

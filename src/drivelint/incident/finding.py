@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 import pyarrow.compute as pc
 
-from drivelint.catalogue.header import CONTACT
+from drivelint.catalogue.header import CONTACT_TAG
 from drivelint.errors import UsageError
 from drivelint.explain.target import VerdictFilter, find_verdict
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 from drivelint.report.worst_first import is_contact, worst_first
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ class NamedFinding:
     @property
     def is_contact(self) -> bool:
         """Whether the finding is a contact."""
-        return CONTACT in self.rule["tags"]
+        return CONTACT_TAG in self.rule["tags"]
 
     @property
     def moment_ns(self) -> int:
@@ -57,7 +57,7 @@ def named_finding(result: Result, name: str) -> NamedFinding:
     drives = {drive["drive_id"]: drive for drive in result.drives.to_pylist()}
     rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
     word, _, drive_id = name.partition("@")
-    if word == CONTACT:
+    if word == CONTACT_TAG:
         found = [row for row in contacts(result) if row["drive_id"].startswith(drive_id)]
         if not found:
             raise UsageError(f"--incident {name}: {_without_contact(result, drive_id)}")
@@ -98,9 +98,9 @@ def _worst_of(verdict: Row, result: Result) -> dict[str, Any]:
         there: set[str] = {
             row["rule_id"] for row in result.findings.to_pylist() if row["drive_id"] == verdict["drive_id"]
         }
-        failed = sorted(there, key=lambda rule_id: (CONTACT not in tags[rule_id], rule_id))
+        failed = sorted(there, key=lambda rule_id: (CONTACT_TAG not in tags[rule_id], rule_id))
         raise UsageError(
             f"{verdict['rule_id']} in {verdict['drive_id']} is {verdict['verdict'].replace('_', ' ')}, so it has no finding: "
-            f"name a finding by its id, or a rule that failed there ({listed(failed) or 'none did'})"
+            f"name a finding by its id, or a rule that failed there ({name_list(failed) or 'none did'})"
         )
     return min(about, key=lambda row: (row["margin"] is not None, row["margin"], row["t_worst_ns"], row["finding_id"]))

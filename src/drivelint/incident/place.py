@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
-from drivelint.convert import CLIP
+from drivelint.convert import CLIP_CHECK_ID
 from drivelint.drive.trace import TURNED_FRAME
 from drivelint.engine.earth import frame_of_map
 from drivelint.incident.land import is_at_sea
@@ -79,7 +79,7 @@ def coordinates(case: Case) -> str:
     """Return in words whether x and y are coordinates of the log or of a clip, and any change of y's sign or offset of the map."""
     checks = {check["check_id"] for check in case.finding.drive["quality"]}
     said = "the recording's coordinates"
-    if CLIP in checks:
+    if CLIP_CHECK_ID in checks:
         said = "the clip's coordinates"  # a clip contains the coordinates that were judged
     elif TURNED_FRAME in checks:
         said += " with the sign of y changed, as its frame is left-handed"

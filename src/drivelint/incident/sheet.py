@@ -10,22 +10,14 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from drivelint.catalogue.header import CONTACT
-from drivelint.convert import CLIP
+from drivelint.catalogue.header import CONTACT_TAG
+from drivelint.convert import CLIP_CHECK_ID
 from drivelint.engine.robustness.copies import MeasurementErrors
 from drivelint.incident.case import LETTERS
 from drivelint.incident.command import commands
 from drivelint.incident.conduct import conduct, name_party
 from drivelint.incident.delta_v import WINDOW_S
-from drivelint.incident.fitting import (
-    SHARED_HEAD,
-    Fitting,
-    check_room,
-    first_fitting,
-    fit,
-    is_crowded,
-    shared_reasons,
-)
+from drivelint.incident.fitting import SHARED_HEAD, Fitting, check_room, first_fitting, fit, is_crowded, shared_reasons
 from drivelint.incident.judge import same_finding
 from drivelint.incident.motion import BEFORE_S, MOST_ROWS, Motion, second_by_second, slowings
 from drivelint.incident.parties import against_each_other, kinds, others_drawn, overtaking, party, title
@@ -210,7 +202,7 @@ def _least_gap(motion: Motion, finding: NamedFinding) -> str | None:
 def _contacts(case: Case) -> list[Row]:
     """Return the contacts of A in this drive, except the sheet's finding, in time order."""
     mine = case.finding.row
-    tagged = {rule["rule_id"] for rule in case.result.rules.to_pylist() if CONTACT in rule["tags"]}
+    tagged = {rule["rule_id"] for rule in case.result.rules.to_pylist() if CONTACT_TAG in rule["tags"]}
     found = [
         row
         for row in case.result.findings.to_pylist()
@@ -255,7 +247,11 @@ def _told_warnings(case: Case) -> Fitting:
 
 
 def _cut_from(case: Case) -> list[str]:
-    return [f"{check['message']}{_CLIP_NOTE}" for check in case.finding.drive["quality"] if check["check_id"] == CLIP]
+    return [
+        f"{check['message']}{_CLIP_NOTE}"
+        for check in case.finding.drive["quality"]
+        if check["check_id"] == CLIP_CHECK_ID
+    ]
 
 
 def _recording(finding: NamedFinding) -> dict[str, str]:

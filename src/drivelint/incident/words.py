@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Final
 
-from drivelint.catalogue.header import CONTACT
+from drivelint.catalogue.header import CONTACT_TAG
 from drivelint.incident.motion import slowing_known
 from drivelint.result.certainty import certainty
 from drivelint.result.text import number, tolerance
@@ -61,7 +61,7 @@ def measured_text(row: Row, rule: Row) -> str:
     """Return the observed and the required value in words; '' if the rule measures nothing."""
     if row["observed"] is None and row["required"] is None:
         return ""
-    if CONTACT in rule["tags"] and row["unit"] == "m" and (row["observed"] or 0.0) < 0:
+    if CONTACT_TAG in rule["tags"] and row["unit"] == "m" and (row["observed"] or 0.0) < 0:
         return f"boxes overlap by {amount(-row['observed'], 'm')} and must not"
     must = (
         "none"
@@ -92,7 +92,7 @@ def how_sure(row: Row) -> str:
 
 def contact(row: Row, rule: Row) -> str:
     """Return the overlap of the boxes in the recording and its copies in words; '' if the finding is not about overlapping boxes."""
-    if CONTACT not in rule["tags"] or row["unit"] != "m" or row["observed"] is None or row["observed"] >= 0:
+    if CONTACT_TAG not in rule["tags"] or row["unit"] != "m" or row["observed"] is None or row["observed"] >= 0:
         return ""
     said = f"the boxes overlap by {amount(-row['observed'], 'm')} in the recording"
     if row["n_copies"] is not None and row["n_stays"] < row["n_copies"]:

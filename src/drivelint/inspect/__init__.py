@@ -22,7 +22,7 @@ from drivelint.formats.registry import format_title_and_ego, may_be_mapped_table
 from drivelint.formats.search import why_unreadable
 from drivelint.inspect import advice, model, tracks
 from drivelint.inspect.content import content, size_bytes
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 from drivelint.reasons import reason_text
 from drivelint.sql import store
 from drivelint.sql.statements import statement
@@ -63,7 +63,7 @@ def inspect(request: InspectRequest) -> model.Inspection:
     paths = expand_traces([request.trace])
     if len(paths) != 1:
         raise UsageError(
-            f"{request.trace}: {len(paths)} logs ({listed([path.name for path in paths])}): inspect looks at one at a time"
+            f"{request.trace}: {len(paths)} logs ({name_list([path.name for path in paths])}): inspect looks at one at a time"
         )
     (path,) = paths
     options = request.ingest_options(need_ego=False)

@@ -41,8 +41,8 @@ def undecided_rules(rules: Sequence[Rule], lacking: Mapping[str, str], never: Ma
     """Return the rules that cannot be decided because a signal is missing or a condition is never known."""
     found = []
     for rule in rules:
-        conditions = {SIGNAL_OF_CONDITION.get(name, name) for name in rule.applies.restricting}
-        conditions |= {"speed_limits"} if rule.applies.restricts_speed_limit else set()
+        conditions = {SIGNAL_OF_CONDITION.get(name, name) for name in rule.applies.restricted_conditions}
+        conditions |= {"speed_limits"} if rule.applies.has_speed_limit_condition else set()
         needed = set(rule.needed_signals) & lacking.keys() | conditions & never.keys()
         missing = needed | set(rule.pass_requires) & never.keys()
         if "map" in missing:

@@ -13,7 +13,7 @@ from rich.text import Text
 
 from drivelint.formats.registry import format_title_and_ego
 from drivelint.formats.tables.mapping import GROUP_PLACEHOLDER
-from drivelint.phrases import listed, plural
+from drivelint.phrases import name_list, plural
 from drivelint.result.counts import group_rows
 from drivelint.result.one_line import nested_texts_on_one_line
 from drivelint.result.text import ego_name
@@ -138,13 +138,13 @@ def _sheet(sheet: model.Sheet) -> Text:
     read = [c for c in sheet.columns if c.read_as]
     if not read:
         names = [c.name for c in sheet.columns]
-        return Text(f"{sheet.name}: {rows}{plural(len(names), 'column')}: {listed(names, MAX_ROWS)}")
+        return Text(f"{sheet.name}: {rows}{plural(len(names), 'column')}: {name_list(names, MAX_ROWS)}")
     per_actor = any(GROUP_PLACEHOLDER in c.name for c in sheet.columns)
     whole = f"{rows}{len(read)} of {plural(len(sheet.columns), 'column')}{' per actor' if per_actor else ''}"
     text = Text(f"{whole} read: {', '.join(_cell(column, per_actor=per_actor) for column in read)}")
     if others := [c.name for c in sheet.columns if not c.read_as]:
         names = [name.replace(GROUP_PLACEHOLDER, "").lstrip("# ") for name in others]
-        text.append(f"; not read: {listed(names, MAX_ROWS)}", style="dim")
+        text.append(f"; not read: {name_list(names, MAX_ROWS)}", style="dim")
     return text
 
 
@@ -263,14 +263,12 @@ def _decidable_rules(drive: model.Drive, log: str) -> Group:
 
 def _about(drive: model.Drive, egos: list[model.Ego], log: str) -> list[RenderableType]:
     ego, n = egos[0], len(drive.rules)
-    selection = listed(drive.selection, _MAX_LISTED_NAMES)
+    selection = name_list(drive.selection, _MAX_LISTED_NAMES)
     who = ""
     if not drive.egos:
         who = f" with --ego {ego.actor.actor_id}"
     elif len(drive.egos) > 1:
-        who = (
-            f" for {'ego' if len(egos) == 1 else 'egos'} {listed([e.actor.actor_id for e in egos], _MAX_LISTED_NAMES)}"
-        )
+        who = f" for {'ego' if len(egos) == 1 else 'egos'} {name_list([e.actor.actor_id for e in egos], _MAX_LISTED_NAMES)}"
     style = "bold green" if len(ego.can) == n else "bold yellow" if ego.can else "bold red"
     parts: list[RenderableType] = [Text(f"{log} can decide {_how_many(ego, drive, selection)}{who}.", style=style)]
     if ego.can:

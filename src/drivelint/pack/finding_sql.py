@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import duckdb
 
 from drivelint.evaluate.sql_fragments import condition_ctes
-from drivelint.phrases import inert_line
+from drivelint.phrases import terminal_safe_line
 from drivelint.sql import syntax
 from drivelint.sql.statements import texts
 from drivelint.sql.store import macro_definitions
@@ -109,8 +109,8 @@ def file_text(rule: Rule, finding: Row, sql: str, tables: Iterable[str]) -> str:
     spatial = any(_SPATIAL.search(text) for text in (sql, *called))
     numbers = ", ".join(f"{name} {_sql_literal(finding[name])}" for name in COMPARED_COLUMNS)
     lines = [
-        f"-- Finding {finding['finding_id']} of the rule {rule.id}: {inert_line(rule.title)}",
-        f"-- {inert_line(rule.clause)}",
+        f"-- Finding {finding['finding_id']} of the rule {rule.id}: {terminal_safe_line(rule.title)}",
+        f"-- {terminal_safe_line(rule.clause)}",
         "-- Run it in this folder with DuckDB 1.4 or later: duckdb < finding.sql",
         f"-- It gives what findings.parquet says of the worst step: {numbers}.",
     ]

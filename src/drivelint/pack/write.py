@@ -10,7 +10,7 @@ from tempfile import mkdtemp
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from drivelint import __version__
-from drivelint.audit.bucket import as_url
+from drivelint.audit.bucket import url_of_path
 from drivelint.errors import UsageError
 from drivelint.pack import again, audits, bag, contents, sheets, signature, timestamp
 from drivelint.pack.contents import EVIDENCE, RESULT, summary_of
@@ -84,9 +84,9 @@ def write_pack(request: PackRequest) -> dict[str, Any]:
 def ready(request: PackRequest) -> signature.SigningKey | None:
     """Return the key that signs a pack; None: the pack is not signed. Errors: `UsageError` for an invalid request, or if `out` exists
     without `overwrite`."""
-    if (url := as_url(request.folder)) is not None:
+    if (url := url_of_path(request.folder)) is not None:
         raise UsageError(f"{url}: is in an object store: copy it into a folder of this machine and pack that")
-    if (url := as_url(request.out)) is not None:
+    if (url := url_of_path(request.out)) is not None:
         raise UsageError(f"{url}: a pack is a folder of this machine: write it here and copy it there")
     if request.timestamp is not None and request.key is None:
         raise UsageError("--timestamp is for a signed statement: use --sign with the key, too")

@@ -156,7 +156,7 @@ def _rules_using_text(rules: Iterable[Rule], requirements: Sequence[str], reads:
     ids = [
         f"`{rule.id}`"
         for rule in rules
-        if not {*rule.requires, *rule.applies.restricting}.isdisjoint(requirements)
+        if not {*rule.requires, *rule.applies.restricted_conditions}.isdisjoint(requirements)
         or (
             (not reads or not {*rule.reads}.isdisjoint(reads))
             and named.search(_COMMENT.sub("", "\n".join(rule.sections.values())))

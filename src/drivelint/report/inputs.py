@@ -8,7 +8,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.drive.trace import ASIDE_OF_LANE, ASSUMED_MOTION, ASSUMED_SIZE, TURNED_FRAME
-from drivelint.phrases import listed, plural
+from drivelint.phrases import name_list, plural
 from drivelint.reasons.signals import MISSING_PREFIX, UNRECORDED_PREFIX, signal_name
 from drivelint.report.law import law_words
 from drivelint.result import counts
@@ -61,7 +61,7 @@ def _map_note(drives: Sequence[Row]) -> InputNote:
         return InputNote("map", "none", is_warning=bool(drives))
     reasons = [reason for drive in on_map if (reason := off_map_reason(drive)) is not None]
     n = plural(len(on_map), "drive")
-    words = f"{listed(sorted({drive['map_name'] for drive in on_map}), _MAX_LISTED_NAMES)} fits {len(on_map) - len(reasons)} of {n}"
+    words = f"{name_list(sorted({drive['map_name'] for drive in on_map}), _MAX_LISTED_NAMES)} fits {len(on_map) - len(reasons)} of {n}"
     off_egos, egos = sum(map(_n_egos_off_map, on_map)), sum(len(drive["exposure"]) for drive in on_map)
     if reasons:
         words += f" ({reasons[0]})"
@@ -98,10 +98,10 @@ def _log_note(drives: Sequence[Row]) -> InputNote:
     assumed = sorted({check["message"].partition(";")[0] for check in checks if check["check_id"] == ASSUMED_MOTION})
     given = sorted({check["message"] for check in checks if check["check_id"] in _ASSUMPTION_CHECKS})
     warned = {(check["check_id"], check["message"]) for check in checks if check["severity"] != "info"}
-    parts = [f"parts lost in {listed(lossy, _MAX_LISTED_NAMES)}"] if lossy else []
+    parts = [f"parts lost in {name_list(lossy, _MAX_LISTED_NAMES)}"] if lossy else []
     absent = [(drive["drive_id"], words) for drive in drives for words in ego_absence_texts(drive)]
     parts += (
-        [listed([f"{name}: {words}" if len(drives) > 1 else words for name, words in absent], _MAX_LISTED_NAMES)]
+        [name_list([f"{name}: {words}" if len(drives) > 1 else words for name, words in absent], _MAX_LISTED_NAMES)]
         if absent
         else []
     )
@@ -111,7 +111,7 @@ def _log_note(drives: Sequence[Row]) -> InputNote:
     parts += given
     if warned:
         names = sorted({check.replace("_", " ") for check, _ in warned})
-        parts.append(f"{plural(len(warned), 'warning')} ({listed(names, _MAX_LISTED_NAMES)})")
+        parts.append(f"{plural(len(warned), 'warning')} ({name_list(names, _MAX_LISTED_NAMES)})")
     parts += (copied := _words_on_copies(drives))
     return InputNote("log", "; ".join(parts), is_warning=bool(lossy or assumed or warned or copied))
 
@@ -120,7 +120,7 @@ def _completeness_words(drives: Sequence[Row]) -> str:
     """Return in words that the logs are complete, as far as their formats show it."""
     names = [drive["file_name"].lower() for drive in drives]
     without = [end for end in _SUFFIXES_WITHOUT_END_MARKER if any(name.endswith(end) for name in names)]
-    return f"complete, as far as the format {listed(without)} shows it" if without else "complete"
+    return f"complete, as far as the format {name_list(without)} shows it" if without else "complete"
 
 
 def _words_on_copies(drives: Sequence[Row]) -> list[str]:
@@ -130,7 +130,7 @@ def _words_on_copies(drives: Sequence[Row]) -> list[str]:
     if not copied:
         return []
     told = [f"{copy} of {first}" for copy, first in sorted(copied)]
-    return [f"{'a copy' if len(told) == 1 else 'copies'}, counted again: {listed(told, _MAX_LISTED_NAMES)}"]
+    return [f"{'a copy' if len(told) == 1 else 'copies'}, counted again: {name_list(told, _MAX_LISTED_NAMES)}"]
 
 
 def _notes_on_unrecorded_signals(result: Result) -> list[InputNote]:
@@ -140,7 +140,7 @@ def _notes_on_unrecorded_signals(result: Result) -> list[InputNote]:
         f"{name} (needed by {plural(n, 'rule')}{', ' if where else ''}{where})"
         for name, n, where in _lacking_signals(result, rows)
     ]
-    return [InputNote("not recorded", listed(needed), is_warning=True)] if rows else []
+    return [InputNote("not recorded", name_list(needed), is_warning=True)] if rows else []
 
 
 def _notes_on_parked_egos(result: Result) -> list[InputNote]:
@@ -170,7 +170,7 @@ def _not_judged_note(result: Result, n_drives: int) -> InputNote:
             f"{plural(n, 'rule')} without {name}{f' ({where})' if where else ''}"
             for name, n, where in _lacking_signals(result, signals)
         ]
-        parts.append(listed(without))
+        parts.append(name_list(without))
     if others := len(rows) - len(signals):
         parts.append(f"{others} {'other ' if signals else ''}{'verdict' if others == 1 else 'verdicts'}")
     return InputNote("not judged", "; ".join(parts) or "nothing", is_warning=bool(parts))

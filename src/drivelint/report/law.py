@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 from drivelint.catalogue import load_rules
 from drivelint.drive.conditions import all_values
-from drivelint.phrases import listed, plural
+from drivelint.phrases import name_list, plural
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -52,4 +52,4 @@ def _words_on_law(law: tuple[str, ...], drives: list[Row]) -> str:
             how = "applied" if given["value"] in applied else "not applied"
             counted[f"{how}: nation {given['value']} by {_SOURCE_WORDS[given['source']]}"] += 1
     each = [words if n == len(drives) else f"{words} in {plural(n, 'drive')}" for words, n in sorted(counted.items())]
-    return f"of {listed(list(law))} {'; '.join(each)}"
+    return f"of {name_list(list(law))} {'; '.join(each)}"

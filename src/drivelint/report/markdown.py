@@ -10,7 +10,7 @@ from urllib.parse import quote
 import pyarrow.compute as pc
 
 from drivelint.gate import descriptions
-from drivelint.phrases import escape_invisible, inert_line, plural
+from drivelint.phrases import escape_invisible, plural, terminal_safe_line
 from drivelint.report.html.anchors import anchor
 from drivelint.report.inputs import input_notes
 from drivelint.report.outcome import headline, one_per_event_and_status, status_at_gate
@@ -142,7 +142,7 @@ def markdown_code(text: str) -> str:
 
     The enclosing run of backticks is longer than each run in the text.
     """
-    plain = inert_line(" ".join(text.split())).replace("|", "\\|")
+    plain = terminal_safe_line(" ".join(text.split())).replace("|", "\\|")
     fence = "`" * (1 + max(map(len, re.findall("`+", plain)), default=0))
     space = " " if plain[:1] == "`" or plain[-1:] == "`" else ""
     return f"{fence}{space}{plain}{space}{fence}" if plain else ""

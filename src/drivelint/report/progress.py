@@ -8,7 +8,7 @@ from contextlib import contextmanager, suppress
 from threading import Event, Thread
 from typing import TYPE_CHECKING, Final
 
-from drivelint.phrases import inert_line
+from drivelint.phrases import terminal_safe_line
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -92,7 +92,7 @@ class NotePrinter(Silent):
     def note(self, text: str) -> None:
         """Print the note."""
         with suppress(OSError):  # the reader of stderr may have closed it
-            print(f"drivelint: {inert_line(text)}", file=sys.stderr, flush=True)
+            print(f"drivelint: {terminal_safe_line(text)}", file=sys.stderr, flush=True)
 
 
 def _duration(seconds: float) -> str:
@@ -149,7 +149,7 @@ class ProgressBar(Progress):
 
     def note(self, text: str) -> None:
         """Print a line above the bar."""
-        self._progress.console.print(inert_line(text), markup=False, highlight=False)
+        self._progress.console.print(terminal_safe_line(text), markup=False, highlight=False)
 
     def release_terminal(self) -> None:
         """Remove the bar."""

@@ -94,7 +94,7 @@ def path_and_sql(rule: Rule) -> Text:
 
 def _restrictions_text(conditions: Conditions) -> str:
     """Return the conditions under which a rule applies, such as `road_type rural or town, limit_min_mps 13.4`; '' for none."""
-    said = [f"{name} {' or '.join(words)}" for name, words in conditions.restricting.items()]
+    said = [f"{name} {' or '.join(words)}" for name, words in conditions.restricted_conditions.items()]
     limits = {"limit_min_mps": conditions.limit_min_mps, "limit_max_mps": conditions.limit_max_mps}
     return ", ".join([*said, *(f"{name} {value:g}" for name, value in limits.items() if value is not None)])
 

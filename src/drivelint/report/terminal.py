@@ -12,7 +12,7 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 from drivelint.report import NARROW_WIDTH, terminal_summary
 from drivelint.report.outcome import one_per_event_and_status
 from drivelint.report.worst_first import moment_ns
@@ -190,7 +190,7 @@ def _unjudged_table(result: Result) -> Table | None:
         rules = _first_rule_lines([(row["rule_id"], row["count_all"]) for row in why[verdict, reason]])
         text = Text(reason)
         if several:
-            text.append(f"\nego {listed([row['ego_id'] for row in egos[verdict, reason]])}", "dim")
+            text.append(f"\nego {name_list([row['ego_id'] for row in egos[verdict, reason]])}", "dim")
         table.add_row(Text("\n".join(rules), style=_STYLE_OF_VERDICT[verdict]), text)
     return table
 

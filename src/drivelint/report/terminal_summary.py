@@ -15,7 +15,7 @@ from rich.text import Text
 
 from drivelint.errors import ExitCode
 from drivelint.gate import descriptions
-from drivelint.phrases import inert_line, plural
+from drivelint.phrases import plural, terminal_safe_line
 from drivelint.report.inputs import LAW_LABEL, input_notes
 from drivelint.report.law import law_words
 from drivelint.report.outcome import (
@@ -339,6 +339,8 @@ def _exit_and_next_steps_lines(result: Result, findings: list[Row], out: str | N
     if findings:
         worst = findings[0]
         name = f"{worst['rule_id']}@{worst['drive_id']}"
-        name = name if inert_line(name) == name else worst["finding_id"]  # the printed command must work in a shell
+        name = (
+            name if terminal_safe_line(name) == name else worst["finding_id"]
+        )  # the printed command must work in a shell
         lines.append(Text(f"explain  drivelint explain {shlex.quote(name)} --in {out}"))
     return lines

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.catalogue.header import CONTACT
+from drivelint.catalogue.header import CONTACT_TAG
 from drivelint.result.certainty import POSSIBLE, SURE, certainty
 from drivelint.result.counts import SEVERITIES
 from drivelint.result.text import seconds
@@ -25,7 +25,7 @@ _SORT_COLUMNS: Final = (
 
 def worst_first(rows: pa.Table, rules: Mapping[str, Row]) -> pa.Table:
     """Return findings or verdicts in the order of reports. `rules`: the rows of the table `rule` by `rule_id`."""
-    contacts = pa.array([rule_id for rule_id, rule in rules.items() if CONTACT in rule["tags"]], pa.string())
+    contacts = pa.array([rule_id for rule_id, rule in rules.items() if CONTACT_TAG in rule["tags"]], pa.string())
     keys = {
         "severity_no": pc.index_in(rows["severity"], value_set=pa.array(SEVERITIES)),
         "no_contact": pc.cast(pc.invert(pc.is_in(rows["rule_id"], value_set=contacts)), pa.int8()),
@@ -77,4 +77,4 @@ def _has_begun_before_worst(row: Row, rules: Mapping[str, Row]) -> bool:
 
 def is_contact(row: Row, rules: Mapping[str, Row]) -> bool:
     """Return whether the finding's rule detects that the ego touched something."""
-    return CONTACT in rules[row["rule_id"]]["tags"]
+    return CONTACT_TAG in rules[row["rule_id"]]["tags"]

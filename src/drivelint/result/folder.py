@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import UsageError
 from drivelint.own_files import MANIFEST_KEY, written_files
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 from drivelint.result.names import MANIFEST
 from drivelint.result.publishing import OutputError, prepare_folder, publish
 
@@ -45,7 +45,7 @@ def working_folder(
     foreign = sorted(present - written_files(out) - {MANIFEST})
     if foreign and not overwrite:
         raise UsageError(
-            f"--out {out}: has {listed(foreign, 3)}, which drivelint did not write there ({MANIFEST} does not list it): "
+            f"--out {out}: has {name_list(foreign, 3)}, which drivelint did not write there ({MANIFEST} does not list it): "
             "choose another folder, or replace it with --overwrite"
         )
     with _lock_folder(out) as is_ours:

@@ -11,7 +11,7 @@ import pyarrow.compute as pc
 
 from drivelint.drive.trace import EGO_ABSENT
 from drivelint.errors import ExitCode
-from drivelint.phrases import listed, plural
+from drivelint.phrases import name_list, plural
 from drivelint.reasons.signals import UNRECORDED_PREFIX, signal_name
 from drivelint.result.counts import SEVERITIES, group_rows, one_finding_per_event, verdicts_lacking_signal
 from drivelint.result.gate import NOT_FIXED_WORDS, n_findings
@@ -170,7 +170,7 @@ def _error_phrase(rows: pa.Table) -> str:
 
 
 def _rule_ids_text(rows: pa.Table) -> str:
-    return listed(sorted(rows["rule_id"].unique().to_pylist()))
+    return name_list(sorted(rows["rule_id"].unique().to_pylist()))
 
 
 def _lossy_status(result: Result) -> Iterator[ExitStatus]:
@@ -353,8 +353,8 @@ def _unknown_verdicts_sentence(result: Result, unknown: pa.Table) -> str:
         of_signal = group_rows(rows, lambda row: signal_name(row["reason_code"]))
         n_rules = {name: len({row["rule_id"] for row in mine}) for name, mine in of_signal.items()}
         order = sorted(n_rules.items(), key=lambda item: (-item[1], item[0]))
-        why = listed([f"{name} ({plural(n, 'rule')})" for name, n in order])
+        why = name_list([f"{name} ({plural(n, 'rule')})" for name, n in order])
         return f"{plural(unknown.num_rows, 'verdict')} unknown: {why} (--strict)"
     of_rules = pc.value_counts(unknown["rule_id"]).to_pylist()
     told = [f"{each['counts']} of {each['values']}" for each in sorted(of_rules, key=lambda each: str(each["values"]))]
-    return f"{plural(unknown.num_rows, 'verdict')} of required rules unknown (--require): {listed(told)}"
+    return f"{plural(unknown.num_rows, 'verdict')} of required rules unknown (--require): {name_list(told)}"

@@ -12,7 +12,7 @@ import numpy as np
 import pyarrow as pa
 import shapely
 
-from drivelint.arrays import spelled
+from drivelint.arrays import words_of_codes
 from drivelint.road import driving_side
 from drivelint.road.lane_geometry import LaneGeometry, UnbuildableError, check_bounds, lane_geometry
 from drivelint.road.tables import Rows, crossing_row, map_tables
@@ -219,7 +219,7 @@ def lane_points(lanes: Sequence[Any]) -> dict[str, Any]:
         "road_s_m": np.concatenate([lane.road_s for lane in lanes]),
         "z_m": pa.array(np.concatenate([lane.z for lane in lanes]), pa.float64(), from_pandas=True),
         "k": np.concatenate([np.arange(n, dtype=np.int32) for n in counts]),
-        "lanelet_id": spelled(
+        "lanelet_id": words_of_codes(
             np.repeat(np.arange(len(lanes), dtype=np.int32), counts), [lane.lanelet_id for lane in lanes]
         ),
     }

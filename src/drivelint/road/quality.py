@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import Any, Final
 
-from drivelint.phrases import escape_invisible, listed
+from drivelint.phrases import escape_invisible, name_list
 from drivelint.sql.words import vocabularies
 
 SIGNS_UNMAPPED: Final = "signs_unmapped"
@@ -65,7 +65,7 @@ class MapQuality:
         rows = list(self.rows)
         for vocabulary, words in self._unknown_words.items():
             severity, what, follows = _UNKNOWN_WORDS[vocabulary]
-            counted = listed([f"{escape_invisible(word[:40])} ({n})" for word, n in sorted(words.items())])
+            counted = name_list([f"{escape_invisible(word[:40])} ({n})" for word, n in sorted(words.items())])
             message = f"{what} with unknown names: {counted}: {follows}"
             if words:
                 rows.append(_row("unknown_word", severity, None, message, words.total()))

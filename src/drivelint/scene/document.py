@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import msgspec
 import yaml
 
-from drivelint.casefile import WordLoader
+from drivelint.casefile import OnOffAsTextLoader
 from drivelint.errors import UsageError
 from drivelint.phrases import hint
 from drivelint.scene.strange_words import problems
@@ -244,7 +244,7 @@ def read(path: Path) -> SceneFile:
 
 def _parsed(path: Path) -> SceneFile:
     try:
-        loader = WordLoader(path.read_text(encoding="utf-8"))
+        loader = OnOffAsTextLoader(path.read_text(encoding="utf-8"))
         root = loader.get_single_node()
         raw = loader.construct_document(root) if root else None
     except (OSError, UnicodeDecodeError) as error:

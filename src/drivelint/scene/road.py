@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from drivelint.arrays import wrapped
+from drivelint.arrays import wrap_angles
 from drivelint.errors import UsageError
 from drivelint.phrases import hint
 
@@ -169,7 +169,7 @@ def end_of(pose: Pose, piece: Piece) -> Pose:
 def connecting_piece(start: Pose, end: Pose) -> Piece:
     """Return a piece from one pose to another: a straight, an arc, or a cubic."""
     ahead, left = _in_frame(start, end.x, end.y)
-    turn = float(wrapped(np.asarray(end.heading - start.heading)))
+    turn = float(wrap_angles(np.asarray(end.heading - start.heading)))
     away = math.hypot(ahead, left)
     if abs(turn) < _STRAIGHT_RAD and abs(left) < 1e-3:
         return Piece(away)

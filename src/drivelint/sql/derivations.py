@@ -81,7 +81,7 @@ def _derivation(table: str) -> Derivation:
     if table not in column_comments():
         raise DriveLintError(f"{file}: no table {table!r} in schemas/")
     sql = file.read_text(encoding="utf-8")
-    reads, needs, occasion = _READS.of(sql, lambda: _reads(sql, str(file)))
+    reads, needs, occasion = _READS.find_or_compute(sql, lambda: _reads(sql, str(file)))
     return Derivation(table, sql, reads & _files().keys() - {table}, needs, occasion)
 
 

@@ -31,5 +31,6 @@ def kept_schemas(
             }
 
     return {
-        name: pa.ipc.read_schema(pa.py_buffer(content)) for name, content in _SCHEMAS.of("", written_schemas).items()
+        name: pa.ipc.read_schema(pa.py_buffer(content))
+        for name, content in _SCHEMAS.find_or_compute("", written_schemas).items()
     }

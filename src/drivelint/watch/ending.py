@@ -39,12 +39,14 @@ def check_recording(
     if not recording.exists() or (recording.is_file() and not recording.stat().st_size):
         raise TraceError(f"{options.source}: nothing was recorded: {watch.watched.broken or 'no frame came'}")
     try:
-        result = run.check(run.CheckOptions.judging((str(recording),), options, work), progress, interruption)
+        result = run.check(
+            run.CheckOptions.from_judging_options((str(recording),), options, work), progress, interruption
+        )
     except ChangedLogError:
         # another program still writes the recording: a copy of its present content is checked
         copy = folder / recording.name
         shutil.copy(recording, copy)
-        result = run.check(run.CheckOptions.judging((str(copy),), options, work), progress, interruption)
+        result = run.check(run.CheckOptions.from_judging_options((str(copy),), options, work), progress, interruption)
     if watch.watched.broken is not None:
         why = f"the recording ended early: {watch.watched.broken}"
         result = replace(result, ended_early=why, notes=(*result.notes, why))

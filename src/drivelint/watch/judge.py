@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Self
 import pyarrow.compute as pc
 
 from drivelint import catalogue
-from drivelint.arrays import with_columns
+from drivelint.arrays import replace_columns
 from drivelint.engine.apart import judge_apart
 from drivelint.engine.batch import drive_with_map
 from drivelint.engine.default_rules import chosen_selectors
@@ -165,7 +165,7 @@ def _as_of(trace: Trace, start_ns: int | None) -> Trace:
     """Return a window whose seconds count from the log's first step."""
     if start_ns is None:
         return trace
-    log = with_columns(trace.tables["data_log"], {"t_start_ns": [start_ns]})
+    log = replace_columns(trace.tables["data_log"], {"t_start_ns": [start_ns]})
     return replace(trace, tables={**trace.tables, "data_log": log})
 
 

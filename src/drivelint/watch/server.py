@@ -112,12 +112,12 @@ class LiveServer:
             return
         newest = pc.max(states["t_ns"])
         there = tracks({**trace_window.tables, "actor_state": states.filter(pc.equal(states["t_ns"], newest))})
-        rows, _ = actor_boxes.select_boxes(there)
+        rows, _ = actor_boxes.select_box_rows(there)
         clock = self._times(newest.as_py())
-        at = clock.at(newest.as_py())
-        boxes = b"".join(_contents(actor_boxes.messages(there, rows, clock, 0)))
-        self._server.publish(self._scene, draw.deletion(at) + boxes, at)
-        for content in _contents(actor_boxes.ego_transforms(there, rows, clock, 0)):
+        at = clock.log_time_at(newest.as_py())
+        boxes = b"".join(_contents(actor_boxes.scene_update_chunks(there, rows, clock, 0)))
+        self._server.publish(self._scene, draw.deletion_of_all(at) + boxes, at)
+        for content in _contents(actor_boxes.ego_transform_chunks(there, rows, clock, 0)):
             self._server.publish(self._transform, content, at)
 
     def publish_alarm(self, message: Mapping[str, Any]) -> None:
@@ -136,7 +136,7 @@ class LiveServer:
 
     def _margins(self, rule_id: str) -> int:
         topic = f"{PREFIX}/{measures.margin_topic(rule_id)}"
-        return self._channels.get(topic) or self._channel(topic, "json", result_messages.schema("margin"))
+        return self._channels.get(topic) or self._channel(topic, "json", result_messages.message_schema("margin"))
 
     def _channel(self, topic: str, encoding: str, schema: Schema) -> int:
         self._channels[topic] = number = self._server.add_channel(topic, encoding, schema)
@@ -145,7 +145,7 @@ class LiveServer:
     def _log(self, channel: int, message: Mapping[str, Any], t_ns: int) -> None:
         # viewers refuse a schema that allows null, so a message leaves out fields with unknown values
         known = {name: value for name, value in message.items() if replace_non_finite(value) is not None}
-        self._server.publish(channel, msgspec.json.encode(known), self._times(t_ns).at(t_ns))
+        self._server.publish(channel, msgspec.json.encode(known), self._times(t_ns).log_time_at(t_ns))
 
     def _times(self, t_ns: int) -> LogClock:
         """Return the clock of the log times. It is kept for the whole watch, unless a time would be negative with it."""
@@ -156,7 +156,7 @@ class LiveServer:
 
 def alarm_schema() -> Schema:
     """Return the schema of alarms: the columns of a finding, and the fields of `_ALARM`."""
-    finding = result_messages.schema("finding")
+    finding = result_messages.message_schema("finding")
     content = json.loads(finding.data)
     own = {name: {"type": kind, "description": told} for name, (kind, told) in _ALARM.items()}
     content |= {

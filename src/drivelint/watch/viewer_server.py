@@ -20,7 +20,7 @@ from websockets.asyncio.server import ServerConnection, serve
 from websockets.exceptions import WebSocketException
 from websockets.typing import Subprotocol
 
-from drivelint.phrases import inert_line
+from drivelint.phrases import terminal_safe_line
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -174,7 +174,7 @@ class ViewerServer:
         origins = request.headers.get_all("Origin")
         if all(origin.rstrip("/").casefold() in self._allowed for origin in origins):
             return None
-        told = inert_line(" ".join(origins))[:200]
+        told = terminal_safe_line(" ".join(origins))[:200]
         if told not in self._refused and len(self._refused) < BACKLOG:
             self._refused.add(told)
             self._notes.append(f"--serve: a page of {told} was refused: give --allow-origin {told} if it is to watch")

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from drivelint.audit.model import Receipt, Task
 
 
-class Outcome(NamedTuple):
+class TaskOutcome(NamedTuple):
     """The outcome of a task: its receipts, the error that it raised, or why its worker was lost (died, hung, out of memory)."""
 
     task: Task
@@ -33,7 +33,7 @@ class Executor(Protocol):
         """Submit a task."""
         ...
 
-    def wait(self) -> list[Outcome]:
+    def wait(self) -> list[TaskOutcome]:
         """Wait until at least one task has ended, and return the outcomes of all ended tasks; an empty list if no task is running.
 
         Errors: `ClusterError` if the engine does not respond.

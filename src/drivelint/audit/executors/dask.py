@@ -8,7 +8,7 @@ from concurrent.futures import CancelledError
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.audit.executors import ClusterError, Outcome
+from drivelint.audit.executors import ClusterError, TaskOutcome
 from drivelint.audit.worker import run_task
 
 if TYPE_CHECKING:
@@ -19,9 +19,9 @@ ANSWER_S = 30.0
 """Seconds in which a scheduler must answer."""
 WORKERLESS_S = 120.0
 """Seconds for which an audit waits for a worker if the cluster has none."""
-_LOOK_S: Final = 5.0
+_POLL_S: Final = 5.0
 """Seconds between checks whether the scheduler and workers are still there."""
-_ENDED: Final = frozenset({"finished", "error"})
+_END_STATUSES: Final = frozenset({"finished", "error"})
 
 
 class DaskCluster:
@@ -58,11 +58,11 @@ class DaskCluster:
         """See `Executor.submit`."""
         self._running[self._client.submit(run_task, task, pure=False)] = task
 
-    def wait(self) -> list[Outcome]:
+    def wait(self) -> list[TaskOutcome]:
         """See `Executor.wait`."""
         while self._running:
             try:
-                ended = distributed.wait(list(self._running), timeout=_LOOK_S, return_when="FIRST_COMPLETED").done
+                ended = distributed.wait(list(self._running), timeout=_POLL_S, return_when="FIRST_COMPLETED").done
             except TimeoutError:
                 ended = set()
             except CancelledError as error:  # our message replaces the original text, which lists all tasks
@@ -75,10 +75,10 @@ class DaskCluster:
             if self._client.status != "running":
                 raise self._scheduler_error("the connection was lost")
             # futures whose result was lost with a worker are skipped: another worker computes them again
-            ended = {future for future in ended if future.status in _ENDED}
+            ended = {future for future in ended if future.status in _END_STATUSES}
             if ended:
                 self._workerless_since = None
-                return [self._outcome(future, self._running.pop(future)) for future in ended]
+                return [self._task_outcome(future, self._running.pop(future)) for future in ended]
             self._require_workers()
         return []
 
@@ -88,20 +88,20 @@ class DaskCluster:
             future.cancel()
         self._client.close(timeout=5)
 
-    def _outcome(self, future: Any, task: Task) -> Outcome:
+    def _task_outcome(self, future: Any, task: Task) -> TaskOutcome:
         try:
-            return Outcome(task, future.result())
+            return TaskOutcome(task, future.result())
         except distributed.KilledWorker as error:
             where = error.last_worker.address if error.last_worker else "unknown"
-            return Outcome(task, loss_reason=f"the worker died ({where})")
+            return TaskOutcome(task, loss_reason=f"the worker died ({where})")
         except Exception as error:
             if future.status != "error":  # the task itself has not failed, but its result cannot be fetched
                 raise self._scheduler_error("a result could not be fetched") from error
-            return Outcome(task, error=error)  # the driver distinguishes kinds of errors
+            return TaskOutcome(task, error=error)  # the driver distinguishes kinds of errors
 
     def _require_workers(self) -> None:
         try:
-            workers = self._client.nthreads(callback_timeout=_LOOK_S)
+            workers = self._client.nthreads(callback_timeout=_POLL_S)
         except OSError:  # Dask itself detects a lost connection, and then cancels the tasks
             return
         now = time.monotonic()

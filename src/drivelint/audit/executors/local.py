@@ -14,11 +14,11 @@ from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING, Final
 
-from drivelint.audit.executors import Outcome
-from drivelint.audit.worker import run_task, warm_up
+from drivelint.audit.executors import TaskOutcome
+from drivelint.audit.worker import open_judge, run_task
 from drivelint.computing import resident_bytes
 from drivelint.errors import InternalError
-from drivelint.without_pandas import leave_out_pandas
+from drivelint.without_pandas import block_pandas_import
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 
 TASKS_PER_WORKER: Final = 500
 """A worker is replaced after this many tasks, so that leaks in libraries cannot accumulate."""
-_LOOK_S: Final = 0.1
-_BEGUN: Final = "begun"
+_POLL_S: Final = 0.1
+_BEGUN_MESSAGE: Final = "begun"
 """The message of a worker that has opened its database. Its computing time counts from then on."""
 
 
@@ -41,7 +41,7 @@ class LocalPool:
     """
 
     def __init__(self, workers: int | None = None, memory: int | None = None, timeout_s: float | None = None) -> None:
-        self._capacity = workers or cores()
+        self._capacity = workers or core_count()
         self._memory = memory
         self._timeout_s = timeout_s
         self._waiting: deque[Task] = deque()
@@ -55,28 +55,30 @@ class LocalPool:
     def submit(self, task: Task) -> None:
         """See `Executor.submit`."""
         self._waiting.append(task)
-        self._hand_over()
+        self._assign_tasks()
 
-    def wait(self) -> list[Outcome]:
+    def wait(self) -> list[TaskOutcome]:
         """See `Executor.wait`."""
         while busy := [worker for worker in self._workers if worker.task is not None]:
-            heard = wait([worker.pipe for worker in busy], timeout=_LOOK_S)
-            found = [worker.hear() if worker.pipe in heard else worker.look() for worker in busy]
+            heard = wait([worker.pipe for worker in busy], timeout=_POLL_S)
+            found = [
+                worker.receive_message() if worker.pipe in heard else worker.kill_if_over_limit() for worker in busy
+            ]
             if ended := [outcome for outcome in found if outcome is not None]:
-                self._hand_over()
+                self._assign_tasks()
                 return ended
         return []
 
     def close(self) -> None:
         """See `Executor.close`."""
         for worker in self._workers:
-            worker.end()
+            worker.kill()
         self._workers.clear()
 
-    def _hand_over(self) -> None:
+    def _assign_tasks(self) -> None:
         """Give waiting tasks to idle workers, and start workers up to the capacity."""
-        for worker in [each for each in self._workers if each.is_over]:
-            worker.end()
+        for worker in [each for each in self._workers if each.is_to_be_replaced]:
+            worker.kill()
             self._workers.remove(worker)
         while self._waiting:
             idle = next((worker for worker in self._workers if worker.task is None), None)
@@ -85,7 +87,7 @@ class LocalPool:
             if idle is None:
                 idle = _Worker(self._memory, self._timeout_s)
                 self._workers.append(idle)
-            idle.begin(self._waiting.popleft())
+            idle.send_task(self._waiting.popleft())
 
 
 class _Worker:
@@ -94,80 +96,80 @@ class _Worker:
     def __init__(self, memory: int | None, timeout_s: float | None) -> None:
         context = multiprocessing.get_context("spawn")  # a fork would copy threads that hold locks
         self.pipe, theirs = context.Pipe()
-        self._process = context.Process(target=_serve, args=(theirs, os.getpid()), daemon=True)
-        with deaf_to_ctrl_c():
+        self._process = context.Process(target=_run_tasks_from_pipe, args=(theirs, os.getpid()), daemon=True)
+        with block_ctrl_c():
             self._process.start()
         theirs.close()
         self._memory = memory
         self._timeout_s = timeout_s
         self._n_tasks = 0
         self.task: Task | None = None
-        self._begun_s: float | None = None
+        self._cpu_s_at_begin: float | None = None
 
     @property
-    def is_over(self) -> bool:
+    def is_to_be_replaced(self) -> bool:
         """Whether the worker has no task and must not get another one."""
         return self.task is None and (self._n_tasks >= TASKS_PER_WORKER or not self._process.is_alive())
 
-    def begin(self, task: Task) -> None:
+    def send_task(self, task: Task) -> None:
         """Send a task to the worker."""
-        self.task, self._begun_s = task, None
+        self.task, self._cpu_s_at_begin = task, None
         self._n_tasks += 1
-        with suppress(OSError):  # the worker has died, which `hear` reports
+        with suppress(OSError):  # the worker has died, which `receive_message` reports
             self.pipe.send(task)
 
-    def hear(self) -> Outcome | None:
+    def receive_message(self) -> TaskOutcome | None:
         """Receive a message of the worker. Return the outcome of the task; None: the task has only begun."""
         try:
             told: str | list[Receipt] | Exception = self.pipe.recv()
         except (EOFError, OSError):
             self._process.join()
-            return self._lost_outcome(f"the worker died (exit code {self._process.exitcode})")
+            return self._end_with_loss(f"the worker died (exit code {self._process.exitcode})")
         if isinstance(told, str):
-            self._begun_s = self._last_s = self._computed_s()
-            self._moved_at = monotonic()
+            self._cpu_s_at_begin = self._last_cpu_s = self._processor_seconds()
+            self._advanced_at_s = monotonic()
             return None
-        task = self._task_without_outcome()
-        return Outcome(task, error=told) if isinstance(told, Exception) else Outcome(task, told)
+        task = self._take_task()
+        return TaskOutcome(task, error=told) if isinstance(told, Exception) else TaskOutcome(task, told)
 
-    def look(self) -> Outcome | None:
+    def kill_if_over_limit(self) -> TaskOutcome | None:
         """Kill the worker if it exceeds a limit, and return the loss as the task's outcome; None: it is within its limits."""
         if self._memory is not None and (taken := resident_bytes(self._process.pid)) > self._memory:
-            return self._lost_outcome(
+            return self._end_with_loss(
                 f"the worker took {taken / 1e6:.0f} MB of memory, but the limit is {self._memory / 1e6:.0f} MB"
             )
-        if self._timeout_s is None or self._begun_s is None or self.task is None:
+        if self._timeout_s is None or self._cpu_s_at_begin is None or self.task is None:
             return None
-        limit_s, now_s = self._timeout_s * len(self.task.drives), self._computed_s()
-        if now_s - self._begun_s > limit_s:
-            return self._lost_outcome(f"the worker took too long: it computed for more than {limit_s:g} s")
-        if now_s > self._last_s:
-            self._last_s, self._moved_at = now_s, monotonic()
-        elif monotonic() - self._moved_at > limit_s:
-            return self._lost_outcome(f"the worker took too long: it did nothing for {limit_s:g} s")
+        limit_s, now_s = self._timeout_s * len(self.task.drives), self._processor_seconds()
+        if now_s - self._cpu_s_at_begin > limit_s:
+            return self._end_with_loss(f"the worker took too long: it computed for more than {limit_s:g} s")
+        if now_s > self._last_cpu_s:
+            self._last_cpu_s, self._advanced_at_s = now_s, monotonic()
+        elif monotonic() - self._advanced_at_s > limit_s:
+            return self._end_with_loss(f"the worker took too long: it did nothing for {limit_s:g} s")
         return None
 
-    def _lost_outcome(self, why: str) -> Outcome:
-        self.end()
-        return Outcome(self._task_without_outcome(), loss_reason=why)
+    def _end_with_loss(self, why: str) -> TaskOutcome:
+        self.kill()
+        return TaskOutcome(self._take_task(), loss_reason=why)
 
-    def _task_without_outcome(self) -> Task:
+    def _take_task(self) -> Task:
         task, self.task = self.task, None
         if task is None:
             raise ValueError("a worker without a task has no outcome")
         return task
 
-    def _computed_s(self) -> float:
-        return computed_s(self._process.pid)
+    def _processor_seconds(self) -> float:
+        return processor_seconds(self._process.pid)
 
-    def end(self) -> None:
+    def kill(self) -> None:
         """Kill the process."""
         self.pipe.close()
         self._process.kill()
         self._process.join()
 
 
-def _serve(pipe: Connection, parent: int) -> None:
+def _run_tasks_from_pipe(pipe: Connection, parent: int) -> None:
     """Run the tasks that arrive through the pipe. This is the main function of a worker process."""
     prepare_worker_process(parent)
     while True:
@@ -177,8 +179,8 @@ def _serve(pipe: Connection, parent: int) -> None:
             return
         told: list[Receipt] | Exception
         try:
-            warm_up(task.settings)
-            pipe.send(_BEGUN)
+            open_judge(task.settings)
+            pipe.send(_BEGUN_MESSAGE)
             told = run_task(task)
         except Exception as error:  # noqa: BLE001 - passed on: the driver distinguishes errors
             told = error
@@ -191,7 +193,7 @@ def _serve(pipe: Connection, parent: int) -> None:
 
 
 @contextmanager
-def deaf_to_ctrl_c() -> Iterator[None]:
+def block_ctrl_c() -> Iterator[None]:
     """Block Ctrl-C in threads and processes that start inside this block: only the main thread handles it."""
     sys.warnoptions.append("ignore:resource_tracker")  # no warnings about resources that it frees
     resource_tracker.ensure_running()  # started later, it would unblock the signal
@@ -205,7 +207,7 @@ def deaf_to_ctrl_c() -> Iterator[None]:
 
 def prepare_worker_process(driver_pid: int) -> None:
     """Prepare a worker process: it ignores Ctrl-C and a closed terminal, which the driver handles, and ends if its driver was killed."""
-    leave_out_pandas()
+    block_pandas_import()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if (hang_up := getattr(signal, "SIGHUP", None)) is not None:  # not on Windows
         signal.signal(hang_up, signal.SIG_IGN)
@@ -220,7 +222,7 @@ def prepare_worker_process(driver_pid: int) -> None:
         return
 
 
-def cores() -> int:
+def core_count() -> int:
     """Return how many cores this process may use."""
     try:
         return len(os.sched_getaffinity(0))
@@ -228,7 +230,7 @@ def cores() -> int:
         return os.cpu_count() or 1
 
 
-def computed_s(process: int | None) -> float:
+def processor_seconds(process: int | None) -> float:
     """Return the processor time of a process in seconds; if the system does not report it, a monotonic clock."""
     try:
         told = Path(f"/proc/{process}/stat").read_text(encoding="ascii", errors="replace").rpartition(")")[2].split()

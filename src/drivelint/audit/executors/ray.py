@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.audit.executors import ClusterError, Outcome
+from drivelint.audit.executors import ClusterError, TaskOutcome
 from drivelint.audit.worker import run_task
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ class RayCluster:
         """See `Executor.submit`."""
         self._running[self._run.remote(task)] = task
 
-    def wait(self) -> list[Outcome]:
+    def wait(self) -> list[TaskOutcome]:
         """See `Executor.wait`."""
         if not self._running:
             return []
@@ -54,7 +54,7 @@ class RayCluster:
             ended, _ = ray.wait(list(self._running), num_returns=1)
         except (exceptions.RaySystemError, ConnectionError) as error:
             raise ClusterError(f"the Ray cluster is gone ({error}): start it and run the same command again") from error
-        return [_outcome(future, self._running.pop(future)) for future in ended]
+        return [_task_outcome(future, self._running.pop(future)) for future in ended]
 
     def close(self) -> None:
         """See `Executor.close`. The cluster keeps running."""
@@ -63,10 +63,10 @@ class RayCluster:
         ray.shutdown()
 
 
-def _outcome(future: Any, task: Task) -> Outcome:
+def _task_outcome(future: Any, task: Task) -> TaskOutcome:
     try:
-        return Outcome(task, ray.get(future))
+        return TaskOutcome(task, ray.get(future))
     except _WORKER_LOSSES as error:
-        return Outcome(task, loss_reason=f"the worker died ({type(error).__name__})")
+        return TaskOutcome(task, loss_reason=f"the worker died ({type(error).__name__})")
     except exceptions.RayTaskError as error:
-        return Outcome(task, error=error.cause if isinstance(error.cause, Exception) else error)
+        return TaskOutcome(task, error=error.cause if isinstance(error.cause, Exception) else error)

@@ -14,7 +14,7 @@ import numpy as np
 from drivelint.drive.implausible.motion import SPIN_MPS, TYRE_MPS2
 from drivelint.drive.order import track_starts
 from drivelint.drive.trace import MOTOR_VEHICLES
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
@@ -104,7 +104,7 @@ def same_bodies(states: States, actors: Actors, egos: Collection[str]) -> list[Q
         kept, left = (states.ids[i] for i in order)
         rows[(rows_a if states.ids[a] == left else rows_b)[deep]] = True
         pairs.append(f"{left} is the same body as {kept}")
-    text = f"{listed(pairs)}, in {{n}} of {{of}} states: the first of the two is not used" if pairs else ""
+    text = f"{name_list(pairs)}, in {{n}} of {{of}} states: the first of the two is not used" if pairs else ""
     findings = states.findings(rows, "same_body", "warning", text, quantity="identity")
     text = "boxes of moving actors overlap from their first sample, in {n} of {of} states ({ids}): their positions are not exact"
     return findings + states.findings(begun, "begin_overlap", "warning", text, quantity="position")

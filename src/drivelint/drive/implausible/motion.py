@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.arrays import wrapped
+from drivelint.arrays import wrap_angles
 from drivelint.drive.order import integral_per_step, known_motion
 from drivelint.drive.outliers import common_jolts
 from drivelint.drive.trace import MOTOR_VEHICLES
@@ -158,7 +158,7 @@ def _spins(states: States, step: Steps, actors: Actors) -> Mask:
         & (states.actor[k:] == states.actor[:-k])
         & (states.t_ns[k:] - states.t_ns[:-k] <= 2.0e9 * SPIN_WINDOW_S)
     )
-    turn = np.abs(wrapped(yaw[k:] - yaw[:-k]))
+    turn = np.abs(wrap_angles(yaw[k:] - yaw[:-k]))
     way = np.hypot(*(place[:, k:] - place[:, :-k]))
     slow = np.hypot(*states.velocity) < SPIN_MPS
     at = np.flatnonzero(same & slow[k:] & slow[:-k] & (turn > SPIN_LEAST_RAD + way / SPIN_RADIUS_M))

@@ -20,7 +20,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.arrays import floats, with_columns
+from drivelint.arrays import floats, replace_columns
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
@@ -57,7 +57,7 @@ def copies(drive: Drive, errors: MeasurementErrors, numbers: Sequence[int]) -> t
     ids = [f"{drive.trace.drive_id}~{number:05}" for number in numbers]
     states = drive.trace.tables["actor_state"]
     tables = {name: _repeated(rows, ids) for name, rows in drive.trace.tables.items()}
-    tables["actor_state"] = with_columns(
+    tables["actor_state"] = replace_columns(
         tables["actor_state"], _positions_of_copies(states, _draws(drive, errors, numbers))
     )
     return ids, replace(drive, trace=replace(drive.trace, drive_id=ids[0], tables=tables))
@@ -66,7 +66,7 @@ def copies(drive: Drive, errors: MeasurementErrors, numbers: Sequence[int]) -> t
 def _repeated(rows: pa.Table, ids: Sequence[str]) -> pa.Table:
     """Return a table's rows repeated for each of these drive ids."""
     owner = pa.array(ids, pa.string()).take(np.repeat(np.arange(len(ids)), rows.num_rows))
-    return with_columns(pa.concat_tables([rows] * len(ids)), {"drive_id": owner})
+    return replace_columns(pa.concat_tables([rows] * len(ids)), {"drive_id": owner})
 
 
 def _draws(drive: Drive, errors: MeasurementErrors, numbers: Sequence[int]) -> Floats:
@@ -124,5 +124,5 @@ def crop(drive: Drive, from_ns: int, to_ns: int, actors: Collection[str] | None 
     tables["actor"] = tables["actor"].filter(pc.is_in(tables["actor"]["actor_id"], value_set=seen))
     span = pc.min_max(tables["actor_state"]["t_ns"]).as_py()
     about = {"t_start_ns": [span["min"]], "t_end_ns": [span["max"]], "n_states": [tables["actor_state"].num_rows]}
-    tables["data_log"] = with_columns(tables["data_log"], about)
+    tables["data_log"] = replace_columns(tables["data_log"], about)
     return replace(drive, trace=replace(drive.trace, tables=tables))

@@ -11,7 +11,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.arrays import floats, with_columns
+from drivelint.arrays import floats, replace_columns
 from drivelint.engine.robustness.copies import crop, renamed
 
 if TYPE_CHECKING:
@@ -107,7 +107,7 @@ class Window:
     def _part(self) -> Drive:
         part = crop(self.drive, self.extent.from_ns, self.extent.to_ns, self._near())
         is_ego = pc.equal(part.trace.tables["actor"]["actor_id"], self.ego_id)
-        actors = with_columns(part.trace.tables["actor"], {"is_ego": is_ego.combine_chunks()})
+        actors = replace_columns(part.trace.tables["actor"], {"is_ego": is_ego.combine_chunks()})
         return replace(part, trace=replace(part.trace, tables={**part.trace.tables, "actor": actors}))
 
     def part(self, name: str) -> Drive:

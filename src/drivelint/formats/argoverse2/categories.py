@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from drivelint.arrays import coded
+from drivelint.arrays import codes_of_texts
 from drivelint.drive.trace import ACTOR_CLASSES
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -56,6 +56,6 @@ def class_codes(categories: pa.Array, class_by_category: dict[str, str | None]) 
         name = class_by_category.get(word)
         return -1 if name is None else ACTOR_CLASSES.index(name)
 
-    codes = coded(categories, code_of)
-    note = f"categories that Argoverse does not define, so the class is not known: {listed(sorted(foreign))}"
+    codes = codes_of_texts(categories, code_of)
+    note = f"categories that Argoverse does not define, so the class is not known: {name_list(sorted(foreign))}"
     return codes, [note] if foreign else []

@@ -26,7 +26,7 @@ from drivelint.formats.argoverse2.categories import FORECASTING_CLASSES, class_c
 from drivelint.formats.argoverse2.cities import NATION, frame_of_city
 from drivelint.formats.folders import folder_kind
 from drivelint.formats.tables import parquet
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -99,7 +99,7 @@ def _scenario_file(path: Path) -> Path:
     files = sorted(path.glob("scenario_*.parquet"))
     if len(files) > 1:
         raise TraceError(
-            f"{path}: {len(files)} scenarios in one folder ({listed([file.name for file in files])}): give one of them"
+            f"{path}: {len(files)} scenarios in one folder ({name_list([file.name for file in files])}): give one of them"
         )
     return files[0]
 
@@ -157,7 +157,7 @@ def _add_map(recording: Recording, path: Path) -> None:
         if own:
             recording.notes.append(f"its map {own[0].name} is in the same folder: give the folder, or use --map")
     elif len(files) > 1:
-        names = listed([file.name for file in files])
+        names = name_list([file.name for file in files])
         message = f"the scenario has {len(files)} maps ({names}), and none is used: keep only one"
         recording.findings.append(QualityFinding.unusable_map(message))
     elif files:

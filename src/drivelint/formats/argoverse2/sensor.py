@@ -34,7 +34,7 @@ from drivelint.formats.coordinate_frames import Poses, unit_quaternions
 from drivelint.formats.folders import folder_kind
 from drivelint.formats.riders import join_riders
 from drivelint.formats.tables import ipc
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -98,7 +98,7 @@ def _annotation_file(folder: Path) -> tuple[Path, list[str]]:
     files = sorted(folder.glob("annotations*.feather"))
     first = next((file for file in files if file.name == "annotations.feather"), files[0])
     others = [file.name for file in files if file != first]
-    return first, [f"{first.name} is read; {listed(others)} in the same folder is not read"] if others else []
+    return first, [f"{first.name} is read; {name_list(others)} in the same folder is not read"] if others else []
 
 
 def _poses_at(path: Path, t_ns: Times) -> Poses:
@@ -153,7 +153,7 @@ def _annotated_states(path: Path, rows: pa.Table, t_ns: Times, rear_axle: Poses)
     )
     names = ids.dictionary.to_pylist()
     if riders:
-        who = listed([names[i] for i in riders])
+        who = name_list([names[i] for i in riders])
         notes.append(f"each rider and the vehicle count as one road user, with a box around both: {who}")
     if is_ego.any():
         notes.append(f"the boxes of category {EGO_CATEGORY} are the ego itself: they are not read")
@@ -183,7 +183,7 @@ def _ego_states(steps: Times, poses: Poses, ids: list[str]) -> States:
 def _add_map(recording: Recording, folder: Path) -> None:
     files = sorted((folder / "map").glob("log_map_archive_*.json"))
     if len(files) > 1:
-        names = listed([file.name for file in files])
+        names = name_list([file.name for file in files])
         message = f"the log has {len(files)} maps ({names}), and none is used: keep only one"
         recording.findings.append(QualityFinding.unusable_map(message))
     elif files:

@@ -19,7 +19,7 @@ from drivelint.formats import safe_xml
 from drivelint.formats.commonroad.country import country_of
 from drivelint.formats.commonroad.lights import signal_states
 from drivelint.formats.commonroad.shapes import box_offsets, read_shape, shape_findings
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 from drivelint.road.countries import nation_of
 
 if TYPE_CHECKING:
@@ -82,7 +82,7 @@ def read(probe: Probe) -> Recording:
         raise TraceError(f"{path}: the scenario has no obstacles: there is no actor to judge")
     ids = [str(o.get("id")) for o in obstacles]
     if len(set(ids)) < len(ids):
-        twice = listed(sorted({i for i in ids if ids.count(i) > 1}))
+        twice = name_list(sorted({i for i in ids if ids.count(i) > 1}))
         raise TraceError(f"{path}: two obstacles have the same id: {twice}")
     trajectories = dict(zip(root.iter("trajectory"), fast_columns, strict=True)) if fast else {}
     parts = [_state_columns(path, o, trajectories) for o in obstacles]
@@ -148,11 +148,14 @@ def _findings_on_unread_parts(root: etree._Element, obstacles: Sequence[etree._E
         message = f"values of obstacles given as intervals or areas: {uncertain}: they are not known"
         findings.append(QualityFinding("uncertain_value", "warning", message, uncertain))
     if sets:
-        message = f"of {listed(sets)} only the initial state is known: afterwards the scenario gives only areas in which the actor may be"
+        message = (
+            f"of {name_list(sets)} only the initial state is known: afterwards the scenario gives only areas "
+            "in which the actor may be"
+        )
         findings.append(QualityFinding.of_actors("uncertain_value", "warning", message, sets))
     if still:
         message = (
-            f"environment and phantom obstacles are not read: {listed(still)}: a contact with them is not detected"
+            f"environment and phantom obstacles are not read: {name_list(still)}: a contact with them is not detected"
         )
         findings.append(QualityFinding("unread_obstacle", "warning", message, len(still)))
     return findings

@@ -17,11 +17,11 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from drivelint.arrays import turned
+from drivelint.arrays import rotate_vectors
 from drivelint.drive.box_centre import lever_to_centre
 from drivelint.drive.trace import QualityFinding
 from drivelint.formats import safe_xml
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -114,7 +114,7 @@ def box_offsets(shape: ObstacleShape, yaw_rad: Floats) -> Floats:
     if shape.centre_m == (0.0, 0.0):
         return offset
     along_axes = np.tile(np.array(shape.centre_m)[:, None], (1, n))
-    along_obstacle = np.stack(turned(along_axes[0], along_axes[1], yaw_rad))
+    along_obstacle = np.stack(rotate_vectors(along_axes[0], along_axes[1], yaw_rad))
     agree = np.hypot(*(along_obstacle - along_axes)) <= SAME_BOX_PLACE_M
     if shape.ahead_m != 0.0:
         agree[:] = False  # both offsets are given: it is not known whether one includes the other
@@ -128,11 +128,11 @@ def shape_findings(
     findings = []
     for what in sorted({shape.no_box for shape in shapes} - {""}):
         names = [name for name, shape in zip(ids, shapes, strict=True) if shape.no_box == what]
-        message = f"{what} instead of a box: length and width of {listed(names)} are not known"
+        message = f"{what} instead of a box: length and width of {name_list(names)} are not known"
         findings.append(QualityFinding.of_actors("no_box", "warning", message, names))
     if names := [name for name, lost in zip(ids, unplaced, strict=True) if lost]:
         message = (
-            f"the position of the boxes of {listed(names)} relative to their states is not known: give only "
+            f"the position of the boxes of {name_list(names)} relative to their states is not known: give only "
             "originXShift, a number within the box (the format does not define whether a center turns with the "
             "obstacle)"
         )

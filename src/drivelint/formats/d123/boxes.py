@@ -13,7 +13,7 @@ from drivelint.formats.coordinate_frames import Poses, unit_quaternions
 from drivelint.formats.d123 import facts
 from drivelint.formats.d123.arrow_files import BOXES, integers, is_null, list_lengths, read_modality, vectors
 from drivelint.formats.riders import join_riders
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -91,7 +91,7 @@ def box_states(
         np.asarray(odd, np.bool_),
     )
     if on_something:
-        who = listed([states.ids[i] for i in on_something])
+        who = name_list([states.ids[i] for i in on_something])
         notes.append(f"each rider and the vehicle count as one road user, with a box around both: {who}")
     if not about.box_velocities_global:
         _set_velocities_to_nan(states, np.ones(len(states), np.bool_))
@@ -133,7 +133,7 @@ def _class_codes(boxes: ModalityFile, label_numbers: Any) -> tuple[Codes, list[Q
     unknown = class_codes == -2
     findings = []
     if unknown.any():
-        which = listed([str(n) if n >= 0 else "NULL" for n in np.unique(label_numbers[unknown]).tolist()])
+        which = name_list([str(n) if n >= 0 else "NULL" for n in np.unique(label_numbers[unknown]).tolist()])
         message = f"labels that {enumeration} does not define ({which}) at {int(unknown.sum())} boxes: the classes of these are not known"
         findings.append(QualityFinding("unknown_label", "warning", message, int(unknown.sum())))
     ego_number = facts.LABELS_BY_ENUMERATION[enumeration].get(facts.EGO_LABEL, (-1, ""))[0]

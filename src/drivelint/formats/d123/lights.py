@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 import pyarrow as pa
 
-from drivelint.arrays import spelled
+from drivelint.arrays import words_of_codes
 from drivelint.drive.lost_time import times_of_lost_rows
 from drivelint.drive.trace import SIGNAL_STATES, QualityFinding
 from drivelint.formats.d123 import facts
 from drivelint.formats.d123.arrow_files import LIGHTS, integers, list_lengths, read_modality
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -59,9 +59,9 @@ def light_states(lights: ModalityFile, about: facts.DatasetFacts, t_ns: Times) -
         findings += doubtful
     rows = pa.table(
         {
-            "signal_id": spelled(lane_index.astype(np.int32), [str(number) for number in lanes.tolist()]),
+            "signal_id": words_of_codes(lane_index.astype(np.int32), [str(number) for number in lanes.tolist()]),
             "t_ns": np.repeat(t_ns[~bad], counts[0][~bad]),
-            "state": spelled(codes, SIGNAL_STATES),
+            "state": words_of_codes(codes, SIGNAL_STATES),
         }
     )
     return LightStates(rows, tuple(lanes.tolist()), findings, lost_times)
@@ -74,7 +74,7 @@ def _state_codes(status: Indices) -> tuple[Codes, list[QualityFinding]]:
     if inside.all():
         return np.asarray(codes[status], np.int8), []
     n = int((~inside).sum())
-    which = listed([str(number) for number in np.unique(status[~inside]).tolist()])
+    which = name_list([str(number) for number in np.unique(status[~inside]).tolist()])
     message = f"states of traffic lights that 123D does not define ({which}): {n}: treated as unknown"
     found = np.where(inside, codes[np.where(inside, status, 0)], -1).astype(np.int8)
     return found, [QualityFinding("unknown_light_state", "warning", message, n)]

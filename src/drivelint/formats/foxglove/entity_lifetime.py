@@ -12,7 +12,7 @@ import numpy as np
 from drivelint.drive.trace import QualityFinding
 from drivelint.errors import TraceError
 from drivelint.formats.ros2.recorded_poses import RecordedPoses, distinct, join_batches
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -54,9 +54,7 @@ def with_states_between_updates(
     for some, check, severity, what in kinds:
         if some.any():
             n, names = int(some.sum()), sorted({unique[i] for i in np.unique(actor[row[some]])})
-            message = (
-                f"{topic}: {n} states of entities that are neither updated nor deleted ({listed(names)}): they {what}"
-            )
+            message = f"{topic}: {n} states of entities that are neither updated nor deleted ({name_list(names)}): they {what}"
             findings.append(QualityFinding(check, severity, message, n, int(t_ns[some].min())))
     return join_batches([rows, extra])
 

@@ -45,7 +45,7 @@ from drivelint.formats.ros2.recorded_poses import (
     recorded_poses,
     states_in_fixed_frame,
 )
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -118,7 +118,7 @@ def _choose_scene_topic(path: Path, scenes: dict[str, _TopicContent], topic: str
     names = sorted(scenes)
     if topic is not None:
         if topic not in scenes:
-            raise TraceError(f"{path}: no scene on topic {topic!r}: {SCENE} is on {listed(names) or 'none'}")
+            raise TraceError(f"{path}: no scene on topic {topic!r}: {SCENE} is on {name_list(names) or 'none'}")
         return topic
     unread.refuse(path, {SCENE}, names)
     if len(names) != 1:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from drivelint.formats.mcap.reader import Container
 from drivelint.formats.mcap.summary import read_index
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -37,5 +37,7 @@ def silent_topics(files: Iterable[Path], is_wanted: Callable[[str], bool]) -> st
         return ""
     left = " that is left" if lossy else ""
     return (
-        f"topic {silent[0]!r} has no message{left}" if len(silent) == 1 else f"{listed(silent)} have no message{left}"
+        f"topic {silent[0]!r} has no message{left}"
+        if len(silent) == 1
+        else f"{name_list(silent)} have no message{left}"
     )

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import TraceError
 from drivelint.formats.folders import folder_kind
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -59,7 +59,7 @@ def _refuse_other_messages(path: Path) -> None:
 
     kinds = bag.topics(path)
     if path.is_dir() or any("/" in kind or kind.startswith("foxglove.") for kind in kinds.values()):
-        has = listed([f"{kind} on {topic}" for topic, kind in sorted(kinds.items())], _MAX_TOPICS) or "no topic"
+        has = name_list([f"{kind} on {topic}" for topic, kind in sorted(kinds.items())], _MAX_TOPICS) or "no topic"
         raise TraceError(
             f"{path}: no nav_msgs/Odometry and no road users: the log has {has}; "
             "drivelint docs mapping shows how messages of other types become a table"

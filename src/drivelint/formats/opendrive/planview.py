@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.arrays import wrapped
+from drivelint.arrays import wrap_angles
 from drivelint.formats.opendrive.xml import MalformedError, number_attribute
 
 if TYPE_CHECKING:
@@ -173,7 +173,7 @@ class PlanView:
             return np.zeros(0), np.zeros(0)
         end = self.evaluate(self.s[1:], self.s[:-1])
         turn = np.arctan2(end.sin, end.cos) - self.heading[1:]
-        return np.hypot(end.x - self.x[1:], end.y - self.y[1:]), np.abs(wrapped(turn))
+        return np.hypot(end.x - self.x[1:], end.y - self.y[1:]), np.abs(wrap_angles(turn))
 
 
 def planview(element: etree._Element | None) -> PlanView:

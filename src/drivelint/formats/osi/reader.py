@@ -31,7 +31,7 @@ from drivelint.formats.osi.enum_codes import signal_states
 from drivelint.formats.osi.heights import forget_copied_heights
 from drivelint.formats.osi.schema import GROUND_TRUTH, OPEN_DRIVE, SENSOR_VIEW, descriptor_set
 from drivelint.formats.protobuf.descriptors import message_decoder, parse_schema
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -170,7 +170,7 @@ def _foreign_content(container: Container) -> str:
     needed = f"{GROUND_TRUTH} or {SENSOR_VIEW} in protobuf is needed"
     if silent := silent_topics([container.path], FIELD_TREES.__contains__):
         return f"{silent}: record it again"
-    return f"it has {listed(sorted(kinds)) if kinds else 'no channel'}; {needed}"
+    return f"it has {name_list(sorted(kinds)) if kinds else 'no channel'}; {needed}"
 
 
 def read(probe: Probe) -> Recording:
@@ -329,7 +329,7 @@ def _host(hosts: list[int | None], t_ns: Times, findings: list[QualityFinding]) 
     ego = min(host_counts, key=lambda host: (-host_counts[host], first[host], host))
     if len(host_counts) > 1:
         frames, n = host_counts.total(), host_counts.total() - host_counts[ego]
-        names = listed(sorted(map(str, host_counts)))
+        names = name_list(sorted(map(str, host_counts)))
         message = (
             f"the log names {len(host_counts)} host vehicles ({names}): {ego} is used as the ego; "
             f"{n} of {frames} frames do not name it"

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from drivelint.arrays import wrapped
+from drivelint.arrays import wrap_angles
 from drivelint.formats.osi.schema import LIGHT_REFERENCE, OPEN_DRIVE_REFERENCE
 
 if TYPE_CHECKING:
@@ -63,5 +63,5 @@ def bulb_without_state(bulb: Any, names: Mapping[str, str]) -> Any:
 def _beside(a: Any, b: Any) -> bool:
     p, q = a.base.position, b.base.position
     apart = math.dist((p.x, p.y, p.z), (q.x, q.y, q.z))
-    turned = float(wrapped(np.array(a.base.orientation.yaw - b.base.orientation.yaw)))
+    turned = float(wrap_angles(np.array(a.base.orientation.yaw - b.base.orientation.yaw)))
     return apart <= _BESIDE_M and abs(turned) <= _TURNED_RAD

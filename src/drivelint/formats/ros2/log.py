@@ -19,7 +19,7 @@ from drivelint.formats.ros2.messages import DETECTED, EGO_SIZE, LIGHT_GROUPS, ME
 from drivelint.formats.ros2.objects import OBJECT_ROWS, SAME_BODIES, stamps
 from drivelint.formats.ros2.silence import SENT_WHERE_NOBODY_IS, silences
 from drivelint.formats.ros2.types import message_kind
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -110,7 +110,7 @@ class Log:
             if topic not in read_topics:
                 raise TraceError(
                     f"{self.path}: topic {topic!r} has no messages that can be read: topics that can be read: "
-                    f"{listed(sorted(read_topics)) or 'none'}"
+                    f"{name_list(sorted(read_topics)) or 'none'}"
                 )
 
     def frames(self, topics: Iterable[str], *, own_times: bool) -> Times:
@@ -146,7 +146,7 @@ class Log:
         if not selection:
             selection = [usual] if (usual := _usual(of_kind)) else sorted(candidates)
             if usual and len(candidates) > 1:
-                left = listed(sorted(candidates.keys() - {usual}))
+                left = name_list(sorted(candidates.keys() - {usual}))
                 self.notes.append(
                     f"{content}: topic {usual} is read, {left} is not read: --topic chooses another topic"
                 )

@@ -48,7 +48,7 @@ from drivelint.formats.ros2.recorded_poses import (
 )
 from drivelint.formats.ros2.types import message_kind
 from drivelint.formats.ros2.vehicle import at_axle, vehicle_box
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -193,7 +193,7 @@ def _no_road_users(log: Log) -> QualityFinding:
     cause = "no topic of this log has road users"
     if n:
         cause = (
-            f"the only road users of this log, on {listed(sorted(log.detections))}, are detections without ids, which form no tracks: "
+            f"the only road users of this log, on {name_list(sorted(log.detections))}, are detections without ids, which form no tracks: "
             f"record {' or '.join(SAME_BODIES)} too"
         )
     else:

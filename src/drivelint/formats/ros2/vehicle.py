@@ -14,7 +14,7 @@ import numpy as np
 
 from drivelint.drive.trace import QualityFinding
 from drivelint.formats.ros2.messages import VEHICLE_LENGTHS
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -75,7 +75,7 @@ def vehicle_box(
         return None, []
     measures = np.array([[*box.size[:2], *box.centre[:2]] for box in boxes])
     if (np.ptp(measures, axis=0) > _SAME_M).any():
-        message = f"{listed([box.source for box in boxes])} give the ego different sizes, and none is used: set it with --ego-size"
+        message = f"{name_list([box.source for box in boxes])} give the ego different sizes, and none is used: set it with --ego-size"
         return None, [QualityFinding("ego_size", "warning", message, len(boxes))]
     return boxes[0], []
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 import pyarrow as pa
 
-from drivelint.arrays import spelled
+from drivelint.arrays import words_of_codes
 from drivelint.drive.trace import SIGNAL_STATES, QualityFinding, Recording, States
 from drivelint.errors import TraceError
 from drivelint.formats.scenarionet import sources
@@ -18,7 +18,7 @@ from drivelint.formats.scenarionet.ego_clock import timed_track
 from drivelint.formats.scenarionet.pickled_numpy import PickleError
 from drivelint.formats.scenarionet.scenario import LIGHTS, read_scenario, times_s
 from drivelint.formats.scenarionet.tracks import Tracks, read_tracks
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
     from drivelint.arrays import Floats, Mask, Times
@@ -163,12 +163,12 @@ def _signals(scenario: Scenario, t_s: Floats) -> tuple[pa.Table | None, list[Qua
     lights = np.repeat(np.arange(len(ids), dtype=np.int32), len(t_s))
     table = pa.table(
         {
-            "signal_id": spelled(lights, ids),
+            "signal_id": words_of_codes(lights, ids),
             "t_ns": np.tile(_nanoseconds(t_s), len(ids)),
-            "state": spelled(np.concatenate(codes), SIGNAL_STATES),
+            "state": words_of_codes(np.concatenate(codes), SIGNAL_STATES),
         }
     )
     if not unread:
         return table, []
-    message = f"lights have states that are not known: {listed(sorted(unread))}"
+    message = f"lights have states that are not known: {name_list(sorted(unread))}"
     return table, [QualityFinding("unknown_word", "warning", message, len(unread))]

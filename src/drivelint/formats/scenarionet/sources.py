@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from drivelint.drive.trace import ACTOR_CLASSES, MOTOR_VEHICLES, QualityFinding
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
     from drivelint.arrays import Floats, Mask
@@ -84,7 +84,7 @@ def drop_false_stops(tracks: Tracks) -> list[QualityFinding]:
         return []
     tracks.velocity[false] = np.nan
     ids = [tracks.ids[i] for i in np.flatnonzero(false.any(axis=1))]
-    message = f"the last velocity of {listed(ids)} is 0 although the positions move: it is unknown"
+    message = f"the last velocity of {name_list(ids)} is 0 although the positions move: it is unknown"
     return [QualityFinding.of_actors("velocity_unknown", "warning", message, ids)]
 
 
@@ -135,7 +135,7 @@ def give_keyframe_velocities(tracks: Tracks, rows: Mask, every: int) -> list[Qua
     )
     # the finding velocity_filtered of an actor states that its acceleration is not known
     return [
-        QualityFinding.of_actors("interpolated", "warning", text.format(listed(moving_ids)), moving_ids),
+        QualityFinding.of_actors("interpolated", "warning", text.format(name_list(moving_ids)), moving_ids),
         *(QualityFinding("velocity_filtered", "info", text.format(name), actor_id=name) for name in moving_ids),
     ]
 
@@ -167,7 +167,7 @@ def turn_boxes(tracks: Tracks, dataset: Dataset) -> list[QualityFinding]:
         tracks.size[i, :, :2] = np.nan if why.endswith("unknown") else tracks.size[i, :, 1::-1]
         ids_by_reason.setdefault(why, []).append(tracks.ids[i])
     return [
-        QualityFinding.of_actors("box_turned", "warning", why.format(listed(ids)), ids)
+        QualityFinding.of_actors("box_turned", "warning", why.format(name_list(ids)), ids)
         for why, ids in ids_by_reason.items()
     ]
 

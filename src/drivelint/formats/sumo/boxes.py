@@ -14,7 +14,7 @@ from drivelint.drive.ego import ALL_EGOS
 from drivelint.drive.trace import ACTOR_CLASSES, MOTOR_VEHICLES, QualityFinding
 from drivelint.formats.sumo.rows import CONTAINER, PERSON
 from drivelint.formats.sumo.vehicle_types import type_of
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -118,7 +118,7 @@ def _findings(tracks: Tracks, changing: Mask, sizeless: Mask) -> list[QualityFin
     if changing.any():
         ids = [tracks.ids[i] for i in np.unique(tracks.actor[changing])]
         message = (
-            f"the type of {listed(ids)} changes to {_types(tracks, changing)}, whose length is different or not known: the log has "
+            f"the type of {name_list(ids)} changes to {_types(tracks, changing)}, whose length is different or not known: the log has "
             "their front bumper, so the place of their box is then not known"
         )
         findings.append(QualityFinding("size_changes", "warning", message, int(changing.sum())))
@@ -127,11 +127,11 @@ def _findings(tracks: Tracks, changing: Mask, sizeless: Mask) -> list[QualityFin
 
 def _types(tracks: Tracks, rows: Mask) -> str:
     names = {tracks.type_names[i] for i in np.unique(tracks.type_code[rows])}
-    return listed(sorted(name or "without a name" for name in names))
+    return name_list(sorted(name or "without a name" for name in names))
 
 
 def _copies(tracks: Tracks, copies: Mapping[str, str]) -> QualityFinding:
     rows = np.isin(tracks.type_code, [i for i, name in enumerate(tracks.type_names) if name in copies])
     ids = [tracks.ids[i] for i in np.unique(tracks.actor[rows])]
-    message = f"types that were changed for one vehicle have the size of the original type: {listed(sorted(copies))}"
+    message = f"types that were changed for one vehicle have the size of the original type: {name_list(sorted(copies))}"
     return QualityFinding.of_actors("copied_type", "info", message, ids)

@@ -14,7 +14,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.arrays import wrapped
+from drivelint.arrays import wrap_angles
 from drivelint.drive.lost_time import times_of_lost_rows
 from drivelint.drive.trace import BRAKE_LIGHTS, INDICATORS, LostTime, QualityFinding, Recording, States
 from drivelint.errors import TraceError
@@ -27,7 +27,7 @@ from drivelint.formats.sumo.riders import riding
 from drivelint.formats.sumo.rows import CARRIED, CONTAINER, KINDS, PERSON, UNKNOWN, VEHICLE
 from drivelint.formats.sumo.vehicle_types import type_of, types_for
 from drivelint.formats.tables import parquet
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -181,7 +181,7 @@ def _actors(rows: Rows) -> tuple[list[str], NDArray[np.int32], list[str]]:
     names = [f"{KINDS[k]}:{ids[i]}" if both and k else ids[i] for i, k, both in zip(whose, kinds, twice, strict=True)]
     shared = sorted({ids[i] for i in whose[twice]})
     note = (
-        f"persons or containers have the same ids as vehicles ({listed(shared)}): they are renamed "
+        f"persons or containers have the same ids as vehicles ({name_list(shared)}): they are renamed "
         f"{KINDS[PERSON]}:ID or {KINDS[CONTAINER]}:ID"
     )
     return names, code.astype(np.int32), [note] if shared else []
@@ -199,7 +199,7 @@ def _recording(path: Path, rows: Rows, types: Mapping[str, VehicleType], options
     tracks = Tracks(ids, actor, names.dictionary.to_pylist(), names.indices.to_numpy(), rows.kind)
     boxes = boxes_of(tracks, types, options)
     xy, findings = net_positions(path, rows, actor, options.map)
-    yaw = wrapped(np.pi / 2 - np.radians(angle))
+    yaw = wrap_angles(np.pi / 2 - np.radians(angle))
     cos, sin = np.cos(yaw), np.sin(yaw)
     is_vehicle = np.isin(rows.kind, (VEHICLE, UNKNOWN))
     speed = rows.numbers("speed")

@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import pyarrow as pa
 
-from drivelint.arrays import spelled
+from drivelint.arrays import words_of_codes
 from drivelint.drive.lost_time import times_of_lost_rows
 from drivelint.drive.trace import SIGNAL_STATES, QualityFinding
 from drivelint.errors import TraceError
 from drivelint.formats import safe_xml
 from drivelint.formats.sumo.clock import seconds
 from drivelint.formats.sumo.end_tag import with_end_tag
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -57,7 +57,7 @@ def add_light_states(recording: Recording, log: Path, is_log: Callable[[Path], b
         _read_light_states(log_files[0], recording)
     elif files:
         what = "it is not known which of them belongs to the log" if log_files else "no log has the name of this file"
-        names = listed([file.name for file in log_files or files])
+        names = name_list([file.name for file in log_files or files])
         note = f"{log.name}: light states in {names} are not read: {what}: call it {_first_part(log)}.tls.xml"
         recording.notes.append(note)
 
@@ -121,6 +121,6 @@ def _rows(states: Iterable[etree._Element]) -> tuple[pa.Table | None, Floats, Ma
 
 def _table(light: str, n: int, times: np.ndarray, codes: np.ndarray) -> pa.Table:
     """Return the rows of one light with `n` connections: `times` (t,) in seconds, `codes` (t * n,) of SIGNAL_STATES, -1: not known."""
-    names = spelled(np.tile(np.arange(n, dtype=np.int32), len(times)), [f"{light}_{k}" for k in range(n)])
+    names = words_of_codes(np.tile(np.arange(n, dtype=np.int32), len(times)), [f"{light}_{k}" for k in range(n)])
     t_ns = np.repeat(np.round(times * 1e9).astype(np.int64), n)
-    return pa.table({"signal_id": names, "t_ns": t_ns, "state": spelled(codes, SIGNAL_STATES)})
+    return pa.table({"signal_id": names, "t_ns": t_ns, "state": words_of_codes(codes, SIGNAL_STATES)})

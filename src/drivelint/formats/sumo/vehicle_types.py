@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 from drivelint.errors import UsageError
 from drivelint.formats import safe_xml
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
@@ -91,7 +91,7 @@ def types_for(log: Path, types_file: str | None) -> tuple[dict[str, VehicleType]
             else:
                 types[name], files[name] = vehicle_type, file.name
     if used:
-        notes.insert(0, f"{log.name}: sizes of vehicles are those of the vTypes in {listed(used)} beside it")
+        notes.insert(0, f"{log.name}: sizes of vehicles are those of the vTypes in {name_list(used)} beside it")
     return types, notes
 
 

@@ -12,7 +12,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.arrays import coded, spelled
+from drivelint.arrays import codes_of_texts, words_of_codes
 from drivelint.drive.lost_time import times_of_lost_rows
 from drivelint.drive.trace import (
     ACTOR_CLASSES,
@@ -216,7 +216,7 @@ def _codes(path: Path, column: pa.Array, name: str) -> Codes:
             raise TraceError(f"{path}: {name} is {word!r}; {nearest(word, words)} (NULL: unknown)")
         return words.index(word.casefold())
 
-    return coded(column, code_of)
+    return codes_of_texts(column, code_of)
 
 
 def _rows(path: Path, table: pa.Table) -> list[dict[str, Any]]:
@@ -239,7 +239,7 @@ def _extra(path: Path, required: tuple[str, ...], optional: tuple[str, ...] = ()
         if field.name in table.schema.names:
             column = _column(path, table, field.name, field.type)
             words = _WORDS.get(field.name)
-            columns[field.name] = column if words is None else spelled(_codes(path, column, field.name), words)
+            columns[field.name] = column if words is None else words_of_codes(_codes(path, column, field.name), words)
     return pa.table(columns)
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.arrays import turned
+from drivelint.arrays import rotate_vectors
 from drivelint.drive.box_centre import lever_to_centre, velocity_of_centre, yaw_rates
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ def to_map_frame(states: States, mapping: Mapping) -> None:
     elif mapping.frame.velocity == "vehicle":
         for east, north in (("vx", "vy"), ("ax", "ay")):
             if east in log:
-                log[east], log[north] = turned(log[east], log[north], log["yaw"])
+                log[east], log[north] = rotate_vectors(log[east], log[north], log["yaw"])
     if mapping.reference.point != "centre":
         _to_centre(states, mapping)
     states.numbers = {ours: log.get(theirs, unknown_values) for theirs, ours in _SOURCE.items()}

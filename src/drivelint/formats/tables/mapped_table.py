@@ -14,7 +14,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.arrays import coded
+from drivelint.arrays import codes_of_texts
 from drivelint.drive.lost_time import times_of_lost_rows
 from drivelint.drive.trace import (
     ACTOR_CLASSES,
@@ -32,7 +32,7 @@ from drivelint.formats.tables import mapping as mappings
 from drivelint.formats.tables.geometry import to_map_frame
 from drivelint.formats.tables.mapping import FIELD_QUANTITIES, GROUP_PLACEHOLDER, UNITS
 from drivelint.formats.tables.sheets import CsvSheet, ParquetSheet, Sheet, describe_places
-from drivelint.phrases import hint, listed
+from drivelint.phrases import hint, name_list
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -280,7 +280,7 @@ class _Body:
                 self.unmapped_classes.add(text)
             return -1 if word is None else words.index(word)
 
-        return coded(texts[0], code_of)
+        return codes_of_texts(texts[0], code_of)
 
     def _ids(self, k: str, n: int) -> pa.Array:
         spec = mappings.as_field(self.mapping.columns.actor_id)
@@ -322,7 +322,7 @@ class _Body:
         spec, codes = self.mapping.actor_class, states.codes.get("actor_class")
         if spec is None or codes is None or not self.unmapped_classes or not set(np.unique(codes)) <= _NO_CLASS:
             return
-        texts = listed([repr(text) for text in sorted(self.unmapped_classes)], _MOST_LISTED_TEXTS)
+        texts = name_list([repr(text) for text in sorted(self.unmapped_classes)], _MOST_LISTED_TEXTS)
         are = "is" if len(self.unmapped_classes) == 1 else "are"
         message = f"column {'/'.join(spec.columns)}: {texts} {are} not in [class] values of the mapping"
         self.findings.append(QualityFinding("unmapped_class", "warning", message))

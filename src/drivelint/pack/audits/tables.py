@@ -14,12 +14,12 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from drivelint.audit import JudgeSettings
-from drivelint.audit.compact import chunk_name, chunks
-from drivelint.audit.driver import empty_rows
+from drivelint.audit.compact import chunk_ids, chunk_name
+from drivelint.audit.driver import empty_tables
 from drivelint.audit.run import AUDIT_FILE, RULES_FILE
-from drivelint.audit.summary import summed
+from drivelint.audit.summary import summary_of_all_drives
 from drivelint.audit.unpacked import SUMMARY_FILE
-from drivelint.audit.worker import TABLES, said_of_rows
+from drivelint.audit.worker import TABLES, receipt_fields
 from drivelint.drive.trace import DriveInput
 from drivelint.errors import UsageError
 from drivelint.formats import expand_traces
@@ -73,12 +73,12 @@ def is_packed(folder: Path) -> bool:
 
 def names(results: ResultStore) -> list[str]:
     """Return the files of an audit that a pack contains: its settings, summary and rules, and all chunks of its tables."""
-    return [*FILES, *(chunk_name(table, each) for table in (*TABLES, "receipts") for each in chunks(results))]
+    return [*FILES, *(chunk_name(table, each) for table in (*TABLES, "receipts") for each in chunk_ids(results))]
 
 
 def facts(folder: Path, con: duckdb.DuckDBPyConnection, audit: Audit, rules: Sequence[Row]) -> dict[str, Any]:
     """Return the values of `evidence.json` that follow from the tables in the pack `folder`."""
-    counted = summed(con, 0)
+    counted = summary_of_all_drives(con, 0)
     fail_on = str(audit.audit_json["fail_on"])
     # all rows of the table: also findings of copied logs, and both findings of a contact of two egos
     ((n_findings,),) = con.execute("SELECT count(*) FROM findings").fetchall()
@@ -97,7 +97,7 @@ def facts(folder: Path, con: duckdb.DuckDBPyConnection, audit: Audit, rules: Seq
 
 def unlike_summary(con: duckdb.DuckDBPyConnection, audit: Audit, packed_summary: dict[str, Any]) -> list[str]:
     """Return the keys of `summary.json` that contradict the tables."""
-    counted = summed(con, 0).plain() | {"robust": bool(audit.settings["robustness"])}
+    counted = summary_of_all_drives(con, 0).file_content() | {"robust": bool(audit.settings["robustness"])}
     return sorted(
         key for key in (counted.keys() | packed_summary.keys()) - _OF_RUN if packed_summary.get(key) != counted.get(key)
     )
@@ -109,9 +109,9 @@ def unlike_receipts(results: ResultStore, rules: pa.Table, *, same_libraries: bo
     `same_libraries`: also compare the hashes of the rows, which depend on the version of pyarrow.
     """
     stable = rules.filter(pc.equal(rules["status"], "stable"))["rule_id"].combine_chunks()
-    schemas = {table: rows.schema for table, rows in empty_rows().items()}
+    schemas = {table: rows.schema for table, rows in empty_tables().items()}
     seen: set[str] = set()
-    for chunk in chunks(results):
+    for chunk in chunk_ids(results):
         with TemporaryDirectory(prefix="drivelint-pack-") as home:
             parts = {}
             for table in (*TABLES, "receipts"):
@@ -127,7 +127,7 @@ def unlike_receipts(results: ResultStore, rules: pa.Table, *, same_libraries: bo
                     "receipts do not match the tables", f"{key}: a drive has one receipt and one row in drives"
                 )
                 continue
-            for what in _unlike(receipts[key][0], said_of_rows(rows_of_key, stable), same_libraries=same_libraries):
+            for what in _unlike(receipts[key][0], receipt_fields(rows_of_key, stable), same_libraries=same_libraries):
                 yield Problem("receipts do not match the tables", f"{receipts[key][0]['drive_id']} ({key}): {what}")
 
 

@@ -26,7 +26,7 @@ from drivelint.pack.bag import DATA, Problem
 from drivelint.pack.consistency import UNREADABLE
 from drivelint.pack.contents import EVIDENCE, FINDINGS, inside, library_versions
 from drivelint.pack.statement import ENVELOPE, FILE, differences
-from drivelint.phrases import listed, plural
+from drivelint.phrases import name_list, plural
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -279,7 +279,7 @@ def _notes(pack: _Pack) -> list[str]:
         notes.append(f"{plural(left, 'finding')} of less weight: no rows in the pack")
     if evidence["not_judged"]:
         logs = [row["log"] for row in evidence["not_judged"]]
-        notes.append(f"not judged when it was audited, nor now: {listed(logs, 3)}")
+        notes.append(f"not judged when it was audited, nor now: {name_list(logs, 3)}")
     if changed := sorted(name for name, value in versions().items() if told.get(name) != value):
         notes.append(f"audited by other versions of {', '.join(changed)}")
     if pack.packed_by != __version__:

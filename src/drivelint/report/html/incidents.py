@@ -6,7 +6,7 @@ from collections import Counter, defaultdict
 from operator import itemgetter
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-from drivelint.catalogue.header import CONTACT
+from drivelint.catalogue.header import CONTACT_TAG
 from drivelint.engine.robustness.copies import MeasurementErrors
 from drivelint.report.html.anchors import anchor
 from drivelint.report.html.contact import speeds_before_contact
@@ -178,7 +178,7 @@ def plan_views(
     views: dict[Key, dict[str, Any]] = {}
     for at, found in [(at, found) for at, found in lines_by_incident.items() if at in scenes][:max_views]:
         about = any(_DANGER_SPACE_TAG in line.rule["tags"] for line in found)
-        contact = next((line.row for line in found if line.kind == "fail" and CONTACT in line.rule["tags"]), None)
+        contact = next((line.row for line in found if line.kind == "fail" and CONTACT_TAG in line.rule["tags"]), None)
         before = None if contact is None else speeds_before_contact(scenes[at], contact, starts.get(at[0], 0))
         picture = plan_view(scenes[at], road, _object_ids(found), spaces.get(at, []) if about else [])
         views[at] = picture | {"before": before["words"] if before else ""}

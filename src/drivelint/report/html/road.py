@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from drivelint.arrays import wrapped
+from drivelint.arrays import wrap_angles
 from drivelint.report.html.svg import polygon_path, polyline_path
 from drivelint.result.counts import group_rows
 
@@ -89,7 +89,7 @@ class DrawnLanes:
         away = np.hypot(*(a + u[:, None] * step - (x_m, y_m)).T)
         heading = np.arctan2(step[:, 1], step[:, 0])
         # ignore half turns: the bounds of oncoming lanes run in the opposite direction
-        turn = wrapped(2.0 * (heading - yaw_rad)) / 2.0
+        turn = wrap_angles(2.0 * (heading - yaw_rad)) / 2.0
         fits = (away < _MOST_BOUND_DISTANCE_M) & (np.abs(turn) < _MOST_SLANT_RAD)
         return yaw_rad + float(turn[np.where(fits, away, np.inf).argmin()]) if fits.any() else yaw_rad
 

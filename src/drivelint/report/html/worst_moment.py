@@ -7,7 +7,7 @@ from operator import itemgetter
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from urllib.parse import quote
 
-from drivelint.catalogue.header import CONTACT
+from drivelint.catalogue.header import CONTACT_TAG
 from drivelint.report.html.contact import speeds_before_contact
 from drivelint.report.html.incidents import incident_key
 from drivelint.report.html.replay import centiseconds
@@ -49,7 +49,7 @@ def worst_moment(
     drive, scene = drives[row["drive_id"]], evidence.scenes.get(at)
     start_ns = drive["t_start_ns"] or 0
     along = [each for each in lines if incident_key(each.row) == at and each.rule["rule_id"] != row["rule_id"]]
-    touched = line.kind == "fail" and CONTACT in line.rule["tags"]
+    touched = line.kind == "fail" and CONTACT_TAG in line.rule["tags"]
     return {
         "line": line,
         "is_new": line is not lines[0],

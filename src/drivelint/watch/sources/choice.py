@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import UsageError
-from drivelint.temporary import keep, temporary_folder
+from drivelint.temporary import exclude_from_removal, temporary_folder
 from drivelint.watch import sources
 from drivelint.watch.sources.replay import Replay
 from drivelint.watch.window import S
@@ -40,7 +40,7 @@ def open_source(options: WatchOptions, progress: Progress) -> Iterator[Source]:
                 source.close()
             if not is_done and options.out is None and any(home.iterdir()):
                 progress.note(f"the recording is kept: {home}")
-                keep(home)
+                exclude_from_removal(home)
 
 
 def _open_source(options: WatchOptions, folder: Path) -> Source:

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, Final
 from mcap.records import Schema
 
 from drivelint.errors import TraceError, UsageError
-from drivelint.phrases import listed, one_line
+from drivelint.phrases import name_list, one_line
 from drivelint.watch.sources.background import TICK_S, BackgroundReader
 from drivelint.watch.sources.mcap_memory import is_watched
 from drivelint.watch.sources.recordings import LiveChannel, LiveMessage
@@ -167,7 +167,7 @@ class FoxgloveClient:
         if new:
             ws.send(json.dumps({"op": "subscribe", "subscriptions": new}))
         elif not self._by_subscription and channels:
-            self._notes.append(f"{self._uri}: nothing on {listed(sorted(self._unread))} is read")
+            self._notes.append(f"{self._uri}: nothing on {name_list(sorted(self._unread))} is read")
 
 
 def _size(messages: Sequence[LiveMessage]) -> int:

@@ -14,7 +14,7 @@ from xml.sax.saxutils import quoteattr
 
 from drivelint.errors import TraceError
 from drivelint.formats import safe_xml
-from drivelint.phrases import listed
+from drivelint.phrases import name_list
 from drivelint.watch.source import Frame, WrittenWindows
 from drivelint.watch.sources.recordings import writing
 from drivelint.watch.sources.sumo_process import Step, SumoProcess
@@ -64,7 +64,7 @@ class SumoSimulation(WrittenWindows):
         options = _options(config)
         found = [name for name in _LEAVES_OUT if any(each.tag == name for each in options.iter())]
         self._notes = (
-            [f"{config.name}: {listed(found)}: actors that SUMO does not write after that are not judged"]
+            [f"{config.name}: {name_list(found)}: actors that SUMO does not write after that are not judged"]
             if found
             else []
         )
