@@ -13,7 +13,7 @@ import numpy as np
 from drivelint.drive.ego import ALL_EGOS
 from drivelint.drive.trace import ACTOR_CLASSES, MOTOR_VEHICLES, QualityFinding
 from drivelint.formats.sumo.rows import CONTAINER, PERSON
-from drivelint.formats.sumo.vehicle_types import type_of
+from drivelint.formats.sumo.vehicle_types import type_and_original
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from drivelint.formats.sumo.vehicle_types import VehicleType
 
 
-class Tracks(NamedTuple):
+class ActorOfRows(NamedTuple):
     """The actor, type and kind of each row (n): `actor` indexes `ids`, `type_code` indexes `type_names`, `kind` as in `rows`."""
 
     ids: list[str]
@@ -43,13 +43,13 @@ class Boxes(NamedTuple):
     actor_class: Codes
     length_m: Floats
     width_m: Floats
-    ahead_m: Floats
+    bumper_ahead_m: Floats
     findings: list[QualityFinding]
 
 
-def boxes_of(tracks: Tracks, types: Mapping[str, VehicleType], options: IngestOptions) -> Boxes:
+def boxes_of(tracks: ActorOfRows, types: Mapping[str, VehicleType], options: IngestOptions) -> Boxes:
     """Return the boxes, from the known `types` and the user's size of the ego."""
-    types_with_originals = [type_of(name, types, frozenset(tracks.ids)) for name in tracks.type_names]
+    types_with_originals = [type_and_original(name, types, frozenset(tracks.ids)) for name in tracks.type_names]
     vehicle_types = [kind for kind, _ in types_with_originals]
     classes = np.array(
         [-1 if t.actor_class is None else ACTOR_CLASSES.index(t.actor_class) for t in vehicle_types], np.int8
@@ -61,22 +61,22 @@ def boxes_of(tracks: Tracks, types: Mapping[str, VehicleType], options: IngestOp
         np.array([getattr(t, side) for t in vehicle_types], np.float64)[tracks.type_code]
         for side in ("length_m", "width_m")
     )
-    changing = _changing(tracks, length)
+    changing = _has_other_length(tracks, length)
     length[changing] = width[changing] = np.nan
     sizeless = np.isnan(length) & ~changing
     ahead = np.where(changing, np.nan, np.nan_to_num(length) / 2)
     if options.ego_size is not None:
         ahead[sizeless & _is_ego(tracks, actor_class, options.ego)] = options.ego_size.length_m / 2
-    findings = _findings(tracks, changing, sizeless)
-    copies = {
+    findings = _size_findings(tracks, changing, sizeless)
+    original_by_copy = {
         name: base for name, (_, base) in zip(tracks.type_names, types_with_originals, strict=True) if base is not None
     }
-    if copies:
-        findings.append(_copies(tracks, copies))
+    if original_by_copy:
+        findings.append(_copied_types_finding(tracks, original_by_copy))
     return Boxes(actor_class, length, width, ahead, findings)
 
 
-def _changing(tracks: Tracks, length: Floats) -> Mask:
+def _has_other_length(tracks: ActorOfRows, length: Floats) -> Mask:
     """Return which rows have no length, or another length than most rows of their track, if any row of the track has a length."""
     some = np.zeros(len(tracks.ids), tracks.type_code.dtype)
     some[tracks.actor] = tracks.type_code
@@ -100,38 +100,38 @@ def _changing(tracks: Tracks, length: Floats) -> Mask:
     return found
 
 
-def _is_ego(tracks: Tracks, actor_class: Codes, ego: str | None) -> Mask:
+def _is_ego(tracks: ActorOfRows, actor_class: Codes, ego: str | None) -> Mask:
     if ego == ALL_EGOS and ego not in tracks.ids:
         return np.isin(actor_class, [ACTOR_CLASSES.index(word) for word in MOTOR_VEHICLES])
     found: Mask = tracks.actor == (tracks.ids.index(ego) if ego in tracks.ids else -1)
     return found
 
 
-def _findings(tracks: Tracks, changing: Mask, sizeless: Mask) -> list[QualityFinding]:
+def _size_findings(tracks: ActorOfRows, changing: Mask, sizeless: Mask) -> list[QualityFinding]:
     findings = []
     if sizeless.any():
         message = (
-            f"the sizes of the vehicle types {_types(tracks, sizeless)} are not known: give the route file "
+            f"the sizes of the vehicle types {_type_names_text(tracks, sizeless)} are not known: give the route file "
             "with their vType elements with --mapping; until then their positions are those of the front bumper"
         )
         findings.append(QualityFinding("bumper_position", "warning", message, int(sizeless.sum())))
     if changing.any():
         ids = [tracks.ids[i] for i in np.unique(tracks.actor[changing])]
         message = (
-            f"the type of {listed(ids)} changes to {_types(tracks, changing)}, whose length is different or not known: the log has "
-            "their front bumper, so the place of their box is then not known"
+            f"the type of {listed(ids)} changes to {_type_names_text(tracks, changing)}, whose length is different or not known: the log "
+            "has their front bumper, so the place of their box is then not known"
         )
         findings.append(QualityFinding("size_changes", "warning", message, int(changing.sum())))
     return findings
 
 
-def _types(tracks: Tracks, rows: Mask) -> str:
+def _type_names_text(tracks: ActorOfRows, rows: Mask) -> str:
     names = {tracks.type_names[i] for i in np.unique(tracks.type_code[rows])}
     return listed(sorted(name or "without a name" for name in names))
 
 
-def _copies(tracks: Tracks, copies: Mapping[str, str]) -> QualityFinding:
-    rows = np.isin(tracks.type_code, [i for i, name in enumerate(tracks.type_names) if name in copies])
+def _copied_types_finding(tracks: ActorOfRows, original_by_copy: Mapping[str, str]) -> QualityFinding:
+    rows = np.isin(tracks.type_code, [i for i, name in enumerate(tracks.type_names) if name in original_by_copy])
     ids = [tracks.ids[i] for i in np.unique(tracks.actor[rows])]
-    message = f"types that were changed for one vehicle have the size of the original type: {listed(sorted(copies))}"
+    message = f"types that were changed for one vehicle have the size of the original type: {listed(sorted(original_by_copy))}"
     return QualityFinding.of_actors("copied_type", "info", message, ids)
