@@ -149,15 +149,15 @@ def unjudged_findings_phrase(difference: Difference, least_severity: str) -> str
     return " and ".join(said)
 
 
-def exit_sentence(n_failing: int, fail_on: str, unjudged: str = "") -> str:
+def exit_sentence(n_failing: int, fail_on: str, unjudged_phrase: str = "") -> str:
     """Return the exit code and its reason in one line. `n_failing`: number of new findings that gate."""
     if fail_on == "never":
         return "exit 0: new findings do not gate (--fail-on never)"
     what = f"at or above severity {fail_on}"
     if n_failing:
         return f"exit 1: {plural(n_failing, 'new finding')} {what}"
-    if unjudged:
-        return f"exit 4: no new finding {what}, but {unjudged}"
+    if unjudged_phrase:
+        return f"exit 4: no new finding {what}, but {unjudged_phrase}"
     return f"exit 0: no new finding {what}"
 
 

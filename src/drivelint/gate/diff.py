@@ -285,32 +285,35 @@ class ResultLookup:
         """Return whether a rule is stable in this result."""
         return rule_id in self.rules and self.rules[rule_id]["status"] == "stable"
 
-    def verdict_at(self, drive_id: str | None, at: TimedFinding) -> LookupResult:
-        """Return the verdict of this result at the time and place of the finding `at` of another result. `drive_id`: the drive's id in this
-        result.
+    def verdict_at(self, drive_id: str | None, finding: TimedFinding) -> LookupResult:
+        """Return the verdict of this result at the time and place of a finding of another result.
 
-        The verdicts pass and not applicable count only where ego and object are recorded.
+        `drive_id`: the drive's id in this result. The verdicts pass and not applicable count only where ego and object are recorded.
         """
-        row = at.row
+        row = finding.row
         if gap := self._why_not_judged(drive_id, row):
             return gap
         assert drive_id is not None  # noqa: S101 - for the type checker: without a drive, _why_not_judged has returned a result
         drive = self.drives[drive_id]
-        if drive["duration_s"] is not None and at.worst_s > drive["duration_s"] + match.NEAR_S:
+        if drive["duration_s"] is not None and finding.worst_s > drive["duration_s"] + match.NEAR_S:
             return LookupResult("none", "the log ends before the finding")
         rows = self._rows.get((drive_id, row["ego_id"], row["rule_id"]), [])
         rows = [each for each in rows if each["profile"] in {row["profile"], None}]
         if not rows:
             return LookupResult("none", "the rule has no verdict")
-        there = [each for each in rows if self._concerns_object(each, row, drive_id) and _covers_time(each, at, drive)]
+        there = [
+            each for each in rows if self._concerns_object(each, row, drive_id) and _covers_time(each, finding, drive)
+        ]
         said = [
-            judged for each in there if (judged := self._outcome_at_finding(each, at)).verdict in _VERDICTS_BY_WEIGHT
+            judged
+            for each in there
+            if (judged := self._outcome_at_finding(each, finding)).verdict in _VERDICTS_BY_WEIGHT
         ]
         not_applicable = LookupResult(
             "not_applicable", there[0]["reason"] if there else "The rule does not apply there."
         )
         found = min(said, key=lambda each: _VERDICTS_BY_WEIGHT.index(each.verdict), default=not_applicable)
-        if found.verdict in _FIXED_VERDICTS and (missing := self._why_not_recorded(drive_id, at)):
+        if found.verdict in _FIXED_VERDICTS and (missing := self._why_not_recorded(drive_id, finding)):
             return missing
         return found
 

@@ -32,7 +32,7 @@ def parse(markdown: str) -> list[Token]:
     tokens = _MARKDOWN.parse(markdown)
     _set_heading_ids(tokens)
     _link_to_site_pages(tokens)
-    _label_cells(tokens)
+    _set_cell_attributes(tokens)
     return tokens
 
 
@@ -74,7 +74,7 @@ def _link_to_site_pages(tokens: Sequence[Token]) -> None:
                 child.attrSet("href", _site_href(str(child.attrGet("href"))))
 
 
-def _label_cells(tokens: Sequence[Token]) -> None:
+def _set_cell_attributes(tokens: Sequence[Token]) -> None:
     """Set attributes of table cells for the stylesheet: the column's heading, for narrow screens, and a class for long text."""
     head: list[str] = []
     column = 0

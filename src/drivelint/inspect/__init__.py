@@ -105,7 +105,7 @@ def _content_of_unread(path: Path, options: IngestOptions) -> model.Content:
 def _inspect_drive(
     trace: Trace, library: MapLibrary, rules: Sequence[Rule], request: InspectRequest, selection: Sequence[str]
 ) -> model.Drive:
-    trace, environment, road_problem = _drive_map_and_problem(trace, library)
+    trace, environment, road_problem = _trace_map_and_problem(trace, library)
     actors = tracks.actors(trace)
     egos, quality = _egos_and_quality(trace, environment, actors, rules, road_problem, memory=request.memory)
     supposed, candidates = None, []
@@ -131,7 +131,7 @@ def _inspect_drive(
     )
 
 
-def _drive_map_and_problem(trace: Trace, library: MapLibrary) -> tuple[Trace, MapTables | None, str | None]:
+def _trace_map_and_problem(trace: Trace, library: MapLibrary) -> tuple[Trace, MapTables | None, str | None]:
     try:
         found = drive_with_map(trace, library)
     except MapError as error:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 _WORD: Final = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+")
 _FACTS: Final = toml_beside(__file__, "mapping_words.toml")
 _WORDS_BY_FUSED_WORD: Final[dict[str, str]] = _FACTS["fused"]
-_UNIT_WORDS: Final[dict[str, str]] = _FACTS["units"]
+_UNIT_BY_WORD: Final[dict[str, str]] = _FACTS["units"]
 _TIME, _FRAMES, _ID, _SPEED, _ACCELERATION, _FILLERS, _OTHERS = (
     frozenset[str](_FACTS[name]) for name in ("time", "frames", "id", "speed", "acceleration", "fillers", "others")
 )
@@ -76,7 +76,7 @@ def _actor_class_of(text: str) -> str | None:
 def _field_of_column(column: str) -> str | None:
     """Return the field of a mapping that a column's name suggests; None without a suggestion."""
     words = _column_words(column)
-    bare = words - set(_UNIT_WORDS) - _FILLERS
+    bare = words - set(_UNIT_BY_WORD) - _FILLERS
     axes = words & {"x", "y", "z"}
     if len(axes) == 1:
         return _field_of_axis(next(iter(axes)), words, bare)
@@ -104,7 +104,7 @@ def _column_words(column: str) -> set[str]:
 
 def _unit_in_column_name(column: str, unit_factors: Mapping[str, float]) -> str | None:
     in_brackets = re.findall(r"[\[(]([^\])]+)[\])]", column)
-    named = [*in_brackets, *(_UNIT_WORDS.get(word) for word in sorted(_column_words(column)))]
+    named = [*in_brackets, *(_UNIT_BY_WORD.get(word) for word in sorted(_column_words(column)))]
     return next((unit for unit in named if unit in unit_factors), None)
 
 

@@ -19,7 +19,7 @@ from drivelint.formats.osi.schema import GROUND_TRUTH, SENSOR_VIEW, message_clas
 from drivelint.formats.protobuf.descriptors import (
     decode_batch,
     integer_values,
-    list_items_and_rows,
+    list_items_and_row_indices,
     message_decoder,
     parse_schema,
     struct_field,
@@ -132,7 +132,7 @@ class Decoder:
         message = decode_batch(self._path, log_messages, self._decode)
         truth = struct_field(message, "global_ground_truth") if self._name == SENSOR_VIEW else message
         (t_ns, timed), (outer_ns, outer_timed) = _times_ns_and_presence(truth), _times_ns_and_presence(message)
-        objects, frame = list_items_and_rows(truth, "moving_object")
+        objects, frame = list_items_and_row_indices(truth, "moving_object")
         base = struct_field(objects, "base")
         numbers, left_out, not_finite = {}, {}, np.zeros(len(objects), np.bool_)
         says_zero = False

@@ -11,7 +11,7 @@ import pyarrow.compute as pc
 from drivelint.drive.declared_events import HEADLIGHTS
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS
 from drivelint.formats.osi.schema import OPEN_DRIVE_REFERENCE
-from drivelint.formats.protobuf.descriptors import enum_names, integer_values, list_items_and_rows, struct_field
+from drivelint.formats.protobuf.descriptors import enum_names, integer_values, list_items_and_row_indices, struct_field
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -112,7 +112,7 @@ def bulb_state_rows(enum_codes: EnumCodes, truth: pa.Array, light_by_bulb: Mappi
 
     The signal is the OpenDRIVE signal to which the bulb refers, otherwise the light in `light_by_bulb`, otherwise the bulb alone.
     """
-    bulbs, frame = list_items_and_rows(truth, "traffic_light")
+    bulbs, frame = list_items_and_row_indices(truth, "traffic_light")
     seen = struct_field(bulbs, "classification")
     mode, color = (enum_codes.codes(each, struct_field(seen, each)) for each in ("mode", "color"))
     shown = np.where(mode == LIT, color, mode)

@@ -38,10 +38,12 @@ def read(
 
     `logical_by_physical`: physical lane -> the logical lanes that replace it.
     """
-    road = _MapLanes(lanes, logical_by_physical, np.array(offset))
-    signals = [row for sign in truth.traffic_sign for row in _rows_of_sign(sign, road, quality)]
+    map_lanes = _MapLanes(lanes, logical_by_physical, np.array(offset))
+    signals = [row for sign in truth.traffic_sign for row in _rows_of_sign(sign, map_lanes, quality)]
     signals += [
-        row for bulbs in _bulbs_by_signal(truth.traffic_light).items() for row in _rows_of_light(*bulbs, road, quality)
+        row
+        for bulbs in _bulbs_by_signal(truth.traffic_light).items()
+        for row in _rows_of_light(*bulbs, map_lanes, quality)
     ]
     stops: list[Row] = []
     crossings: list[Row] = []
@@ -50,13 +52,13 @@ def read(
         if classification.is_out_of_service:
             continue
         symbol = classification.traffic_main_sign_type if classification.type == kinds.SYMBOL_MARKING_TYPE else None
-        if not np.isfinite(_box_corners(mark, road)).all():
+        if not np.isfinite(_box_corners(mark, map_lanes)).all():
             message = f"road marking {mark.id.value} is left out: the log does not state its position"
             quality.add("road_marking_without_place", "warning", None, message)
         elif symbol == kinds.ZEBRA_SIGN_TYPE:
-            crossings += _rows_of_zebra_crossing(mark, road)
+            crossings += _rows_of_zebra_crossing(mark, map_lanes)
         elif symbol == kinds.STOP_SIGN_TYPE or _kind_of_country_code(classification) == "stop_line":
-            stops += _rows_of_stop_line(mark, road, quality)
+            stops += _rows_of_stop_line(mark, map_lanes, quality)
     return {
         "traffic_signal": sorted(signals, key=lambda r: (r["signal_id"], r["type"] or "", r["lanelet_id"])),
         "stop_line": sorted(stops, key=lambda r: (r["stop_line_id"], r["lanelet_id"])),
@@ -141,7 +143,7 @@ def _kind_of_country_code(classification: Any) -> str | None:
     )
 
 
-def _rows_of_sign(sign: Any, road: _MapLanes, quality: MapQuality) -> Iterable[Row]:
+def _rows_of_sign(sign: Any, map_lanes: _MapLanes, quality: MapQuality) -> Iterable[Row]:
     classification, base = sign.main_sign.classification, sign.main_sign.base
     if classification.is_out_of_service:
         return []
@@ -157,8 +159,8 @@ def _rows_of_sign(sign: Any, road: _MapLanes, quality: MapQuality) -> Iterable[R
     return _signal_rows(
         f"traffic sign {sign.id.value}",
         row,
-        road.assigned_lanes(classification, base),
-        road.map_position(base),
+        map_lanes.assigned_lanes(classification, base),
+        map_lanes.map_position(base),
         quality,
     )
 
@@ -174,8 +176,10 @@ def _bulbs_by_signal(bulbs: Iterable[Any]) -> dict[str, list[Any]]:
     return heads
 
 
-def _rows_of_light(signal_id: str, bulbs: Sequence[Any], road: _MapLanes, quality: MapQuality) -> Iterable[Row]:
-    lanes = _distinct_lanes([lane for bulb in bulbs for lane in road.assigned_lanes(bulb.classification, bulb.base)])
+def _rows_of_light(signal_id: str, bulbs: Sequence[Any], map_lanes: _MapLanes, quality: MapQuality) -> Iterable[Row]:
+    lanes = _distinct_lanes(
+        [lane for bulb in bulbs for lane in map_lanes.assigned_lanes(bulb.classification, bulb.base)]
+    )
     icons = {int(bulb.classification.icon) for bulb in bulbs}
     arrows = icons - {kinds.FULL_LIGHT_ICON}
     turns = {turn for icon in arrows or icons for turn in kinds.TURNS_BY_LIGHT_ICON.get(icon, ())}
@@ -184,7 +188,7 @@ def _rows_of_light(signal_id: str, bulbs: Sequence[Any], road: _MapLanes, qualit
         "kind": next((kinds.LIGHT_KIND_BY_ICON[icon] for icon in sorted(icons) if icon in kinds.LIGHT_KIND_BY_ICON), None),
         "country": "osi", "dynamic": True, "turns": sorted(turns) if turns and icons <= kinds.TURNS_BY_LIGHT_ICON.keys() else None,
     }  # fmt: skip
-    place = next((at for bulb in bulbs if (at := road.map_position(bulb.base)) is not None), None)
+    place = next((at for bulb in bulbs if (at := map_lanes.map_position(bulb.base)) is not None), None)
     return _signal_rows(f"traffic light {signal_id}", row, lanes, place, quality)
 
 
@@ -200,9 +204,9 @@ def _signal_rows(
     return [signal_row(lane, lane.line.station(place[:2]), place, **row) for lane in lanes]
 
 
-def _box_corners(mark: Any, road: _MapLanes) -> Floats:
+def _box_corners(mark: Any, map_lanes: _MapLanes) -> Floats:
     """Return the eight corners (8, 2) of a marking's box on the map; NaN if the log does not have place and size."""
-    middle = road.map_position(mark.base)
+    middle = map_lanes.map_position(mark.base)
     size = mark.base.dimension
     half = np.array([size.length, size.width, size.height]) / 2
     angles = mark.base.orientation.roll, mark.base.orientation.pitch, mark.base.orientation.yaw
@@ -213,11 +217,11 @@ def _box_corners(mark: Any, road: _MapLanes) -> Floats:
     return corners
 
 
-def _lanes_and_stations_under(mark: Any, shape: Any, road: _MapLanes) -> list[tuple[BoundedLane, float]]:
+def _lanes_and_stations_under(mark: Any, shape: Any, map_lanes: _MapLanes) -> list[tuple[BoundedLane, float]]:
     """Return the lanes for driving under a painted shape, and the shape's station on each."""
     lane_stations = []
     z = mark.base.position.z
-    for lane in road.lanes:
+    for lane in map_lanes.lanes:
         common = shapely.intersection(lane.line.polygon, shape)
         if not lane.drivable or common.is_empty:
             continue
@@ -227,17 +231,17 @@ def _lanes_and_stations_under(mark: Any, shape: Any, road: _MapLanes) -> list[tu
     return lane_stations
 
 
-def _rows_of_stop_line(mark: Any, road: _MapLanes, quality: MapQuality) -> Iterable[Row]:
+def _rows_of_stop_line(mark: Any, map_lanes: _MapLanes, quality: MapQuality) -> Iterable[Row]:
     """Return a row for each lane that a stop line crosses with half of its length, or on half of the lane's width."""
-    corners = _box_corners(mark, road)
+    corners = _box_corners(mark, map_lanes)
     middle = corners.mean(axis=0)
     way = np.linalg.eigh(np.cov((corners - middle).T))[1][:, -1]  # direction of the outline's longer side
     reach = float(np.abs((corners - middle) @ way).max())
     line = shapely.LineString([middle - way * reach, middle + way * reach])
-    lane_ids = {lane.lanelet_id for lane in road.assigned_lanes(mark.classification, mark.base)}
+    lane_ids = {lane.lanelet_id for lane in map_lanes.assigned_lanes(mark.classification, mark.base)}
     upwards = rotation_matrix(mark.base)[:2, 2]
     across: list[tuple[BoundedLane, float, float]] = []
-    for lane, s in _lanes_and_stations_under(mark, line, road):
+    for lane, s in _lanes_and_stations_under(mark, line, map_lanes):
         tangent = np.array([np.interp(s, lane.line.s, lane.line.tangent[:, k]) for k in (0, 1)])
         width = 2 * float(np.interp(s, lane.line.s, lane.line.half_width))
         enough = shapely.intersection(lane.line.polygon, line).length > 0.5 * min(width, 2 * reach)
@@ -255,10 +259,10 @@ def _rows_of_stop_line(mark: Any, road: _MapLanes, quality: MapQuality) -> Itera
     return [stop_line_row(name, lane.lanelet_id, s) for lane, s, _ in across]
 
 
-def _rows_of_zebra_crossing(mark: Any, road: _MapLanes) -> Iterable[Row]:
-    area = shapely.MultiPoint(_box_corners(mark, road)).convex_hull
+def _rows_of_zebra_crossing(mark: Any, map_lanes: _MapLanes) -> Iterable[Row]:
+    area = shapely.MultiPoint(_box_corners(mark, map_lanes)).convex_hull
     rows = []
-    for lane, _ in _lanes_and_stations_under(mark, area, road):
+    for lane, _ in _lanes_and_stations_under(mark, area, map_lanes):
         common = shapely.get_coordinates(shapely.intersection(area, shapely.LineString(lane.line.centre)))
         if len(common):
             s = [lane.line.station(point) for point in common]

@@ -27,9 +27,9 @@ if TYPE_CHECKING:
 GROUND_TRUTH_TOPIC: Final = "ground_truth"
 MAP_TOPIC: Final = "ground_truth_map"
 EVENT_TOPIC: Final = "declared_event"
-BATCH_STATES: Final = 200_000
+STATES_PER_BATCH: Final = 200_000
 """This many states, in whole frames, are encoded at a time, which bounds the memory."""
-_MAX_ID: Final = (1 << 64) - 1
+_MAX_OSI_ID: Final = (1 << 64) - 1
 
 
 def write(sink: BinaryIO, trace: Trace, map_source: MapSource | None, *, as_recorded: bool = False) -> int:
@@ -69,7 +69,9 @@ def write(sink: BinaryIO, trace: Trace, map_source: MapSource | None, *, as_reco
 
 def assign_osi_ids(actors: list[str]) -> dict[str, int]:
     """Return actor id -> OSI id: the same number if all ids are numbers, otherwise 1, 2, ... in the order of the sorted ids."""
-    if all(name.isascii() and name.isdigit() and str(int(name)) == name and int(name) <= _MAX_ID for name in actors):
+    if all(
+        name.isascii() and name.isdigit() and str(int(name)) == name and int(name) <= _MAX_OSI_ID for name in actors
+    ):
         return {name: int(name) for name in actors}
     return {name: number for number, name in enumerate(sorted(actors), 1)}
 
@@ -95,7 +97,7 @@ def _frame_messages(trace: Trace, osi_ids: dict[str, int]) -> Iterator[tuple[int
     host = min(egos, key=str, default=None)
     begin = 0
     while begin < len(times):
-        end = max(int(np.searchsorted(bounds, bounds[begin] + BATCH_STATES, side="right")) - 1, begin + 1)
+        end = max(int(np.searchsorted(bounds, bounds[begin] + STATES_PER_BATCH, side="right")) - 1, begin + 1)
         starts = bounds[begin : end + 1]
         some = objects.take(pa.array(order[starts[0] : starts[-1]]))
         messages = encode_ground_truths(times[begin:end], host, some, starts - starts[0]).to_pylist()

@@ -182,7 +182,7 @@ def struct_field(parent: pa.Array, name: str) -> pa.Array:
     return pa.nulls(len(parent))
 
 
-def list_items_and_rows(rows: pa.Array, name: str) -> tuple[pa.Array, NDArray[np.int64]]:
+def list_items_and_row_indices(rows: pa.Array, name: str) -> tuple[pa.Array, NDArray[np.int64]]:
     """Return the items of the lists in field `name`, and for each item the row that contains it."""
     lists = struct_field(rows, name)
     if not pa.types.is_list(lists.type):

@@ -23,13 +23,13 @@ _LONG_CLASSES: Final = frozenset(ACTOR_CLASSES.index(word) for word in (*MOTOR_V
 _MOVING_MPS: Final = 1.0
 _LEAST_DISTINCT_DIFFERENCE_MPS: Final = 0.05
 _SAME_VELOCITY_TOLERANCE_MPS: Final = 0.02
-_SAME_VELOCITY_TOLERANCE: Final = 0.01
+_SAME_VELOCITY_SHARE: Final = 0.01
 """A velocity equals a difference of positions if both differ by less than `_SAME_VELOCITY_TOLERANCE_MPS` plus this share. (Rounded times
 change it by under 0.1 %.)"""
 _LEAST_SAME_SHARE: Final = 0.9
 _LEAST_SAMPLES: Final = 10
 _EVEN_STEP_TOLERANCE_M: Final = 1e-4
-_LEAST_WIDTH_RATIO: Final = 1.2
+_LEAST_WIDTH_TO_LENGTH: Final = 1.2
 """A box that is wider than long by this factor is not an inaccurate estimate of a square box."""
 _LEAST_MOTION_M: Final = 2.0
 _LEAST_HEADING_COSINE: Final = np.cos(np.radians(30.0))
@@ -67,7 +67,7 @@ def _when_differences_apply(tracks: Tracks, actors: Mask) -> str | None:
         return None
     for when, step in (("early", after), ("late", before)):
         off = np.hypot(*np.moveaxis(velocity - step, 2, 0))
-        same = off < _SAME_VELOCITY_TOLERANCE_MPS + _SAME_VELOCITY_TOLERANCE * np.hypot(*np.moveaxis(step, 2, 0))
+        same = off < _SAME_VELOCITY_TOLERANCE_MPS + _SAME_VELOCITY_SHARE * np.hypot(*np.moveaxis(step, 2, 0))
         if same[tells].mean() > _LEAST_SAME_SHARE:
             return when
     return None
@@ -157,7 +157,7 @@ def swap_length_and_width(tracks: Tracks, dataset: DatasetFacts) -> list[Quality
     n = np.maximum(tracks.present.sum(axis=1), 1)
     length, width = (np.nansum(tracks.size[..., k], axis=1) / n for k in (0, 1))
     ids_by_reason: dict[str, list[str]] = {}
-    for i in np.flatnonzero(long_kind & (width > _LEAST_WIDTH_RATIO * length)):
+    for i in np.flatnonzero(long_kind & (width > _LEAST_WIDTH_TO_LENGTH * length)):
         if _moves_along_heading(tracks, int(i)):
             why = "length and width of {} are swapped in the log, as its motion along the short side shows: this is corrected"
         elif i == tracks.ego and np.allclose((width[i], length[i]), dataset.ego_box_m or (0.0, 0.0), atol=0.01):

@@ -361,7 +361,7 @@ class _PickleMachine:
             raise PickleError(f"more bytes than the file has: {_REMEDY}")
         return text.encode("latin-1")
 
-    def set_content(self, at: int) -> int:
+    def set_state_of_value(self, at: int) -> int:
         (state,) = self._pop_values(1)
         target = self.stack[-1]
         if isinstance(target, NumberType):
@@ -387,6 +387,6 @@ _OPERATIONS: Final = {
     0x29: "push_empty_tuple", 0x74: "push_tuple_since_mark", 0x85: "push_tuple1", 0x86: "push_tuple2", 0x87: "push_tuple3",
     0x7D: "push_empty_dict", 0x64: "push_dict_since_mark", 0x73: "set_item", 0x75: "set_items",
     0x8F: "push_empty_set", 0x90: "append_items", 0x91: "push_list_since_mark",
-    0x63: "push_name_in_lines", 0x93: "push_name_on_stack", 0x52: "create_named_value", 0x62: "set_content",
+    0x63: "push_name_in_lines", 0x93: "push_name_on_stack", 0x52: "create_named_value", 0x62: "set_state_of_value",
 }  # fmt: skip
 """Code of an operation (see `pickletools`) -> its method, and the width in bytes of its argument or of the argument's length."""

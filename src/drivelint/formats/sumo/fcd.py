@@ -18,7 +18,7 @@ from drivelint.arrays import wrapped
 from drivelint.drive.lost_time import times_of_lost_rows
 from drivelint.drive.trace import BRAKE_LIGHTS, INDICATORS, LostTime, QualityFinding, Recording, States
 from drivelint.errors import TraceError
-from drivelint.formats.sumo.boxes import ActorOfRows, boxes_of
+from drivelint.formats.sumo.boxes import RowActors, boxes_of
 from drivelint.formats.sumo.degrees import net_positions
 from drivelint.formats.sumo.fcd_tables import column_groups, read_csv, read_parquet
 from drivelint.formats.sumo.fcd_xml import ROOT_TAG, read_xml
@@ -196,8 +196,8 @@ def _recording(path: Path, rows: Rows, types: Mapping[str, VehicleType], options
             "log with the attribute angle (SUMO's option fcd-output.attributes)"
         )
     names = pc.dictionary_encode(rows.table["type"]).combine_chunks()
-    tracks = ActorOfRows(ids, actor, names.dictionary.to_pylist(), names.indices.to_numpy(), rows.kind)
-    boxes = boxes_of(tracks, types, options)
+    row_actors = RowActors(ids, actor, names.dictionary.to_pylist(), names.indices.to_numpy(), rows.kind)
+    boxes = boxes_of(row_actors, types, options)
     xy, findings = net_positions(path, rows, actor, options.map)
     yaw = wrapped(np.pi / 2 - np.radians(angle))
     cos, sin = np.cos(yaw), np.sin(yaw)

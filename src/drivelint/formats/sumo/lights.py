@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from drivelint.arrays import Floats, Mask
     from drivelint.drive.trace import Recording
 
-_FILE_PATTERN: Final = "*tls*.xml"
+_LIGHT_STATES_FILE_PATTERN: Final = "*tls*.xml"
 _HEAD_BYTES: Final = 65536
 _LARGEST_TIME_S: Final = 1e9
 _STATE_BY_LETTER: Final = {
@@ -45,7 +45,9 @@ def add_light_states(recording: Recording, log: Path, is_log: Callable[[Path], b
     They are in the file with the log's name up to the first dot, or in the only file of light states in a folder with no other log.
     `is_log` returns whether a file is a log. A note reports files that are not read.
     """
-    files = [file for file in sorted(log.parent.glob(_FILE_PATTERN)) if file != log and _has_light_states(file)]
+    files = [
+        file for file in sorted(log.parent.glob(_LIGHT_STATES_FILE_PATTERN)) if file != log and _has_light_states(file)
+    ]
     log_files = [file for file in files if _name_to_first_dot(file) == _name_to_first_dot(log)]
     if (
         not log_files

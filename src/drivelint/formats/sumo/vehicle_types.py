@@ -13,7 +13,7 @@ from drivelint.phrases import listed
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
 
-_FILE_PATTERNS: Final = ("*.rou.xml", "*.add.xml", "*vtype*.xml")
+_TYPE_FILE_PATTERNS: Final = ("*.rou.xml", "*.add.xml", "*vtype*.xml")
 _COPY_SIGN: Final = "@"
 
 
@@ -80,7 +80,7 @@ def types_and_notes(log: Path, types_file: str | None) -> tuple[dict[str, Vehicl
     files: dict[str, str] = {}
     used = []
     notes = []
-    for file in sorted({file for pattern in _FILE_PATTERNS for file in log.parent.glob(pattern)}):
+    for file in sorted({file for pattern in _TYPE_FILE_PATTERNS for file in log.parent.glob(pattern)}):
         here = _read_types(file)
         used += [file.name] if here else []
         for name, vehicle_type in here.items():

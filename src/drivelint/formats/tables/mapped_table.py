@@ -75,7 +75,7 @@ def read(probe: Probe) -> Recording:
         sheet = open_sheet(path, mapping)
         notes = []
     recording = _MappedTable(path, mapping, sheet, _column_group_numbers(path, name, mapping, sheet)).read()
-    _refuse_misread(path, name, recording)
+    _refuse_if_most_rows_unread(path, name, recording)
     recording.format = name
     recording.findings += _assumption_findings(name, mapping)
     recording.notes = notes
@@ -98,7 +98,7 @@ def _assumption_findings(name: str, mapping: Mapping) -> list[QualityFinding]:
     return findings
 
 
-def _refuse_misread(path: Path, name: str, recording: Recording) -> None:
+def _refuse_if_most_rows_unread(path: Path, name: str, recording: Recording) -> None:
     """Raise `TraceError` if most rows cannot be read: the mapping is wrong, and the other rows would mislead."""
     lost = sum(finding.n for finding in recording.findings if finding.check_id in LOSS_CHECKS)
     kept = len(recording.states)
@@ -184,7 +184,7 @@ class _MappedTable:
             ids = self._actor_ids(group, n_rows)
             absent = ids.is_null().to_numpy(zero_copy_only=False)
             # in a wide table, an actor without name and place is absent
-            nameless = absent & ~bad_time & ~blank & (True if group == "" else self._has_place(group, n_rows))
+            nameless = absent & ~bad_time & ~blank & (True if group == "" else self._has_position(group, n_rows))
             self._report_rows(nameless, "the actor id is missing", "dropped_row")
             lost_rows |= nameless
             keep = ~(absent | bad_time)
@@ -208,7 +208,7 @@ class _MappedTable:
             names_indicator=self.mapping.indicator is not None,
         )
 
-    def _has_place(self, group: str, n_rows: int) -> Mask:
+    def _has_position(self, group: str, n_rows: int) -> Mask:
         placed = np.ones(n_rows, np.bool_)
         for name in ("x", "y"):
             column = mappings.fields(self.mapping)[name].column
