@@ -50,7 +50,7 @@ class Points:
 
 
 def _point_layout(first_offset: int, size: int, n_numbers: int) -> np.dtype[Any]:
-    """Return the layout of a point of `size` bytes with k numbers; `first_offset`: the offset of the first number in bytes."""
+    """Return the layout of a point of `size` bytes with `n_numbers` numbers; `first_offset`: the offset of the first number in bytes."""
     places = [first_offset + 9 * i for i in range(n_numbers)]
     return np.dtype(
         {"names": list("xyz"[:n_numbers]), "formats": [">f8"] * n_numbers, "offsets": places, "itemsize": size}
