@@ -119,7 +119,7 @@ def difference_text(
         waived=gate.waived if gate else {},
         groups=unknowns_by_reason(difference.new_unknowns),
         n_findings=n_findings,
-        rows_of_entries=surplus_rows_sentence,
+        surplus_rows_sentence=surplus_rows_sentence,
         exit=exit_summary(difference, failing, fail_on),
         most=MAX_LINES,
     )

@@ -107,10 +107,10 @@ def _render_parts(template: str, **values: Any) -> list[str]:
         "doubt": doubt_words,
         "escaped": escape_markdown,
         "finding_line": descriptions.finding_line,
-        "group_by_reason": descriptions.unknowns_by_reason,
+        "unknowns_by_reason": descriptions.unknowns_by_reason,
         "difference_headline": descriptions.difference_headline,
-        "judged_otherwise": descriptions.judged_less_sentence,
-        "since_baseline": descriptions.earlier_findings_sentence,
+        "judged_less_sentence": descriptions.judged_less_sentence,
+        "earlier_findings_sentence": descriptions.earlier_findings_sentence,
         "short": _short_reason,
         "utc_at": utc_at,
         "moment_ns": moment_ns,
@@ -121,7 +121,7 @@ def _render_parts(template: str, **values: Any) -> list[str]:
         end_part=_PART_SEPARATOR,
         anchor=anchor,
         n_findings=n_findings,
-        rows_of_entries=descriptions.surplus_rows_sentence,
+        surplus_rows_sentence=descriptions.surplus_rows_sentence,
         **values,
     )
     return [part.strip("\n") for part in text.split(_PART_SEPARATOR)]
