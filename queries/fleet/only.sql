@@ -13,7 +13,7 @@ WITH lone AS (
 ), objects AS (
     SELECT DISTINCT key, object_id FROM said
 ), stretch AS (
-    -- where the ego or the object of a finding is recorded there, as in `drivelint.gate.match.is_recorded`
+    -- where the ego or the object of a finding is recorded there, as in `drivelint.gate.match.is_recorded_during`
     SELECT l.key, l.no, r.actor_id, l.from_s, l.to_s, l.worst_s, (r.t_from_ns - coalesce(d.t_start_ns, 0)) / 1e9 AS seen_from_s,
         (r.t_to_ns - coalesce(d.t_start_ns, 0)) / 1e9 AS seen_to_s
     FROM lone l

@@ -18,7 +18,7 @@ from drivelint.formats import expand_traces, read_trace
 from drivelint.formats.folders import CANONICAL_FILES, is_canonical_folder
 from drivelint.formats.map_registry import root_element_name
 from drivelint.formats.osi import writer as osi_log
-from drivelint.formats.osi.metadata import LIBRARY, ego_independent_quality
+from drivelint.formats.osi.metadata import CONVERTED_LOG_LIBRARY, ego_independent_quality
 from drivelint.formats.tables import canonical, parquet
 from drivelint.phrases import name_list, one_line
 from drivelint.result.files import parquet_bytes_with_metadata
@@ -155,7 +155,7 @@ def _refuse_to_overwrite_others_files(source: Path, out: Path, target: Path) -> 
 
 def _is_our_mcap(path: Path) -> bool:
     with path.open("rb") as file:
-        return LIBRARY.encode() in file.read(_HEAD_BYTES)
+        return CONVERTED_LOG_LIBRARY.encode() in file.read(_HEAD_BYTES)
 
 
 def _notes_on_check_options(request: ConvertRequest) -> list[str]:
@@ -238,9 +238,9 @@ def _write_mcap(target: Path, trace: Trace, road: MapSource | None, *, as_record
 
 def _write_parquet(target: Path, trace: Trace, road: MapSource | None, *, as_recorded: bool) -> dict[str, int]:
     tables = {**trace.tables, "quality": ego_independent_quality(trace)}
-    tables["actor_state"] = canonical.with_frames_of_nobody(tables["actor_state"], trace)
+    tables["actor_state"] = canonical.with_empty_frames(tables["actor_state"], trace)
     names = [*CONVERTED_TABLES, *(["drive_condition"] if tables["drive_condition"].num_rows else [])]
-    about = {canonical.AS_RECORDED: "yes"} if as_recorded else {}
+    about = {canonical.AS_RECORDED_KEY: "yes"} if as_recorded else {}
     contents = {
         f"{name}.parquet": parquet_bytes_with_metadata(tables[name], name, {_CONVERTED_KEY: name, **about})
         for name in names

@@ -15,7 +15,7 @@ from drivelint.convert import ConvertRequest, convert
 from drivelint.drive.trace import IngestOptions
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats import read_trace
-from drivelint.formats.osi.writer import osi_ids
+from drivelint.formats.osi.writer import assign_osi_ids
 from drivelint.formats.protobuf.wire import varint
 from drivelint.result.publishing import OutputError
 from tests.convert.stock_reader import messages
@@ -287,7 +287,7 @@ def test_records_that_do_not_fit(tmp_path: Path, name: str, content: dict[str, s
 
 @given(st.sets(st.one_of(st.integers(0, 1 << 65).map(str), st.text()), min_size=1).map(sorted))
 def test_every_actor_has_a_number_of_its_own(actors: list[str]) -> None:
-    numbers = osi_ids(actors)
+    numbers = assign_osi_ids(actors)
     assert len(set(numbers.values())) == len(actors)
     assert all(0 <= number < 1 << 64 for number in numbers.values())
 

@@ -9,7 +9,7 @@ import numpy as np
 from mcap.writer import CompressionType, Writer
 
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS, SIZE_COLUMNS, STATE_COLUMNS, States
-from drivelint.formats.osi.encode import ground_truths, moving_objects
+from drivelint.formats.osi.encode import encode_ground_truths, moving_objects
 from drivelint.formats.osi.schema import GROUND_TRUTH, VERSION, descriptor_set
 from tests.demo.opendrive import GENERATOR
 
@@ -66,9 +66,9 @@ def _frames(scene: Scene) -> Iterator[tuple[int, bytes]]:
         said.actor[by_frame].astype(np.uint64) + np.uint64(HOST_ID),
         {name: said.numbers.get(name, unknown)[by_frame] for name in (*STATE_COLUMNS, *SIZE_COLUMNS)},
         {name: codes[by_frame] for name, codes in said.codes.items()},
-        heights=True,
+        log_has_heights=True,
     )
-    messages = ground_truths(said.t_ns[:n], HOST_ID, objects, np.arange(n + 1) * actors)
+    messages = encode_ground_truths(said.t_ns[:n], HOST_ID, objects, np.arange(n + 1) * actors)
     yield from zip(said.t_ns[:n].tolist(), messages.to_pylist(), strict=True)
 
 

@@ -166,7 +166,7 @@ def test_changed_is_more_than_can_be_overlooked(over: dict[str, Any], why: str) 
 def test_worse_is_more_than_can_be_overlooked(margin: float | None, worse: bool) -> None:
     found = diff.compare(run([at(8, 10)]), run([at(8, 12, margin=margin)]))
     assert [entry.worse for entry in found.entries] == [worse]
-    assert descriptions.headline(found) == f"0 new, 1 changed{' (1 worse)' if worse else ''}"
+    assert descriptions.difference_headline(found) == f"0 new, 1 changed{' (1 worse)' if worse else ''}"
 
 
 def test_what_still_fails_at_another_step_is_a_class_of_its_own() -> None:

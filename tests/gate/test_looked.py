@@ -80,7 +80,7 @@ def test_gone_and_not_recorded_is_exit_code_4() -> None:
 
 
 def less(base: Result, new: Result) -> str:
-    return descriptions.judged_otherwise(diff.compare(base, new))
+    return descriptions.judged_less_sentence(diff.compare(base, new))
 
 
 DECIDED = [

@@ -106,7 +106,7 @@ def test_docs_prints_one_vocabulary_and_the_dictionary_all(docs: Docs) -> None:
     page = dictionary.page()
     for name, known in vocabularies().items():
         assert f"\n[{name}]\n  {', '.join(known.words)}" in docs("dictionary")[1]
-        assert f"\n| `{name}` | {dictionary.escaped(', '.join(known.words))}" in page
+        assert f"\n| `{name}` | {dictionary.escape_markdown(', '.join(known.words))}" in page
 
 
 def test_an_unknown_table_is_told_with_the_nearest(docs: Docs) -> None:

@@ -38,16 +38,16 @@ def test_a_section_has_each_word_under_its_heading_once() -> None:
 
 
 def test_the_index_has_every_page_with_its_title_first(pages: Path) -> None:
-    script = (pages / search.INDEX).read_bytes()
+    script = (pages / search.INDEX_FILE).read_bytes()
     found = dict(entries(script))
     assert found.keys() == {file.stem for file in pages.glob("*.html")}
     assert {topic.name: topic.title for topic in guide.topics()}.items() <= {
         n: p[0][1] for n, p in found.items()
     }.items()
     assert len(script) < 600_000
-    assert search.index({name: html.parse(guide.text(name)) for name in guide.TOPICS[:2]}) == search.index(
+    assert search.index_script(
         {name: html.parse(guide.text(name)) for name in guide.TOPICS[:2]}
-    )
+    ) == search.index_script({name: html.parse(guide.text(name)) for name in guide.TOPICS[:2]})
 
 
 @pytest.fixture(params=[(1280, False), (390, True)], ids=["wide and light", "narrow and dark"])

@@ -39,7 +39,7 @@ def tree(file: Path) -> lxml.html.HtmlElement:
 @pytest.mark.ci
 def test_a_page_per_topic_and_the_reference(pages: Path) -> None:
     names = {*guide.TOPICS, *site.REFERENCE_PAGES, "index"}
-    beside = {html.STYLESHEET, search.SCRIPT, search.INDEX, *site.PICTURES}
+    beside = {html.STYLESHEET, search.SCRIPT_FILE, search.INDEX_FILE, *site.PICTURES}
     assert {file.name for file in pages.iterdir()} == {f"{n}.html" for n in names} | beside
     for topic in guide.topics():
         assert tree(pages / f"{topic.name}.html").findtext(".//h1") == topic.title
@@ -62,14 +62,16 @@ def test_no_dead_links(pages: Path) -> None:
 def test_nothing_is_fetched_and_the_search_is_the_only_script(pages: Path) -> None:
     for file in pages.glob("*.html"):
         page = tree(file)
-        assert [dict(script.attrib) for script in page.xpath("//script")] == [{"src": search.SCRIPT, "defer": "defer"}]
+        assert [dict(script.attrib) for script in page.xpath("//script")] == [
+            {"src": search.SCRIPT_FILE, "defer": "defer"}
+        ]
         assert page.xpath("//*/@*[starts-with(name(), 'on')]") == []
         assert page.xpath("//script/text()") == []
         assert [src for src in page.xpath("//*/@src | //link/@href") if ":" in src] == []
         assert page.xpath("//@id") == list(dict.fromkeys(page.xpath("//@id"))), f"{file.name}: an id twice"
     assert "url(" not in (pages / html.STYLESHEET).read_text(encoding="utf-8")
     assert "@import" not in (pages / html.STYLESHEET).read_text(encoding="utf-8")
-    script = (pages / search.SCRIPT).read_text(encoding="utf-8")
+    script = (pages / search.SCRIPT_FILE).read_text(encoding="utf-8")
     assert not re.search(r"\b(?:fetch|import|XMLHttpRequest|WebSocket|eval|innerHTML)\b|://", script)
 
 
@@ -110,9 +112,11 @@ def test_the_graph_names_every_derived_table_and_all_that_it_reads(pages: Path) 
 
 def test_a_table_reads_only_lower_levels() -> None:
     level = {
-        name: n for n, names in enumerate(dictionary.derivation_levels(dictionary.tables_read()), 1) for name in names
+        name: n
+        for n, names in enumerate(dictionary.derivation_levels(dictionary.sources_of_derived_tables()), 1)
+        for name in names
     }
-    for name, tables in dictionary.tables_read().items():
+    for name, tables in dictionary.sources_of_derived_tables().items():
         assert all(level.get(table, 0) < level[name] for table in tables), name
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import drivelint
-from drivelint.inspect.content import content
+from drivelint.inspect.content import file_content
 from drivelint.report import html
 from drivelint.result.load import load_result
 from tests.pictures.camera_bag import FRONT, LEFT, T0, number_in, taken_s, write_bag
@@ -65,7 +65,7 @@ def test_the_report_shows_them_with_their_times_and_each_once(out: Path) -> None
 
 
 def test_inspect_says_that_a_camera_is_read_as_pictures(bag: Path) -> None:
-    read = {channel.topic: channel.read_as for channel in content(bag, None, [], has_reader=True).channels}
+    read = {channel.topic: channel.read_as for channel in file_content(bag, None, [], has_reader=True).channels}
     assert (read[FRONT], read[LEFT]) == ("pictures", "pictures")
 
 

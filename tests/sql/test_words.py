@@ -114,11 +114,13 @@ def test_what_is_said_elsewhere_are_words_of_the_vocabularies() -> None:
     assert list(words.words("sign_kind")) == list(toml_beside(beside, "signcodes.toml"))
     names = toml_beside(beside, "signnames.toml")
     assert set(names["names"]) <= known["sign_kind"]
-    turns = [*names["arrows"].values(), *names["directions"].values(), *map_kinds.TURNS.values()]
+    turns = [*names["arrows"].values(), *names["directions"].values(), *map_kinds.TURNS_BY_LIGHT_ICON.values()]
     assert {turn for each in turns for turn in each} == known["turn"]
-    assert {*map_kinds.SIGN_KINDS.values(), *map_kinds.LIGHT_KINDS.values()} <= known["sign_kind"]
-    assert {*network.DRIVABLE_LANE_TYPES, *map_kinds.DRIVABLE, *map_kinds.LANE_KINDS.values()} <= known["lane_type"]
-    assert set(map_kinds.LANE_CHANGES.values()) == known["lanes_changed"]
+    assert {*map_kinds.SIGN_KINDS.values(), *map_kinds.LIGHT_KIND_BY_ICON.values()} <= known["sign_kind"]
+    assert {*network.DRIVABLE_LANE_TYPES, *map_kinds.DRIVABLE_LANE_KINDS, *map_kinds.LANE_KINDS.values()} <= known[
+        "lane_type"
+    ]
+    assert set(map_kinds.LANE_CHANGE_BY_PASSING_RULE.values()) == known["lanes_changed"]
     assert set(map_kinds._MARKINGS.values()) <= known["marking"]
 
 

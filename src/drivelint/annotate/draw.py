@@ -55,14 +55,14 @@ def colour_field(field_number: int, colour: Colour) -> bytes:
 
 def pose(x: float, y: float, z: float, yaw: float = 0.0, *, field_number: int = 1) -> bytes:
     """Return a primitive's pose, rotated about the vertical axis: field 1 of all primitives except lines."""
-    turned = wire.doubles(math.sin(yaw / 2), math.cos(yaw / 2), first=3)
+    turned = wire.doubles(math.sin(yaw / 2), math.cos(yaw / 2), first_number=3)
     return wire.nested(field_number, wire.nested(1, wire.doubles(x, y, z)) + wire.nested(2, turned))
 
 
 def line(xyz: Points, colour: Colour, *, thickness: float, line_type: int, pixels: bool = True) -> bytes:
     """Return a line. `thickness`: pixels, or metres without `pixels`. Points are relative to the first, which keeps them exact."""
     origin = pose(*map(float, xyz[0]), field_number=2)
-    head = wire.integer(1, line_type) + origin + wire.doubles(thickness, first=3) + wire.integer(4, int(pixels))
+    head = wire.integer(1, line_type) + origin + wire.doubles(thickness, first_number=3) + wire.integer(4, int(pixels))
     return wire.nested(_LINES, head + wire.points(5, xyz - xyz[0]) + colour_field(6, colour))
 
 
@@ -77,13 +77,13 @@ def ribbon(left: Points, right: Points, colour: Colour) -> bytes:
 
 def label(x: float, y: float, z: float, text: str, colour: Colour) -> bytes:
     """Return a text that faces the viewer and has the same size at any distance."""
-    look = wire.integer(2, 1) + wire.doubles(_LABEL_PX, first=3) + wire.integer(4, 1)
+    look = wire.integer(2, 1) + wire.doubles(_LABEL_PX, first_number=3) + wire.integer(4, 1)
     return wire.nested(_TEXTS, pose(x, y, z) + look + colour_field(5, colour) + wire.text(6, text))
 
 
 def arrow(foot: tuple[float, float, float], yaw: float, length: float, colour: Colour) -> bytes:
     """Return a horizontal arrow from a point in direction `yaw`."""
-    shape = wire.doubles(0.6 * length, 0.15, 0.4 * length, 0.5, first=2)
+    shape = wire.doubles(0.6 * length, 0.15, 0.4 * length, 0.5, first_number=2)
     return wire.nested(_ARROWS, pose(*foot, yaw) + shape + colour_field(6, colour))
 
 

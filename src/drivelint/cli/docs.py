@@ -53,7 +53,7 @@ def docs(
 
         typer.echo(str(site.write(html, _commands(ctx.find_root().command, "drivelint"))))
     elif topic is None:
-        typer.echo(guide.listing())
+        typer.echo(guide.topic_listing())
         typer.echo(
             "drivelint docs TOPIC prints one; drivelint docs dictionary [TABLE] the tables, catalogue the rules, reasons the reason codes, "
             "macros the macros; "

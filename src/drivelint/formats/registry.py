@@ -12,10 +12,10 @@ from drivelint.formats.files import file_states, identify
 from drivelint.formats.folders import is_drive_folder
 from drivelint.formats.limits import read_within_limits
 from drivelint.formats.mcap.bag_folder import METADATA_FILE, is_bag
-from drivelint.formats.osi.trace_file import is_osi_trace
+from drivelint.formats.osi.trace_file import may_be_osi_trace
 from drivelint.formats.probe import HEAD_BYTES, Probe, Reader, wrapping_and_remedy
 from drivelint.formats.search import why_not_followed, why_unreadable
-from drivelint.formats.tables.mapping import refuse_if_none
+from drivelint.formats.tables.mapping import refuse_unknown_mapping
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -80,7 +80,7 @@ def _read_unchanged_log(probe: Probe, before: list[tuple[str, int, int]]) -> Tra
         if "osi-mcap" not in reader.formats and not probe.head.startswith(FIRST_BYTES_BY_SUFFIX[".mcap"]):
             recording.findings.append(UNPROTECTED_FINDING)
         if options.mapping is not None and not reader.takes_mapping:
-            refuse_if_none(options.mapping)
+            refuse_unknown_mapping(options.mapping)
             recording.notes.append(
                 f"mapping {options.mapping!r} is not used: the log has the format {recording.format}"
             )
@@ -141,7 +141,7 @@ def _probe(path: Path, options: IngestOptions) -> Probe:
     if (told := wrapping_and_remedy(head)) is not None:
         raise TraceError(f"{path}: {told}")
     suffix = path.suffix.lower()
-    if suffix == ".osi" and not is_osi_trace(head, path.stat().st_size):
+    if suffix == ".osi" and not may_be_osi_trace(head, path.stat().st_size):
         raise TraceError(
             f"{path}: not an OSI trace: it should begin with a message's length and the message, and begins {head[:32]!r} at "
             "byte 0: copy it again"

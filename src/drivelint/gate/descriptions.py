@@ -39,11 +39,11 @@ DIFF_STATUS_TITLES: Final = {
 """Diff status -> heading, in the order of the text. Unchanged findings are only counted."""
 
 
-def gating_findings(difference: Difference, fail_on: str, gate: Gate | None = None) -> list[ComparedFinding]:
+def gating_findings(difference: Difference, least_severity: str, gate: Gate | None = None) -> list[ComparedFinding]:
     """Return the new findings of stable rules at or above a severity that no waiver in the newer result covers."""
-    if fail_on == "never":
+    if least_severity == "never":
         return []
-    severe = counts.SEVERITIES[: counts.SEVERITIES.index(fail_on) + 1]
+    severe = counts.SEVERITIES[: counts.SEVERITIES.index(least_severity) + 1]
     waived = gate.waived if gate else {}
     return [
         e
@@ -52,12 +52,12 @@ def gating_findings(difference: Difference, fail_on: str, gate: Gate | None = No
     ]
 
 
-def headline(difference: Difference) -> str:
+def difference_headline(difference: Difference) -> str:
     """Return one sentence with the counts of new, changed, unchanged, fixed, and gone but not fixed findings."""
-    return f"{difference.event_counts()['new']} new, {since_baseline(difference)}"
+    return f"{difference.event_counts()['new']} new, {earlier_findings_sentence(difference)}"
 
 
-def since_baseline(difference: Difference) -> str:
+def earlier_findings_sentence(difference: Difference) -> str:
     """Return a sentence about what became of the earlier result's findings. New findings are not counted: a waiver may cover them."""
     n = difference.event_counts()
     passes = n_findings(entry for entry in difference.with_diff_status("fixed") if entry.there == "pass")
@@ -65,23 +65,31 @@ def since_baseline(difference: Difference) -> str:
     return counts_sentence(n, worse, (passes, n["fixed"] - passes))
 
 
-def counts_sentence(n: Mapping[str, int], worse: int, fixed: tuple[int, int]) -> str:
-    """Return a sentence with the non-zero counts of an earlier result's findings. `n`: diff status -> number.
+def counts_sentence(n_by_status: Mapping[str, int], n_worse: int, n_fixed: tuple[int, int]) -> str:
+    """Return a sentence with the non-zero counts of an earlier result's findings. `n_by_status`: diff status -> number.
 
-    `worse`: how many of the changed findings are worse. `fixed`: how many findings pass now, and how many have a rule that does not apply
-    any more.
+    `n_worse`: how many of the changed findings are worse. `n_fixed`: how many findings pass now, and how many have a rule that does not
+    apply any more.
     """
-    passes, idle = (f"{k} now {words}" if k else "" for k, words in zip(fixed, ("pass", "not applicable"), strict=True))
-    said = [f"{n['changed']} changed{f' ({worse} worse)' if worse else ''}"] if n["changed"] else []
-    said += [f"{n['unchanged']} unchanged"] if n["unchanged"] else []
-    said += [f"{n['fixed']} fixed ({', '.join(filter(None, (passes, idle)))})"] if n["fixed"] else []
-    gone = [f"{n[status]} {words}" for status, words in NOT_FIXED_WORDS.items() if n[status]]
+    passes, idle = (
+        f"{k} now {words}" if k else "" for k, words in zip(n_fixed, ("pass", "not applicable"), strict=True)
+    )
+    said = (
+        [f"{n_by_status['changed']} changed{f' ({n_worse} worse)' if n_worse else ''}"]
+        if n_by_status["changed"]
+        else []
+    )
+    said += [f"{n_by_status['unchanged']} unchanged"] if n_by_status["unchanged"] else []
+    said += (
+        [f"{n_by_status['fixed']} fixed ({', '.join(filter(None, (passes, idle)))})"] if n_by_status["fixed"] else []
+    )
+    gone = [f"{n_by_status[status]} {words}" for status, words in NOT_FIXED_WORDS.items() if n_by_status[status]]
     parts = [", ".join(said)] if said else []
     parts += [f"gone but not fixed: {', '.join(gone)}"] if gone else []
     return "; ".join(parts) or "no earlier finding"
 
 
-def judged_otherwise(difference: Difference) -> str:
+def judged_less_sentence(difference: Difference) -> str:
     """Return a sentence about what the newer result judged less than the earlier one, or on another map; '' if there is nothing."""
     n, critical = sum(difference.undecided.values()), difference.undecided.get("critical", 0)
     more = f" ({critical} critical)" if critical else ""
@@ -105,13 +113,13 @@ def difference_text(
     text = text_template(__file__, "difference.txt.j2", finding_line=finding_line).render(
         diff=difference,
         verdicts=counts.VERDICTS,
-        headline=headline(difference),
-        less=judged_otherwise(difference),
+        headline=difference_headline(difference),
+        less=judged_less_sentence(difference),
         titles=DIFF_STATUS_TITLES,
         waived=gate.waived if gate else {},
-        groups=group_by_reason(difference.new_unknowns),
+        groups=unknowns_by_reason(difference.new_unknowns),
         n_findings=n_findings,
-        rows_of_entries=rows_of_entries,
+        surplus_rows_sentence=surplus_rows_sentence,
         exit=exit_summary(difference, failing, fail_on),
         most=MAX_LINES,
     )
@@ -120,36 +128,36 @@ def difference_text(
 
 def exit_summary(difference: Difference, failing: Sequence[ComparedFinding], fail_on: str) -> str:
     """Return the exit code of a difference and its reason, in one line."""
-    return exit_sentence(n_findings(failing), fail_on, not_looked_at(difference, fail_on))
+    return exit_sentence(n_findings(failing), fail_on, unjudged_findings_phrase(difference, fail_on))
 
 
 def exit_code(difference: Difference, failing: Sequence[ComparedFinding], fail_on: str) -> ExitCode:
     """Return FAILED for new findings that gate; NOT_JUDGED if the newer result did not judge an earlier finding again; else OK."""
     if failing:
         return ExitCode.FAILED
-    return ExitCode.NOT_JUDGED if not_looked_at(difference, fail_on) else ExitCode.OK
+    return ExitCode.NOT_JUDGED if unjudged_findings_phrase(difference, fail_on) else ExitCode.OK
 
 
-def not_looked_at(difference: Difference, fail_on: str) -> str:
+def unjudged_findings_phrase(difference: Difference, least_severity: str) -> str:
     """Return a phrase that counts the earlier findings that the newer result did not judge or cannot decide; '' if none of these gates."""
-    if fail_on == "never":
+    if least_severity == "never":
         return ""
-    severe = counts.SEVERITIES[: counts.SEVERITIES.index(fail_on) + 1]
+    severe = counts.SEVERITIES[: counts.SEVERITIES.index(least_severity) + 1]
     n = n_findings(entry for entry in difference.unfixed_findings() if entry.stable and entry.severity in severe)
     said = [f"{plural(n, 'earlier finding')} gone but not fixed"] if n else []
     said += ["the newer run was interrupted"] if difference.is_partial else []
     return " and ".join(said)
 
 
-def exit_sentence(n_failing: int, fail_on: str, not_looked_at: str = "") -> str:
+def exit_sentence(n_failing: int, fail_on: str, unjudged_phrase: str = "") -> str:
     """Return the exit code and its reason in one line. `n_failing`: number of new findings that gate."""
     if fail_on == "never":
         return "exit 0: new findings do not gate (--fail-on never)"
     what = f"at or above severity {fail_on}"
     if n_failing:
         return f"exit 1: {plural(n_failing, 'new finding')} {what}"
-    if not_looked_at:
-        return f"exit 4: no new finding {what}, but {not_looked_at}"
+    if unjudged_phrase:
+        return f"exit 4: no new finding {what}, but {unjudged_phrase}"
     return f"exit 0: no new finding {what}"
 
 
@@ -176,23 +184,23 @@ def finding_line(entry: ComparedFinding) -> str:
     draft = "" if entry.stable else ", draft"
     margin = "" if entry.margin is None else f", margin {number(entry.margin, entry.unit)}"
     head = f"{entry.severity}{draft}: {entry.drive_id} at {entry.t_s:.2f} s: {entry.rule_id}{profile}, {who}{margin}"
-    return f"{head}{_there(entry)}"
+    return f"{head}{_other_verdict_phrase(entry)}"
 
 
-def rows_of_entries(entries: Sequence[ComparedFinding]) -> str:
+def surplus_rows_sentence(entries: Sequence[ComparedFinding]) -> str:
     """Return a sentence that explains why there are more rows than findings; '' if there are not."""
     left_out = [entry for entry in entries if entry.event_id != entry.finding_id]
     is_of_profiles = any(entry.profile is not None for entry in left_out)
     return counts.rows_and_findings_sentence(len(entries), n_findings(entries), has_profile_repeats=is_of_profiles)
 
 
-def _there(entry: ComparedFinding) -> str:
+def _other_verdict_phrase(entry: ComparedFinding) -> str:
     if entry.standing == "changed":
         return f": {entry.why}"
-    return f" ({'the base says' if entry.standing == 'new' else 'now'} {verdict_there(entry)}: {entry.why})"
+    return f" ({'the base says' if entry.standing == 'new' else 'now'} {other_verdict_words(entry)}: {entry.why})"
 
 
-def verdict_there(entry: ComparedFinding) -> str:
+def other_verdict_words(entry: ComparedFinding) -> str:
     """Return, in words, the verdict of the other result at the time and place of a finding."""
     return {"not_applicable": "not applicable", "none": "nothing"}.get(entry.there, entry.there)
 
@@ -212,10 +220,10 @@ def waiver_warnings(gate: Gate) -> Iterator[str]:
             if waiver.unknown_rule:
                 yield f"{waiver.where}: {waiver.rule} ({waiver.owner}): {waiver.unknown_rule}"
                 continue
-            yield f"{waiver.where}: no finding matches {waiver_scope(waiver)} ({waiver.owner}); correct or remove it"
+            yield f"{waiver.where}: no finding matches {waiver_scope_phrase(waiver)} ({waiver.owner}); correct or remove it"
 
 
-def waiver_scope(waiver: Waiver) -> str:
+def waiver_scope_phrase(waiver: Waiver) -> str:
     """Return a phrase with the rule, drive, ego, object, profile and times that a waiver covers."""
     parts = [("drive", waiver.drive), ("ego", waiver.ego), ("object", waiver.object), ("profile", waiver.profile)]
     said = "".join(f", {name} {value}" for name, value in parts if value is not None)
@@ -223,7 +231,7 @@ def waiver_scope(waiver: Waiver) -> str:
     return f"{waiver.rule}{said}{since}" + ("" if waiver.to_s is None else f", to {waiver.to_s:g} s")
 
 
-def waiver_reason(waiver: Waiver) -> str:
+def waiver_reason_phrase(waiver: Waiver) -> str:
     """Return a phrase about the waiver: until when, by whom and why a finding does not gate."""
     return f"waived until {waiver.expires} by {waiver.owner}: {waiver.reason}"
 
@@ -232,7 +240,7 @@ def reason_not_gating(gate: Gate | None, finding_id: str) -> str:
     """Return why a finding does not gate: its waiver, else the baseline, else its low confidence; '' if the gate has no reason."""
     waiver = gate.waiver(finding_id) if gate else None
     if waiver is not None:
-        return waiver_reason(waiver)
+        return waiver_reason_phrase(waiver)
     entry = gate.compared_finding(finding_id) if gate else None
     if entry is not None and entry.standing != "new":
         return "known: the baseline contains it" + (f"; worse now: {entry.why}" if entry.worse else "")
@@ -241,7 +249,7 @@ def reason_not_gating(gate: Gate | None, finding_id: str) -> str:
     return ""
 
 
-def excuse(result: Result, row: Row, rule: Row | None) -> str:
+def why_not_gating(result: Result, row: Row, rule: Row | None) -> str:
     """Return why a finding or a failed verdict does not gate; '' if it gates. `rule`: its row of the table `rule`."""
     if "finding_id" in row and (reason := reason_not_gating(result.gate, row["finding_id"])):
         return reason
@@ -267,7 +275,7 @@ def gate_counts(gate: Gate) -> dict[str, Any]:
     }
 
 
-def group_by_reason(new_unknowns: Iterable[NewUnknowns]) -> list[tuple[str, list[str], int]]:
+def unknowns_by_reason(new_unknowns: Iterable[NewUnknowns]) -> list[tuple[str, list[str], int]]:
     """Return (reason, its rules, number of additional unknown verdicts) for each reason, the most frequent first."""
     found = [
         (reason, sorted({each.rule_id for each in alike}), sum(each.n - each.base_n for each in alike))

@@ -28,9 +28,9 @@ class TimedFinding(NamedTuple):
     """A finding with its times in seconds since the drive's first time stamp."""
 
     row: Row
-    start: float
-    end: float
-    worst: float
+    start_s: float
+    end_s: float
+    worst_s: float
 
 
 def seconds_since_start(t_ns: int, drive: Row) -> float:
@@ -73,7 +73,7 @@ def match_findings(base: Sequence[TimedFinding], new: Sequence[TimedFinding], *,
     for j, had in enumerate(base):
         groups[finding_key(had.row)].append(j)
     pairs = [
-        (had.row["finding_id"] != now.row["finding_id"], abs(had.worst - now.worst), gap_s(had, now), i, j)
+        (had.row["finding_id"] != now.row["finding_id"], abs(had.worst_s - now.worst_s), gap_s(had, now), i, j)
         for i, now in enumerate(new)
         for j in groups.get(finding_key(now.row), ())
         for had in (base[j],)
@@ -88,49 +88,49 @@ def match_findings(base: Sequence[TimedFinding], new: Sequence[TimedFinding], *,
     return taken
 
 
-def may_match(had: TimedFinding, now: TimedFinding, *, same_log: bool) -> bool:
+def may_match(base: TimedFinding, new: TimedFinding, *, same_log: bool) -> bool:
     """Return whether two findings are close enough in time and place to be the same.
 
     In the same log: at most `NEAR_S` apart. In another log, such as a repeated run: the worst steps are at most `NEAR_S` and `NEAR_M`
     apart, or the findings share at least half of their total time. The worst step can be anywhere in a long stretch.
     """
     if same_log:
-        return gap_s(had, now) <= NEAR_S
-    if abs(had.worst - now.worst) <= NEAR_S and _distance(had.row, now.row) <= NEAR_M:
+        return gap_s(base, new) <= NEAR_S
+    if abs(base.worst_s - new.worst_s) <= NEAR_S and _distance_m(base.row, new.row) <= NEAR_M:
         return True
-    common = min(had.end, now.end) - max(had.start, now.start)
-    whole = max(had.end, now.end) - min(had.start, now.start)
+    common = min(base.end_s, new.end_s) - max(base.start_s, new.start_s)
+    whole = max(base.end_s, new.end_s) - min(base.start_s, new.start_s)
     return 0 < whole <= 2 * common
 
 
 def is_part_of(part: TimedFinding, whole: TimedFinding, *, same_log: bool) -> bool:
     """Return whether a finding is a part of a longer finding of the other result."""
     slack = NEAR_S if same_log else 0.0
-    longer = finding_key(part.row) == finding_key(whole.row) and part.end - part.start < whole.end - whole.start
-    return longer and part.start >= whole.start - slack and part.end <= whole.end + slack
+    longer = finding_key(part.row) == finding_key(whole.row) and part.end_s - part.start_s < whole.end_s - whole.start_s
+    return longer and part.start_s >= whole.start_s - slack and part.end_s <= whole.end_s + slack
 
 
-def is_recorded(stretches: Iterable[tuple[float, float]], at: TimedFinding) -> bool:
+def is_recorded_during(recorded_spans: Iterable[tuple[float, float]], finding: TimedFinding) -> bool:
     """Return whether an actor is recorded at a finding: at its worst step, and without a gap of more than `NEAR_S` during the finding.
 
-    `stretches`: (start, end) in seconds, in time order.
+    `recorded_spans`: (start, end) in seconds, in time order.
     """
-    seen_to, at_worst = at.start, False
-    for start, end in stretches:
-        at_worst |= start <= at.worst <= end
-        if end >= at.start and start <= at.end:
+    seen_to, at_worst = finding.start_s, False
+    for start, end in recorded_spans:
+        at_worst |= start <= finding.worst_s <= end
+        if end >= finding.start_s and start <= finding.end_s:
             if start - seen_to > NEAR_S:
                 return False
             seen_to = end
-    return at_worst and at.end - seen_to <= NEAR_S
+    return at_worst and finding.end_s - seen_to <= NEAR_S
 
 
 def gap_s(a: TimedFinding, b: TimedFinding) -> float:
     """Return the seconds between two findings; 0 if they overlap."""
-    return max(0.0, max(a.start, b.start) - min(a.end, b.end))
+    return max(0.0, max(a.start_s, b.start_s) - min(a.end_s, b.end_s))
 
 
-def _distance(a: Row, b: Row) -> float:
+def _distance_m(a: Row, b: Row) -> float:
     """Return the distance in metres between two findings; 0 if one has no place, so that only the time decides."""
     if None in {a["x_m"], a["y_m"], b["x_m"], b["y_m"]}:
         return 0.0

@@ -44,10 +44,10 @@ if TYPE_CHECKING:
 
     Row = Mapping[str, Any]
 
-_MUST: Final = ("rule", "reason", "owner", "expires")
-_PATTERNS: Final = ("drive", "ego", "object", "profile")
-_TIMES: Final = ("from_s", "to_s")
-_HEAD: Final = re.compile(r"\s*\[\[\s*(?:tool\.drivelint\.)?(waiver|\"waiver\"|'waiver')\s*\]\]")
+_REQUIRED_KEYS: Final = ("rule", "reason", "owner", "expires")
+_PATTERN_KEYS: Final = ("drive", "ego", "object", "profile")
+_TIME_KEYS: Final = ("from_s", "to_s")
+_WAIVER_HEAD: Final = re.compile(r"\s*\[\[\s*(?:tool\.drivelint\.)?(waiver|\"waiver\"|'waiver')\s*\]\]")
 
 
 def read(file: Path, *, only_waivers: bool = True) -> list[Waiver]:
@@ -74,8 +74,8 @@ def read(file: Path, *, only_waivers: bool = True) -> list[Waiver]:
         raise UsageError(f"{file}: waiver must be tables, each headed [[waiver]]")
     if only_waivers and not tables:
         raise UsageError(f"{file}: no table [[waiver]] in it")
-    places = _places(text, len(tables))
-    return [_waiver(table, file, place) for table, place in zip(tables, places, strict=True)]
+    places = _lines_of_heads_and_keys(text, len(tables))
+    return [_parse_waiver(table, file, place) for table, place in zip(tables, places, strict=True)]
 
 
 def apply(waivers: Sequence[Waiver], result: Result, today: date) -> tuple[tuple[Waiver, ...], dict[str, int]]:
@@ -95,7 +95,7 @@ def apply(waivers: Sequence[Waiver], result: Result, today: date) -> tuple[tuple
         replace(
             waiver,
             findings=found[n],
-            unknown_rule=_unknown_rule(waiver.rule, result),
+            unknown_rule=_unknown_rule_sentence(waiver.rule, result),
             state="expired" if expired[n] else "active" if found[n] else "unmatched",
         )
         for n, waiver in enumerate(waivers)
@@ -103,7 +103,7 @@ def apply(waivers: Sequence[Waiver], result: Result, today: date) -> tuple[tuple
     return tuple(stated), waived
 
 
-def _unknown_rule(rule_id: str, result: Result) -> str:
+def _unknown_rule_sentence(rule_id: str, result: Result) -> str:
     """Return a sentence that no rule has this id, with the most similar id; '' if the rule exists, or the id is a pattern."""
     run_rules = result.rules["rule_id"].to_pylist()
     if rule_id in run_rules or any(sign in rule_id for sign in "*?["):
@@ -131,33 +131,33 @@ def _matches(waiver: Waiver, row: Row, drive: Row) -> bool:
     return after and (waiver.to_s is None or seconds_since_start(row["t_end_ns"], drive) <= waiver.to_s)
 
 
-def _waiver(table: Row, file: Path, place: tuple[int, Mapping[str, int]]) -> Waiver:
-    head, lines = place
+def _parse_waiver(table: Row, file: Path, lines_of_head_and_keys: tuple[int, Mapping[str, int]]) -> Waiver:
+    head, lines = lines_of_head_and_keys
 
-    def refuse(key: str, why: str) -> UsageError:
+    def error_at_key(key: str, why: str) -> UsageError:
         return UsageError(f"{file}:{lines.get(key, head)}: waiver: {why}")
 
-    known = (*_MUST, *_PATTERNS, *_TIMES)
+    known = (*_REQUIRED_KEYS, *_PATTERN_KEYS, *_TIME_KEYS)
     for key in table:
         if key not in known:
-            raise refuse(key, f"unknown key {key!r}; {hint(key, known)}")
-    if missing := [key for key in _MUST if key not in table]:
-        raise refuse("", f"{' and '.join(missing)} missing: a waiver needs an owner, a reason and a date")
-    for key in ("rule", "reason", "owner", *_PATTERNS):
+            raise error_at_key(key, f"unknown key {key!r}; {hint(key, known)}")
+    if missing := [key for key in _REQUIRED_KEYS if key not in table]:
+        raise error_at_key("", f"{' and '.join(missing)} missing: a waiver needs an owner, a reason and a date")
+    for key in ("rule", "reason", "owner", *_PATTERN_KEYS):
         if key in table and not (isinstance(table[key], str) and table[key].strip()):
-            raise refuse(key, f"{key} = {table[key]!r}: must be a text, and not an empty one")
-    for key in _TIMES:
+            raise error_at_key(key, f"{key} = {table[key]!r}: must be a text, and not an empty one")
+    for key in _TIME_KEYS:
         if key in table and (
             isinstance(table[key], bool) or not isinstance(table[key], int | float) or not isfinite(table[key])
         ):
-            raise refuse(key, f"{key} = {table[key]!r}: must be seconds since the drive's first time stamp")
+            raise error_at_key(key, f"{key} = {table[key]!r}: must be seconds since the drive's first time stamp")
     if table.get("from_s", 0) > table.get("to_s", float("inf")):
-        raise refuse("to_s", "to_s is before from_s")
+        raise error_at_key("to_s", "to_s is before from_s")
     try:
         expires = parse_date(table["expires"])
     except ValueError as error:
-        raise refuse("expires", f"expires = {table['expires']!r}: must be a day such as 2027-03-31") from error
-    words = {key: table[key] for key in ("rule", "reason", "owner", *_PATTERNS, *_TIMES) if key in table}
+        raise error_at_key("expires", f"expires = {table['expires']!r}: must be a day such as 2027-03-31") from error
+    words = {key: table[key] for key in ("rule", "reason", "owner", *_PATTERN_KEYS, *_TIME_KEYS) if key in table}
     return Waiver(where=f"{file}:{head}", expires=expires.isoformat(), **words)
 
 
@@ -170,12 +170,12 @@ def parse_date(value: object) -> date:
     raise ValueError(value)
 
 
-def _places(text: str, n: int) -> list[tuple[int, dict[str, int]]]:
+def _lines_of_heads_and_keys(text: str, n_waivers: int) -> list[tuple[int, dict[str, int]]]:
     """Return, for each waiver, the line of its head and of each key; line 1 if the heads cannot be found."""
     lines = text.splitlines()
-    heads = [number for number, line in enumerate(lines, 1) if _HEAD.match(line)]
-    if len(heads) != n:  # an inline array, or a head inside a multi-line string
-        return [(1, {})] * n
+    heads = [number for number, line in enumerate(lines, 1) if _WAIVER_HEAD.match(line)]
+    if len(heads) != n_waivers:  # an inline array, or a head inside a multi-line string
+        return [(1, {})] * n_waivers
     places = []
     for head, end in pairwise([*heads, len(lines) + 1]):
         keys: dict[str, int] = {}

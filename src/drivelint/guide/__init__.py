@@ -36,7 +36,7 @@ class Topic(NamedTuple):
 @cache
 def topics() -> tuple[Topic, ...]:
     """Return every guide, in reading order."""
-    heads = ((name, *_source(name).splitlines()[:3]) for name in TOPICS)
+    heads = ((name, *_markdown_source(name).splitlines()[:3]) for name in TOPICS)
     return tuple(Topic(name, title.removeprefix("# "), sentence) for name, title, _, sentence in heads)
 
 
@@ -52,20 +52,20 @@ def text(name: str, table: str | None = None) -> str:
     if name in REFERENCE_TOPICS:
         from drivelint.guide import dictionary
 
-        return dictionary.REFERENCE[name]() if table is None else dictionary.table_text(table)
-    source = _source(name)
+        return dictionary.REFERENCE_TEXTS[name]() if table is None else dictionary.table_text(table)
+    source = _markdown_source(name)
     if OUTPUT_TABLES_MARK in source:
-        from drivelint.guide.dictionary import output_tables
+        from drivelint.guide.dictionary import output_tables_text
 
-        source = source.replace(OUTPUT_TABLES_MARK, output_tables())
+        source = source.replace(OUTPUT_TABLES_MARK, output_tables_text())
     return _MARK.sub("", source)
 
 
-def listing() -> str:
+def topic_listing() -> str:
     """Return one line per guide: its name and its first sentence."""
     width = max(map(len, TOPICS))
     return "\n".join(f"{topic.name:<{width}}  {topic.sentence}" for topic in topics())
 
 
-def _source(name: str) -> str:
+def _markdown_source(name: str) -> str:
     return (FOLDER / f"{name}.md").read_text(encoding="utf-8")

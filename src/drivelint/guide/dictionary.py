@@ -26,7 +26,7 @@ from drivelint.sql.words import vocabularies
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
-_SAYS: Final = """Every table that drivelint fills, with the meaning of each column; rules read these tables.
+_INTRODUCTION: Final = """Every table that drivelint fills, with the meaning of each column; rules read these tables.
 
 Distances are metres, speeds metres per second, angles radians, and times integer nanoseconds of the log's own clock. NULL
 means that the value is not known, unless the column says otherwise. `drivelint check --keep-db` keeps these tables in
@@ -35,10 +35,12 @@ means that the value is not known, unless the column says otherwise. `drivelint 
 A column of words has only the words of one vocabulary. They are listed with the column, or under *Words*. A rule, a case, a mapping or
 a reader's output with any other word is refused.
 """
-_WORDS: Final = "drivelint docs dictionary NAME prints one of them."
-_MACRO: Final = re.compile(r"((?:^--.*\n)*)^CREATE OR REPLACE MACRO (\w+\((?:[^)]+\)|\)(?: AS .+;$)?))", re.MULTILINE)
-_MARKUP: Final = re.compile(r"([\\`*_\[\]<>~&])")
-_GROUPS: Final = {
+_WORDS_HINT: Final = "drivelint docs dictionary NAME prints one of them."
+_MACRO_PATTERN: Final = re.compile(
+    r"((?:^--.*\n)*)^CREATE OR REPLACE MACRO (\w+\((?:[^)]+\)|\)(?: AS .+;$)?))", re.MULTILINE
+)
+_MARKUP_CHARACTERS: Final = re.compile(r"([\\`*_\[\]<>~&])")
+_HEADING_BY_SCHEMA_FILE: Final = {
     "model": "The recorded drive",
     "map": "The map",
     "derived": "Derived: positions, lanes, overtakes",
@@ -49,7 +51,7 @@ _GROUPS: Final = {
     "evidence": "Evidence for the report",
 }
 """File of `schemas/` -> the heading of its tables."""
-_LIVES: Final = {
+_LIFETIME_WORDS: Final = {
     "map": "as long as batches use the map",
     "drive": "while its batch of drives is judged",
     "part": "while a part of the egos of a drive is judged",
@@ -58,20 +60,20 @@ _LIVES: Final = {
 
 
 def page() -> str:
-    """Return the data dictionary as Markdown. Errors: `DriveLintError` for a file of `schemas/` without a heading in `_GROUPS`."""
-    read = tables_read()
+    """Return the data dictionary as Markdown. Errors: `DriveLintError` for a file that `_HEADING_BY_SCHEMA_FILE` lacks."""
+    read = sources_of_derived_tables()
     filters: dict[str, Any] = {
-        "about": _about,
-        "columns": _columns,
-        "escaped": escaped,
-        "facts": lambda name: " ".join(_facts(name, read, _links, "`")),
-        "links": _links,
+        "about": _derivation_comment,
+        "columns": _column_table,
+        "escaped": escape_markdown,
+        "facts": lambda name: " ".join(_table_facts(name, read, _markdown_links, "`")),
+        "links": _markdown_links,
     }
     return text_template(__file__, "dictionary.md.j2", **filters).render(
-        says=_SAYS,
+        says=_INTRODUCTION,
         levels=derivation_levels(read),
         read=read,
-        groups={heading: column_comments(file) for file, heading in _GROUPS.items()},
+        groups={heading: column_comments(file) for file, heading in _HEADING_BY_SCHEMA_FILE.items()},
         vocabularies=vocabularies(),
     )
 
@@ -80,10 +82,10 @@ def text() -> str:
     """Return the data dictionary as plain text, with a block per table and a line per column."""
     groups = (
         f"{heading.upper()}\n\n" + "\n".join(map(table_text, column_comments(file)))
-        for file, heading in _GROUPS.items()
+        for file, heading in _HEADING_BY_SCHEMA_FILE.items()
     )
-    words = f"WORDS\n\n{_WORDS}\n\n" + "\n".join(map(_vocabulary_text, vocabularies()))
-    return "\n".join([_SAYS, *groups, words])
+    words = f"WORDS\n\n{_WORDS_HINT}\n\n" + "\n".join(map(_vocabulary_text, vocabularies()))
+    return "\n".join([_INTRODUCTION, *groups, words])
 
 
 def table_text(name: str) -> str:
@@ -98,9 +100,13 @@ def table_text(name: str) -> str:
         near = hint(name, [*column_comments(), *vocabularies()])
         advice = "drivelint docs dictionary prints all" if near.startswith("known") else near
         raise UsageError(f"docs dictionary {name}: no table {name!r}: {advice}")
-    columns = [(column, _types()[name, column], comment) for column, comment in column_comments()[name].items()]
+    columns = [(column, _column_types()[name, column], comment) for column, comment in column_comments()[name].items()]
     wide, wider = (max(len(row[i]) for row in columns) for i in (0, 1))
-    said = [line for line in (_about(name), " ".join(_facts(name, tables_read(), ", ".join))) if line]
+    said = [
+        line
+        for line in (_derivation_comment(name), " ".join(_table_facts(name, sources_of_derived_tables(), ", ".join)))
+        if line
+    ]
     rows = [f"  {column:<{wide}}  {kind:<{wider}}  {comment}" for column, kind, comment in columns]
     return "\n".join([name, *said, *rows]) + "\n"
 
@@ -111,19 +117,19 @@ def _vocabulary_text(name: str) -> str:
     return f"[{name}]\n  {', '.join(known.words)}{'' if known.is_listed else ', ...'}\n  {known.says}\n"
 
 
-def escaped(text: str) -> str:
+def escape_markdown(text: str) -> str:
     """Return text with Markdown's special characters escaped."""
-    return _MARKUP.sub(r"\\\1", text)
+    return _MARKUP_CHARACTERS.sub(r"\\\1", text)
 
 
-def output_tables() -> str:
+def output_tables_text() -> str:
     """Return a section per result file with the columns of its table."""
     files = {**TABLE_OF_FILE, **TABLE_OF_PICTURE_FILE, "margins": "margin"}
-    return "\n".join(f"### {stem}.parquet\n\n{_columns(name, in_file=True)}" for stem, name in files.items())
+    return "\n".join(f"### {stem}.parquet\n\n{_column_table(name, in_file=True)}" for stem, name in files.items())
 
 
 @cache
-def tables_read() -> Mapping[str, tuple[str, ...]]:
+def sources_of_derived_tables() -> Mapping[str, tuple[str, ...]]:
     """Return derived table -> tables that its SELECT reads, in the order of derivation."""
     return {
         name: tuple(sorted(syntax.tables_read(syntax.parse_select(each.sql, name)) & column_comments().keys() - {name}))
@@ -131,39 +137,44 @@ def tables_read() -> Mapping[str, tuple[str, ...]]:
     }
 
 
-def derivation_levels(tables_read: Mapping[str, Iterable[str]]) -> list[list[str]]:
+def derivation_levels(sources_by_table: Mapping[str, Iterable[str]]) -> list[list[str]]:
     """Return the derived tables per level; each table reads only recorded tables and tables of lower levels."""
     level: dict[str, int] = {}
-    for name, tables in tables_read.items():
+    for name, tables in sources_by_table.items():
         level[name] = 1 + max((level.get(each, 0) for each in tables), default=0)
     return [[name for name in sorted(level) if level[name] == n] for n in range(1, max(level.values()) + 1)]
 
 
-def _facts(
-    name: str, tables_read: Mapping[str, tuple[str, ...]], listed: Callable[[Iterable[str]], str], quote: str = ""
+def _table_facts(
+    name: str,
+    sources_by_table: Mapping[str, tuple[str, ...]],
+    join_names: Callable[[Iterable[str]], str],
+    quote: str = "",
 ) -> list[str]:
     """Return sentences about a table: how long it is kept, its file, the tables it reads, and the tables and rules that read it.
 
-    `listed`: a function that joins names; `quote`: the mark around the file name.
+    `join_names`: a function that joins names; `quote`: the mark around the file name.
     """
-    sentences = [f"Kept {_LIVES[lifetimes()[name]]}."]
+    sentences = [f"Kept {_LIFETIME_WORDS[lifetimes()[name]]}."]
     if files := [stem for stem, of in {**TABLE_OF_FILE, **TABLE_OF_PICTURE_FILE}.items() if of == name]:
         sentences.append(f"Written to {quote}{files[0]}.parquet{quote}.")
-    if name in tables_read:
-        sentences.append(f"Reads {listed(tables_read[name])}." if tables_read[name] else "Reads no table.")
-    if readers := [each for each, tables in tables_read.items() if name in tables]:
-        sentences.append(f"Read by {listed(sorted(readers))}.")
-    if rules := [rule_id for rule_id, reads in _rule_reads() if name in reads]:
+    if name in sources_by_table:
+        sentences.append(
+            f"Reads {join_names(sources_by_table[name])}." if sources_by_table[name] else "Reads no table."
+        )
+    if readers := [each for each, tables in sources_by_table.items() if name in tables]:
+        sentences.append(f"Read by {join_names(sorted(readers))}.")
+    if rules := [rule_id for rule_id, reads in _tables_read_by_rules() if name in reads]:
         sentences.append(f"Rules: {', '.join(rules)}.")
     return sentences
 
 
 @cache
-def _rule_reads() -> list[tuple[str, tuple[str, ...]]]:
+def _tables_read_by_rules() -> list[tuple[str, tuple[str, ...]]]:
     return sorted((rule_id, tuple(rule.reads)) for rule_id, rule in load_rules(()).items())
 
 
-def _about(name: str) -> str:
+def _derivation_comment(name: str) -> str:
     """Return the comment before the SELECT that fills a table; '' without one."""
     if name not in derivations():
         return ""
@@ -172,24 +183,26 @@ def _about(name: str) -> str:
     return " ".join(line.removeprefix("--").strip() for line in lines)
 
 
-def _columns(name: str, *, in_file: bool = False) -> str:
+def _column_table(name: str, *, in_file: bool = False) -> str:
     lines = ["| column | type | meaning |", "|---|---|---|"]
     for column, comment in column_comments()[name].items():
-        lines.append(f"| `{column}` | {cell(escaped(_types()[name, column]))} | {cell(escaped(comment))} |")
+        lines.append(
+            f"| `{column}` | {cell(escape_markdown(_column_types()[name, column]))} | {cell(escape_markdown(comment))} |"
+        )
     for column, shape in geometry.GEOMETRIES_OF_TABLE.get(name, {}).items() if in_file else ():
-        lines.append(f"| `{column}` | GEOMETRY | {cell(escaped(f'{shape.kind}: {shape.comment}'))} |")
+        lines.append(f"| `{column}` | GEOMETRY | {cell(escape_markdown(f'{shape.kind}: {shape.comment}'))} |")
     return "\n".join(lines) + "\n"
 
 
 @cache
-def _types() -> dict[tuple[str, str], str]:
+def _column_types() -> dict[tuple[str, str], str]:
     """Return (table, column) -> its SQL type, including NOT NULL."""
     with store.connect() as con:
         rows = con.execute("SELECT table_name, column_name, data_type, is_nullable FROM duckdb_columns()").fetchall()
     return {(name, column): kind if nullable else f"{kind} NOT NULL" for name, column, kind, nullable in rows}
 
 
-def _links(names: Iterable[str]) -> str:
+def _markdown_links(names: Iterable[str]) -> str:
     return ", ".join(f"[{name}](#{name})" for name in names)
 
 
@@ -208,13 +221,13 @@ def macros_page() -> str:
     files: dict[str, list[tuple[str, str]]] = {}
     for file in sorted((folder("queries") / "macros").glob("*.sql")):
         about = ""
-        for comment, signature in _MACRO.findall(file.read_text(encoding="utf-8")):
+        for comment, signature in _MACRO_PATTERN.findall(file.read_text(encoding="utf-8")):
             about = " ".join(line.removeprefix("--").strip() for line in comment.splitlines()) or about
             files.setdefault(file.stem.replace("_", " ").capitalize(), []).append((signature, about))
     return text_template(__file__, "macros.md.j2").render(files=files)
 
 
-REFERENCE: Final[dict[str, Callable[[], str]]] = {
+REFERENCE_TEXTS: Final[dict[str, Callable[[], str]]] = {
     "dictionary": text,
     "catalogue": lambda: catalogue_page.render_markdown(load_rules(()).values(), folder("queries") / "assertions"),
     "reasons": reasons_page,

@@ -18,18 +18,21 @@ if TYPE_CHECKING:
 
 STYLESHEET: Final = "style.css"
 _MARKDOWN: Final = MarkdownIt("commonmark", {"html": False}).enable("table")
-_LONG: Final = 60
+_LONG_CELL_LENGTH: Final = 60
 """Number of characters above which a table cell counts as long, and gets a larger least width."""
-_ELSEWHERE: Final = (("../../../queries/README.md", "catalogue.html"), ("../../../schemas/", "dictionary.html"))
+_SITE_PAGE_BY_PREFIX: Final = (
+    ("../../../queries/README.md", "catalogue.html"),
+    ("../../../schemas/", "dictionary.html"),
+)
 """(Prefix of a link target in the repository, page of the site with its content)."""
 
 
 def parse(markdown: str) -> list[Token]:
     """Return the tokens of a page, with ids for its headings and with links to pages of the site."""
     tokens = _MARKDOWN.parse(markdown)
-    _name_headings(tokens)
-    _lead_to_pages(tokens)
-    _label_cells(tokens)
+    _set_heading_ids(tokens)
+    _link_to_site_pages(tokens)
+    _set_cell_attributes(tokens)
     return tokens
 
 
@@ -40,18 +43,18 @@ def page(
     body = str(_MARKDOWN.renderer.render(tokens, _MARKDOWN.options, {}))
     body = body.replace("&lt;br&gt;", "<br>")  # the only HTML in the catalogue's cells
     body = body.replace("<table>", '<div class="wide"><table>').replace("</table>", "</table></div>")
-    titles = (words(inline) for opening, inline in pairwise(tokens) if opening.tag == "h1")
+    titles = (plain_text(inline) for opening, inline in pairwise(tokens) if opening.tag == "h1")
     return text_template(__file__, "page.html.j2").render(
         title=next(titles, name), stylesheet=STYLESHEET, body=body, name=name, pages=pages, footer=footer
     )
 
 
-def words(inline: Token) -> str:
+def plain_text(inline: Token) -> str:
     """Return the text of a heading, a paragraph or a cell, without its markup."""
     return "".join(" " if child.type.endswith("break") else child.content for child in inline.children or ())
 
 
-def _name_headings(tokens: Sequence[Token]) -> None:
+def _set_heading_ids(tokens: Sequence[Token]) -> None:
     """Give every heading the same id as GitHub does."""
     seen: Counter[str] = Counter()
     for opening, inline in pairwise(tokens):
@@ -63,15 +66,15 @@ def _name_headings(tokens: Sequence[Token]) -> None:
             seen[slug] += 1
 
 
-def _lead_to_pages(tokens: Sequence[Token]) -> None:
+def _link_to_site_pages(tokens: Sequence[Token]) -> None:
     """Change links to files of the repository to links to pages of the site."""
     for token in tokens:
         for child in token.children or ():
             if child.type == "link_open":
-                child.attrSet("href", _href(str(child.attrGet("href"))))
+                child.attrSet("href", _site_href(str(child.attrGet("href"))))
 
 
-def _label_cells(tokens: Sequence[Token]) -> None:
+def _set_cell_attributes(tokens: Sequence[Token]) -> None:
     """Set attributes of table cells for the stylesheet: the column's heading, for narrow screens, and a class for long text."""
     head: list[str] = []
     column = 0
@@ -85,13 +88,13 @@ def _label_cells(tokens: Sequence[Token]) -> None:
         elif opening.type == "td_open":
             if column and len(head) > 2 and inline.content:
                 opening.attrSet("data-column", head[column])
-            if len(inline.content) > _LONG:
+            if len(inline.content) > _LONG_CELL_LENGTH:
                 opening.attrSet("class", "long")
             column += 1
 
 
-def _href(target: str) -> str:
-    for prefix, name in _ELSEWHERE:
+def _site_href(target: str) -> str:
+    for prefix, name in _SITE_PAGE_BY_PREFIX:
         if target.startswith(prefix):
             _, mark, anchor = target.partition("#")
             return f"{name}{mark}{anchor}"

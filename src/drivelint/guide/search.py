@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 
     from markdown_it.token import Token
 
-SCRIPT: Final = "search.js"
-INDEX: Final = "search-index.js"
+SCRIPT_FILE: Final = "search.js"
+INDEX_FILE: Final = "search-index.js"
 _WORD: Final = re.compile(r"\w+(?:[.\-]+\w+)*")
 
 
@@ -27,7 +27,7 @@ class Section(NamedTuple):
     words: str
 
 
-def index(pages: Mapping[str, Sequence[Token]]) -> bytes:
+def index_script(pages: Mapping[str, Sequence[Token]]) -> bytes:
     """Return the script that `search.js` loads: the (name, sections) of every page. `pages`: name -> tokens from `html.parse`."""
     entries = [[name, list(sections(tokens))] for name, tokens in pages.items()]
     return f"drivelintPages({json.dumps(entries, ensure_ascii=False, separators=(',', ':'))});\n".encode()
@@ -41,9 +41,9 @@ def sections(tokens: Sequence[Token]) -> Iterator[Section]:
         if before.type == "heading_open":
             if heading:
                 yield _section(anchor, heading, texts)
-            anchor, heading, texts = str(before.attrGet("id")), html.words(token), []
+            anchor, heading, texts = str(before.attrGet("id")), html.plain_text(token), []
         if token.type == "inline":
-            texts.append(html.words(token))
+            texts.append(html.plain_text(token))
         elif token.type in {"fence", "code_block"}:
             texts.append(token.content)
     yield _section(anchor, heading, texts)

@@ -51,11 +51,11 @@ def write(folder: Path, commands: Iterable[Command]) -> Path:
     """Write the site into `folder` and return its first page. Errors: `UsageError` if `folder` is a file; `OutputError`."""
     if folder.exists() and not folder.is_dir():
         raise UsageError(f"--html {folder}: is a file: give a folder for the pages")
-    publish(folder, contents(commands), {})
+    publish(folder, site_files(commands), {})
     return folder / "index.html"
 
 
-def contents(commands: Iterable[Command]) -> dict[str, bytes]:
+def site_files(commands: Iterable[Command]) -> dict[str, bytes]:
     """Return file name -> bytes for every file of the site; one version of drivelint always gives the same bytes."""
     pages = {name: guide.text(name) for name in (*guide.TOPICS, "catalogue", "reasons", "macros")}
     pages["dictionary"] = dictionary.page()
@@ -72,11 +72,11 @@ def contents(commands: Iterable[Command]) -> dict[str, bytes]:
         f"{name}.html": html.page(tokens, name=name, pages=navigation, footer=footer).encode()
         for name, tokens in parsed.items()
     }
-    files |= {name: (guide.FOLDER / name).read_bytes() for name in (html.STYLESHEET, search.SCRIPT, *PICTURES)}
-    files[search.INDEX] = search.index(parsed)
+    files |= {name: (guide.FOLDER / name).read_bytes() for name in (html.STYLESHEET, search.SCRIPT_FILE, *PICTURES)}
+    files[search.INDEX_FILE] = search.index_script(parsed)
     return files
 
 
 def _help_as_markdown(text: str) -> str:
     """Return help text as Markdown, with its options as code."""
-    return re.sub(r"(?<![\w-])(--[a-z][\w-]*)", r"`\1`", dictionary.escaped(text))
+    return re.sub(r"(?<![\w-])(--[a-z][\w-]*)", r"`\1`", dictionary.escape_markdown(text))

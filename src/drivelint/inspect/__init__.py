@@ -21,7 +21,7 @@ from drivelint.formats import expand_traces, read_trace
 from drivelint.formats.registry import format_title_and_ego, may_be_mapped_table
 from drivelint.formats.search import why_unreadable
 from drivelint.inspect import advice, model, tracks
-from drivelint.inspect.content import content, size_bytes
+from drivelint.inspect.content import file_content, size_bytes
 from drivelint.phrases import name_list
 from drivelint.reasons import reason_text
 from drivelint.sql import store
@@ -77,8 +77,8 @@ def inspect(request: InspectRequest) -> model.Inspection:
     mapping = None if format_title_and_ego(log["format"]) else request.mapping or log["format"]
     return model.Inspection(
         file=msgspec.convert({**log, "name": name, "bytes": size}, model.File),
-        content=content(path, mapping, list(trace.notes), has_reader=True),
-        drive=_drive(trace, library, rules, request, selection),
+        content=file_content(path, mapping, list(trace.notes), has_reader=True),
+        drive=_inspect_drive(trace, library, rules, request, selection),
     )
 
 
@@ -97,32 +97,32 @@ def exit_code(inspection: model.Inspection) -> ExitCode:
 
 def _content_of_unread(path: Path, options: IngestOptions) -> model.Content:
     try:
-        return content(path, None, [], has_reader=not may_be_mapped_table(path, options))
+        return file_content(path, None, [], has_reader=not may_be_mapped_table(path, options))
     except (TraceError, OSError):  # the reader has already reported this problem
         return model.Content()
 
 
-def _drive(
+def _inspect_drive(
     trace: Trace, library: MapLibrary, rules: Sequence[Rule], request: InspectRequest, selection: Sequence[str]
 ) -> model.Drive:
-    trace, environment, road_problem = _on_its_map(trace, library)
+    trace, environment, road_problem = _trace_map_and_problem(trace, library)
     actors = tracks.actors(trace)
-    egos, quality = _judgeable(trace, environment, actors, rules, road_problem, memory=request.memory)
+    egos, quality = _egos_and_quality(trace, environment, actors, rules, road_problem, memory=request.memory)
     supposed, candidates = None, []
     if not egos:
         candidates = tracks.ego_candidates(actors)
         supposing = replace(request, ego=candidates[0].actor_id).ingest_options(need_ego=False)
         again = read_trace(trace.path, supposing)
-        ((supposed,), _) = _judgeable(again, environment, actors, rules, road_problem, memory=request.memory)
+        ((supposed,), _) = _egos_and_quality(again, environment, actors, rules, road_problem, memory=request.memory)
     return model.Drive(
         clock=tracks.clock(trace),
         states=trace.tables["actor_state"].num_rows,
         classes=tracks.count_classes(actors),
         egos=egos,
-        ego_source=_ego_source(trace, request.ego),
+        ego_source=_ego_source_text(trace, request.ego),
         candidates=candidates,
         supposed=supposed,
-        road=None if environment is None else _road(environment, from_option=request.map is not None),
+        road=None if environment is None else _summarise_map(environment, from_option=request.map is not None),
         road_problem=road_problem,
         quality=quality,
         rules=[rule.id for rule in rules],
@@ -131,7 +131,7 @@ def _drive(
     )
 
 
-def _on_its_map(trace: Trace, library: MapLibrary) -> tuple[Trace, MapTables | None, str | None]:
+def _trace_map_and_problem(trace: Trace, library: MapLibrary) -> tuple[Trace, MapTables | None, str | None]:
     try:
         found = drive_with_map(trace, library)
     except MapError as error:
@@ -141,7 +141,7 @@ def _on_its_map(trace: Trace, library: MapLibrary) -> tuple[Trace, MapTables | N
     return found.trace, found.environment, own if found.environment is None else None
 
 
-def _judgeable(
+def _egos_and_quality(
     trace: Trace,
     environment: MapTables | None,
     actors: Sequence[model.Actor],
@@ -151,17 +151,17 @@ def _judgeable(
     memory: int | None,
 ) -> tuple[list[model.Ego], list[model.Quality]]:
     """Derive the library tables of a drive; return its egos with their decidable rules, and its data-quality findings."""
-    known = _Knowledge()
+    known = _KnownConditions()
     with store.workspace(memory) as con:
         session = JudgingSession(con, (), {}, None, observers=[known], memory=Memory(con, memory))
         session.judge([Judgeable(trace, environment)])
-        rows = {table: _rows(con, f"FROM {table}") for table in ("capability", "exposure")}
-        fits = _rows(con, statement("inspect/registration")) if environment is not None else []
+        rows = {table: _query_rows(con, f"FROM {table}") for table in ("capability", "exposure")}
+        fits = _query_rows(con, statement("inspect/registration")) if environment is not None else []
         for fit in fits:
             fit["reason"] = reason_text.sentence(fit["reason"])
         registrations = {fit["ego_id"]: msgspec.convert(fit, model.MapRegistration) for fit in fits}
         start = trace.tables["data_log"]["t_start_ns"][0].as_py()
-        quality = _quality(con, start)
+        quality = _quality_findings(con, start)
     log_format = trace.tables["data_log"]["format"][0].as_py()
     by_id = {actor.actor_id: actor for actor in actors}
     egos = []
@@ -175,7 +175,7 @@ def _judgeable(
         }
         if road_problem is not None:
             lacking["map"] = "the map is not used (see above)"
-        never = advice.never_known(known.of[ego_id], lacking)
+        never = advice.reasons_never_known(known.known_by_ego[ego_id], lacking)
         cannot = advice.undecided_rules(rules, lacking, never)
         undecided = {rule.rule_id for rule in cannot}
         egos.append(
@@ -192,33 +192,33 @@ def _judgeable(
     return egos, quality
 
 
-class _Knowledge:
+class _KnownConditions:
     """Collects, while the tables exist, which conditions of each ego, including the speed limit, are known at any step."""
 
     def __init__(self) -> None:
-        self.of: dict[str, dict[str, bool]] = {}
+        self.known_by_ego: dict[str, dict[str, bool]] = {}
 
     def __call__(self, con: duckdb.DuckDBPyConnection, _drives: Sequence[Judgeable], **_part: bool) -> None:
         columns = {**dict.fromkeys(conditions.CONDITION_VALUES), "limit": None}
         known = ", ".join(f'count({"limit_mps" if c == "limit" else c}) > 0 AS "{c}"' for c in columns)
-        for row in _rows(con, f"SELECT ego_id::VARCHAR AS ego_id, {known} FROM ego_condition GROUP BY ego_id"):
+        for row in _query_rows(con, f"SELECT ego_id::VARCHAR AS ego_id, {known} FROM ego_condition GROUP BY ego_id"):
             ego = row.pop("ego_id")
-            self.of[ego] = {c: row[c] or self.of.get(ego, {}).get(c, False) for c in row}
+            self.known_by_ego[ego] = {c: row[c] or self.known_by_ego.get(ego, {}).get(c, False) for c in row}
 
 
-def _quality(con: duckdb.DuckDBPyConnection, start_ns: int) -> list[model.Quality]:
-    rows = _rows(con, statement("inspect/quality"))
+def _quality_findings(con: duckdb.DuckDBPyConnection, start_ns: int) -> list[model.Quality]:
+    rows = _query_rows(con, statement("inspect/quality"))
     for row in rows:
         row["first_at_s"] = None if row["t_first_ns"] is None else (row["t_first_ns"] - start_ns) / 1e9
     return sorted(msgspec.convert(rows, list[model.Quality]), key=lambda q: _SEVERITIES.index(q.severity))
 
 
-def _rows(con: duckdb.DuckDBPyConnection, sql: str) -> list[dict[str, Any]]:
+def _query_rows(con: duckdb.DuckDBPyConnection, sql: str) -> list[dict[str, Any]]:
     rows: list[dict[str, Any]] = con.execute(sql).to_arrow_table().to_pylist()
     return rows
 
 
-def _ego_source(trace: Trace, ego_option: str | None) -> str:
+def _ego_source_text(trace: Trace, ego_option: str | None) -> str:
     if ego_option is not None:
         return "every motor vehicle in turn (--ego all)" if ego_option == "all" else "chosen with --ego"
     said = {row["check_id"]: row["message"] for row in trace.tables["quality"].to_pylist()}
@@ -231,7 +231,7 @@ def _ego_source(trace: Trace, ego_option: str | None) -> str:
     return words[1] if words else f"named by the mapping {log_format}"
 
 
-def _road(environment: MapTables, *, from_option: bool) -> model.Road:
+def _summarise_map(environment: MapTables, *, from_option: bool) -> model.Road:
     row = environment.tables["environment"].to_pylist()[0]
     lanelets = environment.tables["lanelet"]
     drivable = lanelets.filter(lanelets["drivable"])

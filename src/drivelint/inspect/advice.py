@@ -19,32 +19,36 @@ SIGNALS_NEEDING_MAP: Final = frozenset(
     }
 )  # fmt: skip
 """Signals that need a map. Without a map, the missing signal is `map` instead of these."""
-MISSING_ON_ROUTE: Final = {
+REASON_MISSING_ON_ROUTE: Final = {
     "road_types": "the map does not state the kind of the roads on which the ego drives",
     "speed_limits": "the map has no readable speed limit for the lanes on which the ego drives",
 }
 
 
-def never_known(knowledge: Mapping[str, bool], lacking: Mapping[str, str]) -> dict[str, str]:
+def reasons_never_known(knowledge: Mapping[str, bool], reason_by_missing_signal: Mapping[str, str]) -> dict[str, str]:
     """Return signal or condition -> reason, for those that are unknown at every step of the ego.
 
-    `lacking`: signal -> reason, for signals that the whole log or map lacks; its reasons take precedence.
+    `reason_by_missing_signal`: signal -> reason, for signals that the whole log or map lacks; its reasons take precedence.
     """
     found = {}
     for name in (name for name, known in knowledge.items() if not known):
         signal = SIGNAL_OF_CONDITION.get(name, name)
-        found[signal] = lacking.get(signal, MISSING_ON_ROUTE.get(signal, f"nothing says the {name.replace('_', ' ')}"))
+        found[signal] = reason_by_missing_signal.get(
+            signal, REASON_MISSING_ON_ROUTE.get(signal, f"nothing says the {name.replace('_', ' ')}")
+        )
     return found
 
 
-def undecided_rules(rules: Sequence[Rule], lacking: Mapping[str, str], never: Mapping[str, str]) -> list[Undecided]:
+def undecided_rules(
+    rules: Sequence[Rule], reason_by_missing_signal: Mapping[str, str], never_known: Mapping[str, str]
+) -> list[Undecided]:
     """Return the rules that cannot be decided because a signal is missing or a condition is never known."""
     found = []
     for rule in rules:
         conditions = {SIGNAL_OF_CONDITION.get(name, name) for name in rule.applies.restricted_conditions}
         conditions |= {"speed_limits"} if rule.applies.has_speed_limit_condition else set()
-        needed = set(rule.needed_signals) & lacking.keys() | conditions & never.keys()
-        missing = needed | set(rule.pass_requires) & never.keys()
+        needed = set(rule.needed_signals) & reason_by_missing_signal.keys() | conditions & never_known.keys()
+        missing = needed | set(rule.pass_requires) & never_known.keys()
         if "map" in missing:
             missing -= SIGNALS_NEEDING_MAP
         if missing:
@@ -55,7 +59,10 @@ def undecided_rules(rules: Sequence[Rule], lacking: Mapping[str, str], never: Ma
 
 
 def missing_signals(
-    undecided: Sequence[Undecided], lacking: Mapping[str, str], log_format: str, advice: Mapping[str, str]
+    undecided: Sequence[Undecided],
+    reason_by_missing_signal: Mapping[str, str],
+    log_format: str,
+    advice: Mapping[str, str],
 ) -> list[MissingSignal]:
     """Return the missing signals with the rules that need them, the signal with most rules first. `advice`: signal -> advice."""
     by_signal: dict[str, list[Undecided]] = {}
@@ -65,7 +72,7 @@ def missing_signals(
     found = [
         MissingSignal(
             signal=signal,
-            reason=lacking[signal],
+            reason=reason_by_missing_signal[signal],
             provide=how_to_provide(signal, log_format, advice.get(signal)),
             rules=[rule.rule_id for rule in waiting],
             alone=[rule.rule_id for rule in waiting if rule.missing_signals == [signal]],

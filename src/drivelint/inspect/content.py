@@ -37,13 +37,13 @@ if TYPE_CHECKING:
     from drivelint.formats.film.mapping import VideoMapping
 
 _HEAD_BYTES: Final = 4096
-_OSI: Final = {(name, "protobuf"): "ground truth" for name in FIELD_TREES} | {
+_OSI_ROLES: Final = {(name, "protobuf"): "ground truth" for name in FIELD_TREES} | {
     (OPEN_DRIVE, "protobuf"): "map",
     (EVENT_MESSAGE, "json"): "declared events",
 }
-_ROLES: Final[dict[str, dict[tuple[str, str], str]]] = {
-    "osi": _OSI,
-    "none": _OSI,
+_ROLES_BY_FAMILY: Final[dict[str, dict[tuple[str, str], str]]] = {
+    "osi": _OSI_ROLES,
+    "none": _OSI_ROLES,
     "ros2": {(name, "cdr"): role for name, role in bag.ROS_ROLES.items()},
     "foxglove": {(name, kind): role for name, role in bag.FOXGLOVE_ROLES.items() for kind in ("protobuf", "json")},
 }
@@ -58,7 +58,7 @@ def size_bytes(path: Path) -> int:
     return sum(file.stat().st_size for file in files if file.is_file())
 
 
-def content(path: Path, mapping: str | None, notes: list[str], *, has_reader: bool) -> Content:
+def file_content(path: Path, mapping: str | None, notes: list[str], *, has_reader: bool) -> Content:
     """Return the channels, tables and columns of a file, and how they are read.
 
     `mapping`: the mapping that reads a table, or None. `has_reader`: a reader recognises the file, so no mapping is drafted.
@@ -66,7 +66,9 @@ def content(path: Path, mapping: str | None, notes: list[str], *, has_reader: bo
     if path.is_dir():
         if is_bag(path):
             return Content(channels=_channels(path), notes=notes)
-        return Content(sheets=[sheet for file in drive_files(path) if (sheet := _table_file(file))], notes=notes)
+        return Content(
+            sheets=[sheet for file in drive_files(path) if (sheet := _sheet_of_table_file(file))], notes=notes
+        )
     if is_pipe_or_device(path):
         return Content(notes=notes)  # the reader of drives reports the fault
     with path.open("rb") as file:
@@ -103,7 +105,7 @@ def _distinct_texts(sheet: CsvSheet | ParquetSheet, column: str) -> list[str]:
     """Return the distinct texts of a column; empty if the column cannot be read."""
     try:
         sheet.load([column])
-        return sorted(sheet.text(column).unique().drop_null().to_pylist())
+        return sorted(sheet.text_column(column).unique().drop_null().to_pylist())
     except TraceError:
         return []  # reading the table fails for the same reason, and reports it
 
@@ -116,12 +118,12 @@ def _parquet_sheet(path: Path) -> Sheet:
     return Sheet(name=path.name, rows=parquet.n_rows(path), columns=_unread_columns(parquet.schema(path).names))
 
 
-def _table_file(path: Path) -> Sheet | None:
+def _sheet_of_table_file(path: Path) -> Sheet | None:
     """Return the columns of a table file in a folder; None for another file."""
     if path.suffix == ".parquet":
         return _parquet_sheet(path)
     if path.suffix in {".feather", ".arrow"}:
-        names, rows = ipc.columns(path)
+        names, rows = ipc.column_names_and_n_rows(path)
         return Sheet(name=path.name, rows=rows, columns=_unread_columns(names))
     return None
 
@@ -129,7 +131,7 @@ def _table_file(path: Path) -> Sheet | None:
 def _mapped_sheet(path: Path, mapping: Mapping) -> Sheet:
     """Return a table's columns, first the columns that the mapping reads."""
     sheet = open_sheet(path, mapping)
-    columns = _read_columns(mapping)
+    columns = _columns_of_mapping(mapping)
     shapes = [re.compile(re.escape(c.name).replace(re.escape(GROUP_PLACEHOLDER), r"\d+")) for c in columns]
     grouped = any(GROUP_PLACEHOLDER in c.name for c in columns)
     unread = [name for name in sheet.names if name and not any(shape.fullmatch(name) for shape in shapes)]
@@ -150,7 +152,7 @@ def _film_sheet(path: Path, film: VideoMapping) -> Sheet:
     return Sheet(name=path.name, rows=None, columns=columns)
 
 
-def _read_columns(mapping: Mapping) -> list[Column]:
+def _columns_of_mapping(mapping: Mapping) -> list[Column]:
     found: dict[str, list[str]] = {mapping.time.column: ["time"]}
     units: dict[str, str | None] = {mapping.time.column: mapping.time.unit}
     for name, spec in mappings.fields(mapping).items():
@@ -164,7 +166,7 @@ def _read_columns(mapping: Mapping) -> list[Column]:
 
 
 @dataclass
-class _Count:
+class _ChannelCount:
     messages: int = 0
     size: int = 0
     first_ns: int = 0
@@ -173,14 +175,14 @@ class _Count:
 
 def _channels(path: Path) -> list[Channel]:
     """Return every channel with its number of messages: over all parts of a bag, and the readable messages of a damaged file."""
-    counts: dict[tuple[str, str, str, str], _Count] = {}
+    counts: dict[tuple[str, str, str, str], _ChannelCount] = {}
     try:
         for file in bag.mcap_files(path):
             container = Container(file, salvage=True)
             try:
                 for log_message in container.messages():
                     count = counts.setdefault(
-                        _key(container, log_message.channel), _Count(first_ns=log_message.log_time_ns)
+                        _channel_key(container, log_message.channel), _ChannelCount(first_ns=log_message.log_time_ns)
                     )
                     count.messages += 1
                     count.size += len(log_message.data)
@@ -190,20 +192,20 @@ def _channels(path: Path) -> list[Channel]:
                 # a channel without messages may occur only in the index
                 for part in (container, read_index(file)):
                     for channel in part.channels.values():
-                        counts.setdefault(_key(part, channel), _Count())
+                        counts.setdefault(_channel_key(part, channel), _ChannelCount())
     except TraceError:
         pass  # reading the drive fails for the same reason, and reports it
-    roles = _roles(path)
+    roles = _message_roles(path)
     return [_channel(key, counts[key], roles) for key in sorted(counts)]
 
 
-def _key(container: Container | Summary, channel: records.Channel) -> tuple[str, str, str, str]:
+def _channel_key(container: Container | Summary, channel: records.Channel) -> tuple[str, str, str, str]:
     """Return topic, schema, encoding and the schema's encoding; channels with the same key are counted together."""
     schema = container.schemas.get(channel.schema_id)
     return channel.topic, schema.name if schema else "", channel.message_encoding, schema.encoding if schema else ""
 
 
-def _channel(key: tuple[str, str, str, str], count: _Count, roles: dict[tuple[str, str], str]) -> Channel:
+def _channel(key: tuple[str, str, str, str], count: _ChannelCount, roles: dict[tuple[str, str], str]) -> Channel:
     topic, schema, encoding, schema_encoding = key
     span_s = (count.last_ns - count.first_ns) / 1e9
     return Channel(
@@ -219,9 +221,9 @@ def _channel(key: tuple[str, str, str, str], count: _Count, roles: dict[tuple[st
     )
 
 
-def _roles(path: Path) -> dict[tuple[str, str], str]:
+def _message_roles(path: Path) -> dict[tuple[str, str], str]:
     """Return (schema, encoding) -> how messages are read; if a log has several message families, only the best is read."""
     try:
-        return _ROLES[bag.message_family(path)]
+        return _ROLES_BY_FAMILY[bag.message_family(path)]
     except TraceError:
-        return _ROLES["osi"]
+        return _ROLES_BY_FAMILY["osi"]

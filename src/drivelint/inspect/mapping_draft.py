@@ -15,14 +15,14 @@ if TYPE_CHECKING:
 
 _WORD: Final = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+")
 _FACTS: Final = toml_beside(__file__, "mapping_words.toml")
-_FUSED: Final[dict[str, str]] = _FACTS["fused"]
-_UNIT_WORDS: Final[dict[str, str]] = _FACTS["units"]
+_WORDS_BY_FUSED_WORD: Final[dict[str, str]] = _FACTS["fused"]
+_UNIT_BY_WORD: Final[dict[str, str]] = _FACTS["units"]
 _TIME, _FRAMES, _ID, _SPEED, _ACCELERATION, _FILLERS, _OTHERS = (
     frozenset[str](_FACTS[name]) for name in ("time", "frames", "id", "speed", "acceleration", "fillers", "others")
 )
-_NAMES: Final[dict[str, Collection[str]]] = _FACTS["fields"] | {"speed": _SPEED}
+_WORDS_OF_FIELD: Final[dict[str, Collection[str]]] = _FACTS["fields"] | {"speed": _SPEED}
 REQUIRED_FIELDS: Final = ("time", "actor_id", "x", "y")
-_ORDER: Final = (
+_FIELD_ORDER: Final = (
     "actor_id", "x", "y", "z", "yaw", "vx", "vy", "speed", "ax", "ay", "length", "width", "height",
 )  # fmt: skip
 
@@ -34,7 +34,7 @@ def draft_mapping(columns: Sequence[str], texts_of: Callable[[str], Sequence[str
     """
     found: dict[str, str] = {}
     for column in columns:
-        meant = _meaning(column)
+        meant = _field_of_column(column)
         if meant is not None:
             found.setdefault(meant, column)
     for pair in (("vx", "vy"), ("ax", "ay")):
@@ -44,18 +44,23 @@ def draft_mapping(columns: Sequence[str], texts_of: Callable[[str], Sequence[str
         found.pop("speed", None)
     if len(columns) < len(REQUIRED_FIELDS):
         return None
-    frames = next((column for column in columns if "frame" in (words := _split(column)) and words <= _FRAMES), None)
-    time_unit = "time" in found and _unit(found["time"], dict(TIME_UNITS))
+    frames = next(
+        (column for column in columns if "frame" in (words := _column_words(column)) and words <= _FRAMES), None
+    )
+    time_unit = "time" in found and _unit_in_column_name(found["time"], dict(TIME_UNITS))
     if frames is not None and "time" not in found:
         found["time"], time_unit = frames, "frames"
-    classes = {text: _class_of(text) for text in texts_of(found["class"])} if "class" in found else {}
+    classes = {text: _actor_class_of(text) for text in texts_of(found["class"])} if "class" in found else {}
     of_fields = {name: UNITS.get(FIELD_QUANTITIES.get(name, ""), {}) for name in found}
-    draft = text_template(__file__, "mapping_draft.toml.j2", text=_text).render(
+    draft = text_template(__file__, "mapping_draft.toml.j2", text=_toml_string).render(
         column_by_field=found,
         others=[column for column in columns if column not in found.values()],
         time_unit=time_unit or "s",
-        units={name: (_unit(found[name], units), next(iter(units), None)) for name, units in of_fields.items()},
-        order=_ORDER,
+        units={
+            name: (_unit_in_column_name(found[name], units), next(iter(units), None))
+            for name, units in of_fields.items()
+        },
+        order=_FIELD_ORDER,
         classes={text: word for text, word in classes.items() if word is not None},
         strange_classes=[text for text, word in classes.items() if word is None],
         required=REQUIRED_FIELDS,
@@ -63,21 +68,21 @@ def draft_mapping(columns: Sequence[str], texts_of: Callable[[str], Sequence[str
     return draft.removesuffix("\n")
 
 
-def _class_of(text: str) -> str | None:
+def _actor_class_of(text: str) -> str | None:
     """Return the actor class that a text names, ignoring case, spaces and hyphens; None if it names no class."""
     return vocabularies()["actor_class"].spelled("_".join(text.split()).replace("-", "_"))
 
 
-def _meaning(column: str) -> str | None:
+def _field_of_column(column: str) -> str | None:
     """Return the field of a mapping that a column's name suggests; None without a suggestion."""
-    words = _split(column)
-    bare = words - set(_UNIT_WORDS) - _FILLERS
+    words = _column_words(column)
+    bare = words - set(_UNIT_BY_WORD) - _FILLERS
     axes = words & {"x", "y", "z"}
     if len(axes) == 1:
-        return _of_axis(next(iter(axes)), words, bare)
+        return _field_of_axis(next(iter(axes)), words, bare)
     if words & _OTHERS:
         return None
-    for meant, some in _NAMES.items():
+    for meant, some in _WORDS_OF_FIELD.items():
         if not words.isdisjoint(some):
             return meant
     if (bare and bare <= _TIME) or "nanos" in words:
@@ -85,25 +90,25 @@ def _meaning(column: str) -> str | None:
     return "actor_id" if bare and bare <= _ID else None
 
 
-def _of_axis(axis: str, words: set[str], bare: set[str]) -> str | None:
+def _field_of_axis(axis: str, words: set[str], bare_words: set[str]) -> str | None:
     kind = "v" if words & _SPEED else "a" if words & _ACCELERATION else ""
     if kind:
         return None if axis == "z" else f"{kind}{axis}"
-    return axis if bare <= {axis} else None
+    return axis if bare_words <= {axis} else None
 
 
-def _split(column: str) -> set[str]:
+def _column_words(column: str) -> set[str]:
     words = [word.lower() for word in _WORD.findall(column)]
-    return {part for word in words for part in _FUSED.get(word, word).split()}
+    return {part for word in words for part in _WORDS_BY_FUSED_WORD.get(word, word).split()}
 
 
-def _unit(column: str, unit_factors: Mapping[str, float]) -> str | None:
+def _unit_in_column_name(column: str, unit_factors: Mapping[str, float]) -> str | None:
     in_brackets = re.findall(r"[\[(]([^\])]+)[\])]", column)
-    named = [*in_brackets, *(_UNIT_WORDS.get(word) for word in sorted(_split(column)))]
+    named = [*in_brackets, *(_UNIT_BY_WORD.get(word) for word in sorted(_column_words(column)))]
     return next((unit for unit in named if unit in unit_factors), None)
 
 
-def _text(value: str) -> str:
+def _toml_string(value: str) -> str:
     """Return a text as a TOML string."""
     escaped = value.replace("\\", "\\\\").replace('"', '\\"')
     return '"' + "".join(c if c.isprintable() else f"\\U{ord(c):08x}" for c in escaped) + '"'

@@ -14,7 +14,7 @@ INSPECT_SCHEMA: Final = 1
 """Version of the JSON: raised when a key changes its meaning or is removed, but not for new keys."""
 
 
-def described(meaning: str) -> Meta:
+def key_description(meaning: str) -> Meta:
     """Return metadata with the description of a key, for the schema."""
     return Meta(description=meaning)
 
@@ -22,24 +22,26 @@ def described(meaning: str) -> Meta:
 class File(msgspec.Struct, frozen=True, kw_only=True):
     """The log as a file."""
 
-    name: Annotated[str, described("file or folder name, without where it lies")]
-    bytes: Annotated[int, described("size; of a folder, of its tables together")]
-    sha256: Annotated[str | None, described("hash of its content; null: not read as a drive")] = None
-    drive_id: Annotated[str | None, described("its id in the verdicts; null: not read as a drive")] = None
-    format: Annotated[str | None, described("osi-mcap, canonical-parquet or the mapping's name; null: not read")] = None
+    name: Annotated[str, key_description("file or folder name, without where it lies")]
+    bytes: Annotated[int, key_description("size; of a folder, of its tables together")]
+    sha256: Annotated[str | None, key_description("hash of its content; null: not read as a drive")] = None
+    drive_id: Annotated[str | None, key_description("its id in the verdicts; null: not read as a drive")] = None
+    format: Annotated[
+        str | None, key_description("osi-mcap, canonical-parquet or the mapping's name; null: not read")
+    ] = None
 
 
 class Channel(msgspec.Struct, frozen=True, kw_only=True):
     """One channel of an MCAP file."""
 
     topic: str
-    schema: Annotated[str | None, described("name of the messages' schema")]
-    schema_encoding: Annotated[str | None, described("protobuf, ros2msg, jsonschema, ...")]
-    encoding: Annotated[str, described("of the messages: protobuf, cdr, json, ...")]
+    schema: Annotated[str | None, key_description("name of the messages' schema")]
+    schema_encoding: Annotated[str | None, key_description("protobuf, ros2msg, jsonschema, ...")]
+    encoding: Annotated[str, key_description("of the messages: protobuf, cdr, json, ...")]
     messages: int
-    bytes: Annotated[int, described("of all its messages, unpacked")]
-    rate_hz: Annotated[float | None, described("mean, by log time; null: fewer than two messages")]
-    read_as: Annotated[str | None, described("ground truth, map, declared events, pictures; null: not read")]
+    bytes: Annotated[int, key_description("of all its messages, unpacked")]
+    rate_hz: Annotated[float | None, key_description("mean, by log time; null: fewer than two messages")]
+    read_as: Annotated[str | None, key_description("ground truth, map, declared events, pictures; null: not read")]
 
 
 class Column(msgspec.Struct, frozen=True, kw_only=True):
@@ -47,41 +49,41 @@ class Column(msgspec.Struct, frozen=True, kw_only=True):
 
     name: str
     read_as: Annotated[
-        list[str], described("the quantity that the mapping reads from it: time, x, yaw, class, ...; empty: none")
+        list[str], key_description("the quantity that the mapping reads from it: time, x, yaw, class, ...; empty: none")
     ]
-    unit: Annotated[str | None, described("as the mapping says; null: SI, or no number")] = None
+    unit: Annotated[str | None, key_description("as the mapping says; null: SI, or no number")] = None
 
 
 class Sheet(msgspec.Struct, frozen=True, kw_only=True):
     """One table of the log."""
 
-    name: Annotated[str, described("file name")]
-    rows: Annotated[int | None, described("null: not counted")]
+    name: Annotated[str, key_description("file name")]
+    rows: Annotated[int | None, key_description("null: not counted")]
     columns: list[Column]
 
 
 class Content(msgspec.Struct, frozen=True, kw_only=True):
     """The content of the file."""
 
-    channels: Annotated[list[Channel], described("of an MCAP file, by topic")] = []
-    sheets: Annotated[list[Sheet], described("tables, of CSV and Parquet")] = []
-    mapping: Annotated[str | None, described("the mapping that a table was read through")] = None
-    notes: Annotated[list[str], described("the notes of the reader")] = []
+    channels: Annotated[list[Channel], key_description("of an MCAP file, by topic")] = []
+    sheets: Annotated[list[Sheet], key_description("tables, of CSV and Parquet")] = []
+    mapping: Annotated[str | None, key_description("the mapping that a table was read through")] = None
+    notes: Annotated[list[str], key_description("the notes of the reader")] = []
     draft_mapping: Annotated[
         str | None,
-        described("where no mapping fits a table: one to start from, TOML, guessed from the columns' names"),
+        key_description("where no mapping fits a table: one to start from, TOML, guessed from the columns' names"),
     ] = None
 
 
 class Clock(msgspec.Struct, frozen=True, kw_only=True):
     """The log's time stamps."""
 
-    start_ns: Annotated[int, described("the first, on the log's own clock")]
-    utc_start: Annotated[str | None, described("the same in UTC, ISO 8601; null: the log does not say")]
-    duration_s: Annotated[float, described("from the first to the last")]
-    steps: Annotated[int, described("distinct time stamps")]
-    period_s: Annotated[float | None, described("median time between them; null: there is only one")]
-    holes: Annotated[int, described("gaps of more than 2.5 periods, across which nothing is judged")]
+    start_ns: Annotated[int, key_description("the first, on the log's own clock")]
+    utc_start: Annotated[str | None, key_description("the same in UTC, ISO 8601; null: the log does not say")]
+    duration_s: Annotated[float, key_description("from the first to the last")]
+    steps: Annotated[int, key_description("distinct time stamps")]
+    period_s: Annotated[float | None, key_description("median time between them; null: there is only one")]
+    holes: Annotated[int, key_description("gaps of more than 2.5 periods, across which nothing is judged")]
     longest_hole_s: float | None = None
     first_hole_at_s: float | None = None
 
@@ -89,37 +91,39 @@ class Clock(msgspec.Struct, frozen=True, kw_only=True):
 class ClassCount(msgspec.Struct, frozen=True, kw_only=True):
     """Actors of one class."""
 
-    actor_class: Annotated[str | None, described("null: not known")]
+    actor_class: Annotated[str | None, key_description("null: not known")]
     n: int
-    sized: Annotated[int, described("of them with a known length and width")]
-    moving: Annotated[int, described("of them those that moved by more than 1 m")]
+    sized: Annotated[int, key_description("of them with a known length and width")]
+    moving: Annotated[int, key_description("of them those that moved by more than 1 m")]
 
 
 class Actor(msgspec.Struct, frozen=True, kw_only=True):
     """One actor and its track."""
 
     actor_id: str
-    actor_class: Annotated[str | None, described("null: not known")]
+    actor_class: Annotated[str | None, key_description("null: not known")]
     length_m: float | None
     width_m: float | None
     states: int
     first_at_s: float
     last_at_s: float
-    way_m: Annotated[float, described("length of its track")]
-    top_speed_mps: Annotated[float | None, described("null: no speed is known")]
+    way_m: Annotated[float, key_description("length of its track")]
+    top_speed_mps: Annotated[float | None, key_description("null: no speed is known")]
 
 
 class MapRegistration(msgspec.Struct, frozen=True, kw_only=True):
     """The fit of an ego's track to the map."""
 
-    ok: Annotated[bool, described("good enough for rules that need the map")]
+    ok: Annotated[bool, key_description("good enough for rules that need the map")]
     reason: str
-    steps: Annotated[int, described("steps with a position")]
-    on_lane: Annotated[int, described("of them, on a lane for driving")]
-    moving: Annotated[int, described("of those, in motion and not overtaking in an opposing lane")]
-    with_direction: Annotated[int, described("of the moving ones, along the lane's direction")]
-    lateral_median_m: Annotated[float | None, described("median distance from the lane's middle; null: never on one")]
-    aside: Annotated[bool, described("the distance is so large that the map may be moved relative to the log")]
+    steps: Annotated[int, key_description("steps with a position")]
+    on_lane: Annotated[int, key_description("of them, on a lane for driving")]
+    moving: Annotated[int, key_description("of those, in motion and not overtaking in an opposing lane")]
+    with_direction: Annotated[int, key_description("of the moving ones, along the lane's direction")]
+    lateral_median_m: Annotated[
+        float | None, key_description("median distance from the lane's middle; null: never on one")
+    ]
+    aside: Annotated[bool, key_description("the distance is so large that the map may be moved relative to the log")]
 
 
 class Undecided(msgspec.Struct, frozen=True, kw_only=True):
@@ -128,19 +132,19 @@ class Undecided(msgspec.Struct, frozen=True, kw_only=True):
     rule_id: str
     title: str
     missing_signals: Annotated[
-        list[str], described("signals and conditions; without a map only `map` for all that is of the map")
+        list[str], key_description("signals and conditions; without a map only `map` for all that is of the map")
     ] = msgspec.field(name="missing")
-    breach_only: Annotated[bool, described("the rule can fail, but not pass")] = False
+    breach_only: Annotated[bool, key_description("the rule can fail, but not pass")] = False
 
 
 class MissingSignal(msgspec.Struct, frozen=True, kw_only=True):
     """A signal that a rule requires, but that neither the log nor the map provides."""
 
     signal: str
-    reason: Annotated[str, described("what is wrong or missing")]
-    provide: Annotated[str, described("what to provide")]
-    rules: Annotated[list[str], described("rules that need it")]
-    alone: Annotated[list[str], described("of them, rules that need nothing else")]
+    reason: Annotated[str, key_description("what is wrong or missing")]
+    provide: Annotated[str, key_description("what to provide")]
+    rules: Annotated[list[str], key_description("rules that need it")]
+    alone: Annotated[list[str], key_description("of them, rules that need nothing else")]
 
 
 class Ego(msgspec.Struct, frozen=True, kw_only=True):
@@ -150,7 +154,7 @@ class Ego(msgspec.Struct, frozen=True, kw_only=True):
     km: float
     steps: int
     registration: MapRegistration | None
-    can: Annotated[list[str], described("rules that can be decided")]
+    can: Annotated[list[str], key_description("rules that can be decided")]
     cannot: list[Undecided]
     missing_signals: list[MissingSignal] = msgspec.field(name="missing")
 
@@ -163,11 +167,11 @@ class Road(msgspec.Struct, frozen=True, kw_only=True):
     environment_id: str
     sha256: str
     format: str
-    offset_m: Annotated[tuple[float, float], described("added to its coordinates")]
+    offset_m: Annotated[tuple[float, float], key_description("added to its coordinates")]
     handedness: Literal["lht", "rht"]
-    handedness_source: Annotated[str, described("option, attribute, junctions, traces, default (a guess)")]
+    handedness_source: Annotated[str, key_description("option, attribute, junctions, traces, default (a guess)")]
     lanelets: int
-    drivable: Annotated[int, described("lanelets for motor vehicles")]
+    drivable: Annotated[int, key_description("lanelets for motor vehicles")]
     drivable_km: float
 
 
@@ -179,7 +183,7 @@ class Quality(msgspec.Struct, frozen=True, kw_only=True):
     check_id: str
     message: str
     n: int
-    actor_id: Annotated[str | None, described("null: the whole log, or several actors")] = None
+    actor_id: Annotated[str | None, key_description("null: the whole log, or several actors")] = None
     first_at_s: float | None = None
 
 
@@ -188,29 +192,31 @@ class Drive(msgspec.Struct, frozen=True, kw_only=True):
 
     clock: Clock
     states: int
-    classes: Annotated[list[ClassCount], described("the most numerous first")]
-    egos: Annotated[list[Ego], described("by id; empty: the log names none and none was chosen")]
-    ego_source: Annotated[str, described("how the egos were found, or why there is none")]
-    candidates: Annotated[list[Actor], described("if there is no ego: the candidates, the longest path first")]
-    supposed: Annotated[Ego | None, described("if there is no ego: what could be decided for the first candidate")]
-    road: Annotated[Road | None, described("null: no map")]
-    road_problem: Annotated[str | None, described("why a map that was given is not used")]
-    quality: Annotated[list[Quality], described("errors first")]
-    rules: Annotated[list[str], described("the requested rules")]
-    selection: Annotated[list[str], described("as they were selected")]
+    classes: Annotated[list[ClassCount], key_description("the most numerous first")]
+    egos: Annotated[list[Ego], key_description("by id; empty: the log names none and none was chosen")]
+    ego_source: Annotated[str, key_description("how the egos were found, or why there is none")]
+    candidates: Annotated[list[Actor], key_description("if there is no ego: the candidates, the longest path first")]
+    supposed: Annotated[
+        Ego | None, key_description("if there is no ego: what could be decided for the first candidate")
+    ]
+    road: Annotated[Road | None, key_description("null: no map")]
+    road_problem: Annotated[str | None, key_description("why a map that was given is not used")]
+    quality: Annotated[list[Quality], key_description("errors first")]
+    rules: Annotated[list[str], key_description("the requested rules")]
+    selection: Annotated[list[str], key_description("as they were selected")]
     drafts: Annotated[
-        list[str], described("of them, rules that check runs only if --rules names them; empty: it did")
+        list[str], key_description("of them, rules that check runs only if --rules names them; empty: it did")
     ] = []
 
 
 class Inspection(msgspec.Struct, frozen=True, kw_only=True):
     """Everything that `drivelint inspect --format json` prints."""
 
-    inspect_schema: Annotated[int, described("version of this structure")] = INSPECT_SCHEMA
+    inspect_schema: Annotated[int, key_description("version of this structure")] = INSPECT_SCHEMA
     file: File
     content: Content
-    problem: Annotated[str | None, described("why the file cannot be read as a drive; null: it can")] = None
-    drive: Annotated[Drive | None, described("null: it cannot be read as one")] = None
+    problem: Annotated[str | None, key_description("why the file cannot be read as a drive; null: it can")] = None
+    drive: Annotated[Drive | None, key_description("null: it cannot be read as one")] = None
 
 
 def json_schema() -> bytes:

@@ -29,11 +29,11 @@ MAX_ROWS: Final = 12
 """Largest number of lines shown of a list; the JSON has all of them."""
 _MAX_LISTED_NAMES: Final = 6
 """Largest number of egos or selectors that a line names; it then states how many more there are."""
-_DRAFT: Final = " (draft)"
-_STYLE: Final = {"error": "bold red", "warning": "yellow", "info": "dim"}
+_DRAFT_MARK: Final = " (draft)"
+_STYLE_BY_SEVERITY: Final = {"error": "bold red", "warning": "yellow", "info": "dim"}
 _READER_NOTE_PREFIX: Final = "read through"
 """Reader notes that begin with these words repeat the content section, so they are not shown."""
-_SOURCES: Final = {
+_HANDEDNESS_SOURCE_WORDS: Final = {
     "option": "as --handedness says",
     "attribute": "as the map says",
     "junctions": "as the map's junctions are linked",
@@ -49,14 +49,14 @@ def render(inspection: model.Inspection, trace: str) -> Group:
     """Return the whole inspection as a renderable. `trace`: the log as the user named it."""
     draft = inspection.content.draft_mapping
     inspection = msgspec.convert(nested_texts_on_one_line(msgspec.to_builtins(inspection)), type(inspection))
-    lines = [*_content(inspection.content)]
+    lines = [*_content_lines(inspection.content)]
     if inspection.file.drive_id:
         lines.append(("drive", Text(inspection.file.drive_id)))
     if inspection.problem is not None:
         lines.append(("problem", Text(f"cannot be read as a drive: {inspection.problem}", "bold red")))
     if inspection.drive is not None:
-        lines += _drive(inspection.drive)
-    parts: list[RenderableType] = [_title(inspection), _labelled(lines)]
+        lines += _drive_lines(inspection.drive)
+    parts: list[RenderableType] = [_title_text(inspection), _table_of_lines(lines)]
     if inspection.drive is not None:
         parts.append(_decidable_rules(inspection.drive, inspection.file.name))
     if draft is not None:
@@ -68,25 +68,25 @@ def render(inspection: model.Inspection, trace: str) -> Group:
     return Group(*(Padding(part, (0, 0, 1, 0)) for part in parts))
 
 
-def _title(inspection: model.Inspection) -> Text:
+def _title_text(inspection: model.Inspection) -> Text:
     file = inspection.file
-    about = [_size(file.bytes)]
+    about = [_size_text(file.bytes)]
     if file.format is not None:
         words = format_title_and_ego(file.format)
         about.insert(0, words[0] if words else f"a table, read through the mapping {file.format}")
     return Text(file.name, style="bold").append(f"  {', '.join(about)}", style="default")
 
 
-def _size(n: int) -> str:
+def _size_text(n: int) -> str:
     for unit, factor in (("GB", 1e9), ("MB", 1e6), ("kB", 1e3)):
         if n >= factor:
             return f"{n / factor:.1f} {unit}"
     return plural(n, "byte")
 
 
-def _labelled(lines: Sequence[Line]) -> Table:
+def _table_of_lines(lines: Sequence[Line]) -> Table:
     """Return a table of labels and texts; a label that repeats the previous one is not shown."""
-    grid = _grid("bold", no_wrap=True)
+    grid = _empty_label_table("bold", no_wrap=True)
     previous = None
     for label, text in lines:
         grid.add_row("" if label == previous else label, text)
@@ -94,15 +94,15 @@ def _labelled(lines: Sequence[Line]) -> Table:
     return grid
 
 
-def _grid(style: str, **label: Any) -> Table:
+def _empty_label_table(label_style: str, **label_options: Any) -> Table:
     """Return an empty table with a column of labels in this style, and a column of texts."""
     grid = Table.grid(padding=(0, 2, 0, 0))
-    grid.add_column(style=style, **label)
+    grid.add_column(style=label_style, **label_options)
     grid.add_column(overflow="fold", ratio=1)
     return grid
 
 
-def _first_of(label: str, texts: Sequence[Text]) -> Iterator[Line]:
+def _first_lines(label: str, texts: Sequence[Text]) -> Iterator[Line]:
     """Yield the first `MAX_ROWS` texts, and a line with the number of further texts."""
     for text in texts[:MAX_ROWS]:
         yield label, text
@@ -110,30 +110,30 @@ def _first_of(label: str, texts: Sequence[Text]) -> Iterator[Line]:
         yield label, Text(f"and {len(texts) - MAX_ROWS} more", style="dim")
 
 
-def _content(content: model.Content) -> Iterator[Line]:
+def _content_lines(content: model.Content) -> Iterator[Line]:
     for channel in content.channels:
-        yield "channels", _channel(channel)
+        yield "channels", _channel_text(channel)
     if len(content.sheets) > 1:
         yield "tables", Text(", ".join(f"{s.name} ({plural(s.rows or 0, 'row')})" for s in content.sheets if s.rows))
     for sheet in content.sheets if len(content.sheets) == 1 else ():
-        yield "table", _sheet(sheet)
+        yield "table", _sheet_text(sheet)
     for note in content.notes:
         if not note.startswith(_READER_NOTE_PREFIX):
             yield "note", Text(note)
 
 
-def _channel(channel: model.Channel) -> Text:
+def _channel_text(channel: model.Channel) -> Text:
     text = Text(channel.topic)
     rate = "" if channel.rate_hz is None else f", {channel.rate_hz:.3g} Hz"
     kind = f"{channel.schema or 'no schema'} in {channel.encoding or 'no encoding'}"
-    text.append(f": {plural(channel.messages, 'message')} of {kind}{rate}, {_size(channel.bytes)}")
+    text.append(f": {plural(channel.messages, 'message')} of {kind}{rate}, {_size_text(channel.bytes)}")
     text.append(
         f", read as {channel.read_as}" if channel.read_as else ", not read", "green" if channel.read_as else "dim"
     )
     return text
 
 
-def _sheet(sheet: model.Sheet) -> Text:
+def _sheet_text(sheet: model.Sheet) -> Text:
     rows = "" if sheet.rows is None else f"{plural(sheet.rows, 'row')}, "
     read = [c for c in sheet.columns if c.read_as]
     if not read:
@@ -141,21 +141,21 @@ def _sheet(sheet: model.Sheet) -> Text:
         return Text(f"{sheet.name}: {rows}{plural(len(names), 'column')}: {name_list(names, MAX_ROWS)}")
     per_actor = any(GROUP_PLACEHOLDER in c.name for c in sheet.columns)
     whole = f"{rows}{len(read)} of {plural(len(sheet.columns), 'column')}{' per actor' if per_actor else ''}"
-    text = Text(f"{whole} read: {', '.join(_cell(column, per_actor=per_actor) for column in read)}")
+    text = Text(f"{whole} read: {', '.join(_column_text(column, per_actor=per_actor) for column in read)}")
     if others := [c.name for c in sheet.columns if not c.read_as]:
         names = [name.replace(GROUP_PLACEHOLDER, "").lstrip("# ") for name in others]
         text.append(f"; not read: {name_list(names, MAX_ROWS)}", style="dim")
     return text
 
 
-def _cell(column: model.Column, *, per_actor: bool) -> str:
+def _column_text(column: model.Column, *, per_actor: bool) -> str:
     """Return the quantity that a column is read as. The column's name is added if it differs, except in a wide table."""
     meant = " and ".join(column.read_as)
     unit = f" in {column.unit}" if column.unit else ""
     return f"{meant}{unit}" if per_actor or meant == column.name else f"{column.name}{unit} as {meant}"
 
 
-def _drive(drive: model.Drive) -> Iterator[Line]:
+def _drive_lines(drive: model.Drive) -> Iterator[Line]:
     clock = drive.clock
     period = "" if clock.period_s is None else f", one every {clock.period_s:.4g} s ({1 / clock.period_s:.3g} Hz)"
     time = Text(f"{clock.duration_s:.2f} s, {plural(clock.steps, 'step')}{period}, ")
@@ -171,26 +171,26 @@ def _drive(drive: model.Drive) -> Iterator[Line]:
             f"{plural(count.n, count.actor_class or 'actor of unknown class')}: {count.moving or 'none'} moving, "
         )
         yield "actors", line.append(sized, style="" if count.sized == count.n else "yellow")
-    yield from _egos(drive)
-    yield from _road(drive)
-    yield from _quality([q for q in drive.quality if q.check_id != "no_ego"])
+    yield from _ego_lines(drive)
+    yield from _map_lines(drive)
+    yield from _quality_lines([q for q in drive.quality if q.check_id != "no_ego"])
 
 
-def _egos(drive: model.Drive) -> Iterator[Line]:
+def _ego_lines(drive: model.Drive) -> Iterator[Line]:
     if not drive.egos:
         why = drive.ego_source.removeprefix("no ego: ")
         yield "ego", Text(f"none: {why}. The longest way first:", style="yellow")
-        yield from _first_of("ego", [Text(f"--ego {a.actor_id}  {_actor(a)}") for a in drive.candidates])
+        yield from _first_lines("ego", [Text(f"--ego {a.actor_id}  {_actor_text(a)}") for a in drive.candidates])
         return
-    egos = [Text(f"{ego.actor.actor_id}: {_actor(ego.actor)}") for ego in drive.egos]
+    egos = [Text(f"{ego.actor.actor_id}: {_actor_text(ego.actor)}") for ego in drive.egos]
     if len(egos) == 1:
         yield "ego", egos[0].append(f"; {drive.ego_source}")
         return
     yield "egos", Text(f"{len(egos)}: {drive.ego_source}")
-    yield from _first_of("egos", egos)
+    yield from _first_lines("egos", egos)
 
 
-def _actor(actor: model.Actor) -> str:
+def _actor_text(actor: model.Actor) -> str:
     box = "size unknown"
     if actor.length_m is not None and actor.width_m is not None:
         box = f"{actor.length_m:.2f} x {actor.width_m:.2f} m"
@@ -200,36 +200,38 @@ def _actor(actor: model.Actor) -> str:
     return f"{actor.actor_class or 'class unknown'}, {box}, {way}{speed}, {seen}"
 
 
-def _road(drive: model.Drive) -> Iterator[Line]:
+def _map_lines(drive: model.Drive) -> Iterator[Line]:
     road = drive.road
     if road is None:
         why = drive.road_problem or "none: rules about the road cannot be decided; name a map with --map"
         yield "map", Text(why, style="bold red" if drive.road_problem else "yellow")
         return
-    yield "map", _map(road)
+    yield "map", _map_text(road)
     about = drive.egos or ([drive.supposed] if drive.supposed else [])
     fits = [(ego, ego.registration) for ego in about if ego.registration is not None]
     if len(fits) == 1:
-        yield "fit", _fit(fits[0][1])
+        yield "fit", _map_fit_text(fits[0][1])
         return
     bad = [(ego, fit) for ego, fit in fits if not fit.ok or fit.aside]
     good = len(fits) - len(bad)
     share = "none" if not good else f"{good} of {len(fits)}" if bad else "all"
     yield "fit", Text(f"{share} of the egos lie well on the map", style="yellow" if bad else "green")
-    yield from _first_of("fit", [Text(f"{ego_name(ego.actor.actor_id)}: ").append_text(_fit(fit)) for ego, fit in bad])
+    yield from _first_lines(
+        "fit", [Text(f"{ego_name(ego.actor.actor_id)}: ").append_text(_map_fit_text(fit)) for ego, fit in bad]
+    )
 
 
-def _map(road: model.Road) -> Text:
+def _map_text(road: model.Road) -> Text:
     text = Text("the log's own" if road.source == "log" else road.name)
     text.append(f": {plural(road.lanelets, 'lanelet')}, {road.drivable} of them for driving, {road.drivable_km:.2f} km")
     if any(road.offset_m):
         text.append(f", moved by ({road.offset_m[0]:+g}, {road.offset_m[1]:+g}) m")
     side = f"{'left' if road.handedness == 'lht' else 'right'}-hand traffic"
-    source = _SOURCES.get(road.handedness_source, road.handedness_source)
+    source = _HANDEDNESS_SOURCE_WORDS.get(road.handedness_source, road.handedness_source)
     return text.append(f"; {side}, {source}", style="yellow" if road.handedness_source == "default" else "")
 
 
-def _fit(fit: model.MapRegistration) -> Text:
+def _map_fit_text(fit: model.MapRegistration) -> Text:
     if not fit.ok:
         return Text(fit.reason, style="bold yellow")
     off = "" if fit.lateral_median_m is None else f", {fit.lateral_median_m:.2f} m from its middle (median)"
@@ -238,16 +240,16 @@ def _fit(fit: model.MapRegistration) -> Text:
     return Text(f"{fit.reason}{off}", style="green")
 
 
-def _quality(findings: Sequence[model.Quality]) -> Iterator[Line]:
+def _quality_lines(findings: Sequence[model.Quality]) -> Iterator[Line]:
     if not any(q.severity != "info" for q in findings):
         yield "data", Text("no problem found", style="green")
-    yield from _first_of("data", [_finding(finding) for finding in findings])
+    yield from _first_lines("data", [_finding_text(finding) for finding in findings])
 
 
-def _finding(finding: model.Quality) -> Text:
+def _finding_text(finding: model.Quality) -> Text:
     about, info = "map: " if finding.about == "map" else "", finding.severity == "info"
     at = "" if finding.first_at_s is None or info else f" (first at {finding.first_at_s:.2f} s)"
-    text = Text(f"{finding.severity}: ", style=_STYLE[finding.severity])
+    text = Text(f"{finding.severity}: ", style=_STYLE_BY_SEVERITY[finding.severity])
     return text.append(f"{about}{finding.message}{at}", style="dim" if info else "default")
 
 
@@ -257,11 +259,11 @@ def _decidable_rules(drive: model.Drive, log: str) -> Group:
     alike = group_rows(egos_told, lambda ego: tuple(item.signal for item in ego.missing_signals))
     parts: list[RenderableType] = []
     for egos in sorted(alike.values(), key=lambda group: -len(group[0].can)):
-        parts += _about(drive, egos, log)
+        parts += _decidable_rules_of_egos(drive, egos, log)
     return Group(*parts)
 
 
-def _about(drive: model.Drive, egos: list[model.Ego], log: str) -> list[RenderableType]:
+def _decidable_rules_of_egos(drive: model.Drive, egos: list[model.Ego], log: str) -> list[RenderableType]:
     ego, n = egos[0], len(drive.rules)
     selection = name_list(drive.selection, _MAX_LISTED_NAMES)
     who = ""
@@ -270,17 +272,22 @@ def _about(drive: model.Drive, egos: list[model.Ego], log: str) -> list[Renderab
     elif len(drive.egos) > 1:
         who = f" for {'ego' if len(egos) == 1 else 'egos'} {name_list([e.actor.actor_id for e in egos], _MAX_LISTED_NAMES)}"
     style = "bold green" if len(ego.can) == n else "bold yellow" if ego.can else "bold red"
-    parts: list[RenderableType] = [Text(f"{log} can decide {_how_many(ego, drive, selection)}{who}.", style=style)]
+    parts: list[RenderableType] = [
+        Text(f"{log} can decide {_decidable_count_text(ego, drive, selection)}{who}.", style=style)
+    ]
     if ego.can:
-        told = (f"{_short(rule, drive)}{_DRAFT if rule in drive.drafts else ''}" for rule in ego.can)
+        told = (f"{_short_rule_id(rule, drive)}{_DRAFT_MARK if rule in drive.drafts else ''}" for rule in ego.can)
         parts.append(Text(f"It can: {', '.join(told)}.", style="dim"))
     if ego.missing_signals:
-        parts += [Text("\nTo decide more, provide:", style="bold"), _by_signal(ego)]
-        parts += [Text("\nRules and the signals that they need:", style="bold"), _by_rule(ego, drive.drafts)]
+        parts += [Text("\nTo decide more, provide:", style="bold"), _missing_signals_table(ego)]
+        parts += [
+            Text("\nRules and the signals that they need:", style="bold"),
+            _undecided_rules_table(ego, drive.drafts),
+        ]
     return parts
 
 
-def _how_many(ego: model.Ego, drive: model.Drive, selection: str) -> str:
+def _decidable_count_text(ego: model.Ego, drive: model.Drive, selection: str) -> str:
     """Return in words how many rules can be decided; drafts are counted separately from the rules that `check` runs by default."""
     n, n_drafts = len(drive.rules), len(drive.drafts)
     if not n_drafts:
@@ -290,14 +297,14 @@ def _how_many(ego: model.Ego, drive: model.Drive, selection: str) -> str:
     return f"{run}, and {can} of {n_drafts} drafts (--rules {selection})"
 
 
-def _short(rule_id: str, drive: model.Drive) -> str:
+def _short_rule_id(rule_id: str, drive: model.Drive) -> str:
     """Return a rule's id; without its pack if all requested rules are of one pack."""
     packs = {rule.partition(".")[0] for rule in drive.rules}
     return rule_id.partition(".")[2] if len(packs) == 1 else rule_id
 
 
-def _by_signal(ego: model.Ego) -> Table:
-    grid = _grid("yellow", overflow="fold")
+def _missing_signals_table(ego: model.Ego) -> Table:
+    grid = _empty_label_table("yellow", overflow="fold")
     for item in ego.missing_signals:
         waiting = f"{plural(len(item.rules), 'rule')} wait{'s' if len(item.rules) == 1 else ''} for it"
         alone = ""
@@ -309,13 +316,13 @@ def _by_signal(ego: model.Ego) -> Table:
     return grid
 
 
-def _by_rule(ego: model.Ego, drafts: Sequence[str]) -> Table:
+def _undecided_rules_table(ego: model.Ego, drafts: Sequence[str]) -> Table:
     """Return a table of the undecidable rules, with one row per set of missing signals."""
-    grid = _grid("yellow", overflow="fold")
+    grid = _empty_label_table("yellow", overflow="fold")
     waiting = group_rows(ego.cannot, lambda rule: tuple(rule.missing_signals))
     for missing, rules in sorted(waiting.items(), key=lambda item: (-len(item[1]), item[0])):
         ids = (
-            f"{rule.rule_id}{_DRAFT if rule.rule_id in drafts else ''}{' (can be broken, not kept)' if rule.breach_only else ''}"
+            f"{rule.rule_id}{_DRAFT_MARK if rule.rule_id in drafts else ''}{' (can be broken, not kept)' if rule.breach_only else ''}"
             for rule in rules
         )
         grid.add_row(" + ".join(missing), Text(", ".join(ids)))

@@ -115,7 +115,7 @@ def _cases_by_drive(result: Result) -> dict[str, list[Case]]:
     rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
 
     def add_failure(row: Row, text: str) -> None:
-        reason = descriptions.excuse(result, row, rules.get(row["rule_id"]))
+        reason = descriptions.why_not_gating(result, row, rules.get(row["rule_id"]))
         lines = told[_case_key(row)]
         if reason:
             lines.not_gating.append(f"does not gate ({reason}): {text}")

@@ -48,7 +48,8 @@ def render(result: Result, base_url: str | None = None) -> bytes:
     end, gate = exit_status(result), result.gate
     rules = {row["rule_id"]: row for row in result.rules.to_pylist()}
     findings = [
-        (row, descriptions.excuse(result, row, rules.get(row["rule_id"]))) for row in result.findings.to_pylist()
+        (row, descriptions.why_not_gating(result, row, rules.get(row["rule_id"])))
+        for row in result.findings.to_pylist()
     ]
     findings.sort(key=lambda item: counts.SEVERITIES.index(item[0]["severity"]))
     target = base_url and quote(f"{base_url.rstrip('/')}/report.html", safe="/:?&=%+,;@~.-_!$")  # encodes ( and )
@@ -106,10 +107,10 @@ def _render_parts(template: str, **values: Any) -> list[str]:
         "doubt": doubt_words,
         "escaped": escape_markdown,
         "finding_line": descriptions.finding_line,
-        "group_by_reason": descriptions.group_by_reason,
-        "difference_headline": descriptions.headline,
-        "judged_otherwise": descriptions.judged_otherwise,
-        "since_baseline": descriptions.since_baseline,
+        "unknowns_by_reason": descriptions.unknowns_by_reason,
+        "difference_headline": descriptions.difference_headline,
+        "judged_less_sentence": descriptions.judged_less_sentence,
+        "earlier_findings_sentence": descriptions.earlier_findings_sentence,
         "short": _short_reason,
         "utc_at": utc_at,
         "moment_ns": moment_ns,
@@ -120,7 +121,7 @@ def _render_parts(template: str, **values: Any) -> list[str]:
         end_part=_PART_SEPARATOR,
         anchor=anchor,
         n_findings=n_findings,
-        rows_of_entries=descriptions.rows_of_entries,
+        surplus_rows_sentence=descriptions.surplus_rows_sentence,
         **values,
     )
     return [part.strip("\n") for part in text.split(_PART_SEPARATOR)]

@@ -125,7 +125,7 @@ def headline(result: Result) -> Headline:
     whole = not told["unknown"] + told["error"] + lacking and not result.interrupted
     whole = whole and bool(pc.all(pc.equal(result.drives["status"], "judged")).as_py())
     before = None if result.gate is None else result.gate.baseline
-    less = "" if before is None else descriptions.judged_otherwise(before)
+    less = "" if before is None else descriptions.judged_less_sentence(before)
     whole = whole and not less
     kind = "unknown" if less else _KIND_OF_LABEL.get(label, "unknown")
     if not rows:

@@ -326,7 +326,7 @@ def _exit_and_next_steps_lines(result: Result, findings: list[Row], out: str | N
     alone = "" if gate is not None and gate.baseline is not None else " (no baseline)"
     lines = [Text(f"exit {int(end.code)}: {end.why}{alone}", style)]
     if gate is not None and gate.baseline is not None:
-        changes = descriptions.since_baseline(gate.baseline)
+        changes = descriptions.earlier_findings_sentence(gate.baseline)
         lines.append(Text(f"baseline: {changes}"))
     if gate is not None:
         lines += [Text(f"waiver   {line}", "yellow") for line in descriptions.waiver_warnings(gate)]

@@ -118,7 +118,7 @@ def _write_finding(checker: etree._Element, row: Row, rule: Row, start_ns: int |
     moment = when(row, {rule["rule_id"]: rule}, start_ns)
     text = profile + line_of_row(row, moment)
     notes = [] if stable else [f"{rule['status']}, does not gate"]
-    notes += [descriptions.waiver_reason(waiver)] if waiver else []
+    notes += [descriptions.waiver_reason_phrase(waiver)] if waiver else []
     notes += ["known: the baseline contains it"] if gate and gate.is_in_baseline(row["finding_id"]) else []
     level = LEVELS[row["severity"]] if stable and waiver is None else INFORMATION_LEVEL
     issue = _add_issue(checker, rule, level, f"{text} ({'; '.join(notes)})" if notes else text)

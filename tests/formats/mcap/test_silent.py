@@ -9,7 +9,7 @@ from mcap.writer import CompressionType, Writer
 
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.silent import silent_topics
-from drivelint.inspect.content import content
+from drivelint.inspect.content import file_content
 from tests.formats.logs import read
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def test_the_topic_is_named(schema: str, other: bool, chunks: bool, tmp_path: Pa
         read(path)
     assert f"{KINDS[schema][2]}topic '/truth' has no message" in str(error.value)
     assert "no channel" not in str(error.value)
-    channels = {channel.topic: channel.messages for channel in content(path, None, [], has_reader=False).channels}
+    channels = {channel.topic: channel.messages for channel in file_content(path, None, [], has_reader=False).channels}
     assert channels == {"/truth": 0} | ({"/note": 2} if other else {})
 
 

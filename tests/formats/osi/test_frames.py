@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS
-from drivelint.formats.osi.encode import ground_truths, moving_objects, traffic_light
+from drivelint.formats.osi.encode import encode_ground_truths, encode_traffic_light, moving_objects
 from drivelint.formats.osi.schema import GROUND_TRUTH, descriptor_set
 
 VECTORS = {
@@ -48,12 +48,12 @@ def objects(rows: list[dict[str, Any]], *, heights: bool) -> pa.StructArray:
         np.array([row["number"] for row in rows], np.uint64),
         {name: np.array([row[name] for row in rows], np.float64) for name in COLUMNS},
         {name: np.array([row[name] for row in rows], np.int8) for name in ("actor_class", "indicator", "brake_light")},
-        heights=heights,
+        log_has_heights=heights,
     )
 
 
 def messages(t_ns: list[int], host: int | None, items: pa.StructArray, starts: NDArray[np.int64]) -> list[bytes]:
-    found: list[bytes] = ground_truths(np.array(t_ns, np.int64), host, items, starts).to_pylist()
+    found: list[bytes] = encode_ground_truths(np.array(t_ns, np.int64), host, items, starts).to_pylist()
     return found
 
 
@@ -101,6 +101,6 @@ def test_ids_of_one_byte_and_of_two() -> None:
 
 
 def test_a_red_and_amber_light_is_two_bulbs_of_one_signal() -> None:
-    bulbs = parsed(traffic_light("s7", "red_amber", (3, 4))).traffic_light
+    bulbs = parsed(encode_traffic_light("s7", "red_amber", (3, 4))).traffic_light
     assert [(b.id.value, b.classification.color, b.classification.mode) for b in bulbs] == [(3, 2, 3), (4, 3, 3)]
     assert {(r.type, *r.identifier) for b in bulbs for r in b.source_reference} == {("net.asam.opendrive", "s7")}

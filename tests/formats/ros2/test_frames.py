@@ -22,7 +22,7 @@ from rosbags.typesys import Stores, get_typestore
 from drivelint.errors import TraceError
 from drivelint.formats import expand_traces
 from drivelint.formats.mcap.bag import mcap_files
-from drivelint.inspect.content import content, size_bytes
+from drivelint.inspect.content import file_content, size_bytes
 from tests.formats.logs import at, log, quality, read, states
 from tests.formats.ros2 import ros_log as ros
 from tests.formats.ros2.ros_drive import T0, TURN, N, along, ego, others, seen, ticks
@@ -215,7 +215,7 @@ def test_types_are_numbered_anew_in_each_part(tmp_path: Path) -> None:
 def test_what_a_bag_holds(tmp_path: Path) -> None:
     folder, messages = parts(tmp_path)
     assert size_bytes(folder) == sum(file.stat().st_size for file in folder.glob("*.mcap"))
-    found = {channel.topic: channel for channel in content(folder, None, [], has_reader=True).channels}
+    found = {channel.topic: channel for channel in file_content(folder, None, [], has_reader=True).channels}
     assert {topic: channel.read_as for topic, channel in found.items()} == {
         "/carla/hero/odometry": "odometry", "/carla/objects": "road users", "/tf": "frames", "/tf_static": "frames",
     }  # fmt: skip

@@ -16,7 +16,7 @@ import shapely
 
 from drivelint.drive.trace import Trace
 from drivelint.formats import load_map, read_source
-from drivelint.formats.scenarionet.ego_clock import timed_track
+from drivelint.formats.scenarionet.ego_clock import track_at_steps
 from tests.formats.logs import actors, log, read
 from tests.shared_data import shared
 
@@ -95,7 +95,7 @@ def test_the_ego_of_nuscenes_leaps_no_more(name: str, lost: int, shift_s: float,
     """The greatest change of speed from step to step, as the scenario has it and with the time of lost messages."""
     told = second(name)
     state, ts = told["tracks"]["ego"]["state"], told["metadata"]["ts"]
-    found = timed_track(state["position"][:, :2], state["heading"], ts, 0.02)
+    found = track_at_steps(state["position"][:, :2], state["heading"], ts, 0.02)
     assert found.lost_messages == lost
     assert found.shift_s == pytest.approx(shift_s, abs=0.001)
 

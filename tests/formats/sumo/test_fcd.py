@@ -36,10 +36,10 @@ def test_line_by_line_is_what_the_parser_reads(tmp_path: Path) -> None:
         "</fcd-export>", '  <timestep time="7.00"/>\n  <timestep time="8.00">\n  </timestep>\n</fcd-export>'
     )
     path = put(tmp_path / "a.xml", text)
-    fast = fcd_xml.lines(path.read_bytes())
+    fast = fcd_xml.columns_from_lines(path.read_bytes())
     assert fast is not None
     assert fast["time"].to_pylist() == [float(row["time"]) for row in ROWS[:6]]
-    slow, kind = fcd_xml.parsed(path, path.read_bytes())
+    slow, kind = fcd_xml.parse_columns_and_kinds(path, path.read_bytes())
     assert slow.keys() - fast.keys() == {"vehicle"}
     assert fast["time"].to_pylist() == [float(t) for t in slow["time"].to_pylist()]
     assert all(fast[name].to_pylist() == slow[name].to_pylist() for name in fast.keys() - {"time"})
@@ -82,7 +82,7 @@ _ROW = '<vehicle id="a.0" x="1.0" y="3.5" angle="90.0" type="quick" speed="10.0"
 def test_what_is_not_line_by_line_is_left_to_the_parser(found: str, change: str, n: int) -> None:
     text = xml(ROWS[:6]).replace(found, change, n)
     assert change in text
-    assert fcd_xml.lines(text.encode()) is None
+    assert fcd_xml.columns_from_lines(text.encode()) is None
 
 
 @pytest.mark.parametrize("form", ["csv", "xml"])

@@ -105,7 +105,7 @@ def test_clocks_are_times(tmp_path: Path, form: str, days: int) -> None:
     begin = (days * 24 * 3600 + 3 * 3600 + 59 * 60 + 59) * 10**9
     assert [row["t_ns"] - begin for row in states(read(path, ego="a.0"), "a.0")] == [t * 10**8 for t in range(20)]
     if form == "xml":
-        assert fcd_xml.lines(path.read_bytes()) is not None
+        assert fcd_xml.columns_from_lines(path.read_bytes()) is not None
 
 
 def csv_of_clocks(rows: list[dict[str, Any]]) -> str:
@@ -119,13 +119,17 @@ def csv_of_clocks(rows: list[dict[str, Any]]) -> str:
 )
 def test_a_clock(text: str, seconds: float) -> None:
     assert clock.seconds(text) == pytest.approx(seconds, abs=1e-9)
-    assert clock.as_seconds(pa.array([text, None, "3"])).to_pylist() == [pytest.approx(seconds, abs=1e-9), None, 3.0]
+    assert clock.seconds_of_texts(pa.array([text, None, "3"])).to_pylist() == [
+        pytest.approx(seconds, abs=1e-9),
+        None,
+        3.0,
+    ]
 
 
 @pytest.mark.parametrize("text", ["1:2", "00:75:00", "a:b:c", "1:2:3:4:5", "-00:00:01"])
 def test_what_is_no_clock(text: str) -> None:
     with pytest.raises(pa.ArrowInvalid):
-        clock.as_seconds(pa.array([text]))
+        clock.seconds_of_texts(pa.array([text]))
 
 
 def test_lights_have_clocks_too(tmp_path: Path) -> None:

@@ -108,7 +108,7 @@ def _distances_in_table(
     if unsaid := [actor.id for actor in film.actor if actor.ahead is None]:
         raise UsageError(f"mapping {name!r}: actor {unsaid[0]} has no 'ahead', the column with its distance")
     sheet.load(columns)
-    number, bad = sheet.number(film.frames.column)
+    number, bad = sheet.numbers_and_bad(film.frames.column)
     bad |= ~(np.abs(number) < MAX_FRAME_NUMBER) | (number != np.floor(number))
     rows = np.flatnonzero(~bad)
     frames, first = np.unique(number[rows].astype(np.int64), return_index=True)
@@ -118,7 +118,7 @@ def _distances_in_table(
     at = np.searchsorted(whole, frames)
     ahead = []
     for actor in film.actor:
-        values, odd = sheet.number(str(actor.ahead))
+        values, odd = sheet.numbers_and_bad(str(actor.ahead))
         odd &= ~bad
         if odd.any():
             where = sheet.describe_rows(np.flatnonzero(odd))

@@ -14,7 +14,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 from pyarrow import json
 
-from drivelint.formats.protobuf.descriptors import decoded, message_decoder, parse_schema, struct_field
+from drivelint.formats.protobuf.descriptors import decode_batch, message_decoder, parse_schema, struct_field
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -64,9 +64,9 @@ def decoded_rows(path: Path, schema: Schema, log_messages: list[LogMessage]) -> 
     """
     tree = FIELD_TREES[schema.name]
     if log_messages[0].channel.message_encoding == "json":
-        return decoded(path, log_messages, partial(_json_rows, pa.schema(_json_fields(tree))))
+        return decode_batch(path, log_messages, partial(_json_rows, pa.schema(_json_fields(tree))))
     types = parse_schema(path, schema.name, schema.data)
-    return decoded(path, log_messages, message_decoder(path, types, schema.name, tree))
+    return decode_batch(path, log_messages, message_decoder(path, types, schema.name, tree))
 
 
 def _json_rows(schema: pa.Schema, messages: list[bytes]) -> pa.StructArray:

@@ -34,7 +34,7 @@ from drivelint.formats.mcap.malformed import decode_readable
 from drivelint.formats.mcap.reader import Container, message_batches
 from drivelint.formats.mcap.silent import silent_topics
 from drivelint.formats.mcap.unread import UnreadTopics
-from drivelint.formats.protobuf.descriptors import list_items, struct_field
+from drivelint.formats.protobuf.descriptors import list_items_and_row_indices, struct_field
 from drivelint.formats.ros2.objects import class_code
 from drivelint.formats.ros2.recorded_poses import (
     RecordedPoses,
@@ -93,7 +93,7 @@ def read(path: Path, topic: str | None) -> Recording:
             elif name == TRANSFORM:
                 transforms.append((decoded, log_ns))
             else:
-                inner, parent = list_items(decoded, "transforms")
+                inner, parent = list_items_and_row_indices(decoded, "transforms")
                 transforms.append((inner, log_ns[parent]))
         findings += container.findings
         parts.append(container)
@@ -129,7 +129,7 @@ def _choose_scene_topic(path: Path, scenes: dict[str, _TopicContent], topic: str
 
 
 def _add_messages(scene: _TopicContent, decoded: pa.StructArray, log_ns: Times) -> None:
-    entities, message = list_items(decoded, "entities")
+    entities, message = list_items_and_row_indices(decoded, "entities")
     lists = struct_field(entities, "cubes")
     none = pa.types.is_null(lists.type)
     count = np.zeros(len(entities), np.int64) if none else pc.fill_null(pc.list_value_length(lists), 0).to_numpy()
@@ -155,7 +155,7 @@ def _add_messages(scene: _TopicContent, decoded: pa.StructArray, log_ns: Times) 
             ),
         )
     )
-    gone, message = list_items(decoded, "deletions")
+    gone, message = list_items_and_row_indices(decoded, "deletions")
     if len(gone):
         t_ns, timed = times(struct_field(gone, "timestamp"))
         names, which = distinct_texts(gone, "id")
@@ -172,7 +172,7 @@ def _text_as_bytes(entities: pa.Array, name: str) -> NDArray[np.bytes_]:
 def _class_codes(entities: pa.Array) -> Codes:
     """Return the classes of entities, from the first metadata entry with a key of `CLASS_KEYS` and a known value; -1 without one."""
     codes = np.full(len(entities), -1, np.int8)
-    pairs, parent = list_items(entities, "metadata")
+    pairs, parent = list_items_and_row_indices(entities, "metadata")
     if not len(pairs):
         return codes
     keys, key = distinct_texts(pairs, "key")

@@ -14,12 +14,12 @@ from google.protobuf.message import DecodeError
 from drivelint.drive.trace import QualityFinding
 from drivelint.errors import TraceError
 from drivelint.formats.osi import signal_heads as osi_heads
-from drivelint.formats.osi.enum_codes import EnumCodes, bulbs_of, state_codes
+from drivelint.formats.osi.enum_codes import EnumCodes, bulb_state_rows, moving_object_codes
 from drivelint.formats.osi.schema import GROUND_TRUTH, SENSOR_VIEW, message_class
 from drivelint.formats.protobuf.descriptors import (
-    decoded,
-    integers,
-    list_items,
+    decode_batch,
+    integer_values,
+    list_items_and_row_indices,
     message_decoder,
     parse_schema,
     struct_field,
@@ -40,7 +40,7 @@ _XY: FieldTree = {"x": None, "y": None}
 _ID: FieldTree = {"value": None}
 _TIMESTAMP: FieldTree = {"seconds": None, "nanos": None}
 _LAMPS: FieldTree = {"indicator_state": None, "brake_light_state": None, "head_light": None, "high_beam": None}
-_TRUTH: FieldTree = {
+_GROUND_TRUTH_FIELDS: FieldTree = {
     "timestamp": _TIMESTAMP,
     "host_vehicle_id": _ID,
     "moving_object": {
@@ -62,10 +62,10 @@ _TRUTH: FieldTree = {
     },
 }
 FIELD_TREES: dict[str, FieldTree] = {
-    GROUND_TRUTH: _TRUTH,
-    SENSOR_VIEW: {"timestamp": _TIMESTAMP, "host_vehicle_id": _ID, "global_ground_truth": _TRUTH},
+    GROUND_TRUTH: _GROUND_TRUTH_FIELDS,
+    SENSOR_VIEW: {"timestamp": _TIMESTAMP, "host_vehicle_id": _ID, "global_ground_truth": _GROUND_TRUTH_FIELDS},
 }
-VECTORS: dict[str, dict[str, str]] = {
+COLUMNS_BY_VECTOR: dict[str, dict[str, str]] = {
     "position": {"x_m": "x", "y_m": "y", "z_m": "z"},
     "orientation": {"yaw_rad": "yaw"},
     "velocity": {"vx_mps": "x", "vy_mps": "y"},
@@ -73,80 +73,84 @@ VECTORS: dict[str, dict[str, str]] = {
     "dimension": {"length_m": "length", "width_m": "width", "height_m": "height"},
 }
 """Vector of `moving_object.base` -> drivelint's column -> OSI's coordinate."""
-_LANES = ("lane_boundary", "lane", "reference_line", "logical_lane_boundary", "logical_lane")
-_LISTS = frozenset({"identifier"})
+_LANE_FIELDS = ("lane_boundary", "lane", "reference_line", "logical_lane_boundary", "logical_lane")
+_LIST_FIELDS = frozenset({"identifier"})
 """Values that are lists in OSI."""
-_NEVER_ZERO = frozenset({"position", "dimension"})
+_NEVER_ZERO_VECTORS = frozenset({"position", "dimension"})
 """Vectors that are unknown if all coordinates are missing, even if the writer omits zeros."""
 
 
 @dataclass(frozen=True)
 class FrameBatch:
-    """A decoded batch. Per frame: the message's time, whether it has one (`timed`), and the host's id (None: missing).
+    """A decoded batch. Per frame: the message's time, whether it has one (`has_time`), and the host's id (None: missing).
 
-    Per object with an id: its frame, id, columns of `STATE_COLUMNS` and `SIZE_COLUMNS` (NaN: unknown), and codes. `nameless`: the frame
-    of each object without an id. `left_out`: column -> whether the coordinate is missing but means 0 if the writer omits zeros.
-    `says_zero`: whether any coordinate is written as 0, which shows that the writer does not omit zeros.
+    Per object with an id: its frame, id, columns of `STATE_COLUMNS` and `SIZE_COLUMNS` (NaN: unknown), and codes.
+    `frames_of_nameless`: the frame of each object without an id. `missing_coordinates`: column -> whether the coordinate is missing
+    but means 0 if the writer omits zeros. `has_zeros`: whether any coordinate is written as 0, which shows that the writer does not
+    omit zeros.
     """
 
     t_ns: NDArray[np.int64]
-    timed: Mask
+    has_time: Mask
     hosts: list[int | None]
     frame: Indices
     ids: NDArray[np.uint64]
-    nameless: Indices
+    frames_of_nameless: Indices
     numbers: dict[str, Floats]
     codes: dict[str, Codes]
     not_finite: Mask
-    left_out: dict[str, Mask]
-    says_zero: bool
+    missing_coordinates: dict[str, Mask]
+    has_zeros: bool
     bulbs: pa.Table
 
 
 class Decoder:
     """Decodes messages of one schema record."""
 
-    def __init__(self, path: Path, schema_id: int, name: str, descriptor_set: bytes) -> None:
+    def __init__(self, path: Path, schema_id: int, message_type: str, descriptor_set: bytes) -> None:
         """Prune the schema to the fields that are read. Errors: `TraceError` if it has no ids or positions of moving objects."""
-        self._path, self._name, self.schema_id = path, name, schema_id
+        self._path, self._name, self.schema_id = path, message_type, schema_id
         self.lights: Mapping[str, str] = {}  # bulb id -> traffic light id, from the first message
-        types = parse_schema(path, name, descriptor_set)
-        self._decode = message_decoder(path, types, name, FIELD_TREES[name])
+        types = parse_schema(path, message_type, descriptor_set)
+        self._decode = message_decoder(path, types, message_type, FIELD_TREES[message_type])
         kind = self._decode([]).type
-        truth = _inner(kind, "global_ground_truth") if name == SENSOR_VIEW else kind
-        base = _inner(_inner(truth, "moving_object"), "base")
-        if _inner(base, "position") is None or _inner(_inner(truth, "moving_object"), "id") is None:
+        truth = _struct_type_of_field(kind, "global_ground_truth") if message_type == SENSOR_VIEW else kind
+        base = _struct_type_of_field(_struct_type_of_field(truth, "moving_object"), "base")
+        if (
+            _struct_type_of_field(base, "position") is None
+            or _struct_type_of_field(_struct_type_of_field(truth, "moving_object"), "id") is None
+        ):
             raise TraceError(
-                f"{path}: the schema {name} in the log has no moving_object with id and base.position: not OSI 3"
+                f"{path}: the schema {message_type} in the log has no moving_object with id and base.position: not OSI 3"
             )
-        if (repeated := _repeated(kind, FIELD_TREES[name])) is not None:
-            raise TraceError(f"{path}: the schema {name} in the log has {repeated} as a list: not OSI 3")
+        if (repeated := _path_of_unexpected_list(kind, FIELD_TREES[message_type])) is not None:
+            raise TraceError(f"{path}: the schema {message_type} in the log has {repeated} as a list: not OSI 3")
         self._words = EnumCodes(types, GROUND_TRUTH)
 
     def frames(self, log_messages: list[LogMessage]) -> FrameBatch:
         """Decode a batch. Errors: `TraceError` with topic and byte of the first message that cannot be decoded."""
-        message = decoded(self._path, log_messages, self._decode)
+        message = decode_batch(self._path, log_messages, self._decode)
         truth = struct_field(message, "global_ground_truth") if self._name == SENSOR_VIEW else message
-        (t_ns, timed), (outer_ns, outer_timed) = _times(truth), _times(message)
-        objects, frame = list_items(truth, "moving_object")
+        (t_ns, timed), (outer_ns, outer_timed) = _times_ns_and_presence(truth), _times_ns_and_presence(message)
+        objects, frame = list_items_and_row_indices(truth, "moving_object")
         base = struct_field(objects, "base")
         numbers, left_out, not_finite = {}, {}, np.zeros(len(objects), np.bool_)
         says_zero = False
-        for vector, columns in VECTORS.items():
+        for vector, columns in COLUMNS_BY_VECTOR.items():
             values = struct_field(base, vector)
             present = values.is_valid().to_numpy(zero_copy_only=False)
             for column, coordinate in columns.items():
-                numbers[column], said = _coordinate(values, coordinate)
+                numbers[column], said = _coordinate_and_presence(values, coordinate)
                 left_out[column] = present & ~said
                 not_finite |= said & np.isnan(numbers[column])
                 says_zero = says_zero or bool((numbers[column] == 0.0).any())
-            if vector in _NEVER_ZERO:
+            if vector in _NEVER_ZERO_VECTORS:
                 empty = np.logical_and.reduce([left_out[column] for column in columns])
                 left_out |= {column: left_out[column] & ~empty for column in columns}
         left_out = {column: rows for column, rows in left_out.items() if rows.any()}
         ids = struct_field(objects, "id")
-        number = integers(ids, "value", pa.uint64())
-        codes = state_codes(self._words, objects)
+        number = integer_values(ids, "value", pa.uint64())
+        codes = moving_object_codes(self._words, objects)
         nameless = frame[:0]
         if ids.null_count:
             known = ids.is_valid().to_numpy(zero_copy_only=False)
@@ -156,13 +160,14 @@ class Decoder:
             left_out = {name: rows[known] for name, rows in left_out.items()}
             codes = {name: column[known] for name, column in codes.items()}
         return FrameBatch(
-            np.where(timed, t_ns, outer_ns), timed | outer_timed, pc.coalesce(_hosts(truth), _hosts(message)).to_pylist(),
+            np.where(timed, t_ns, outer_ns), timed | outer_timed,
+            pc.coalesce(_host_vehicle_ids(truth), _host_vehicle_ids(message)).to_pylist(),
             frame, number, nameless, numbers, codes, not_finite, left_out, says_zero,
-            bulbs_of(self._words, truth, self.lights),
+            bulb_state_rows(self._words, truth, self.lights),
         )  # fmt: skip
 
 
-class FirstMessage(NamedTuple):
+class FirstMessageFacts(NamedTuple):
     """Data that only the first message of a trace has.
 
     `lanes`: lanes and road furniture as a serialised ground truth; `reference`, `geo_offset`: the geo reference; `findings`: lanes
@@ -177,21 +182,21 @@ class FirstMessage(NamedTuple):
     nation: str | None = None
 
 
-def read_first_message(data: bytes, name: str) -> FirstMessage:
+def read_first_message(data: bytes, message_type: str) -> FirstMessageFacts:
     """Return lanes, geo reference (a PROJ string, with x, y and yaw) and country of a ground truth or a sensor view.
 
     `lanes` includes boundaries, signs, lights and road markings. If no lane has boundaries, there is no map, because the lanes have
     no width; this is a finding.
     """
     try:
-        outer = message_class(name.removeprefix("osi3.")).FromString(data)
+        outer = message_class(message_type.removeprefix("osi3.")).FromString(data)
     except DecodeError:
-        return FirstMessage()  # a damaged message is reported when its objects are decoded
-    truth = outer.global_ground_truth if name == SENSOR_VIEW else outer
+        return FirstMessageFacts()  # a damaged message is reported when its objects are decoded
+    truth = outer.global_ground_truth if message_type == SENSOR_VIEW else outer
     reference = str(truth.proj_string) or None
     lights = osi_heads.light_by_bulb(truth.traffic_light)
     frame = truth.proj_frame_offset
-    head = FirstMessage(None, reference, (), lights, (frame.position.x, frame.position.y, frame.yaw))
+    head = FirstMessageFacts(None, reference, (), lights, (frame.position.x, frame.position.y, frame.yaw))
     head = head._replace(nation=nation_of(int(truth.country_code)))
     if not (truth.lane_boundary or truth.logical_lane_boundary):
         n = len(truth.lane) + len(truth.logical_lane)
@@ -202,7 +207,7 @@ def read_first_message(data: bytes, name: str) -> FirstMessage:
     if not (truth.lane or truth.logical_lane):
         return head
     lanes, beside = message_class("GroundTruth")(), message_class("GroundTruth")()
-    for each in _LANES:
+    for each in _LANE_FIELDS:
         getattr(lanes, each).extend(getattr(truth, each))
     beside.traffic_sign.extend(truth.traffic_sign)
     beside.traffic_light.extend(osi_heads.bulb_without_state(bulb, lights) for bulb in truth.traffic_light)
@@ -212,31 +217,33 @@ def read_first_message(data: bytes, name: str) -> FirstMessage:
     return head._replace(lanes=content)
 
 
-def _repeated(fields: pa.DataType, tree: FieldTree) -> str | None:
+def _path_of_unexpected_list(struct_type: pa.DataType, tree: FieldTree) -> str | None:
     """Return the path of the first value in a schema that is a list or a message, where OSI has one value; None: there is none."""
     for name, inner in tree.items():
-        at = fields.get_field_index(name)
+        at = struct_type.get_field_index(name)
         if at < 0:
             continue
-        kind = fields.field(at).type
+        kind = struct_type.field(at).type
         if inner is None:
-            if pa.types.is_nested(kind) and name not in _LISTS:
+            if pa.types.is_nested(kind) and name not in _LIST_FIELDS:
                 return name
-        elif (items := _inner(fields, name)) is not None and (path := _repeated(items, inner)) is not None:
+        elif (items := _struct_type_of_field(struct_type, name)) is not None and (
+            path := _path_of_unexpected_list(items, inner)
+        ) is not None:
             return f"{name}.{path}"
     return None
 
 
-def _inner(fields: pa.DataType | None, name: str) -> pa.DataType | None:
+def _struct_type_of_field(struct_type: pa.DataType | None, name: str) -> pa.DataType | None:
     """Return the struct type of a field, or of the items of a list field; None if there is no such field."""
-    if fields is None or fields.get_field_index(name) < 0:
+    if struct_type is None or struct_type.get_field_index(name) < 0:
         return None
-    kind = fields.field(fields.get_field_index(name)).type
+    kind = struct_type.field(struct_type.get_field_index(name)).type
     kind = kind.value_type if pa.types.is_list(kind) else kind
     return kind if pa.types.is_struct(kind) else None
 
 
-def _coordinate(vector: pa.Array, name: str) -> tuple[Floats, Mask]:
+def _coordinate_and_presence(vector: pa.Array, name: str) -> tuple[Floats, Mask]:
     """Return a coordinate (NaN if missing or not finite), and for each row whether it is present."""
     values = struct_field(vector, name).cast(pa.float64())
     said = values.is_valid().to_numpy(zero_copy_only=False)
@@ -244,13 +251,13 @@ def _coordinate(vector: pa.Array, name: str) -> tuple[Floats, Mask]:
     return np.where(np.isfinite(numbers), numbers, np.nan), said
 
 
-def _times(message: pa.Array) -> tuple[NDArray[np.int64], Mask]:
+def _times_ns_and_presence(message: pa.Array) -> tuple[NDArray[np.int64], Mask]:
     stamp = struct_field(message, "timestamp")
-    seconds, nanos = (integers(stamp, name, pa.int64()) for name in ("seconds", "nanos"))
+    seconds, nanos = (integer_values(stamp, name, pa.int64()) for name in ("seconds", "nanos"))
     return seconds * 1_000_000_000 + nanos, stamp.is_valid().to_numpy(zero_copy_only=False)
 
 
-def _hosts(message: pa.Array) -> pa.Array:
+def _host_vehicle_ids(message: pa.Array) -> pa.Array:
     host = struct_field(message, "host_vehicle_id")
     value = pc.fill_null(struct_field(host, "value").cast(pa.uint64()), 0)
     return pc.if_else(host.is_valid(), value, pa.scalar(None, pa.uint64()))

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from drivelint.formats.osi.map_physical import PhysicalLane
     from drivelint.road.map_reader import MapOptions, MapSource, MapTables
 
-_SAME_SURFACE_M = 1.0  # lanes whose heights differ by less are on the same road
+_SAME_ROAD_HEIGHT_M = 1.0  # lanes whose heights differ by less are on the same road
 
 
 def read(source: MapSource, request: MapOptions) -> MapTables:
@@ -45,18 +45,23 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
         ) from error
     logical = osi_logical.read(truth, quality)
     physical = osi_physical.read(truth, quality)
-    covers = _covers(logical, physical)
+    covers = _logical_by_physical(logical, physical)
     alone = {i: lane for i, lane in physical.items() if i not in covers}
     for i in sorted(alone.keys() & logical.keys()):
         message = f"lane {i} is left out: a logical lane at another place has the same id"
         quality.add("invalid_lane", "error", str(i), message)
         del alone[i]
     ways = osi_physical.intersection_lanes(truth, alone)
-    bounded = [*osi_logical.lanelets(logical, truth), *osi_physical.lanelets(alone, truth, [way for way, _ in ways])]
+    bounded = [
+        *osi_logical.bounded_lanes(logical, truth),
+        *osi_physical.bounded_lanes(alone, truth, [way for way, _ in ways]),
+    ]
     lanes = build_lanes(bounded, request.offset, quality)
     if not any(lane.drivable for lane in lanes):
-        raise MapError(f"map {source.name}: {_why_none(truth, quality)}")
-    heights = {str(i): lane.centre for i, lane in alone.items()} | {str(i): lane.centre for i, lane in logical.items()}
+        raise MapError(f"map {source.name}: {_why_no_driving_lane(truth, quality)}")
+    heights = {str(i): lane.centre_line for i, lane in alone.items()} | {
+        str(i): lane.centre_line for i, lane in logical.items()
+    }
     heights |= {way.lanelet_id: ends for way, ends in ways}
     for lane in lanes:
         lane.z = heights_beside(heights[lane.lanelet_id], lane.line.centre - request.offset)
@@ -67,7 +72,9 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     return map_from_bounds(source, request, lanes, beside, quality, kind="osi", side=side)
 
 
-def _covers(logical: Mapping[int, LogicalLane], physical: Mapping[int, PhysicalLane]) -> dict[int, list[int]]:
+def _logical_by_physical(
+    logical: Mapping[int, LogicalLane], physical: Mapping[int, PhysicalLane]
+) -> dict[int, list[int]]:
     """Return physical lane -> the logical lanes that replace it: those that refer to it, or that together cover most of it."""
     covers: dict[int, list[int]] = {}
     for name, lane in logical.items():
@@ -81,20 +88,20 @@ def _covers(logical: Mapping[int, LogicalLane], physical: Mapping[int, PhysicalL
     for ref, drawn in physical.items():
         if ref in covers or not names:
             continue
-        s = stations(drawn.centre)
-        points = resampled(drawn.centre, s, (np.arange(20) + 0.5) / 20 * s[-1])  # the middles of 20 equal pieces
+        s = stations(drawn.centre_line)
+        points = resampled(drawn.centre_line, s, (np.arange(20) + 0.5) / 20 * s[-1])  # the middles of 20 equal pieces
         over, under = tree.query(shapely.points(points[:, :2]), predicate="within")
         heights = [
-            heights_beside(logical[names[a]].centre, points[[p], :2])[0] for p, a in zip(over, under, strict=True)
+            heights_beside(logical[names[a]].centre_line, points[[p], :2])[0] for p, a in zip(over, under, strict=True)
         ]
         level = np.abs(points[over, 2] - heights)
-        same = level < _SAME_SURFACE_M
+        same = level < _SAME_ROAD_HEIGHT_M
         if len(set(over[same].tolist())) > len(points) / 2:
             covers[ref] = sorted({names[a] for a in under[same].tolist()})
     return covers
 
 
-def _why_none(truth: Any, quality: MapQuality) -> str:
+def _why_no_driving_lane(truth: Any, quality: MapQuality) -> str:
     """Return the most frequent reason why no lane for driving could be built."""
     n = len(truth.logical_lane) + len(truth.lane)
     reasons = Counter(

@@ -25,18 +25,18 @@ if TYPE_CHECKING:
 
     from drivelint.drive.trace import Recording, Trace
 
-LIBRARY: Final = "drivelint convert"
+CONVERTED_LOG_LIBRARY: Final = "drivelint convert"
 """The library in the header of converted logs."""
 TRACE_RECORD: Final = "drivelint.trace"
 ACTORS_RECORD: Final = "drivelint.actors"
 EVENT_MESSAGE: Final = "drivelint.DeclaredEvent"
 EGO_CHECK_IDS: Final = frozenset({"no_ego", "ego_count", "no_indicator", "no_brake_light"})
 """Checks of findings that depend on the ego. Converted logs omit them; reading finds them again for the chosen ego."""
-OPTIONAL_COORDINATES: Final = ("z_m",)
+COORDINATES_OSI_CANNOT_OMIT: Final = ("z_m",)
 """Coordinates that cannot be left out of an OSI vector. The record lists a coordinate that no state has."""
 
 
-class _Actor(msgspec.Struct, forbid_unknown_fields=True, frozen=True, kw_only=True):
+class _ActorRecord(msgspec.Struct, forbid_unknown_fields=True, frozen=True, kw_only=True):
     actor_id: str
     actor_class: str | None = None
     length_m: float | None = None
@@ -45,7 +45,7 @@ class _Actor(msgspec.Struct, forbid_unknown_fields=True, frozen=True, kw_only=Tr
     is_ego: bool = False
 
 
-class _TraceFacts(msgspec.Struct, frozen=True, kw_only=True):
+class _TraceRecord(msgspec.Struct, frozen=True, kw_only=True):
     """The record `drivelint.trace`, with each value as JSON. Unknown keys come from newer versions, and are ignored."""
 
     map_offset_m: tuple[float, float] | None = None
@@ -70,12 +70,12 @@ class Event(msgspec.Struct, forbid_unknown_fields=True, frozen=True, kw_only=Tru
 
 
 # decoders are built at import: building one later in several threads is unsafe, see formats/tables/mapping.py
-DECODERS: Final = tuple(msgspec.json.Decoder(kind) for kind in (_Actor, _TraceFacts, Event))
+DECODERS: Final = tuple(msgspec.json.Decoder(kind) for kind in (_ActorRecord, _TraceRecord, Event))
 EVENT_SCHEMA: Final = msgspec.json.encode(msgspec.json.schema(Event), order="sorted")
 
 
-def metadata_records(trace: Trace, numbers: Mapping[str, int], *, as_recorded: bool) -> dict[str, dict[str, str]]:
-    """Return the metadata records of a trace. `numbers`: actor id -> OSI id; `as_recorded`: whether its states are as recorded."""
+def metadata_records(trace: Trace, osi_ids: Mapping[str, int], *, as_recorded: bool) -> dict[str, dict[str, str]]:
+    """Return the metadata records of a trace. `osi_ids`: actor id -> OSI id; `as_recorded`: whether its states are as recorded."""
     log = trace.tables["data_log"].to_pylist()[0]
     states = trace.tables["actor_state"]
     trace_facts: dict[str, Any] = {
@@ -83,7 +83,7 @@ def metadata_records(trace: Trace, numbers: Mapping[str, int], *, as_recorded: b
         "source_sha256": log["sha256"],
         "source_format": log["format"],
         "quality": ego_independent_quality(trace).drop_columns("drive_id").to_pylist(),
-        "unknown": [name for name in OPTIONAL_COORDINATES if states[name].null_count == states.num_rows],
+        "unknown": [name for name in COORDINATES_OSI_CANNOT_OMIT if states[name].null_count == states.num_rows],
     }
     holds = {r["condition"]: r["value"] for r in trace.tables["drive_condition"].to_pylist() if r["source"] == "trace"}
     optional = {
@@ -96,7 +96,7 @@ def metadata_records(trace: Trace, numbers: Mapping[str, int], *, as_recorded: b
     actors = trace.tables["actor"].drop_columns("drive_id").to_pylist()
     return {
         TRACE_RECORD: {name: msgspec.json.encode(value).decode() for name, value in trace_facts.items()},
-        ACTORS_RECORD: {str(numbers[row["actor_id"]]): msgspec.json.encode(row).decode() for row in actors},
+        ACTORS_RECORD: {str(osi_ids[row["actor_id"]]): msgspec.json.encode(row).decode() for row in actors},
     }
 
 
@@ -109,13 +109,13 @@ def ego_independent_quality(trace: Trace) -> pa.Table:
 def apply_metadata(path: Path, metadata: Mapping[str, Mapping[str, str]], recording: Recording) -> None:
     """Add the content of the metadata records to a recording. Errors: `TraceError` if a record is invalid."""
     if TRACE_RECORD in metadata:
-        _apply_trace(path, _read(path, TRACE_RECORD, metadata[TRACE_RECORD], _TraceFacts), recording)
+        _apply_trace_record(path, _decode_record(path, TRACE_RECORD, metadata[TRACE_RECORD], _TraceRecord), recording)
     if ACTORS_RECORD in metadata:
         rows = {
-            number: _read(path, f"{ACTORS_RECORD}, actor {number}", text, _Actor)
+            number: _decode_record(path, f"{ACTORS_RECORD}, actor {number}", text, _ActorRecord)
             for number, text in metadata[ACTORS_RECORD].items()
         }
-        _apply_actors(path, rows, recording)
+        _apply_actor_records(path, rows, recording)
 
 
 def read_declared_events(path: Path, messages: Sequence[bytes]) -> pa.Table | None:
@@ -147,7 +147,7 @@ def parse_conditions(path: Path, rows: Iterable[tuple[str | None, str | None]]) 
     return condition_words
 
 
-def known_findings(path: Path, findings: Sequence[QualityFinding]) -> list[QualityFinding]:
+def validated_findings(path: Path, findings: Sequence[QualityFinding]) -> list[QualityFinding]:
     """Return the findings that a converted log contains. Errors: `TraceError` for a finding of an unknown check."""
     for finding in findings:
         if wrong := vocabularies()["log_check"].problem(finding.check_id):
@@ -155,7 +155,7 @@ def known_findings(path: Path, findings: Sequence[QualityFinding]) -> list[Quali
     return list(findings)
 
 
-def _apply_trace(path: Path, facts: _TraceFacts, recording: Recording) -> None:
+def _apply_trace_record(path: Path, facts: _TraceRecord, recording: Recording) -> None:
     recording.conditions |= parse_conditions(path, facts.conditions.items())
     if facts.map_offset_m is not None:
         dx, dy = recording.map_offset = facts.map_offset_m
@@ -165,15 +165,15 @@ def _apply_trace(path: Path, facts: _TraceFacts, recording: Recording) -> None:
     if facts.utc_start_ns is not None:
         recording.utc_start_ns = facts.utc_start_ns
     recording.sensor_range_m = facts.sensor_range_m
-    for name in set(facts.unknown) & set(OPTIONAL_COORDINATES):
+    for name in set(facts.unknown) & set(COORDINATES_OSI_CANNOT_OMIT):
         recording.states.numbers[name] = np.full(len(recording.states), np.nan)
     # only these empty frames were in the original log; the conversion added frames for traffic lights
     recording.frames_ns = np.array(facts.nobody_ns, np.int64)
     kept = [f for f in facts.quality if not facts.as_recorded or f.check_id not in FOUND_ANEW]
-    recording.findings += known_findings(path, kept)
+    recording.findings += validated_findings(path, kept)
 
 
-def _apply_actors(path: Path, rows: Mapping[str, _Actor], recording: Recording) -> None:
+def _apply_actor_records(path: Path, rows: Mapping[str, _ActorRecord], recording: Recording) -> None:
     names = [rows[number].actor_id if number in rows else number for number in recording.states.ids]
     if len(set(names)) < len(names) or len({row.actor_id for row in rows.values()}) < len(rows):
         raise TraceError(
@@ -189,7 +189,7 @@ def _apply_actors(path: Path, rows: Mapping[str, _Actor], recording: Recording) 
     recording.ego_ids = [row.actor_id for row in known if row.is_ego]
 
 
-def _read(path: Path, record_name: str, text: Mapping[str, str] | str, kind: type[Any]) -> Any:
+def _decode_record(path: Path, record_name: str, text: Mapping[str, str] | str, kind: type[Any]) -> Any:
     try:
         if isinstance(text, str):
             value = msgspec.json.decode(text, type=kind)
@@ -199,7 +199,7 @@ def _read(path: Path, record_name: str, text: Mapping[str, str] | str, kind: typ
         raise TraceError(
             f"{path}: the metadata record {record_name} cannot be read ({error}): convert the log again"
         ) from error
-    if isinstance(value, _TraceFacts) and not all(map(math.isfinite, value.map_offset_m or ())):
+    if isinstance(value, _TraceRecord) and not all(map(math.isfinite, value.map_offset_m or ())):
         raise TraceError(
             f"{path}: the metadata record {record_name} has the map offset {value.map_offset_m}: convert the log again"
         )

@@ -26,7 +26,7 @@ from drivelint.formats.mcap.reader import Container, LogMessage, message_batches
 from drivelint.formats.mcap.silent import silent_topics
 from drivelint.formats.mcap.unread import UnreadTopics
 from drivelint.formats.osi import metadata, trace_file
-from drivelint.formats.osi.decode import FIELD_TREES, Decoder, FirstMessage, read_first_message
+from drivelint.formats.osi.decode import FIELD_TREES, Decoder, FirstMessageFacts, read_first_message
 from drivelint.formats.osi.enum_codes import signal_states
 from drivelint.formats.osi.heights import forget_copied_heights
 from drivelint.formats.osi.schema import GROUND_TRUTH, OPEN_DRIVE, SENSOR_VIEW, descriptor_set
@@ -50,7 +50,7 @@ _READ_MESSAGES: Final = frozenset({*FIELD_TREES, OPEN_DRIVE, metadata.EVENT_MESS
 
 def accepts(probe: Probe) -> bool:
     """Return whether the file begins with a plausible length and OSI message."""
-    return not probe.path.is_dir() and trace_file.is_osi_trace(probe.head, probe.path.stat().st_size)
+    return not probe.path.is_dir() and trace_file.may_be_osi_trace(probe.head, probe.path.stat().st_size)
 
 
 def read_mcap(path: Path, topic: str | None) -> Recording:
@@ -59,42 +59,42 @@ def read_mcap(path: Path, topic: str | None) -> Recording:
     Errors: `TraceError` for a damaged file, no or several ground-truth topics, or a schema without the necessary fields.
     """
     container = Container(path, salvage=True)
-    truths: list[str] = []  # topics of ground truth
-    head, decoder = FirstMessage(), None
+    truth_topics: list[str] = []  # topics of ground truth
+    first_message, decoder = FirstMessageFacts(), None
     batches: list[FrameBatch] = []
     log_ns: list[int] = []
     maps: dict[bytes, str] = {}
     events: list[bytes] = []
     lost_findings: list[QualityFinding] = []
     unread = UnreadTopics()
-    for kind, log_messages in message_batches(container, partial(_kind, truths, topic, unread)):
+    for kind, log_messages in message_batches(container, partial(_message_type_to_read, truth_topics, topic, unread)):
         if kind in FIELD_TREES:
-            _check_topics(container, truths, topic)
+            _check_topics(container, truth_topics, topic)
             schema = container.schemas[log_messages[0].channel.schema_id]
             if not batches:  # only the first message can have lanes
-                head = read_first_message(log_messages[0].data, kind)
+                first_message = read_first_message(log_messages[0].data, kind)
             if decoder is None or decoder.schema_id != schema.id:
                 decoder = Decoder(path, schema.id, schema.name, schema.data)
-                decoder.lights = head.lights
+                decoder.lights = first_message.lights
             frames, readable = decode_readable(container, log_messages, decoder.frames)
             if frames is not None:
                 batches.append(frames)
             log_ns += [log_message.log_time_ns for log_message in readable]
         elif kind == OPEN_DRIVE:
             for log_message in log_messages:
-                text = _map_text(container, log_message)
+                text = _map_content(container, log_message)
                 if isinstance(text, bytes):
                     maps.setdefault(text, log_message.channel.topic)
                 else:
                     lost_findings.append(text)
         else:
             events += [log_message.data for log_message in log_messages]
-    _check_topics(container, truths, topic)
-    unread.refuse(path, FIELD_TREES if topic is None else (), truths)
-    _refuse_lost_end_of_converted(container)
+    _check_topics(container, truth_topics, topic)
+    unread.refuse(path, FIELD_TREES if topic is None else (), truth_topics)
+    _refuse_converted_log_without_end(container)
     if not batches:
         raise TraceError(f"{path}: no message of its ground truth can be decoded ({container.losses.first.cause})")
-    recording = _recording("osi-mcap", batches, head, np.array(log_ns, np.uint64))
+    recording = _recording("osi-mcap", batches, first_message, np.array(log_ns, np.uint64))
     own, several = single_map(maps)
     if maps:
         recording.embedded_map = own
@@ -102,7 +102,7 @@ def read_mcap(path: Path, topic: str | None) -> Recording:
         *container.findings,
         *unread.findings(),
         *lost_findings[:1],
-        *(several if maps else head.findings),
+        *(several if maps else first_message.findings),
     ]
     recording.lost_times += container.losses.times(path)
     recording.events = metadata.read_declared_events(path, events)
@@ -110,17 +110,21 @@ def read_mcap(path: Path, topic: str | None) -> Recording:
     return recording
 
 
-def _refuse_lost_end_of_converted(container: Container) -> None:
+def _refuse_converted_log_without_end(container: Container) -> None:
     """Raise `TraceError` for a log of `drivelint convert` whose end is lost, because the end contains all declared events."""
-    if container.library == metadata.LIBRARY and any(each.until_ns is None for each in container.losses.lost_bytes):
+    if container.library == metadata.CONVERTED_LOG_LIBRARY and any(
+        each.until_ns is None for each in container.losses.lost_bytes
+    ):
         raise TraceError(
             f"{container.path}: the end of this converted log, with its declared events, is lost "
             f"({container.losses.last.cause}): convert it again"
         )
 
 
-def _kind(truths: list[str], topic: str | None, unread: UnreadTopics, channel: Channel, schema: Schema) -> str | None:
-    """Return the message type of a channel; None if it is not read. Topics of ground truth are added to `truths`."""
+def _message_type_to_read(
+    truth_topics: list[str], topic: str | None, unread: UnreadTopics, channel: Channel, schema: Schema
+) -> str | None:
+    """Return the message type of a channel; None if it is not read. Topics of ground truth are added to `truth_topics`."""
     if schema.name not in _READ_MESSAGES:
         return None
     encoding = "json" if schema.name == metadata.EVENT_MESSAGE else "protobuf"
@@ -129,13 +133,13 @@ def _kind(truths: list[str], topic: str | None, unread: UnreadTopics, channel: C
             unread.add(channel, schema.name)
         return None
     if schema.name in FIELD_TREES:
-        if channel.topic not in truths:
-            truths.append(channel.topic)
-        return schema.name if channel.topic == (truths[0] if topic is None else topic) else None
+        if channel.topic not in truth_topics:
+            truth_topics.append(channel.topic)
+        return schema.name if channel.topic == (truth_topics[0] if topic is None else topic) else None
     return schema.name
 
 
-def _map_text(container: Container, log_message: LogMessage) -> bytes | QualityFinding:
+def _map_content(container: Container, log_message: LogMessage) -> bytes | QualityFinding:
     """Return the OpenDRIVE map in a message, or the finding that it cannot be used."""
     types = parse_schema(container.path, OPEN_DRIVE, container.schemas[log_message.channel.schema_id].data)
     decode = message_decoder(container.path, types, OPEN_DRIVE, {"open_drive_xml_content": None})
@@ -151,19 +155,19 @@ def _map_text(container: Container, log_message: LogMessage) -> bytes | QualityF
     return text if isinstance(text, bytes) else str(text).encode()
 
 
-def _check_topics(container: Container, truths: list[str], topic: str | None) -> None:
+def _check_topics(container: Container, truth_topics: list[str], topic: str | None) -> None:
     """Raise `TraceError` if there is no topic of ground truth, or several without a choice."""
-    path, topics = container.path, ", ".join(sorted(truths))
-    if topic is not None and topic not in truths:
-        found = f"ground truth is on {topics}" if truths else _foreign_content(container)
+    path, topics = container.path, ", ".join(sorted(truth_topics))
+    if topic is not None and topic not in truth_topics:
+        found = f"ground truth is on {topics}" if truth_topics else _foreign_content_text(container)
         raise TraceError(f"{path}: no OSI ground truth on topic {topic!r}: {found}")
-    if not truths:
-        raise TraceError(f"{path}: no OSI ground truth in this file: {_foreign_content(container)}")
-    if topic is None and len(truths) > 1:
-        raise TraceError(f"{path}: ground truth on {len(truths)} topics ({topics}): choose one with --topic")
+    if not truth_topics:
+        raise TraceError(f"{path}: no OSI ground truth in this file: {_foreign_content_text(container)}")
+    if topic is None and len(truth_topics) > 1:
+        raise TraceError(f"{path}: ground truth on {len(truth_topics)} topics ({topics}): choose one with --topic")
 
 
-def _foreign_content(container: Container) -> str:
+def _foreign_content_text(container: Container) -> str:
     """Return words for the content of an MCAP file without OSI messages: its message types, or topics without messages."""
     names = {0: "no schema", **{number: schema.name for number, schema in container.schemas.items()}}
     kinds = {f"{names[c.schema_id]} in {c.message_encoding or 'no encoding'}" for c in container.channels.values()}
@@ -182,18 +186,18 @@ def read(probe: Probe) -> Recording:
     channel = Channel(id=1, topic=path.name, message_encoding="protobuf", schema_id=1, metadata={})
     batches: list[FrameBatch] = []
     decoder: Decoder | None = None
-    head, losses = FirstMessage(), Losses()
+    first_message, losses = FirstMessageFacts(), Losses()
     with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
         for log_messages in trace_file.message_batches(channel, content, losses):
             if decoder is None:
-                decoder, name = _decoder(path, log_messages)
-                head = read_first_message(log_messages[0].data, name)
-                decoder.lights = head.lights
+                decoder, name = _fitting_decoder_and_type(path, log_messages)
+                first_message = read_first_message(log_messages[0].data, name)
+                decoder.lights = first_message.lights
             frames, malformed = decode_others(log_messages, decoder.frames)
             times = iter(() if frames is None else frames.t_ns.tolist())
             for k, log_message in enumerate(log_messages):
                 if k in malformed:
-                    end = log_message.offset + trace_file.LENGTH + len(log_message.data)
+                    end = log_message.offset + trace_file.LENGTH_FIELD_BYTES + len(log_message.data)
                     losses.add(log_message.offset, end, "a message that cannot be decoded")
                 else:
                     losses.message(next(times))
@@ -202,20 +206,20 @@ def read(probe: Probe) -> Recording:
     if not batches:
         raise TraceError(f"{path}: {losses.first.cause if losses else 'no message'}: copy or record it again")
     n = sum(len(batch.t_ns) for batch in batches)
-    untimed = n - sum(int(batch.timed.sum()) for batch in batches)
+    untimed = n - sum(int(batch.has_time.sum()) for batch in batches)
     if untimed:
         raise TraceError(
             f"{path}: {untimed} of {n} messages have no time stamp, and a file of this format has no other "
             "times: record the log with time stamps"
         )
-    recording = _recording("osi-file", batches, head, np.zeros(n, np.uint64))
+    recording = _recording("osi-file", batches, first_message, np.zeros(n, np.uint64))
     recording.frame_times = None
     recording.lost_times += trace_file.lost_times(path, losses, np.concatenate([batch.t_ns for batch in batches]))
-    recording.findings += head.findings
+    recording.findings += first_message.findings
     return recording
 
 
-def _decoder(path: Path, log_messages: list[LogMessage]) -> tuple[Decoder, str]:
+def _fitting_decoder_and_type(path: Path, log_messages: list[LogMessage]) -> tuple[Decoder, str]:
     """Return the decoder and the name of the message type with which these messages have objects with positions.
 
     Errors: `TraceError` if neither type fits.
@@ -223,7 +227,7 @@ def _decoder(path: Path, log_messages: list[LogMessage]) -> tuple[Decoder, str]:
     for some in (log_messages, log_messages[:1]):  # a damaged later message is reported when it is decoded
         for name in (GROUND_TRUTH, SENSOR_VIEW):
             decoder = Decoder(path, 1, name, descriptor_set("read"))
-            if _places_objects(decoder, some):
+            if _has_placed_objects(decoder, some):
                 return decoder, name
     raise TraceError(
         f"{path}: no moving objects in the first {len(log_messages)} messages, read as {GROUND_TRUTH} or as {SENSOR_VIEW}: "
@@ -231,7 +235,7 @@ def _decoder(path: Path, log_messages: list[LogMessage]) -> tuple[Decoder, str]:
     )
 
 
-def _places_objects(decoder: Decoder, log_messages: list[LogMessage]) -> bool:
+def _has_placed_objects(decoder: Decoder, log_messages: list[LogMessage]) -> bool:
     try:
         frames, _ = decode_others(log_messages, decoder.frames)
     except TraceError:
@@ -239,20 +243,25 @@ def _places_objects(decoder: Decoder, log_messages: list[LogMessage]) -> bool:
     return frames is not None and bool(len(frames.ids) and np.isfinite(frames.numbers["x_m"]).any())
 
 
-def _recording(name: str, batches: list[FrameBatch], head: FirstMessage, log_ns: NDArray[np.uint64]) -> Recording:
-    """Return one recording of format `name` from all batches, in the order of the file. `head`: what only the first message has."""
+def _recording(
+    format_name: str, batches: list[FrameBatch], first_message: FirstMessageFacts, log_ns: NDArray[np.uint64]
+) -> Recording:
+    """Return one recording of all batches, in the order of the file. `first_message`: what only the first message has."""
     findings: list[QualityFinding] = []
-    t_ns = _clock(batches, log_ns.astype(np.int64), findings)
+    t_ns = _frame_times_ns(batches, log_ns.astype(np.int64), findings)
     offsets = np.cumsum([0, *(len(batch.t_ns) for batch in batches)])
     frame = np.concatenate([batch.frame + offset for batch, offset in zip(batches, offsets, strict=False)])
     unique, actor = np.unique(np.concatenate([batch.ids for batch in batches]), return_inverse=True)
-    zeroed = _zeros(batches)
+    zeroed = _numbers_with_omitted_zeros(batches)
     states = States(
         [str(number) for number in unique],
         actor.astype(np.int32),
         t_ns[frame],
-        {name: np.concatenate([numbers[name] for numbers in zeroed]) for name in zeroed[0]},
-        {name: np.concatenate([batch.codes[name] for batch in batches]) for name in batches[0].codes},
+        {format_name: np.concatenate([numbers[format_name] for numbers in zeroed]) for format_name in zeroed[0]},
+        {
+            format_name: np.concatenate([batch.codes[format_name] for batch in batches])
+            for format_name in batches[0].codes
+        },
         np.concatenate([batch.not_finite for batch in batches]),
     )
     if copied := forget_copied_heights(states):
@@ -261,50 +270,53 @@ def _recording(name: str, batches: list[FrameBatch], head: FirstMessage, log_ns:
         batch.bulbs.set_column(0, "frame", pc.add(batch.bulbs["frame"], int(offset)))
         for batch, offset in zip(batches, offsets, strict=False)
     )
-    nameless = np.concatenate([batch.nameless + offset for batch, offset in zip(batches, offsets, strict=False)])
+    nameless = np.concatenate(
+        [batch.frames_of_nameless + offset for batch, offset in zip(batches, offsets, strict=False)]
+    )
     if len(nameless):
         message = f"moving objects without an id: {len(nameless)}: they are not judged"
         findings.append(QualityFinding("dropped_row", "error", message, len(nameless)))
     lost_times = times_of_lost_rows(
-        log_ns.astype(np.int64) if name == "osi-mcap" else t_ns,
+        log_ns.astype(np.int64) if format_name == "osi-mcap" else t_ns,
         np.ones(len(t_ns), np.bool_),
         np.isin(np.arange(len(t_ns)), nameless),
         "messages with moving objects without an id",
     )
     return Recording(
-        name,
+        format_name,
         states,
         signals=signal_states(bulbs, t_ns),
-        ego_ids=_host([host for batch in batches for host in batch.hosts], t_ns, findings),
+        ego_ids=_ego_ids_of_hosts([host for batch in batches for host in batch.hosts], t_ns, findings),
         findings=findings,
         lost_times=lost_times,
         utc_start_ns=int(log_ns.min()) if log_ns.min() >= LEAST_UTC_NS else None,
         frame_times=FrameTimes(t_ns, log_ns),
         frames_ns=t_ns,
-        embedded_map=head.lanes,
-        geo_reference=head.reference,
-        geo_offset=head.geo_offset,
-        conditions={} if head.nation is None else {"nation": head.nation},
+        embedded_map=first_message.lanes,
+        geo_reference=first_message.reference,
+        geo_offset=first_message.geo_offset,
+        conditions={} if first_message.nation is None else {"nation": first_message.nation},
     )
 
 
-def _zeros(batches: list[FrameBatch]) -> list[dict[str, Floats]]:
+def _numbers_with_omitted_zeros(batches: list[FrameBatch]) -> list[dict[str, Floats]]:
     """Return the numbers of each batch, with 0 for missing coordinates if the log contains no zero.
 
     Some writers omit zeros, as proto3 does. In a log with zeros, a missing coordinate is unknown.
     """
-    if any(batch.says_zero for batch in batches):
+    if any(batch.has_zeros for batch in batches):
         return [batch.numbers for batch in batches]
     return [
-        batch.numbers | {name: np.where(rows, 0.0, batch.numbers[name]) for name, rows in batch.left_out.items()}
+        batch.numbers
+        | {name: np.where(rows, 0.0, batch.numbers[name]) for name, rows in batch.missing_coordinates.items()}
         for batch in batches
     ]
 
 
-def _clock(batches: list[FrameBatch], log_ns: Times, findings: list[QualityFinding]) -> Times:
+def _frame_times_ns(batches: list[FrameBatch], log_ns: Times, findings: list[QualityFinding]) -> Times:
     """Return each frame's time: its own time stamp, or the log time for all frames if time stamps are missing or do not advance."""
     stamps = np.concatenate([batch.t_ns for batch in batches])
-    timed = np.concatenate([batch.timed for batch in batches])
+    timed = np.concatenate([batch.has_time for batch in batches])
     if not timed.all() or (len(stamps) > 1 and stamps.min() == stamps.max()):
         stamps = log_ns
         message = (
@@ -317,13 +329,13 @@ def _clock(batches: list[FrameBatch], log_ns: Times, findings: list[QualityFindi
     return stamps
 
 
-def _host(hosts: list[int | None], t_ns: Times, findings: list[QualityFinding]) -> list[str]:
+def _ego_ids_of_hosts(host_ids: list[int | None], t_ns: Times, findings: list[QualityFinding]) -> list[str]:
     """Return the most frequent host vehicle's id, of equally frequent ids the earliest, as a list; empty without any id."""
-    host_counts = Counter(host for host in hosts if host is not None)
+    host_counts = Counter(host for host in host_ids if host is not None)
     if not host_counts:
         return []
     first: dict[int, int] = {}
-    for host, at in zip(hosts, t_ns.tolist(), strict=True):
+    for host, at in zip(host_ids, t_ns.tolist(), strict=True):
         if host is not None:
             first[host] = min(first.get(host, at), at)
     ego = min(host_counts, key=lambda host: (-host_counts[host], first[host], host))

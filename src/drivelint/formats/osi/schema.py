@@ -27,19 +27,19 @@ VERSION: Final = (3, 7, 0)
 
 
 @cache
-def _declared(*parts: str) -> Declarations:
-    return Declarations(*(toml_beside(__file__, "schema.toml")[part] for part in parts))
+def _declarations(*schema_sections: str) -> Declarations:
+    return Declarations(*(toml_beside(__file__, "schema.toml")[part] for part in schema_sections))
 
 
 @cache
-def enum_numbers(name: str) -> dict[str, int]:
+def enum_numbers(enum_name: str) -> dict[str, int]:
     """Return name -> number for a written enumeration; names are those in `schema.toml`."""
-    return {word: int(number) for word, number in _declared("written").enums[name]}
+    return {word: int(number) for word, number in _declarations("written").enums[enum_name]}
 
 
-def _file(*parts: str) -> descriptor_pb2.FileDescriptorProto:
+def _file_descriptor(*schema_sections: str) -> descriptor_pb2.FileDescriptorProto:
     file = descriptor_pb2.FileDescriptorProto(name="osi_written.proto", package=PACKAGE, syntax="proto2")
-    declared = _declared(*parts)
+    declared = _declarations(*schema_sections)
     types: dict[str, Any] = {}
     for name in [*declared.messages, *declared.enums]:
         outer, _, own = name.rpartition(".")
@@ -57,16 +57,18 @@ def _file(*parts: str) -> descriptor_pb2.FileDescriptorProto:
 
 
 @cache
-def descriptor_set(*more: str) -> bytes:
+def descriptor_set(*extra_sections: str) -> bytes:
     """Return the serialised `FileDescriptorSet` of the written messages, for an MCAP schema record. "read" adds the read messages."""
-    return descriptor_pb2.FileDescriptorSet(file=[_file("written", *more)]).SerializeToString(deterministic=True)
+    return descriptor_pb2.FileDescriptorSet(file=[_file_descriptor("written", *extra_sections)]).SerializeToString(
+        deterministic=True
+    )
 
 
 @cache
-def _classes() -> dict[str, Any]:
-    return message_factory.GetMessages([_file("written", "read")])
+def _message_classes() -> dict[str, Any]:
+    return message_factory.GetMessages([_file_descriptor("written", "read")])
 
 
 def message_class(name: str) -> Any:
     """Return the Python class of an OSI message, such as GroundTruth. It is for single messages; batches are decoded by columns."""
-    return _classes()[f"{PACKAGE}.{name}"]
+    return _message_classes()[f"{PACKAGE}.{name}"]

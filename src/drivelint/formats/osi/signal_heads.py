@@ -17,8 +17,8 @@ from drivelint.formats.osi.schema import LIGHT_REFERENCE, OPEN_DRIVE_REFERENCE
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-_BESIDE_M: Final = 0.6  # largest distance between the centres of two bulbs of one light
-_TURNED_RAD: Final = 0.2
+_LARGEST_BULB_DISTANCE_M: Final = 0.6  # largest distance between the centres of two bulbs of one light
+_LARGEST_BULB_ANGLE_RAD: Final = 0.2
 
 
 def light_by_bulb(bulbs: Iterable[Any]) -> dict[str, str]:
@@ -39,7 +39,7 @@ def light_by_bulb(bulbs: Iterable[Any]) -> dict[str, str]:
         while waiting:
             light = [waiting.pop(0)]
             for bulb in light:  # the list grows during the loop
-                near = [each for each in waiting if _beside(bulb, each)]
+                near = [each for each in waiting if _are_adjacent_bulbs(bulb, each)]
                 light += near
                 waiting = [each for each in waiting if each not in near]
             if len(light) > 1:
@@ -47,12 +47,12 @@ def light_by_bulb(bulbs: Iterable[Any]) -> dict[str, str]:
     return light_ids
 
 
-def bulb_without_state(bulb: Any, names: Mapping[str, str]) -> Any:
-    """Return a copy of a bulb without colour and mode, and with a reference to its light. `names`: bulb id -> light id."""
+def bulb_without_state(bulb: Any, light_ids: Mapping[str, str]) -> Any:
+    """Return a copy of a bulb without colour and mode, and with a reference to its light. `light_ids`: bulb id -> light id."""
     map_bulb = type(bulb).FromString(bulb.SerializeToString())
     for field in ("color", "mode"):
         map_bulb.classification.ClearField(field)
-    light = names.get(str(bulb.id.value))
+    light = light_ids.get(str(bulb.id.value))
     if light is not None:
         reference = map_bulb.source_reference.add()
         reference.type = LIGHT_REFERENCE
@@ -60,8 +60,8 @@ def bulb_without_state(bulb: Any, names: Mapping[str, str]) -> Any:
     return map_bulb
 
 
-def _beside(a: Any, b: Any) -> bool:
+def _are_adjacent_bulbs(a: Any, b: Any) -> bool:
     p, q = a.base.position, b.base.position
     apart = math.dist((p.x, p.y, p.z), (q.x, q.y, q.z))
     turned = float(wrap_angles(np.array(a.base.orientation.yaw - b.base.orientation.yaw)))
-    return apart <= _BESIDE_M and abs(turned) <= _TURNED_RAD
+    return apart <= _LARGEST_BULB_DISTANCE_M and abs(turned) <= _LARGEST_BULB_ANGLE_RAD

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import LostTime
     from drivelint.formats.mcap.losses import Losses
 
-LENGTH: Final = 4
+LENGTH_FIELD_BYTES: Final = 4
 """The number of bytes of a message's length field."""
 MOST_MESSAGE_BYTES: Final = 512 << 20
 """A longer message is impossible: even messages with a map are much shorter."""
@@ -32,10 +32,14 @@ _FIRST_TAGS: Final = frozenset({0x0A, 0x12, 0x1A})
 """The possible first bytes of an OSI message: the tags of version, time stamp or an id (fields 1 to 3, length-delimited)."""
 
 
-def is_osi_trace(head: bytes, size: int) -> bool:
+def may_be_osi_trace(head: bytes, size: int) -> bool:
     """Return whether a file of `size` bytes that begins with `head` can be an OSI trace: a possible length, then a message."""
-    length = int.from_bytes(head[:LENGTH], "little")
-    return 2 <= length <= min(size - LENGTH, MOST_MESSAGE_BYTES) and len(head) > LENGTH and head[LENGTH] in _FIRST_TAGS
+    length = int.from_bytes(head[:LENGTH_FIELD_BYTES], "little")
+    return (
+        2 <= length <= min(size - LENGTH_FIELD_BYTES, MOST_MESSAGE_BYTES)
+        and len(head) > LENGTH_FIELD_BYTES
+        and head[LENGTH_FIELD_BYTES] in _FIRST_TAGS
+    )
 
 
 def message_batches(channel: Channel, content: mmap.mmap, losses: Losses) -> Iterator[list[LogMessage]]:
@@ -45,8 +49,8 @@ def message_batches(channel: Channel, content: mmap.mmap, losses: Losses) -> Ite
     """
     waiting: list[LogMessage] = []
     at = size = 0
-    while at < len(content) and (why := _doubt(content, at)) is None:
-        start = at + LENGTH
+    while at < len(content) and (why := _why_length_is_wrong(content, at)) is None:
+        start = at + LENGTH_FIELD_BYTES
         end = start + int.from_bytes(content[at:start], "little")
         waiting.append(LogMessage(channel, 0, content[start:end], at))
         size += end - at
@@ -62,14 +66,18 @@ def message_batches(channel: Channel, content: mmap.mmap, losses: Losses) -> Ite
         ):  # the length of a message that cannot be decoded may be wrong, too
             at = losses.lost_bytes.pop().start
         since = losses.last_ns
-        if since is not None and len(content) > at + LENGTH and content[at + LENGTH] not in _FIRST_TAGS:
+        if (
+            since is not None
+            and len(content) > at + LENGTH_FIELD_BYTES
+            and content[at + LENGTH_FIELD_BYTES] not in _FIRST_TAGS
+        ):
             since -= 1  # no message begins here: a wrong length may have cut off the last message
         losses.lost_bytes.append(LostBytes(at, len(content), str(why), since))
 
 
-def _doubt(content: mmap.mmap, at: int) -> str | None:
+def _why_length_is_wrong(content: mmap.mmap, at: int) -> str | None:
     """Return the reason why the length at byte `at` cannot be right; None if it can."""
-    start = at + LENGTH
+    start = at + LENGTH_FIELD_BYTES
     length = int.from_bytes(content[at:start], "little")
     if start > len(content):
         return f"the file ends within the length of the message at byte {at}"
@@ -87,7 +95,7 @@ def _doubt(content: mmap.mmap, at: int) -> str | None:
 
 
 def _is_message_start(content: mmap.mmap, at: int) -> bool:
-    return is_osi_trace(content[at : at + LENGTH + 1], len(content) - at)
+    return may_be_osi_trace(content[at : at + LENGTH_FIELD_BYTES + 1], len(content) - at)
 
 
 def lost_times(path: Path, losses: Losses, t_ns: Times) -> list[LostTime]:

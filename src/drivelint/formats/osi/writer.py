@@ -13,7 +13,7 @@ from mcap.writer import CompressionType, Writer
 from drivelint.arrays import floats
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS, SIZE_COLUMNS, STATE_COLUMNS
 from drivelint.formats.osi import metadata
-from drivelint.formats.osi.encode import ground_truths, moving_objects, traffic_light
+from drivelint.formats.osi.encode import encode_ground_truths, encode_traffic_light, moving_objects
 from drivelint.formats.osi.schema import GROUND_TRUTH, OPEN_DRIVE, VERSION, descriptor_set
 from drivelint.formats.protobuf.wire import nested
 
@@ -27,24 +27,24 @@ if TYPE_CHECKING:
 GROUND_TRUTH_TOPIC: Final = "ground_truth"
 MAP_TOPIC: Final = "ground_truth_map"
 EVENT_TOPIC: Final = "declared_event"
-BATCH_STATES: Final = 200_000
+STATES_PER_BATCH: Final = 200_000
 """This many states, in whole frames, are encoded at a time, which bounds the memory."""
-_MAX_ID: Final = (1 << 64) - 1
+_MAX_OSI_ID: Final = (1 << 64) - 1
 
 
-def write(sink: BinaryIO, trace: Trace, road: MapSource | None, *, as_recorded: bool = False) -> int:
+def write(sink: BinaryIO, trace: Trace, map_source: MapSource | None, *, as_recorded: bool = False) -> int:
     """Write the log, and return the number of ground-truth messages: one per time of any actor or signal, and per empty frame.
 
-    The same trace and map give the same bytes. `road` must be UTF-8, as OSI's text fields are. A vector with an unknown x or y is
+    The same trace and map give the same bytes. `map_source` must be UTF-8, as OSI's text fields are. A vector with an unknown x or y is
     left out as a whole.
     """
-    numbers = osi_ids(trace.tables["actor"]["actor_id"].to_pylist())
+    osi_ids = assign_osi_ids(trace.tables["actor"]["actor_id"].to_pylist())
     writer = Writer(sink, compression=CompressionType.ZSTD, enable_crcs=True, enable_data_crcs=True)
-    writer.start(library=metadata.LIBRARY)
+    writer.start(library=metadata.CONVERTED_LOG_LIBRARY)
     version = ".".join(map(str, VERSION))
     bounds = dict.fromkeys(("version", "min_osi_version", "max_osi_version"), version)
     writer.add_metadata("net.asam.osi.trace", {**bounds, "description": trace.path.name})
-    for name, content in metadata.metadata_records(trace, numbers, as_recorded=as_recorded).items():
+    for name, content in metadata.metadata_records(trace, osi_ids, as_recorded=as_recorded).items():
         writer.add_metadata(name, content)
     described = {"net.asam.osi.trace.channel.osi_version": version}
     truth = writer.register_channel(
@@ -52,33 +52,35 @@ def write(sink: BinaryIO, trace: Trace, road: MapSource | None, *, as_recorded: 
     )
     times = [pc.min(trace.tables[name]["t_ns"]).as_py() for name in ("actor_state", "signal_state", "declared_event")]
     earliest = int(min(t for t in (*times, *trace.nobody_ns.tolist()) if t is not None))
-    if road is not None:
+    if map_source is not None:
         schema = writer.register_schema(OPEN_DRIVE, "protobuf", descriptor_set())
         channel = writer.register_channel(MAP_TOPIC, "protobuf", schema, described)
-        message = nested(1, road.name.encode()) + nested(2, road.content)
+        message = nested(1, map_source.name.encode()) + nested(2, map_source.content)
         writer.add_message(channel, max(earliest, 0), message, max(earliest, 0))
-    shift = min(earliest, 0)  # log times are unsigned, while times of states may be negative
+    shift_ns = min(earliest, 0)  # log times are unsigned, while times of states may be negative
     count = 0
-    for t_ns, message in _frames(trace, numbers):
-        writer.add_message(truth, t_ns - shift, message, t_ns - shift)
+    for t_ns, message in _frame_messages(trace, osi_ids):
+        writer.add_message(truth, t_ns - shift_ns, message, t_ns - shift_ns)
         count += 1
-    _events(writer, trace, shift)
+    _write_events(writer, trace, shift_ns)
     writer.finish()  # type: ignore[no-untyped-call]
     return count
 
 
-def osi_ids(actors: list[str]) -> dict[str, int]:
+def assign_osi_ids(actors: list[str]) -> dict[str, int]:
     """Return actor id -> OSI id: the same number if all ids are numbers, otherwise 1, 2, ... in the order of the sorted ids."""
-    if all(name.isascii() and name.isdigit() and str(int(name)) == name and int(name) <= _MAX_ID for name in actors):
+    if all(
+        name.isascii() and name.isdigit() and str(int(name)) == name and int(name) <= _MAX_OSI_ID for name in actors
+    ):
         return {name: int(name) for name in actors}
     return {name: number for number, name in enumerate(sorted(actors), 1)}
 
 
-def _frames(trace: Trace, numbers: dict[str, int]) -> Iterator[tuple[int, bytes]]:
+def _frame_messages(trace: Trace, osi_ids: dict[str, int]) -> Iterator[tuple[int, bytes]]:
     """Yield time and message of every frame, in the order of time; in the log's order if its clock restarts."""
     states = trace.tables["actor_state"]
     t_ns = states["t_ns"].to_numpy()
-    lights = _lights(trace.tables["signal_state"])
+    lights = _encoded_lights_by_time(trace.tables["signal_state"])
     actorless_ns = np.concatenate([np.fromiter(lights, np.int64, len(lights)), trace.nobody_ns])
     if trace.in_log_order:
         order = np.arange(len(t_ns))
@@ -90,56 +92,58 @@ def _frames(trace: Trace, numbers: dict[str, int]) -> Iterator[tuple[int, bytes]
         order = np.argsort(t_ns, kind="stable")  # a stable sort keeps the table's order of actors within a frame
         times = np.unique(np.concatenate([t_ns, actorless_ns]))
         bounds = np.append(np.searchsorted(t_ns[order], times), len(order))
-    objects = _objects(trace, numbers)
-    egos = [numbers[row["actor_id"]] for row in trace.tables["actor"].to_pylist() if row["is_ego"]]
+    objects = _objects_of_states(trace, osi_ids)
+    egos = [osi_ids[row["actor_id"]] for row in trace.tables["actor"].to_pylist() if row["is_ego"]]
     host = min(egos, key=str, default=None)
     begin = 0
     while begin < len(times):
-        end = max(int(np.searchsorted(bounds, bounds[begin] + BATCH_STATES, side="right")) - 1, begin + 1)
+        end = max(int(np.searchsorted(bounds, bounds[begin] + STATES_PER_BATCH, side="right")) - 1, begin + 1)
         starts = bounds[begin : end + 1]
         some = objects.take(pa.array(order[starts[0] : starts[-1]]))
-        messages = ground_truths(times[begin:end], host, some, starts - starts[0]).to_pylist()
+        messages = encode_ground_truths(times[begin:end], host, some, starts - starts[0]).to_pylist()
         for t, message in zip(times[begin:end].tolist(), messages, strict=True):
             yield t, b"".join((message, *lights.pop(t, ())))
         begin = end
 
 
-def _objects(trace: Trace, numbers: dict[str, int]) -> pa.StructArray:
+def _objects_of_states(trace: Trace, osi_ids: dict[str, int]) -> pa.StructArray:
     states, actors = trace.tables["actor_state"], trace.tables["actor"]
     row = pc.index_in(states["actor_id"], value_set=actors["actor_id"].combine_chunks()).to_numpy()
-    ids = np.array([numbers[name] for name in actors["actor_id"].to_pylist()], np.uint64)
+    ids = np.array([osi_ids[name] for name in actors["actor_id"].to_pylist()], np.uint64)
     columns = {name: floats(states[name]) for name in STATE_COLUMNS}
     columns |= {name: floats(actors[name])[row] for name in SIZE_COLUMNS}
     codes = {
-        "actor_class": _codes(actors["actor_class"], ACTOR_CLASSES)[row],
-        "indicator": _codes(states["indicator"], INDICATORS),
-        "brake_light": _codes(states["brake_light"], BRAKE_LIGHTS),
+        "actor_class": _codes_of_words(actors["actor_class"], ACTOR_CLASSES)[row],
+        "indicator": _codes_of_words(states["indicator"], INDICATORS),
+        "brake_light": _codes_of_words(states["brake_light"], BRAKE_LIGHTS),
     }
-    return moving_objects(ids[row], columns, codes, heights=not bool(np.isnan(columns["z_m"]).all()))
+    return moving_objects(ids[row], columns, codes, log_has_heights=not bool(np.isnan(columns["z_m"]).all()))
 
 
-def _codes(column: pa.ChunkedArray, words: tuple[str, ...]) -> Codes:
+def _codes_of_words(column: pa.ChunkedArray, words: tuple[str, ...]) -> Codes:
     found = pc.index_in(column, value_set=pa.array(words, pa.string()))
     return np.asarray(pc.fill_null(found, -1).to_numpy(), np.int8)
 
 
-def _lights(signals: pa.Table) -> dict[int, list[bytes]]:
+def _encoded_lights_by_time(signals: pa.Table) -> dict[int, list[bytes]]:
     """Return time -> the encoded traffic lights of that frame."""
     place = {name: 2 * k + 1 for k, name in enumerate(sorted(set(signals["signal_id"].to_pylist())))}
     t_ns, *said = (signals[name].to_pylist() for name in ("t_ns", "signal_id", "state"))
     shown = list(zip(*said, strict=True))
-    encoded = {(name, state): traffic_light(name, state, (place[name], place[name] + 1)) for name, state in set(shown)}
+    encoded = {
+        (name, state): encode_traffic_light(name, state, (place[name], place[name] + 1)) for name, state in set(shown)
+    }
     frames: dict[int, list[bytes]] = {}
     for t, light in zip(t_ns, shown, strict=True):
         frames.setdefault(t, []).append(encoded[light])
     return frames
 
 
-def _events(writer: Writer, trace: Trace, shift: int) -> None:
+def _write_events(writer: Writer, trace: Trace, shift_ns: int) -> None:
     rows = trace.tables["declared_event"].drop_columns("drive_id").to_pylist()
     if not rows:
         return
     schema = writer.register_schema(metadata.EVENT_MESSAGE, "jsonschema", metadata.EVENT_SCHEMA)
     channel = writer.register_channel(EVENT_TOPIC, "json", schema)
     for row in rows:
-        writer.add_message(channel, row["t_ns"] - shift, msgspec.json.encode(row), row["t_ns"] - shift)
+        writer.add_message(channel, row["t_ns"] - shift_ns, msgspec.json.encode(row), row["t_ns"] - shift_ns)

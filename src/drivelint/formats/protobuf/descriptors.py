@@ -33,7 +33,7 @@ FieldTree = dict[str, Any]
 """Field name -> subtree of a message field, or None for a value."""
 
 _FIELD = descriptor_pb2.FieldDescriptorProto
-PACKAGE = "pruned"
+PRUNED_PACKAGE = "pruned"
 _SCALARS = {name.removeprefix("TYPE_").lower(): number for name, number in _FIELD.Type.items()}
 """Scalar type, as in a .proto file -> its number in a descriptor."""
 
@@ -69,7 +69,7 @@ def add_field(
 
 
 @dataclass
-class Types:
+class SchemaTypes:
     """The messages and enumerations of a descriptor set, by full name with a leading dot."""
 
     messages: dict[str, DescriptorProto] = field(default_factory=dict)
@@ -84,39 +84,42 @@ class Types:
             self.add(name, message.nested_type, message.enum_type)
 
 
-def parse_schema(path: Path, name: str, descriptor_set: bytes) -> Types:
-    """Return the types in the schema record of message `name`. Errors: `TraceError` if they do not include that message."""
-    types = Types()
+def parse_schema(path: Path, message_type: str, descriptor_set: bytes) -> SchemaTypes:
+    """Return the types in the schema record of message `message_type`. Errors: `TraceError` if they do not include that message."""
+    types = SchemaTypes()
     try:
         files = descriptor_pb2.FileDescriptorSet.FromString(descriptor_set).file
     except DecodeError as error:
-        raise TraceError(f"{path}: the schema {name} in the log is not a protobuf description ({error})") from error
+        raise TraceError(
+            f"{path}: the schema {message_type} in the log is not a protobuf description ({error})"
+        ) from error
     for file in files:
         scope = f".{file.package}" if file.package else ""
         types.add(scope, file.message_type, file.enum_type)
-    if f".{name}" not in types.messages:
+    if f".{message_type}" not in types.messages:
         raise TraceError(
-            f"{path}: the schema {name} in the log has no definition of the message type {name}: record the log with its descriptor set"
+            f"{path}: the schema {message_type} in the log has no definition of the message type {message_type}: "
+            "record the log with its descriptor set"
         )
     return types
 
 
-def message_decoder(path: Path, types: Types, name: str, tree: FieldTree) -> Decode:
-    """Return a function that decodes messages `name` to one struct each, with the fields of `tree` that the schema has.
+def message_decoder(path: Path, types: SchemaTypes, message_type: str, tree: FieldTree) -> Decode:
+    """Return a function that decodes messages `message_type` to one struct each, with the fields of `tree` that the schema has.
 
     Enumerations are int32. Errors: `TraceError` if the log's schema contradicts itself. The function raises `ValueError` for a
     message that cannot be decoded.
     """
-    file = descriptor_pb2.FileDescriptorProto(name=f"{PACKAGE}.proto", package=PACKAGE, syntax="proto2")
-    _add(file, types, f".{name}", tree, "Root")
+    file = descriptor_pb2.FileDescriptorProto(name=f"{PRUNED_PACKAGE}.proto", package=PRUNED_PACKAGE, syntax="proto2")
+    _add_pruned_message(file, types, f".{message_type}", tree, "Root")
     pool = descriptor_pool.DescriptorPool()
     try:
         pool.Add(file)
     except TypeError as error:
         raise TraceError(
-            f"{path}: the schema {name} in the log contradicts itself ({error}): record it again"
+            f"{path}: the schema {message_type} in the log contradicts itself ({error}): record it again"
         ) from error
-    descriptor = pool.FindMessageTypeByName(f"{PACKAGE}.Root")
+    descriptor = pool.FindMessageTypeByName(f"{PRUNED_PACKAGE}.Root")
     handler = ptars.HandlerPool([descriptor.file]).get_for_message(descriptor)
 
     def decode(messages: list[bytes]) -> pa.StructArray:
@@ -126,9 +129,11 @@ def message_decoder(path: Path, types: Types, name: str, tree: FieldTree) -> Dec
     return decode
 
 
-def _add(file: FileDescriptorProto, types: Types, source: str, tree: FieldTree, name: str) -> None:
+def _add_pruned_message(
+    file: FileDescriptorProto, types: SchemaTypes, source_type: str, tree: FieldTree, name: str
+) -> None:
     message = file.message_type.add(name=name)
-    known = {item.name: item for item in types.messages[source].field}
+    known = {item.name: item for item in types.messages[source_type].field}
     for field_name, subtree in tree.items():
         item = known.get(field_name)
         if item is None or (item.type == _FIELD.TYPE_MESSAGE) != (subtree is not None):
@@ -139,26 +144,26 @@ def _add(file: FileDescriptorProto, types: Types, source: str, tree: FieldTree, 
             kept.type = _FIELD.TYPE_INT32 if item.type == _FIELD.TYPE_ENUM else item.type
         elif item.type_name in types.messages:
             kept.type = _FIELD.TYPE_MESSAGE
-            kept.type_name = f".{PACKAGE}.{name}_{field_name}"
-            _add(file, types, item.type_name, subtree, f"{name}_{field_name}")
+            kept.type_name = f".{PRUNED_PACKAGE}.{name}_{field_name}"
+            _add_pruned_message(file, types, item.type_name, subtree, f"{name}_{field_name}")
         else:
             del message.field[-1]
 
 
-def enum_names(types: Types, name: str, *path: str) -> dict[int, str]:
-    """Return number -> name for the enumeration at field `path` of message `name`; empty if there is no such field.
+def enum_names(types: SchemaTypes, message_type: str, *field_path: str) -> dict[int, str]:
+    """Return number -> name for the enumeration at field `field_path` of message `message_type`; empty if there is no such field.
 
     If two names have the same number, the last name is returned: OSI keeps a replaced name beside its replacement.
     """
-    source = f".{name}"
-    for step in path:
+    source = f".{message_type}"
+    for step in field_path:
         if source not in types.messages:
             return {}
         source = next((item.type_name for item in types.messages[source].field if item.name == step), "")
     return {value.number: value.name for value in types.enums[source].value} if source in types.enums else {}
 
 
-def decoded(path: Path, log_messages: list[LogMessage], decode: Decode) -> pa.StructArray:
+def decode_batch(path: Path, log_messages: list[LogMessage], decode: Decode) -> pa.StructArray:
     """Decode a batch. Errors: `TraceError` with topic and byte of the first message that cannot be decoded."""
     try:
         return decode([log_message.data for log_message in log_messages])
@@ -166,7 +171,7 @@ def decoded(path: Path, log_messages: list[LogMessage], decode: Decode) -> pa.St
         if len(log_messages) == 1:
             raise log_messages[0].error(path, str(error).splitlines()[0]) from error
         for log_message in log_messages:  # find the message that cannot be decoded
-            decoded(path, [log_message], decode)
+            decode_batch(path, [log_message], decode)
         raise TraceError(f"{path}: {len(log_messages)} messages cannot be decoded together: {error}") from error
 
 
@@ -177,7 +182,7 @@ def struct_field(parent: pa.Array, name: str) -> pa.Array:
     return pa.nulls(len(parent))
 
 
-def list_items(rows: pa.Array, name: str) -> tuple[pa.Array, NDArray[np.int64]]:
+def list_items_and_row_indices(rows: pa.Array, name: str) -> tuple[pa.Array, NDArray[np.int64]]:
     """Return the items of the lists in field `name`, and for each item the row that contains it."""
     lists = struct_field(rows, name)
     if not pa.types.is_list(lists.type):
@@ -185,7 +190,7 @@ def list_items(rows: pa.Array, name: str) -> tuple[pa.Array, NDArray[np.int64]]:
     return lists.flatten(), pc.list_parent_indices(lists).to_numpy(zero_copy_only=False)
 
 
-def integers(rows: pa.Array, name: str, kind: pa.DataType) -> NDArray[Any]:
+def integer_values(rows: pa.Array, name: str, kind: pa.DataType) -> NDArray[Any]:
     """Return a field as integers; 0 if it is missing."""
     values: NDArray[Any] = pc.fill_null(struct_field(rows, name).cast(kind), 0).to_numpy(zero_copy_only=False)
     return values

@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 _VARINT, _FIXED64, _BYTES, _FIXED32 = 0, 1, 2, 5
-_FIXED: Final = {_FIXED64: 8, _FIXED32: 4}
+_BYTES_BY_FIXED_KIND: Final = {_FIXED64: 8, _FIXED32: 4}
 _MOST_VARINT_BYTES: Final = 10
 
 
@@ -26,19 +26,19 @@ def fields(data: bytes, start: int = 0, end: int | None = None) -> Iterator[Fiel
     """Yield the fields of the message in bytes `start` to `end`. Errors: `ValueError` for bytes that are no field."""
     at, stop = start, len(data) if end is None else end
     while at < stop:
-        key, at = _varint(data, at, stop)
+        key, at = _read_varint(data, at, stop)
         kind, value = key & 7, 0
         if key >> 3 == 0:
             raise ValueError("a field without a number")
         if kind == _VARINT:
             begin = at
-            value, at = _varint(data, at, stop)
+            value, at = _read_varint(data, at, stop)
         elif kind == _BYTES:
-            length, begin = _varint(data, at, stop)
+            length, begin = _read_varint(data, at, stop)
             at = begin + length
-        elif kind in _FIXED:
+        elif kind in _BYTES_BY_FIXED_KIND:
             begin = at
-            at += _FIXED[kind]
+            at += _BYTES_BY_FIXED_KIND[kind]
         else:
             raise ValueError(f"a field of kind {kind}")
         if at > stop:
@@ -46,13 +46,13 @@ def fields(data: bytes, start: int = 0, end: int | None = None) -> Iterator[Fiel
         yield Field(key >> 3, value, begin, at)
 
 
-def signed(value: int) -> int:
+def signed_integer(value: int) -> int:
     """Return the signed integer with the same 64 bits as an unsigned integer."""
     number: int = struct.unpack("<q", struct.pack("<Q", value))[0]
     return number
 
 
-def _varint(data: bytes, at: int, stop: int) -> tuple[int, int]:
+def _read_varint(data: bytes, at: int, stop: int) -> tuple[int, int]:
     """Return the varint at byte `at`, and the position of the next byte."""
     value = 0
     for shift in range(min(_MOST_VARINT_BYTES, stop - at)):

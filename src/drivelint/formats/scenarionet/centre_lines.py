@@ -13,7 +13,7 @@ import numpy as np
 import shapely
 
 from drivelint.formats.scenarionet.pickled_numpy import PickleError
-from drivelint.formats.scenarionet.scenario import points
+from drivelint.formats.scenarionet.scenario import point_array
 from drivelint.road.lane_geometry import FARTHEST_M, stations
 
 if TYPE_CHECKING:
@@ -23,30 +23,34 @@ if TYPE_CHECKING:
     from drivelint.formats.scenarionet.scenario import Scenario
     from drivelint.road.quality import MapQuality
 
-KINDS: Final = {
+LANE_KIND_BY_FEATURE_TYPE: Final = {
     "LANE_SURFACE_STREET": "driving", "LANE_SURFACE_UNSTRUCTURE": "driving", "LANE_FREEWAY": "driving", "LANE_UNKNOWN": "driving",
     "LANE_BIKE_LANE": "biking",
 }  # fmt: skip
 """Type of a feature -> lane type. LANE_UNKNOWN counts as a lane for driving."""
-_SPACING_M: Final = 4.0
-_LONGEST_M: Final = 10_000.0
-_SHAPE_M: Final = 0.02  # the tolerance with which a centre line is simplified
-_INSET_M: Final = 2.0  # an outline's ends may be oblique: at a lane's ends, the width is measured this far inside
-_OUTLINE_M: Final = 10.0  # how far to the side a lane's polygon is looked for
-_REACH_M: Final = 3.75  # a line or edge farther from the centre line bounds another lane
+_POINT_SPACING_M: Final = 4.0
+_LONGEST_LANE_M: Final = 10_000.0
+_SIMPLIFICATION_TOLERANCE_M: Final = 0.02  # the tolerance with which a centre line is simplified
+_LANE_END_INSET_M: Final = (
+    2.0  # an outline's ends may be oblique: at a lane's ends, the width is measured this far inside
+)
+_OUTLINE_REACH_M: Final = 10.0  # how far to the side a lane's polygon is looked for
+_BOUND_REACH_M: Final = 3.75  # a line or edge farther from the centre line bounds another lane
 _LEAST_BOUND_DISTANCE_M: Final = (
     0.8  # a line to which no lane refers, nearer to the centre line than this, bounds another lane
 )
-_ASIDE_M: Final = 0.6  # a bound farther away than the other bound by more than this lies beyond another strip
-_LANES_APART_M: Final = (2.2, 6.0)  # least and largest distance between the centre lines of parallel lanes
-_PARALLEL: Final = float(np.cos(np.radians(10.0)))
+_LARGEST_SIDE_DIFFERENCE_M: Final = (
+    0.6  # a bound farther away than the other bound by more than this lies beyond another strip
+)
+_PARALLEL_LANE_DISTANCES_M: Final = (2.2, 6.0)  # least and largest distance between the centre lines of parallel lanes
+_LEAST_PARALLEL_COSINE: Final = float(np.cos(np.radians(10.0)))
 
 
 @dataclass(eq=False)
 class CentreLine:
     """A lane: `line` (n, 2) in the direction of travel, its stations `s` (n,) and unit normals to the left, heights `z` (n,).
 
-    `half` (n, 2): the distances from the centre line to the left and to the right bound; NaN: not known.
+    `bound_distances` (n, 2): the distances from the centre line to the left and to the right bound; NaN: not known.
     """
 
     lane_id: str
@@ -56,9 +60,9 @@ class CentreLine:
     s: Floats
     z: Floats
     normal: Floats
-    half: Floats
-    before: tuple[str, ...] = field(default=())
-    after: tuple[str, ...] = field(default=())
+    bound_distances: Floats
+    predecessors: tuple[str, ...] = field(default=())
+    successors: tuple[str, ...] = field(default=())
 
     @property
     def tangent(self) -> Floats:
@@ -68,18 +72,20 @@ class CentreLine:
     @property
     def bounds(self) -> tuple[Floats, Floats]:
         """The left and the right bound, each (n, 2)."""
-        return self.line + self.normal * self.half[:, :1], self.line - self.normal * self.half[:, 1:]
+        return self.line + self.normal * self.bound_distances[:, :1], self.line - self.normal * self.bound_distances[
+            :, 1:
+        ]
 
 
 def read_centre_lines(scenario: Scenario, quality: MapQuality) -> dict[str, CentreLine]:
     """Return the lanes with their centre lines, still without widths; report lanes without a usable centre line in `quality`."""
     centre_lines = {}
     for name, feature in scenario.features.items():
-        kind = KINDS.get(str(feature.get("type")))
+        kind = LANE_KIND_BY_FEATURE_TYPE.get(str(feature.get("type")))
         if kind is None:
             continue
         try:
-            line = points(feature.get("polyline"), f"map_features[{name[:100]!r}]['polyline']")
+            line = point_array(feature.get("polyline"), f"map_features[{name[:100]!r}]['polyline']")
             centre_lines[name] = _centre_line(name, feature, kind, line, heights=scenario.dataset.heights)
         except PickleError as error:
             quality.add("invalid_lane", "error", name, f"lane {name} is left out: {error}")
@@ -93,13 +99,15 @@ def _centre_line(name: str, feature: Mapping[str, Any], kind: str, line: Floats,
     if len(line) < 2:
         raise PickleError("its centre line has fewer than two points")
     line_stations = stations(line)
-    if line_stations[-1] > _LONGEST_M:
+    if line_stations[-1] > _LONGEST_LANE_M:
         raise PickleError(f"its centre line is {line_stations[-1] / 1000.0:.0f} km long")
     whole = shapely.LineString(line[:, :2])
     corners = np.unique(
-        shapely.line_locate_point(whole, shapely.points(shapely.get_coordinates(shapely.simplify(whole, _SHAPE_M))))
+        shapely.line_locate_point(
+            whole, shapely.points(shapely.get_coordinates(shapely.simplify(whole, _SIMPLIFICATION_TOLERANCE_M)))
+        )
     )
-    pieces = np.maximum(1, np.ceil(np.diff(corners) / _SPACING_M)).astype(int)
+    pieces = np.maximum(1, np.ceil(np.diff(corners) / _POINT_SPACING_M)).astype(int)
     s = np.concatenate(
         [
             *(np.linspace(a, b, n, endpoint=False) for a, b, n in zip(corners, corners[1:], pieces, strict=False)),
@@ -122,7 +130,7 @@ def _centre_line(name: str, feature: Mapping[str, Any], kind: str, line: Floats,
     return CentreLine(name, feature, kind, at[:, :2], s, z, normal, np.full((len(s), 2), np.nan))
 
 
-def measure_sides(lanes: Mapping[str, CentreLine], scenario: Scenario) -> None:
+def measure_bound_distances(lanes: Mapping[str, CentreLine], scenario: Scenario) -> None:
     """Measure the distances from each centre line to its two bounds, in place.
 
     If some lanes have outlines, the lanes without outline (which connect others) have no lines either, and stay unknown.
@@ -130,58 +138,60 @@ def measure_sides(lanes: Mapping[str, CentreLine], scenario: Scenario) -> None:
     if any("polygon" in lane.feature for lane in lanes.values()):
         for name, lane in lanes.items():
             if "polygon" in lane.feature:
-                outline = points(lane.feature["polygon"], f"map_features[{name[:100]!r}]['polygon']")[:, :2]
+                outline = point_array(lane.feature["polygon"], f"map_features[{name[:100]!r}]['polygon']")[:, :2]
                 if len(outline) > 3 and (np.abs(outline) < FARTHEST_M).all():
-                    _of_polygon(lane, shapely.Polygon(outline))
+                    _measure_to_outline(lane, shapely.Polygon(outline))
         return
     lines = {
-        name: _line(feature, name)
+        name: _line_of_feature(feature, name)
         for name, feature in scenario.features.items()
         if str(feature.get("type")).startswith(("ROAD_LINE", "ROAD_EDGE", "UNKNOWN")) and "polyline" in feature
     }
     if any(lane.feature.get(f"{side}_boundaries") for lane in lanes.values() for side in ("left", "right")):
         for lane in lanes.values():
-            _of_references(lane, lines)
+            _measure_to_named_lines(lane, lines)
     elif lines:
         tree = shapely.STRtree(list(lines.values()))
         for lane in lanes.values():
-            _of_lines(lane, tree)
-    _of_parallel_lanes([lane for lane in lanes.values() if np.isnan(lane.half).any()], list(lanes.values()))
+            _measure_to_nearest_lines(lane, tree)
+    _measure_to_parallel_lanes(
+        [lane for lane in lanes.values() if np.isnan(lane.bound_distances).any()], list(lanes.values())
+    )
 
 
-def _line(feature: Mapping[str, Any], name: str) -> shapely.LineString:
-    line = points(feature["polyline"], f"map_features[{name[:100]!r}]['polyline']")[:, :2]
+def _line_of_feature(feature: Mapping[str, Any], name: str) -> shapely.LineString:
+    line = point_array(feature["polyline"], f"map_features[{name[:100]!r}]['polyline']")[:, :2]
     sound = len(line) > 1 and bool((np.abs(line) < FARTHEST_M).all())
     return shapely.LineString(line) if sound else shapely.LineString()
 
 
-def _rays(lane: CentreLine, side: int, reach_m: float, place: Floats) -> Any:
+def _rays_to_side(lane: CentreLine, side: int, reach_m: float, points: Floats) -> Any:
     out = lane.normal * (reach_m if side == 0 else -reach_m)
-    return shapely.linestrings(np.stack([place, place + out], axis=1))
+    return shapely.linestrings(np.stack([points, points + out], axis=1))
 
 
-def _of_polygon(lane: CentreLine, area: shapely.Polygon) -> None:
+def _measure_to_outline(lane: CentreLine, outline: shapely.Polygon) -> None:
     """Measure from the centre line to the edge of a polygon; at the ends of the lane, a little inside."""
-    inset = min(_INSET_M, lane.s[-1] / 4)
+    inset = min(_LANE_END_INSET_M, lane.s[-1] / 4)
     s = np.clip(lane.s, inset, lane.s[-1] - inset)
     place = np.column_stack([np.interp(s, lane.s, column) for column in lane.line.T])
-    inside = shapely.contains(area, shapely.points(place))
+    inside = shapely.contains(outline, shapely.points(place))
     for side in (0, 1):
-        crossed = shapely.intersection(_rays(lane, side, _OUTLINE_M, place), area.exterior)
-        lane.half[:, side] = np.where(inside, shapely.distance(shapely.points(place), crossed), np.nan)
+        crossed = shapely.intersection(_rays_to_side(lane, side, _OUTLINE_REACH_M, place), outline.exterior)
+        lane.bound_distances[:, side] = np.where(inside, shapely.distance(shapely.points(place), crossed), np.nan)
 
 
-def _of_references(lane: CentreLine, lines: Mapping[str, shapely.LineString]) -> None:
+def _measure_to_named_lines(lane: CentreLine, lines: Mapping[str, shapely.LineString]) -> None:
     """Measure to the lines and edges that the lane names, each on its part of the lane."""
-    for side, at, name in boundary_spans(lane):
+    for side, at, name in named_boundary_spans(lane):
         line = lines.get(name)
         if line is not None:
-            _nearer(lane, side, at, line, least_m=0.0)
+            _reduce_distances_to_line(lane, side, at, line, least_m=0.0)
 
 
-def boundary_spans(lane: CentreLine) -> Iterable[tuple[int, Mask, str]]:
+def named_boundary_spans(lane: CentreLine) -> Iterable[tuple[int, Mask, str]]:
     """Yield for each boundary that a lane names its side (0 left, 1 right), the points (n,) that it lies beside, and its id."""
-    own = points(lane.feature["polyline"], "polyline")
+    own = point_array(lane.feature["polyline"], "polyline")
     own_s = stations(own)
     for side, key in enumerate(("left_boundaries", "right_boundaries")):
         spans = lane.feature.get(key)
@@ -194,67 +204,80 @@ def boundary_spans(lane: CentreLine) -> Iterable[tuple[int, Mask, str]]:
             yield side, (lane.s >= first - 0.3) & (lane.s <= last + 0.3), name
 
 
-def _of_lines(lane: CentreLine, tree: shapely.STRtree) -> None:
+def _measure_to_nearest_lines(lane: CentreLine, tree: shapely.STRtree) -> None:
     """Measure to the nearest line or edge beside each point, whichever lane it belongs to."""
     for side in (0, 1):
-        rays = _rays(lane, side, _REACH_M, lane.line)
+        rays = _rays_to_side(lane, side, _BOUND_REACH_M, lane.line)
         for i in np.unique(tree.query(rays, predicate="intersects")[1]):
-            _nearer(lane, side, np.ones(len(lane.s), np.bool_), tree.geometries[i], least_m=_LEAST_BOUND_DISTANCE_M)
+            _reduce_distances_to_line(
+                lane, side, np.ones(len(lane.s), np.bool_), tree.geometries[i], least_m=_LEAST_BOUND_DISTANCE_M
+            )
 
 
-def _nearer(lane: CentreLine, side: int, at: Mask, line: Any, *, least_m: float) -> None:
+def _reduce_distances_to_line(lane: CentreLine, side: int, at: Mask, line: Any, *, least_m: float) -> None:
     """Set the distance to a line, at the points `at`, where it is over `least_m` and the smallest so far."""
-    crossed = shapely.intersection(_rays(lane, side, _REACH_M, lane.line), line)
+    crossed = shapely.intersection(_rays_to_side(lane, side, _BOUND_REACH_M, lane.line), line)
     far = np.asarray(shapely.distance(shapely.points(lane.line), crossed), np.float64)
-    lane.half[:, side] = np.where(at & (far > least_m), np.fmin(lane.half[:, side], far), lane.half[:, side])
+    lane.bound_distances[:, side] = np.where(
+        at & (far > least_m), np.fmin(lane.bound_distances[:, side], far), lane.bound_distances[:, side]
+    )
 
 
-def _of_parallel_lanes(lanes: Sequence[CentreLine], all_lanes: Sequence[CentreLine]) -> None:
+def _measure_to_parallel_lanes(lanes: Sequence[CentreLine], all_lanes: Sequence[CentreLine]) -> None:
     """Set unknown bounds to the middle between two parallel lanes, of the same or of opposite direction.
 
     Lanes that split or merge are left out: they are parallel, too, but overlap.
     """
     tree = shapely.STRtree([shapely.LineString(lane.line) for lane in all_lanes])
-    least, farthest = _LANES_APART_M
+    least, farthest = _PARALLEL_LANE_DISTANCES_M
     for lane in lanes:
         for side in (0, 1):
-            unknown = np.flatnonzero(np.isnan(lane.half[:, side]))
-            rays = _rays(lane, side, farthest, lane.line)[unknown]
+            unknown = np.flatnonzero(np.isnan(lane.bound_distances[:, side]))
+            rays = _rays_to_side(lane, side, farthest, lane.line)[unknown]
             for k, i in tree.query(rays, predicate="intersects").T:
                 parallel_lane, at = all_lanes[i], int(unknown[k])
-                if parallel_lane is lane or not {*lane.before, *lane.after}.isdisjoint(
-                    (*parallel_lane.before, *parallel_lane.after)
+                if parallel_lane is lane or not {*lane.predecessors, *lane.successors}.isdisjoint(
+                    (*parallel_lane.predecessors, *parallel_lane.successors)
                 ):
                     continue
                 place = shapely.intersection(rays[k], tree.geometries[i])
                 far = float(shapely.distance(shapely.Point(lane.line[at]), place))
                 near = int(np.argmin(np.hypot(*(parallel_lane.line - lane.line[at]).T)))
-                if least <= far <= farthest and abs(float(lane.normal[at] @ parallel_lane.normal[near])) > _PARALLEL:
-                    lane.half[at, side] = np.fmin(lane.half[at, side], far / 2.0)
+                if (
+                    least <= far <= farthest
+                    and abs(float(lane.normal[at] @ parallel_lane.normal[near])) > _LEAST_PARALLEL_COSINE
+                ):
+                    lane.bound_distances[at, side] = np.fmin(lane.bound_distances[at, side], far / 2.0)
 
 
-def fill_unknown_sides(lanes: Mapping[str, CentreLine]) -> dict[str, float]:
+def fill_unknown_bound_distances(lanes: Mapping[str, CentreLine]) -> dict[str, float]:
     """Fill in unknown distances to bounds by the lanes that a lane joins, in place; return lane -> share of its distances filled in.
 
     At its ends, a lane is as wide as its predecessors or successors; in between, the width changes linearly. A side that is still unknown
     gets the distance of the other side.
     """
-    unknown = {name: float(np.isnan(lane.half).mean()) for name, lane in lanes.items()}
+    unknown = {name: float(np.isnan(lane.bound_distances).mean()) for name, lane in lanes.items()}
     for _ in range(2):  # twice: the joined lane may itself get its width only in the first pass
         for lane in lanes.values():
-            for end, joined, theirs in ((0, lane.before, -1), (-1, lane.after, 0)):
-                known = [lanes[name].half[theirs] for name in joined if name in lanes]
+            for end, joined, theirs in ((0, lane.predecessors, -1), (-1, lane.successors, 0)):
+                known = [lanes[name].bound_distances[theirs] for name in joined if name in lanes]
                 known = [half for half in known if np.isfinite(half).all()]
                 if known:
-                    lane.half[end] = np.where(np.isnan(lane.half[end]), np.mean(known, axis=0), lane.half[end])
+                    lane.bound_distances[end] = np.where(
+                        np.isnan(lane.bound_distances[end]), np.mean(known, axis=0), lane.bound_distances[end]
+                    )
     for lane in lanes.values():
         for side in (0, 1):
-            at = np.isfinite(lane.half[:, side])
+            at = np.isfinite(lane.bound_distances[:, side])
             if at.any():
-                lane.half[:, side] = np.interp(lane.s, lane.s[at], lane.half[at, side])
-        lane.half = np.where(np.isnan(lane.half), lane.half[:, ::-1], lane.half)
+                lane.bound_distances[:, side] = np.interp(lane.s, lane.s[at], lane.bound_distances[at, side])
+        lane.bound_distances = np.where(
+            np.isnan(lane.bound_distances), lane.bound_distances[:, ::-1], lane.bound_distances
+        )
         if (
             "polygon" not in lane.feature
         ):  # a strip between a lane and a far edge, as for parked cars, is not part of the lane
-            lane.half = np.minimum(lane.half, lane.half[:, ::-1] + _ASIDE_M)
+            lane.bound_distances = np.minimum(
+                lane.bound_distances, lane.bound_distances[:, ::-1] + _LARGEST_SIDE_DIFFERENCE_M
+            )
     return {name: share for name, share in unknown.items() if share > 0.0}

@@ -17,13 +17,13 @@ if TYPE_CHECKING:
 
 _LEAST_SPEED_MPS: Final = 2.0
 """Below this speed, the ego moves by less than 4 cm per message, so that noise of 2 cm hides a lost message."""
-_BESIDE: Final = 4
+_COMPARED_STEPS_PER_SIDE: Final = 4
 """A step is compared with this number of steps on each side."""
-_TOLERANCE: Final = 0.4
+_MESSAGE_TOLERANCE: Final = 0.4
 """A step over lost messages is longer by a whole number of messages, give or take this share of a message."""
 _MOST_LOST_MESSAGES: Final = 10
 """A step that would span more lost messages is not taken for one."""
-_SHORT_SHARE: Final = 0.8
+_SHORT_STEP_SHARE: Final = 0.8
 """A step that advances by less than this share of the usual step is the seam between the stream and the frames."""
 _LAST_STEPS: Final = 20
 """The seam lies within this number of steps from the end: the stream lacks no more steps than messages were lost."""
@@ -42,24 +42,26 @@ class EgoTrack(NamedTuple):
     shift_s: float
 
 
-def timed_track(place: Floats, heading: Floats, t_s: Floats, message_s: float) -> EgoTrack:
+def track_at_steps(place: Floats, heading: Floats, t_s: Floats, message_period_s: float) -> EgoTrack:
     """Return the ego's track at the steps `t_s` (T,), from places (T, 2) and headings (T,) that are counted messages.
 
     Between two messages, 0.1 s apart, the track is interpolated linearly: at 5 m/s2, the error is 6 mm.
     """
     n, period = len(t_s), np.diff(t_s)
     way = np.hypot(*np.diff(place, axis=0).T)
-    if n < 2 * _BESIDE + 2 or not np.isfinite(way).all() or not (period > 0.0).all():
+    if n < 2 * _COMPARED_STEPS_PER_SIDE + 2 or not np.isfinite(way).all() or not (period > 0.0).all():
         return EgoTrack(place, heading, 0, np.nan)
-    usual = _usual(way / period)
+    usual = _usual_speed(way / period)
     moving = usual > _LEAST_SPEED_MPS
-    longer = np.where(moving, way / np.maximum(usual * period, 1e-9) - 1.0, 0.0) * period / message_s
+    longer = np.where(moving, way / np.maximum(usual * period, 1e-9) - 1.0, 0.0) * period / message_period_s
     whole = np.round(longer)
-    n_lost = np.where((whole >= 1) & (whole <= _MOST_LOST_MESSAGES) & (np.abs(longer - whole) < _TOLERANCE), whole, 0.0)
-    seam = _seam(place, usual * period, moving)
+    n_lost = np.where(
+        (whole >= 1) & (whole <= _MOST_LOST_MESSAGES) & (np.abs(longer - whole) < _MESSAGE_TOLERANCE), whole, 0.0
+    )
+    seam = _first_step_after_stream(place, usual * period, moving)
     n_lost[seam - 1 :] = 0.0
-    stream = t_s[0] + np.r_[0.0, np.cumsum(period + message_s * n_lost)][:seam]
-    shift = t_s[seam] - _time_at(place[seam], place[:seam], stream) if seam < n else np.nan
+    stream = t_s[0] + np.r_[0.0, np.cumsum(period + message_period_s * n_lost)][:seam]
+    shift = t_s[seam] - _time_nearest_to_point(place[seam], place[:seam], stream) if seam < n else np.nan
     shift = shift if abs(shift) <= _MOST_SHIFT_S else np.nan
     if not n_lost.any() and np.isnan(shift):
         return EgoTrack(place, heading, 0, np.nan)
@@ -72,24 +74,27 @@ def timed_track(place: Floats, heading: Floats, t_s: Floats, message_s: float) -
     return EgoTrack(timed[:, :2], timed[:, 2], int(n_lost.sum()), float(shift))
 
 
-def _usual(speed: Floats) -> Floats:
+def _usual_speed(speed: Floats) -> Floats:
     """Return for each speed the median of this speed and its neighbours."""
-    padded = np.pad(speed, _BESIDE, mode="reflect")
-    return np.asarray(np.median(np.lib.stride_tricks.sliding_window_view(padded, 2 * _BESIDE + 1), axis=1), np.float64)
+    padded = np.pad(speed, _COMPARED_STEPS_PER_SIDE, mode="reflect")
+    return np.asarray(
+        np.median(np.lib.stride_tricks.sliding_window_view(padded, 2 * _COMPARED_STEPS_PER_SIDE + 1), axis=1),
+        np.float64,
+    )
 
 
-def _seam(place: Floats, usual_m: Floats, moving: Mask) -> int:
+def _first_step_after_stream(place: Floats, usual_step_m: Floats, moving: Mask) -> int:
     """Return the first step (1 ... T - 1) that is not from the stream; T if all are from it."""
     n = len(place)
     step = np.diff(place, axis=0)
     ahead = step[:-1] / np.maximum(np.hypot(*step[:-1].T), 1e-9)[:, None]
-    short = (step[1:] * ahead).sum(axis=1) < _SHORT_SHARE * usual_m[1:]
+    short = (step[1:] * ahead).sum(axis=1) < _SHORT_STEP_SHARE * usual_step_m[1:]
     found = np.flatnonzero(short & moving[1:]) + 2
     found = found[found > n - 1 - _LAST_STEPS]
     return int(found[0]) if len(found) else n
 
 
-def _time_at(point: Floats, place: Floats, t_s: Floats) -> float:
+def _time_nearest_to_point(point: Floats, place: Floats, t_s: Floats) -> float:
     """Return when a track, in its last steps, is nearest to a point; beyond its end, the track is extended by a straight line."""
     first = max(0, len(place) - _LAST_STEPS)
     a, b = place[first:-1], place[first + 1 :]

@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 
 from drivelint.formats.scenarionet.pickled_numpy import PickleError
-from drivelint.formats.scenarionet.scenario import numbers, points
+from drivelint.formats.scenarionet.scenario import number_array, point_array
 from drivelint.road.boundary_lanes import signal_row
 from drivelint.road.lane_geometry import FARTHEST_M
 from drivelint.road.tables import crossing_row
@@ -22,23 +22,23 @@ if TYPE_CHECKING:
     from drivelint.road.quality import MapQuality
     from drivelint.road.tables import Rows
 
-_STANDS_FAR_M: Final = 30.0  # a stop sign farther from its lane's centre line belongs to another lane
+_LARGEST_SIGN_DISTANCE_M: Final = 30.0  # a stop sign farther from its lane's centre line belongs to another lane
 
 
-def furniture(
+def furniture_rows(
     scenario: Scenario, lanes: Sequence[BoundedLane], offset: tuple[float, float], quality: MapQuality
 ) -> dict[str, Rows]:
     """Return rows of `traffic_signal`, `stop_line` and `crossing`; report signals and crossings without a lane in `quality`."""
     by_id = {lane.lanelet_id: lane for lane in lanes}
-    signals = [*_lights(scenario, by_id, offset, quality), *_stop_signs(scenario, by_id, offset, quality)]
+    signals = [*_light_rows(scenario, by_id, offset, quality), *_stop_sign_rows(scenario, by_id, offset, quality)]
     return {
         "traffic_signal": sorted(signals, key=lambda row: (row["signal_id"], row["lanelet_id"])),
         "stop_line": [],
-        "crossing": _crossings(scenario, lanes, offset, quality),
+        "crossing": _crossing_rows(scenario, lanes, offset, quality),
     }
 
 
-def _lights(
+def _light_rows(
     scenario: Scenario, lanes: Mapping[str, BoundedLane], offset: tuple[float, float], quality: MapQuality
 ) -> Rows:
     """Return a row for each light. Its id is that of its states; it applies at its stop point, else at the start of the lane."""
@@ -48,53 +48,55 @@ def _lights(
         if lane is None:
             lost_names.append(name)
             continue
-        place = _place(light.get("stop_point"), offset) if scenario.dataset.stop_points else None
+        place = _place_on_map(light.get("stop_point"), offset) if scenario.dataset.stop_points else None
         s = 0.0 if place is None else lane.line.station(place)
         where = lane.line.centre[0] if place is None else place
         rows.append(signal_row(lane, s, where, signal_id=name, kind="traffic_light", dynamic=True))
-    _report_lost(lost_names, "lights", quality)
+    _report_signals_without_lane(lost_names, "lights", quality)
     return rows
 
 
-def _stop_signs(
+def _stop_sign_rows(
     scenario: Scenario, lanes: Mapping[str, BoundedLane], offset: tuple[float, float], quality: MapQuality
 ) -> Rows:
     rows, lost_names = [], []
     for name, feature in scenario.features.items():
         if str(feature.get("type")) != "STOP_SIGN":
             continue
-        place = _place(feature.get("position"), offset)
+        place = _place_on_map(feature.get("position"), offset)
         held = feature.get("lane")
         held = [lanes[str(i)] for i in held if str(i) in lanes] if isinstance(held, (list, tuple)) else []
-        near = [lane for lane in held if place is not None and _far(lane, place) <= _STANDS_FAR_M]
+        near = [
+            lane for lane in held if place is not None and _distance_to_lane_m(lane, place) <= _LARGEST_SIGN_DISTANCE_M
+        ]
         if place is None or not near:
             lost_names.append(name)
             continue
         rows += [signal_row(lane, lane.line.station(place), place, signal_id=name, kind="stop") for lane in near]
-    _report_lost(lost_names, "stop signs", quality)
+    _report_signals_without_lane(lost_names, "stop signs", quality)
     return rows
 
 
-def _far(lane: BoundedLane, place: Floats) -> float:
+def _distance_to_lane_m(lane: BoundedLane, place: Floats) -> float:
     return float(np.hypot(*(lane.line.centre - place).T).min())
 
 
-def _place(value: Any, offset: tuple[float, float]) -> Floats | None:
+def _place_on_map(value: Any, offset: tuple[float, float]) -> Floats | None:
     """Return x and y of a place, moved by the map's offset; None: it is missing or impossible."""
     try:
-        place = numbers(value, "a place").reshape(-1)[:2]
+        place = number_array(value, "a place").reshape(-1)[:2]
     except PickleError:
         return None
     return place + offset if len(place) == 2 and bool((np.abs(place) < FARTHEST_M).all()) else None
 
 
-def _report_lost(names: list[str], kind: str, quality: MapQuality) -> None:
+def _report_signals_without_lane(names: list[str], kind: str, quality: MapQuality) -> None:
     if names:
         message = f"{kind} that apply to no lane of the map, or have no position: {', '.join(sorted(names)[:5])}"
         quality.add("signal_without_lane", "warning", None, message, len(names))
 
 
-def _crossings(
+def _crossing_rows(
     scenario: Scenario, lanes: Sequence[BoundedLane], offset: tuple[float, float], quality: MapQuality
 ) -> Rows:
     """Return a row for each crossing and each drivable lane that it crosses."""
@@ -106,7 +108,7 @@ def _crossings(
         if str(feature.get("type")) != "CROSSWALK":
             continue
         try:
-            outline = points(feature.get("polygon"), f"map_features[{name[:100]!r}]['polygon']")[:, :2]
+            outline = point_array(feature.get("polygon"), f"map_features[{name[:100]!r}]['polygon']")[:, :2]
         except PickleError:
             outline = np.empty((0, 2))
         if len(outline) < 3 or not (np.abs(outline) < FARTHEST_M).all():

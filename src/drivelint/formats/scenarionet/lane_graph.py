@@ -15,51 +15,51 @@ if TYPE_CHECKING:
 
     from drivelint.formats.scenarionet.centre_lines import CentreLine
 
-_JOINED_M: Final = 0.3  # the largest gap between the end of a lane and the start of the next
-_ONWARDS: Final = float(np.cos(np.radians(45.0)))
-_OUTSIDE_M: Final = 0.4  # how far beyond a bound the lane beside is looked for
-_SHARES: Final = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
+_LARGEST_END_GAP_M: Final = 0.3  # the largest gap between the end of a lane and the start of the next
+_LEAST_SUCCESSOR_COSINE: Final = float(np.cos(np.radians(45.0)))
+_DISTANCE_BEYOND_BOUND_M: Final = 0.4  # how far beyond a bound the lane beside is looked for
+_SAMPLE_SHARES: Final = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
 _LEAST_PLACES_BESIDE: Final = 3  # the least number of these places with the same lane beside
-_ALONG: Final = float(np.cos(np.radians(25.0)))
-_LEVEL_M: Final = 3.0
+_LEAST_NEIGHBOUR_COSINE: Final = float(np.cos(np.radians(25.0)))
+_LEAST_LEVEL_DIFFERENCE_M: Final = 3.0
 
 
-def link(lanes: Mapping[str, CentreLine]) -> None:
+def link_lanes(lanes: Mapping[str, CentreLine]) -> None:
     """Set the predecessors and successors of each lane, in place: as the scenario states them, else by lane ends that meet."""
-    after: dict[str, dict[str, None]] = defaultdict(dict)
+    successors: dict[str, dict[str, None]] = defaultdict(dict)
     said = any(lane.feature.get("exit_lanes") or lane.feature.get("entry_lanes") for lane in lanes.values())
     if said:
         for name, lane in lanes.items():
-            for other in _ids(lane.feature.get("exit_lanes")):
-                after[name][other] = None
-            for other in _ids(lane.feature.get("entry_lanes")):
-                after[other][name] = None
+            for other in _ids_in_list(lane.feature.get("exit_lanes")):
+                successors[name][other] = None
+            for other in _ids_in_list(lane.feature.get("entry_lanes")):
+                successors[other][name] = None
     else:
-        _by_shape(lanes, after)
-    before: dict[str, dict[str, None]] = defaultdict(dict)
-    for name, others in after.items():
+        _link_ends_that_meet(lanes, successors)
+    predecessors: dict[str, dict[str, None]] = defaultdict(dict)
+    for name, others in successors.items():
         for other in others:
-            before[other][name] = None
+            predecessors[other][name] = None
     for name, lane in lanes.items():
-        lane.before, lane.after = tuple(before[name]), tuple(after[name])
+        lane.predecessors, lane.successors = tuple(predecessors[name]), tuple(successors[name])
 
 
-def _ids(value: Any) -> Iterable[str]:
+def _ids_in_list(value: Any) -> Iterable[str]:
     """Return the ids in a list, as texts; none if the value is not a list."""
     value = value.tolist() if isinstance(value, np.ndarray) else value
     return [str(each) for each in value if isinstance(each, (int, str))] if isinstance(value, (list, tuple)) else []
 
 
-def _by_shape(lanes: Mapping[str, CentreLine], after: dict[str, dict[str, None]]) -> None:
+def _link_ends_that_meet(lanes: Mapping[str, CentreLine], successors: dict[str, dict[str, None]]) -> None:
     ordered = list(lanes.values())
     if not ordered:
         return
     tree = shapely.STRtree([shapely.Point(lane.line[0]) for lane in ordered])
     ends = [shapely.Point(lane.line[-1]) for lane in ordered]
-    parts = query_in_parts(tree, ends, "dwithin", _JOINED_M)
+    parts = query_in_parts(tree, ends, "dwithin", _LARGEST_END_GAP_M)
     for i, j in (pair for part in parts for pair in zip(*part, strict=True)):
-        if i != j and float(ordered[i].tangent[-1] @ ordered[j].tangent[0]) > _ONWARDS:
-            after[ordered[i].lane_id][ordered[j].lane_id] = None
+        if i != j and float(ordered[i].tangent[-1] @ ordered[j].tangent[0]) > _LEAST_SUCCESSOR_COSINE:
+            successors[ordered[i].lane_id][ordered[j].lane_id] = None
 
 
 class Neighbours(NamedTuple):
@@ -76,41 +76,50 @@ def find_neighbours(lanes: Mapping[str, CentreLine]) -> dict[str, Neighbours]:
 
     Lanes that split or merge overlap, and are not neighbours.
     """
-    ordered = [lane for lane in lanes.values() if np.isfinite(lane.half).all()]
+    ordered = [lane for lane in lanes.values() if np.isfinite(lane.bound_distances).all()]
     tree = shapely.STRtree(
         [shapely.Polygon(np.vstack([*lane.bounds[:1], lane.bounds[1][::-1]])).buffer(0.0) for lane in ordered]
     )
     found = {
-        lane.lane_id: Neighbours(*_beside(lane, ordered, tree, "left"), *_beside(lane, ordered, tree, "right"))
+        lane.lane_id: Neighbours(
+            *_neighbour_id_and_against(lane, ordered, tree, "left"),
+            *_neighbour_id_and_against(lane, ordered, tree, "right"),
+        )
         for lane in ordered
     }
-    return {name: _mutual(name, found) for name in found}
+    return {name: _mutual_neighbours(name, found) for name in found}
 
 
-def _beside(
+def _neighbour_id_and_against(
     lane: CentreLine, lanes: Sequence[CentreLine], tree: shapely.STRtree, side: str
 ) -> tuple[str | None, bool | None]:
     """Return the lane that contains most of the places just beyond a bound, and whether it runs the other way."""
     sign, bound = (1.0, lane.bounds[0]) if side == "left" else (-1.0, lane.bounds[1])
-    at = _SHARES * lane.s[-1]
+    at = _SAMPLE_SHARES * lane.s[-1]
     x, y, nx, ny, z = (np.interp(at, lane.s, values) for values in (*bound.T, *lane.normal.T, lane.z))
-    places = np.column_stack([x, y]) + sign * _OUTSIDE_M * np.column_stack([nx, ny])
+    places = np.column_stack([x, y]) + sign * _DISTANCE_BEYOND_BOUND_M * np.column_stack([nx, ny])
     votes: dict[int, list[int]] = defaultdict(list)
     for k, i in tree.query(shapely.points(places), predicate="within").T:
         neighbour = lanes[i]
         near = int(np.argmin(np.hypot(*(neighbour.line - places[k]).T)))
         along = float(neighbour.normal[near] @ (nx[k], ny[k]))
-        if neighbour is not lane and abs(along) > _ALONG and not abs(neighbour.z[near] - z[k]) >= _LEVEL_M:
+        if (
+            neighbour is not lane
+            and abs(along) > _LEAST_NEIGHBOUR_COSINE
+            and not abs(neighbour.z[near] - z[k]) >= _LEAST_LEVEL_DIFFERENCE_M
+        ):
             votes[int(i)].append(1 if along > 0 else -1)
     for i in sorted(votes, key=lambda i: (-len(votes[i]), i)):
         neighbour = lanes[i]
-        joined = not {*lane.after}.isdisjoint(neighbour.after) or not {*lane.before}.isdisjoint(neighbour.before)
+        joined = not {*lane.successors}.isdisjoint(neighbour.successors) or not {*lane.predecessors}.isdisjoint(
+            neighbour.predecessors
+        )
         if len(votes[i]) >= _LEAST_PLACES_BESIDE and not joined:
             return neighbour.lane_id, sum(votes[i]) < 0
     return None, None
 
 
-def _mutual(name: str, neighbours: Mapping[str, Neighbours]) -> Neighbours:
+def _mutual_neighbours(name: str, neighbours: Mapping[str, Neighbours]) -> Neighbours:
     """Return the neighbours of a lane, except those that have another neighbour on the shared side, as a long lane beside a short one."""
     mutual_neighbours = neighbours[name]
     for side, opposite in (("left", "right"), ("right", "left")):

@@ -9,15 +9,15 @@ import shapely
 
 from drivelint.errors import MapError
 from drivelint.formats.scenarionet.centre_lines import (
-    boundary_spans,
-    fill_unknown_sides,
-    measure_sides,
+    fill_unknown_bound_distances,
+    measure_bound_distances,
+    named_boundary_spans,
     read_centre_lines,
 )
-from drivelint.formats.scenarionet.furniture import furniture
-from drivelint.formats.scenarionet.lane_graph import find_neighbours, link
+from drivelint.formats.scenarionet.furniture import furniture_rows
+from drivelint.formats.scenarionet.lane_graph import find_neighbours, link_lanes
 from drivelint.formats.scenarionet.pickled_numpy import PickleError
-from drivelint.formats.scenarionet.scenario import numbers, read_scenario
+from drivelint.formats.scenarionet.scenario import number_array, read_scenario
 from drivelint.road.boundary_lanes import BoundedLane, Mark, build_lanes, map_from_bounds, side_driven_on
 from drivelint.road.driving_side import choose_side
 from drivelint.road.overlapping_lanes import mark_junctions
@@ -35,11 +35,11 @@ _MARKINGS: Final = {
     "BROKEN_SINGLE": "broken", "SOLID_SINGLE": "solid", "SOLID_DOUBLE": "solid_solid", "BROKEN_DOUBLE": "broken_broken",
 }  # fmt: skip
 """The part of a type between ROAD_LINE_ and the colour -> marking. Missing: double lines that may be crossed from one side only."""
-_OVERLAP_SHARE: Final = 0.1  # of the smaller lane's area: a smaller overlap is an inaccuracy of bounds
-_CROSSING_RAD: Final = float(np.radians(25.0))  # lanes at a smaller angle split or merge
-_MPH: Final = 0.44704
-_KMH: Final = 1.0 / 3.6
-_FASTEST_MPS: Final = 60.0
+_LEAST_OVERLAP_SHARE: Final = 0.1  # of the smaller lane's area: a smaller overlap is an inaccuracy of bounds
+_LEAST_CROSSING_ANGLE_RAD: Final = float(np.radians(25.0))  # lanes at a smaller angle split or merge
+_MPS_PER_MPH: Final = 0.44704
+_MPS_PER_KMH: Final = 1.0 / 3.6
+_HIGHEST_LIMIT_MPS: Final = 60.0
 
 
 def read(source: MapSource, request: MapOptions) -> MapTables:
@@ -48,63 +48,63 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     try:
         scenario = read_scenario(source.content)
         centres = read_centre_lines(scenario, quality)
-        link(centres)
-        measure_sides(centres, scenario)
+        link_lanes(centres)
+        measure_bound_distances(centres, scenario)
     except PickleError as error:
         raise MapError(f"map {source.name}: {error}") from error
-    guessed = fill_unknown_sides(centres)
-    lanes = build_lanes(_bounded(centres, scenario, quality), request.offset, quality)
+    assumed_shares = fill_unknown_bound_distances(centres)
+    lanes = build_lanes(_bounded_lanes(centres, scenario, quality), request.offset, quality)
     if not any(lane.drivable for lane in lanes):
         first = next((row["message"] for row in quality.rows), "it has none")
         raise MapError(f"map {source.name} has no lane for driving that can be built: {first}: give --map")
-    _report_guessed(centres, guessed, quality)
+    _report_assumed_widths(centres, assumed_shares, quality)
     for lane in lanes:
         centre = centres[lane.lanelet_id]
         lane.z = np.interp(_stations_on(centre, lane.line.centre - request.offset), centre.s, centre.z)
-    mark_junctions(lanes, least_share=_OVERLAP_SHARE, least_angle_rad=_CROSSING_RAD)
-    said = scenario.dataset.side_driven_on(scenario.place)
+    mark_junctions(lanes, least_share=_LEAST_OVERLAP_SHARE, least_angle_rad=_LEAST_CROSSING_ANGLE_RAD)
+    said = scenario.dataset.side_driven_on(scenario.place_name)
     side = choose_side([("option", request.side), ("attribute", said), ("lanes", side_driven_on(lanes))], quality)
-    beside = furniture(scenario, lanes, request.offset, quality)
-    nation = scenario.dataset.nation_of(scenario.place)
+    beside = furniture_rows(scenario, lanes, request.offset, quality)
+    nation = scenario.dataset.nation_of(scenario.place_name)
     return map_from_bounds(source, request, lanes, beside, quality, kind="scenarionet", side=side, nation=nation)
 
 
-def _stations_on(centre: CentreLine, places: Floats) -> Floats:
-    line = shapely.LineString(centre.line)
+def _stations_on(lane: CentreLine, places: Floats) -> Floats:
+    line = shapely.LineString(lane.line)
     return np.asarray(shapely.line_locate_point(line, shapely.points(places)), np.float64)
 
 
-def _bounded(centres: Mapping[str, CentreLine], scenario: Scenario, quality: MapQuality) -> list[BoundedLane]:
+def _bounded_lanes(centres: Mapping[str, CentreLine], scenario: Scenario, quality: MapQuality) -> list[BoundedLane]:
     """Return the lanes with their bounds; report lanes without a known width in `quality`."""
-    bounded_lanes, beside = [], find_neighbours(centres)
+    lanes, beside = [], find_neighbours(centres)
     for name, lane in centres.items():
-        if np.isnan(lane.half).any():
+        if np.isnan(lane.bound_distances).any():
             message = (
                 f"lane {name} is left out: neither it nor the lanes that it joins have bounds, so its width is unknown"
             )
             quality.add("invalid_lane", "error", name, message)
             continue
-        bounded_lanes.append(
+        lanes.append(
             BoundedLane(
                 name,
                 *lane.bounds,
                 lane.kind,
                 lane.kind == "driving",
                 road_type="motorway" if lane.feature.get("type") == "LANE_FREEWAY" else None,
-                successors=lane.after,
+                successors=lane.successors,
                 limit_source="lane",
-                marks=_marks(lane, scenario) if scenario.dataset.markings else (),
-                limits=_limits(lane) if scenario.dataset.speed_limits else (),
+                marks=_markings_of_sides(lane, scenario) if scenario.dataset.markings else (),
+                limits=_speed_limit_spans(lane) if scenario.dataset.speed_limits else (),
                 **beside[name]._asdict(),
             )
         )
-    return bounded_lanes
+    return lanes
 
 
-def _marks(lane: CentreLine, scenario: Scenario) -> tuple[Mark, ...]:
+def _markings_of_sides(lane: CentreLine, scenario: Scenario) -> tuple[Mark, ...]:
     """Return the marks of the lines that a lane names, each on its part of the lane; the marking of a side without lines is unknown."""
     marks = []
-    for side, at, name in boundary_spans(lane):
+    for side, at, name in named_boundary_spans(lane):
         if not at.any():
             continue
         begin, end = (float(lane.s[at][k] / lane.s[-1]) for k in (0, -1))
@@ -119,25 +119,27 @@ def _marks(lane: CentreLine, scenario: Scenario) -> tuple[Mark, ...]:
     return tuple(sorted(marks, key=lambda mark: (mark.side, mark.begin)))
 
 
-def _limits(lane: CentreLine) -> tuple[tuple[float, float, float | None], ...]:
-    for key, unit in (("speed_limit_mph", _MPH), ("speed_limit_kmh", _KMH)):
-        limit = _number(lane.feature.get(key)) * unit
-        if 0.0 < limit < _FASTEST_MPS:
+def _speed_limit_spans(lane: CentreLine) -> tuple[tuple[float, float, float | None], ...]:
+    for key, unit in (("speed_limit_mph", _MPS_PER_MPH), ("speed_limit_kmh", _MPS_PER_KMH)):
+        limit = _number_or_zero(lane.feature.get(key)) * unit
+        if 0.0 < limit < _HIGHEST_LIMIT_MPS:
             return ((0.0, 1.0, limit),)
     return ()
 
 
-def _number(value: Any) -> float:
+def _number_or_zero(value: Any) -> float:
     try:
-        found = numbers(value, "a number")
+        found = number_array(value, "a number")
     except PickleError:
         return 0.0
     return float(found) if found.size == 1 else 0.0
 
 
-def _report_guessed(centres: Mapping[str, CentreLine], guessed: Mapping[str, float], quality: MapQuality) -> None:
+def _report_assumed_widths(
+    centres: Mapping[str, CentreLine], assumed_shares: Mapping[str, float], quality: MapQuality
+) -> None:
     """Report how many lanes have an assumed width, and on which share of their sides."""
-    of = {name: share for name, share in guessed.items() if np.isfinite(centres[name].half).all()}
+    of = {name: share for name, share in assumed_shares.items() if np.isfinite(centres[name].bound_distances).all()}
     if of:
         whole = sum(float(lane.s[-1]) for lane in centres.values())
         part = sum(share * float(centres[name].s[-1]) for name, share in of.items())

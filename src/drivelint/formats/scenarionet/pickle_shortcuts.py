@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from drivelint.formats.scenarionet.pickled_numpy import NumberType, array_of
+from drivelint.formats.scenarionet.pickled_numpy import NumberType, array_from_state
 
 if TYPE_CHECKING:
     from drivelint.arrays import Floats
@@ -49,10 +49,12 @@ class Points:
         return numbers if self.are_tuples else list(numbers)
 
 
-def _point_layout(first: int, size: int, k: int) -> np.dtype[Any]:
-    """Return the layout of a point of `size` bytes with k numbers; `first`: the offset of the first number in bytes."""
-    places = [first + 9 * i for i in range(k)]
-    return np.dtype({"names": list("xyz"[:k]), "formats": [">f8"] * k, "offsets": places, "itemsize": size})
+def _point_layout(first_offset: int, size: int, n_numbers: int) -> np.dtype[Any]:
+    """Return the layout of a point of `size` bytes with `n_numbers` numbers; `first_offset`: the offset of the first number in bytes."""
+    places = [first_offset + 9 * i for i in range(n_numbers)]
+    return np.dtype(
+        {"names": list("xyz"[:n_numbers]), "formats": [">f8"] * n_numbers, "offsets": places, "itemsize": size}
+    )
 
 
 _POINT_LISTS: Final = (
@@ -64,15 +66,15 @@ _POINT_LISTS: Final = (
 _LIST_HEAD_BYTES: Final = 2  # bytes of a list before its first point; one byte follows the last point
 
 
-def points_at(content: bytes, at: int, count: int) -> tuple[Points, int] | None:
+def points_at(content: bytes, at: int, memo_number: int) -> tuple[Points, int] | None:
     """Return the list of points whose EMPTY_LIST ends at byte `at`, and where the list ends; None if this is not a list of points.
 
-    `count`: the memo number of the list.
+    `memo_number`: the memo number of the list.
     """
     for pattern, point, are_tuples in _POINT_LISTS:
         if match := pattern.match(content, at):
             n = (match.end() - at - _LIST_HEAD_BYTES - 1) // point.itemsize
-            return Points(content, at + _LIST_HEAD_BYTES, n, point, are_tuples, count + 1), match.end()
+            return Points(content, at + _LIST_HEAD_BYTES, n, point, are_tuples, memo_number + 1), match.end()
     return None
 
 
@@ -89,11 +91,13 @@ _ARRAY_MEMO_NUMBERS: Final = 6
 """The number of parts of an array with a memo number. The file refers only to the third, the array, and the fifth, its bytes."""
 
 
-def array_at(content: bytes, at: int, memo: dict[int, Any], count: int) -> tuple[np.ndarray[Any, Any], int, int] | None:
+def array_at(
+    content: bytes, at: int, memo: dict[int, Any], next_memo_number: int
+) -> tuple[np.ndarray[Any, Any], int, int] | None:
     """Return the array that is stored at byte `at`, the byte after it, and the next free memo number; None: no array is stored there.
 
     `at`: the byte after the name of numpy's function that rebuilds an array. `memo`: memo number -> value; the array and its bytes are
-    added. `count`: the next free memo number before the array. Errors: as `array_of`.
+    added. `next_memo_number`: the next free memo number before the array. Errors: as `array_from_state`.
     """
     match = _ARRAY_PATTERN.match(content, at)
     if match is None:
@@ -105,16 +109,16 @@ def array_at(content: bytes, at: int, memo: dict[int, Any], count: int) -> tuple
     if content[end : end + len(_ARRAY_END)] != _ARRAY_END or type(number_type) is not NumberType:
         return None
     raw = content[begin:end]
-    array = array_of((1, _integer_arguments(shape), number_type, order == b"\x88", raw))
-    memo[count + 2], memo[count + 4] = array, raw
-    return array, end + len(_ARRAY_END), count + _ARRAY_MEMO_NUMBERS
+    array = array_from_state((1, _integers_of_operations(shape), number_type, order == b"\x88", raw))
+    memo[next_memo_number + 2], memo[next_memo_number + 4] = array, raw
+    return array, end + len(_ARRAY_END), next_memo_number + _ARRAY_MEMO_NUMBERS
 
 
-def _integer_arguments(code: bytes) -> tuple[int, ...]:
+def _integers_of_operations(operations: bytes) -> tuple[int, ...]:
     """Return the integers of successive operations BININT1, BININT2 and BININT."""
     found, at = [], 0
-    while at < len(code):
-        width = {0x4B: 1, 0x4D: 2, 0x4A: 4}[code[at]]
-        found.append(int.from_bytes(code[at + 1 : at + 1 + width], "little"))
+    while at < len(operations):
+        width = {0x4B: 1, 0x4D: 2, 0x4A: 4}[operations[at]]
+        found.append(int.from_bytes(operations[at + 1 : at + 1 + width], "little"))
         at += 1 + width
     return tuple(found)

@@ -10,12 +10,12 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-_NUMPY: Final = ("numpy.core", "numpy._core")  # before numpy 2, and since
+_NUMPY_CORES: Final = ("numpy.core", "numpy._core")  # before numpy 2, and since
 _BUILTINS: Final = ("builtins", "__builtin__")  # Python 3's name, and Python 2's, which protocol 2 writes
-_NAMES: Final = {
-    **{(f"{core}.multiarray", "_reconstruct"): "array" for core in _NUMPY},
-    **{(f"{core}.multiarray", "scalar"): "scalar" for core in _NUMPY},
-    **{(f"{core}.numeric", "_frombuffer"): "view" for core in _NUMPY},
+_MEANING_BY_NAME: Final = {
+    **{(f"{core}.multiarray", "_reconstruct"): "array" for core in _NUMPY_CORES},
+    **{(f"{core}.multiarray", "scalar"): "scalar" for core in _NUMPY_CORES},
+    **{(f"{core}.numeric", "_frombuffer"): "view" for core in _NUMPY_CORES},
     ("numpy", "ndarray"): "type",
     ("numpy", "dtype"): "number type",
     ("collections", "defaultdict"): "dict",
@@ -27,59 +27,59 @@ _NAMES: Final = {
     **{(module, "dict"): "dict" for module in _BUILTINS},
 }
 """(module, name) in a file -> its meaning here. A set becomes a list of its members, in the order of the file."""
-_KINDS: Final = "biufUS"
+_NUMPY_KINDS: Final = "biufUS"
 """The kinds of numpy types that are read: numbers and texts."""
-_EMPTY: Final[dict[str, Callable[[], Any]]] = {"dict": dict, "list": list, "bytes": bytes}
-_OBJECTS: Final = "it has an array of Python objects, which is refused: write numbers"
+_CONTAINER_BY_MEANING: Final[dict[str, Callable[[], Any]]] = {"dict": dict, "list": list, "bytes": bytes}
+_OBJECT_ARRAY_REFUSAL: Final = "it has an array of Python objects, which is refused: write numbers"
 
 
 class PickleError(ValueError):
     """Raised for a pickle that is damaged, cut off, or contains more than plain values; the caller adds the name of the file."""
 
 
-class Name(NamedTuple):
-    """A name in the file, represented by its meaning in `_NAMES`."""
+class AllowedName(NamedTuple):
+    """A name in the file, represented by its meaning in `_MEANING_BY_NAME`."""
 
     meaning: str
 
 
-def name_of(module: Any, name: Any) -> Name:
+def allowed_name(module: Any, name: Any) -> AllowedName:
     """Return the meaning of a name in the file. Errors: `PickleError` for a name that is refused."""
-    meaning = _NAMES.get((module, name)) if isinstance(module, str) and isinstance(name, str) else None
+    meaning = _MEANING_BY_NAME.get((module, name)) if isinstance(module, str) and isinstance(name, str) else None
     if meaning is None:
         what = f"{str(module)[:100]}.{str(name)[:100]}"
         raise PickleError(f"it requests {what!r}, which is refused: only numpy arrays and plain values are read")
-    return Name(meaning)
+    return AllowedName(meaning)
 
 
 class NumberType:
     """A numpy type: its code, such as f8, and its byte order, which follows later in the file."""
 
     def __init__(self, code: Any) -> None:
-        if not (isinstance(code, str) and code[:1] in _KINDS and code[1:].isdecimal()):
-            raise PickleError(_OBJECTS)
+        if not (isinstance(code, str) and code[:1] in _NUMPY_KINDS and code[1:].isdecimal()):
+            raise PickleError(_OBJECT_ARRAY_REFUSAL)
         self.code = code
         self.numpy = np.dtype(code)
 
-    def set_state(self, state: Any) -> None:
+    def set_byte_order(self, state: Any) -> None:
         """Set the byte order. Errors: `PickleError` for a type with fields."""
         _, order, *structure = state
         if order not in {"<", ">", "|", "="} or any(part is not None for part in structure[:3]):
-            raise PickleError(_OBJECTS)
+            raise PickleError(_OBJECT_ARRAY_REFUSAL)
         self.numpy = np.dtype(order + self.code)
 
 
-class Array:
-    """An array whose content follows in the file. `memo`: the number by which the file refers to the array."""
+class ArrayWithoutContent:
+    """An array whose content follows in the file. `memo_number`: the number by which the file refers to the array."""
 
-    def __init__(self, memo: int | None) -> None:
-        self.memo = memo
+    def __init__(self, memo_number: int | None) -> None:
+        self.memo_number = memo_number
 
 
-def array_of(state: Any) -> np.ndarray[Any, Any]:
+def array_from_state(state: Any) -> np.ndarray[Any, Any]:
     """Return an array from its pickled state: (version, shape, type, whether in Fortran's order, bytes). Errors: `PickleError`."""
     _, shape, kind, is_fortran, raw = state
-    return _view(raw, kind, shape, "F" if is_fortran else "C")
+    return _array_view(raw, kind, shape, "F" if is_fortran else "C")
 
 
 def build_value(meaning: str, arguments: tuple[Any, ...]) -> Any:
@@ -88,20 +88,20 @@ def build_value(meaning: str, arguments: tuple[Any, ...]) -> Any:
         return NumberType(arguments[0])
     if meaning == "scalar":
         kind, raw = arguments
-        return _view(raw, kind, (1,), "C")[0].item()
+        return _array_view(raw, kind, (1,), "C")[0].item()
     if meaning == "view":
         raw, kind, shape, order = arguments
-        return _view(raw, kind, shape, order)
+        return _array_view(raw, kind, shape, order)
     # the container among the arguments, else an empty one; the default value of a defaultdict is not kept
-    given = next((value for value in arguments if not isinstance(value, (Name, str))), None)
+    given = next((value for value in arguments if not isinstance(value, (AllowedName, str))), None)
     if given is not None and type(given).__name__ != meaning:
         raise TypeError(f"a {meaning} made of something else")
-    return _EMPTY[meaning]() if given is None else given
+    return _CONTAINER_BY_MEANING[meaning]() if given is None else given
 
 
-def _view(raw: Any, kind: Any, shape: Any, order: Any) -> np.ndarray[Any, Any]:
+def _array_view(raw: Any, kind: Any, shape: Any, order: Any) -> np.ndarray[Any, Any]:
     if type(kind) is not NumberType or type(raw) is not bytes or order not in {"C", "F"}:
-        raise PickleError(_OBJECTS)
+        raise PickleError(_OBJECT_ARRAY_REFUSAL)
     if type(shape) is not tuple or {*map(type, shape)} - {int} or min(shape, default=0) < 0:
         raise TypeError("an array without a shape")
     if prod(shape) * kind.numpy.itemsize != len(raw):

@@ -14,9 +14,9 @@ from drivelint.arrays import words_of_codes
 from drivelint.drive.trace import SIGNAL_STATES, QualityFinding, Recording, States
 from drivelint.errors import TraceError
 from drivelint.formats.scenarionet import sources
-from drivelint.formats.scenarionet.ego_clock import timed_track
+from drivelint.formats.scenarionet.ego_clock import track_at_steps
 from drivelint.formats.scenarionet.pickled_numpy import PickleError
-from drivelint.formats.scenarionet.scenario import LIGHTS, read_scenario, times_s
+from drivelint.formats.scenarionet.scenario import SIGNAL_STATE_BY_WORD, read_scenario, times_s
 from drivelint.formats.scenarionet.tracks import Tracks, read_tracks
 from drivelint.phrases import name_list
 
@@ -27,14 +27,14 @@ if TYPE_CHECKING:
 
 formats: Final = {"scenarionet": ("ScenarioNet scenario", "the scenario's sdc_id")}
 takes_mapping: Final = False
-_PROTOCOLS: Final = (2, 3, 4, 5)
-_LIGHT_CODES: Final = {word: SIGNAL_STATES.index(state) for word, state in LIGHTS.items()}
+_PICKLE_PROTOCOLS: Final = (2, 3, 4, 5)
+_LIGHT_CODES: Final = {word: SIGNAL_STATES.index(state) for word, state in SIGNAL_STATE_BY_WORD.items()}
 
 
 def accepts(probe: Probe) -> bool:
     """Return whether the file begins as a pickle of a known protocol, and has the suffix .pkl or begins with a dict."""
     head = probe.head
-    if len(head) < 3 or head[0] != 0x80 or head[1] not in _PROTOCOLS:
+    if len(head) < 3 or head[0] != 0x80 or head[1] not in _PICKLE_PROTOCOLS:
         return False
     behind_frame = head[11:12] if head[2] == 0x95 else head[2:3]
     return behind_frame == b"}" or probe.path.suffix.lower() == ".pkl"
@@ -53,42 +53,44 @@ def _recording(scenario: Scenario, content: bytes) -> Recording:
     dataset, t_s = scenario.dataset, times_s(scenario.metadata)
     tracks = read_tracks(scenario, t_s)
     findings = [
-        *sources.turn_boxes(tracks, dataset),
-        *sources.drop_differences(tracks),
+        *sources.swap_length_and_width(tracks, dataset),
+        *sources.drop_differenced_velocities(tracks),
         *sources.drop_false_stops(tracks),
     ]
-    even = sources.interpolated(tracks, dataset)
-    if even.any():
-        findings += sources.give_keyframe_velocities(tracks, even, dataset.steps_per_keyframe)
-    of_ego, notes = _place_ego(tracks, scenario, even)
+    is_interpolated = sources.is_interpolated(tracks, dataset)
+    if is_interpolated.any():
+        findings += sources.give_keyframe_velocities(tracks, is_interpolated, dataset.steps_per_keyframe)
+    of_ego, notes = _correct_ego_track(tracks, scenario, is_interpolated)
     if not dataset.sizes:
         tracks.size[:] = np.nan
         notes.append("sizes are guesses of ScenarioNet for this data set: they count as unknown")
     recording = Recording("scenarionet", _states(tracks), findings=[*findings, *of_ego], notes=notes)
     recording.ego_ids = [] if tracks.ego is None else [tracks.ids[tracks.ego]]
-    recording.signals, unknown = _signals(scenario, t_s)
+    recording.signals, unknown = _signal_states_and_findings(scenario, t_s)
     recording.findings += unknown
     recording.sensor_range_m = dataset.sensor_range_m
-    if nation := dataset.nation_of(scenario.place):
+    if nation := dataset.nation_of(scenario.place_name):
         recording.conditions["nation"] = nation
     if any("LANE" in str(feature.get("type")) for feature in scenario.features.values()):
         recording.embedded_map = content
     return recording
 
 
-def _place_ego(tracks: Tracks, scenario: Scenario, even: Mask) -> tuple[list[QualityFinding], list[str]]:
-    """Correct the times and places of the ego's box, in place; return findings and notes. `even`: which actors are interpolated."""
+def _correct_ego_track(
+    tracks: Tracks, scenario: Scenario, is_interpolated: Mask
+) -> tuple[list[QualityFinding], list[str]]:
+    """Correct the times and places of the ego's box, in place; return findings and notes. `is_interpolated`: per actor."""
     dataset, ego = scenario.dataset, tracks.ego
     if ego is None:
         named = scenario.metadata.get("sdc_id")
         return [], [] if named is None else [f"the scenario's ego {str(named)[:100]!r} has no track"]
     findings: list[QualityFinding] = []
     notes: list[str] = []
-    if dataset.ego_message_s is not None and not even[ego] and tracks.present[ego].all():
-        timed = timed_track(tracks.place[ego, :, :2], tracks.heading[ego], tracks.t_s, dataset.ego_message_s)
+    if dataset.ego_message_s is not None and not is_interpolated[ego] and tracks.present[ego].all():
+        timed = track_at_steps(tracks.place[ego, :, :2], tracks.heading[ego], tracks.t_s, dataset.ego_message_s)
         tracks.place[ego, :, :2], tracks.heading[ego] = timed.place, timed.heading
         tracks.present[ego] = np.isfinite(timed.heading)
-        findings = _of_clock(tracks.ids[ego], timed.lost_messages, timed.shift_s, dataset.ego_message_s)
+        findings = _ego_clock_findings(tracks.ids[ego], timed.lost_messages, timed.shift_s, dataset.ego_message_s)
     if dataset.ego_ahead_m:
         heading = tracks.heading[ego]
         tracks.place[ego, :, 0] += dataset.ego_ahead_m * np.cos(heading)
@@ -101,20 +103,25 @@ def _place_ego(tracks: Tracks, scenario: Scenario, even: Mask) -> tuple[list[Qua
     return findings, notes
 
 
-def _of_clock(ego: str, lost_messages: int, shift_s: float, message_s: float) -> list[QualityFinding]:
+def _ego_clock_findings(
+    ego_id: str, lost_messages: int, shift_s: float, message_period_s: float
+) -> list[QualityFinding]:
     if not lost_messages and not np.isfinite(shift_s):
         return []
-    steps = f"{lost_messages} of its messages are lost, and each lost message makes a step {message_s:g} s longer than the scenario states"
+    steps = (
+        f"{lost_messages} of its messages are lost, and each lost message makes a step {message_period_s:g} s longer "
+        "than the scenario states"
+    )
     parts = [steps] if lost_messages else []
     if np.isfinite(shift_s):
         parts.append(
             f"its last positions, which match the annotated frames, show that it begins {round(shift_s, 2) + 0.0:.2f} s after these"
         )
     message = (
-        f"the positions of {ego} have message numbers instead of times: {'; '.join(parts)}: its positions are moved "
+        f"the positions of {ego_id} have message numbers instead of times: {'; '.join(parts)}: its positions are moved "
         "to the times of the steps, with an error of about 0.1 s relative to the other actors"
     )
-    return [QualityFinding("ego_clock", "warning", message, max(lost_messages, 1), actor_id=ego)]
+    return [QualityFinding("ego_clock", "warning", message, max(lost_messages, 1), actor_id=ego_id)]
 
 
 def _states(tracks: Tracks) -> States:
@@ -133,7 +140,7 @@ def _states(tracks: Tracks) -> States:
         actor.astype(np.int32),
         _nanoseconds(tracks.t_s)[step],
         numbers,
-        {"actor_class": tracks.kinds[actor]},
+        {"actor_class": tracks.class_codes[actor]},
         odd,
     )
 
@@ -142,9 +149,9 @@ def _nanoseconds(t_s: Floats) -> Times:
     return np.round(t_s * 1e9).astype(np.int64)
 
 
-def _signals(scenario: Scenario, t_s: Floats) -> tuple[pa.Table | None, list[QualityFinding]]:
+def _signal_states_and_findings(scenario: Scenario, t_s: Floats) -> tuple[pa.Table | None, list[QualityFinding]]:
     """Return the states of all lights, one row per light and step, and findings. A light has the id of its lane."""
-    scenario.refuse_more(len(scenario.lights) * len(t_s), "states of lights")
+    scenario.refuse_if_over_file_size(len(scenario.lights) * len(t_s), "states of lights")
     ids, codes = [], []
     known_words: set[Any] = set()
     for name, light in scenario.lights.items():

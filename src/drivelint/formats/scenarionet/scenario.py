@@ -19,12 +19,12 @@ if TYPE_CHECKING:
     from drivelint.arrays import Floats
 
 _FACTS: Final = toml_beside(__file__, "datasets.toml")
-CLASSES: Final[dict[str, str]] = _FACTS["classes"]
-LIGHTS: Final[dict[str, str]] = _FACTS["lights"]
-_LONGEST_S: Final = 1e9
+ACTOR_CLASS_BY_TYPE: Final[dict[str, str]] = _FACTS["classes"]
+SIGNAL_STATE_BY_WORD: Final[dict[str, str]] = _FACTS["lights"]
+_LARGEST_TIME_S: Final = 1e9
 
 
-class Dataset(NamedTuple):
+class DatasetFacts(NamedTuple):
     """The facts about a data set; the defaults are for an unknown one. See datasets.toml.
 
     `sensor_range_m`: the range within which every actor is recorded. `steps_per_keyframe`: boxes are interpolated between keyframes
@@ -46,45 +46,47 @@ class Dataset(NamedTuple):
     stop_points: bool = True
     nations: Mapping[str, str] = {}
 
-    def nation_of(self, place: str) -> str | None:
+    def nation_of(self, place_name: str) -> str | None:
         """Return the country, as two letters, of the place that the scenario names; None: not known."""
-        return next((nation for begin, nation in self.nations.items() if place.startswith(begin)), None)
+        return next((nation for begin, nation in self.nations.items() if place_name.startswith(begin)), None)
 
-    def side_driven_on(self, place: str) -> str | None:
+    def side_driven_on(self, place_name: str) -> str | None:
         """Return the side that is driven on, lht or rht, at the place that the scenario names; None: not known."""
-        nation = self.nation_of(place)
+        nation = self.nation_of(place_name)
         return None if nation is None else side_of_nation(nation)
 
 
 class Scenario(NamedTuple):
     """The parts of a scenario, and the size of its file in bytes; each track, light and feature is a dict."""
 
-    size: int
-    dataset: Dataset
+    file_size: int
+    dataset: DatasetFacts
     metadata: dict[str, Any]
     tracks: dict[str, dict[str, Any]]
     lights: dict[str, dict[str, Any]]
     features: dict[str, dict[str, Any]]
 
     @property
-    def place(self) -> str:
+    def place_name(self) -> str:
         """The name of the place, such as singapore-onenorth; empty: not known."""
         return str(self.metadata.get("map", ""))
 
-    def refuse_more(self, n: int, kind: str) -> None:
-        """Raise `PickleError` if there are more than `size` values: many references to one value could exceed any limit of memory."""
-        if n > self.size:
+    def refuse_if_over_file_size(self, n: int, kind: str) -> None:
+        """Raise `PickleError` if there are more than `file_size` values: many references to one value could exceed any limit of memory."""
+        if n > self.file_size:
             raise PickleError(f"its {n} {kind} are more than the file can hold: write the scenario again")
 
 
 def read_scenario(content: bytes) -> Scenario:
     """Return the scenario in a pickle. Errors: `PickleError` if the pickle is damaged, or is not a scenario."""
     found = load(content)
-    parts = {name: _part(found, name) for name in ("metadata", "tracks", "dynamic_map_states", "map_features")}
+    parts = {
+        name: _dict_in_scenario(found, name) for name in ("metadata", "tracks", "dynamic_map_states", "map_features")
+    }
     facts = _FACTS["dataset"].get(str(parts["metadata"].get("dataset", "")).lower(), {})
-    named = [_each_a_dict(parts[name], name) for name in ("tracks", "dynamic_map_states", "map_features")]
-    scenario = Scenario(len(content), Dataset(**facts), parts["metadata"], *named)
-    scenario.refuse_more(sum(map(_n_points, scenario.features.values())), "points of map features")
+    named = [_dicts_in_part(parts[name], name) for name in ("tracks", "dynamic_map_states", "map_features")]
+    scenario = Scenario(len(content), DatasetFacts(**facts), parts["metadata"], *named)
+    scenario.refuse_if_over_file_size(sum(map(_n_points, scenario.features.values())), "points of map features")
     return scenario
 
 
@@ -99,13 +101,13 @@ def _n_points(feature: Mapping[str, Any]) -> int:
     return n
 
 
-def _part(content: Any, name: str) -> dict[str, Any]:
+def _dict_in_scenario(content: Any, name: str) -> dict[str, Any]:
     if not isinstance(content, dict) or not isinstance(content.get(name), dict):
         raise PickleError(f"it is not a scenario of ScenarioNet, because it has no dict {name!r}: give a file sd_*.pkl")
     return dict(content[name])
 
 
-def _each_a_dict(part: dict[Any, Any], name: str) -> dict[str, dict[str, Any]]:
+def _dicts_in_part(part: dict[Any, Any], name: str) -> dict[str, dict[str, Any]]:
     for key, value in part.items():
         if not isinstance(value, dict):
             raise PickleError(f"{name}[{str(key)[:100]!r}] is not a dict: write the scenario again")
@@ -114,13 +116,13 @@ def _each_a_dict(part: dict[Any, Any], name: str) -> dict[str, dict[str, Any]]:
 
 def times_s(metadata: Mapping[str, Any]) -> Floats:
     """Return the times of the steps (T,) in seconds. Errors: `PickleError`."""
-    t_s = numbers(metadata.get("ts"), "metadata['ts']").reshape(-1)
-    if not len(t_s) or not (np.abs(t_s) < _LONGEST_S).all():
+    t_s = number_array(metadata.get("ts"), "metadata['ts']").reshape(-1)
+    if not len(t_s) or not (np.abs(t_s) < _LARGEST_TIME_S).all():
         raise PickleError("metadata['ts'] is not a list of times in seconds: write the scenario again")
     return t_s
 
 
-def numbers(value: Any, where: str) -> Floats:
+def number_array(value: Any, where: str) -> Floats:
     """Return a number, or several numbers, as an array. Errors: `PickleError` that names their place in the file, `where`."""
     try:
         if isinstance(value, (int, float)):
@@ -129,7 +131,7 @@ def numbers(value: Any, where: str) -> Floats:
             return value.astype(np.float64)
         if isinstance(value, (list, tuple)):
             plain = all(isinstance(each, (int, float)) for each in value)
-            return np.array(value, np.float64) if plain else points(value, where)
+            return np.array(value, np.float64) if plain else point_array(value, where)
         if isinstance(value, Points):
             return value.array
     except OverflowError:
@@ -137,7 +139,7 @@ def numbers(value: Any, where: str) -> Floats:
     raise PickleError(f"{where} is not an array of numbers: write the scenario again")
 
 
-def points(value: Any, where: str) -> Floats:
+def point_array(value: Any, where: str) -> Floats:
     """Return points (n, k), given as an array or a list. Errors: `PickleError` that names their place in the file, `where`."""
     if isinstance(value, Points):
         return value.array

@@ -16,37 +16,37 @@ from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
     from drivelint.arrays import Floats, Mask
-    from drivelint.formats.scenarionet.scenario import Dataset
+    from drivelint.formats.scenarionet.scenario import DatasetFacts
     from drivelint.formats.scenarionet.tracks import Tracks
 
-_LONG_KINDS: Final = frozenset(ACTOR_CLASSES.index(word) for word in (*MOTOR_VEHICLES, "trailer", "bicycle"))
+_LONG_CLASSES: Final = frozenset(ACTOR_CLASSES.index(word) for word in (*MOTOR_VEHICLES, "trailer", "bicycle"))
 _MOVING_MPS: Final = 1.0
-_DISTINCT_MPS: Final = 0.05
-_SAME_MPS: Final = 0.02
-_SAME_SHARE: Final = 0.01
-"""A velocity equals a difference of positions if both differ by less than `_SAME_MPS` plus this share. (Rounded times change it by under
-0.1 %.)"""
+_LEAST_DISTINCT_DIFFERENCE_MPS: Final = 0.05
+_SAME_VELOCITY_TOLERANCE_MPS: Final = 0.02
+_SAME_VELOCITY_SHARE: Final = 0.01
+"""A velocity equals a difference of positions if both differ by less than `_SAME_VELOCITY_TOLERANCE_MPS` plus this share. (Rounded times
+change it by under 0.1 %.)"""
 _LEAST_SAME_SHARE: Final = 0.9
 _LEAST_SAMPLES: Final = 10
-_EVEN_M: Final = 1e-4
-_WIDER: Final = 1.2
+_EVEN_STEP_TOLERANCE_M: Final = 1e-4
+_LEAST_WIDTH_TO_LENGTH: Final = 1.2
 """A box that is wider than long by this factor is not an inaccurate estimate of a square box."""
-_MOVED_M: Final = 2.0
-_ALONG: Final = np.cos(np.radians(30.0))
+_LEAST_MOTION_M: Final = 2.0
+_LEAST_HEADING_COSINE: Final = np.cos(np.radians(30.0))
 
 
-def drop_differences(tracks: Tracks) -> list[QualityFinding]:
+def drop_differenced_velocities(tracks: Tracks) -> list[QualityFinding]:
     """Set velocities that are differences of the positions to NaN, in place: those of the ego, and those of all other actors.
 
     `finish_trace` derives better velocities, which are those at the step itself.
     """
     is_ego = np.arange(len(tracks.ids)) == tracks.ego
     findings = []
-    for group, owner in ((is_ego, "the ego"), (~is_ego, "the others")):
-        if (when := _difference(tracks, group)) is None:
+    for actors, owner in ((is_ego, "the ego"), (~is_ego, "the others")):
+        if (when := _when_differences_apply(tracks, actors)) is None:
             continue
-        n = int((group[:, None] & np.isfinite(tracks.velocity[..., 0])).sum())
-        tracks.velocity[group] = np.nan
+        n = int((actors[:, None] & np.isfinite(tracks.velocity[..., 0])).sum())
+        tracks.velocity[actors] = np.nan
         message = (
             f"velocities of {owner} are differences of the positions, half a step {when} and 0 or repeated at an end of the track: "
             "they are derived again"
@@ -55,19 +55,19 @@ def drop_differences(tracks: Tracks) -> list[QualityFinding]:
     return findings
 
 
-def _difference(tracks: Tracks, group: Mask) -> str | None:
+def _when_differences_apply(tracks: Tracks, actors: Mask) -> str | None:
     """Return early or late if the velocities of these actors are differences of the positions; None if they are not.
 
     This shows only where an actor accelerates, brakes or turns, so that the displacements before and after differ.
     """
-    steps = tracks.displacements_m[group] / np.diff(tracks.t_s)[:, None]
-    before, after, velocity = steps[:, :-1], steps[:, 1:], tracks.velocity[group][:, 1:-1]
-    tells = np.hypot(*np.moveaxis(after - before, 2, 0)) > 2.0 * _DISTINCT_MPS
+    steps = tracks.displacements_m[actors] / np.diff(tracks.t_s)[:, None]
+    before, after, velocity = steps[:, :-1], steps[:, 1:], tracks.velocity[actors][:, 1:-1]
+    tells = np.hypot(*np.moveaxis(after - before, 2, 0)) > 2.0 * _LEAST_DISTINCT_DIFFERENCE_MPS
     if tells.sum() < _LEAST_SAMPLES:
         return None
     for when, step in (("early", after), ("late", before)):
         off = np.hypot(*np.moveaxis(velocity - step, 2, 0))
-        same = off < _SAME_MPS + _SAME_SHARE * np.hypot(*np.moveaxis(step, 2, 0))
+        same = off < _SAME_VELOCITY_TOLERANCE_MPS + _SAME_VELOCITY_SHARE * np.hypot(*np.moveaxis(step, 2, 0))
         if same[tells].mean() > _LEAST_SAME_SHARE:
             return when
     return None
@@ -88,25 +88,25 @@ def drop_false_stops(tracks: Tracks) -> list[QualityFinding]:
     return [QualityFinding.of_actors("velocity_unknown", "warning", message, ids)]
 
 
-def interpolated(tracks: Tracks, dataset: Dataset) -> Mask:
+def is_interpolated(tracks: Tracks, dataset: DatasetFacts) -> Mask:
     """Return for each actor (n,) whether its positions are interpolated between keyframes, that is, lie evenly on straight lines."""
     every = dataset.steps_per_keyframe
     if not every or len(tracks.t_s) < every + 1:
         return np.zeros(len(tracks.ids), np.bool_)
     off = np.abs(np.diff(tracks.displacements_m, axis=1)).max(axis=2)  # (n, T - 2), at the steps 1 ... T - 2
     between = np.arange(1, len(tracks.t_s) - 1) % every != 0
-    even: Mask = ~(np.nan_to_num(off[:, between]) > _EVEN_M).any(axis=1)
+    even: Mask = ~(np.nan_to_num(off[:, between]) > _EVEN_STEP_TOLERANCE_M).any(axis=1)
     return even
 
 
-def give_keyframe_velocities(tracks: Tracks, rows: Mask, every: int) -> list[QualityFinding]:
+def give_keyframe_velocities(tracks: Tracks, actors: Mask, steps_per_keyframe: int) -> list[QualityFinding]:
     """Give these actors the velocities of their keyframes, in place, and report that their accelerations are not known.
 
     The velocity at a keyframe is the mean from the keyframe before to the keyframe after, as in nuScenes' own `box_velocity`. Between two
     keyframes, it changes linearly.
     """
-    key = np.arange(0, len(tracks.t_s), every)
-    place, t_s = tracks.place[rows][:, key, :2], tracks.t_s[key]
+    key = np.arange(0, len(tracks.t_s), steps_per_keyframe)
+    place, t_s = tracks.place[actors][:, key, :2], tracks.t_s[key]
     velocity = np.full(place.shape, np.nan)
     slope = np.diff(place, axis=1) / np.diff(t_s)[:, None]
     velocity[:, :-1] = slope
@@ -117,15 +117,15 @@ def give_keyframe_velocities(tracks: Tracks, rows: Mask, every: int) -> list[Qua
         velocity[:, 1:-1],
     )
     step = np.arange(len(tracks.t_s))
-    before = np.minimum(step // every, len(key) - 1)
+    before = np.minimum(step // steps_per_keyframe, len(key) - 1)
     after = np.minimum(before + 1, len(key) - 1)
-    share = ((step % every) / every)[:, None]
+    share = ((step % steps_per_keyframe) / steps_per_keyframe)[:, None]
     between = np.where(
         share > 0.0, velocity[:, before] * (1.0 - share) + velocity[:, after] * share, velocity[:, before]
     )
-    between[~tracks.present[rows]] = np.nan
-    tracks.velocity[rows] = between
-    moving_ids = [tracks.ids[i] for i in np.flatnonzero(rows & (_spread_m(tracks) > _MOVED_M))]
+    between[~tracks.present[actors]] = np.nan
+    tracks.velocity[actors] = between
+    moving_ids = [tracks.ids[i] for i in np.flatnonzero(actors & (_extent_m(tracks) > _LEAST_MOTION_M))]
     if not moving_ids:
         return []
     period_s = float(np.median(np.diff(t_s)))
@@ -140,7 +140,7 @@ def give_keyframe_velocities(tracks: Tracks, rows: Mask, every: int) -> list[Qua
     ]
 
 
-def _spread_m(tracks: Tracks) -> Floats:
+def _extent_m(tracks: Tracks) -> Floats:
     """Return the extent in metres of each actor's places (n,), along x or y, whichever is larger."""
     seen = np.where(tracks.present[..., None], tracks.place[..., :2], np.nan)
     with np.errstate(invalid="ignore"):
@@ -148,17 +148,17 @@ def _spread_m(tracks: Tracks) -> Floats:
     return np.asarray(np.nan_to_num(spread).max(axis=1), np.float64)
 
 
-def turn_boxes(tracks: Tracks, dataset: Dataset) -> list[QualityFinding]:
+def swap_length_and_width(tracks: Tracks, dataset: DatasetFacts) -> list[QualityFinding]:
     """Exchange length and width, in place, of vehicles that move along their short side.
 
     The ego's are also exchanged if the data set is known to exchange them. Without such evidence, length and width become NaN.
     """
-    long_kind = np.isin(tracks.kinds, list(_LONG_KINDS))
+    long_kind = np.isin(tracks.class_codes, list(_LONG_CLASSES))
     n = np.maximum(tracks.present.sum(axis=1), 1)
     length, width = (np.nansum(tracks.size[..., k], axis=1) / n for k in (0, 1))
     ids_by_reason: dict[str, list[str]] = {}
-    for i in np.flatnonzero(long_kind & (width > _WIDER * length)):
-        if _moves_ahead(tracks, int(i)):
+    for i in np.flatnonzero(long_kind & (width > _LEAST_WIDTH_TO_LENGTH * length)):
+        if _moves_along_heading(tracks, int(i)):
             why = "length and width of {} are swapped in the log, as its motion along the short side shows: this is corrected"
         elif i == tracks.ego and np.allclose((width[i], length[i]), dataset.ego_box_m or (0.0, 0.0), atol=0.01):
             why = "length and width of {} are swapped in the log, as always in this data set: this is corrected"
@@ -172,10 +172,10 @@ def turn_boxes(tracks: Tracks, dataset: Dataset) -> list[QualityFinding]:
     ]
 
 
-def _moves_ahead(tracks: Tracks, i: int) -> bool:
+def _moves_along_heading(tracks: Tracks, i: int) -> bool:
     """Return whether an actor moves along its heading, forwards or backwards."""
     steps = tracks.displacements_m[i]
     heading = tracks.heading[i, :-1]
     way = np.hypot(*steps.T)
     along = np.abs(steps[:, 0] * np.cos(heading) + steps[:, 1] * np.sin(heading))
-    return bool(np.nansum(way) > _MOVED_M and np.nansum(along) > _ALONG * np.nansum(way))
+    return bool(np.nansum(way) > _LEAST_MOTION_M and np.nansum(along) > _LEAST_HEADING_COSINE * np.nansum(way))

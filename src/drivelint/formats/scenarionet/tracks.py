@@ -10,13 +10,13 @@ import numpy as np
 
 from drivelint.drive.trace import ACTOR_CLASSES
 from drivelint.formats.scenarionet.pickled_numpy import PickleError
-from drivelint.formats.scenarionet.scenario import CLASSES, numbers
+from drivelint.formats.scenarionet.scenario import ACTOR_CLASS_BY_TYPE, number_array
 
 if TYPE_CHECKING:
     from drivelint.arrays import Codes, Floats, Mask
     from drivelint.formats.scenarionet.scenario import Scenario
 
-_SIZES: Final = ("length", "width", "height")
+_SIZE_NAMES: Final = ("length", "width", "height")
 
 
 @dataclass
@@ -24,7 +24,7 @@ class Tracks:
     """The tracks of n actors over T steps. `ego`: the index of the ego; None: no track is the ego.
 
     `t_s` (T,), `present` (n, T), `place` (n, T, 3), `heading` (n, T), `velocity` (n, T, 2), `size` (n, T, 3): length, width, height;
-    NaN where not known. `kinds` (n,): indices of ACTOR_CLASSES, -1: not known.
+    NaN where not known. `class_codes` (n,): indices of ACTOR_CLASSES, -1: not known.
     """
 
     ids: list[str]
@@ -35,7 +35,7 @@ class Tracks:
     heading: Floats
     velocity: Floats
     size: Floats
-    kinds: Codes
+    class_codes: Codes
 
     @cached_property
     def displacements_m(self) -> Floats:
@@ -47,7 +47,7 @@ class Tracks:
 def read_tracks(scenario: Scenario, t_s: Floats) -> Tracks:
     """Return the tracks of a scenario. Errors: `PickleError` for a track whose arrays are not as long as the scenario."""
     ids, n, steps = list(scenario.tracks), len(scenario.tracks), len(t_s)
-    scenario.refuse_more(n * steps, "steps of tracks")
+    scenario.refuse_if_over_file_size(n * steps, "steps of tracks")
     ego = str(scenario.metadata.get("sdc_id"))
     tracks = Tracks(
         ids,
@@ -58,35 +58,35 @@ def read_tracks(scenario: Scenario, t_s: Floats) -> Tracks:
         heading=np.full((n, steps), np.nan),
         velocity=np.full((n, steps, 2), np.nan),
         size=np.full((n, steps, 3), np.nan),
-        kinds=np.array([_kind(track) for track in scenario.tracks.values()], np.int8),
+        class_codes=np.array([_class_code(track) for track in scenario.tracks.values()], np.int8),
     )
     for i, (name, track) in enumerate(scenario.tracks.items()):
         state = track.get("state")
         if not isinstance(state, dict):
             raise PickleError(f"tracks[{name[:100]!r}] has no dict 'state': write the scenario again")
-        _fill(tracks, i, state, f"tracks[{name[:100]!r}]['state']")
+        _fill_track(tracks, i, state, f"tracks[{name[:100]!r}]['state']")
     absent = ~tracks.present
     for values in (tracks.place, tracks.heading, tracks.velocity, tracks.size):
         values[absent] = np.nan
     return tracks
 
 
-def _fill(tracks: Tracks, i: int, state: dict[str, Any], where: str) -> None:
+def _fill_track(tracks: Tracks, i: int, state: dict[str, Any], where: str) -> None:
     steps = len(tracks.t_s)
-    place = _column(state, "position", steps, where)
+    place = _state_array(state, "position", steps, where)
     tracks.place[i, :, : place.shape[1]] = place[:, :3]
-    tracks.heading[i] = _column(state, "heading", steps, where)[:, 0]
+    tracks.heading[i] = _state_array(state, "heading", steps, where)[:, 0]
     if "velocity" in state:
-        tracks.velocity[i] = _column(state, "velocity", steps, where)[:, :2]
-    tracks.present[i] = _column(state, "valid", steps, where)[:, 0] > 0.5 if "valid" in state else True
-    for k, name in enumerate(_SIZES):
+        tracks.velocity[i] = _state_array(state, "velocity", steps, where)[:, :2]
+    tracks.present[i] = _state_array(state, "valid", steps, where)[:, 0] > 0.5 if "valid" in state else True
+    for k, name in enumerate(_SIZE_NAMES):
         if name in state:
-            tracks.size[i, :, k] = _column(state, name, steps, where)[:, 0]
+            tracks.size[i, :, k] = _state_array(state, name, steps, where)[:, 0]
 
 
-def _column(state: dict[str, Any], name: str, steps: int, where: str) -> Floats:
+def _state_array(state: dict[str, Any], name: str, steps: int, where: str) -> Floats:
     """Return an array of a state as (steps, k); a single number is repeated for every step. Errors: `PickleError`."""
-    values = numbers(state.get(name), f"{where}[{name!r}]")
+    values = number_array(state.get(name), f"{where}[{name!r}]")
     least = {"position": 2, "velocity": 2}.get(name, 1)
     if least == 1 and values.size == 1:
         return np.broadcast_to(values.reshape(1, 1), (steps, 1))
@@ -96,9 +96,11 @@ def _column(state: dict[str, Any], name: str, steps: int, where: str) -> Floats:
     return values.reshape(steps, -1)
 
 
-def _kind(track: dict[str, Any]) -> int:
-    """Return the class of a track, by the data set's own type if `CLASSES` has it, else by ScenarioNet's type; -1: not known."""
+def _class_code(track: dict[str, Any]) -> int:
+    """Return a track's class, by the data set's own type if `ACTOR_CLASS_BY_TYPE` has it, else by ScenarioNet's type; -1: not known."""
     own = track.get("metadata")
     words = (own.get("type") if isinstance(own, dict) else None, track.get("type"))
-    found = next((CLASSES[word] for word in words if isinstance(word, str) and word in CLASSES), None)
+    found = next(
+        (ACTOR_CLASS_BY_TYPE[word] for word in words if isinstance(word, str) and word in ACTOR_CLASS_BY_TYPE), None
+    )
     return -1 if found is None else ACTOR_CLASSES.index(found)

@@ -13,7 +13,7 @@ import numpy as np
 from drivelint.drive.ego import ALL_EGOS
 from drivelint.drive.trace import ACTOR_CLASSES, MOTOR_VEHICLES, QualityFinding
 from drivelint.formats.sumo.rows import CONTAINER, PERSON
-from drivelint.formats.sumo.vehicle_types import type_of
+from drivelint.formats.sumo.vehicle_types import type_and_original
 from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from drivelint.formats.sumo.vehicle_types import VehicleType
 
 
-class Tracks(NamedTuple):
+class RowActors(NamedTuple):
     """The actor, type and kind of each row (n): `actor` indexes `ids`, `type_code` indexes `type_names`, `kind` as in `rows`."""
 
     ids: list[str]
@@ -43,48 +43,50 @@ class Boxes(NamedTuple):
     actor_class: Codes
     length_m: Floats
     width_m: Floats
-    ahead_m: Floats
+    bumper_ahead_m: Floats
     findings: list[QualityFinding]
 
 
-def boxes_of(tracks: Tracks, types: Mapping[str, VehicleType], options: IngestOptions) -> Boxes:
+def boxes_of(row_actors: RowActors, types: Mapping[str, VehicleType], options: IngestOptions) -> Boxes:
     """Return the boxes, from the known `types` and the user's size of the ego."""
-    types_with_originals = [type_of(name, types, frozenset(tracks.ids)) for name in tracks.type_names]
+    types_with_originals = [type_and_original(name, types, frozenset(row_actors.ids)) for name in row_actors.type_names]
     vehicle_types = [kind for kind, _ in types_with_originals]
     classes = np.array(
         [-1 if t.actor_class is None else ACTOR_CLASSES.index(t.actor_class) for t in vehicle_types], np.int8
     )
-    actor_class = classes[tracks.type_code]
+    actor_class = classes[row_actors.type_code]
     for kind, word in ((PERSON, "pedestrian"), (CONTAINER, "object")):
-        actor_class[tracks.kind == kind] = ACTOR_CLASSES.index(word)
+        actor_class[row_actors.kind == kind] = ACTOR_CLASSES.index(word)
     length, width = (
-        np.array([getattr(t, side) for t in vehicle_types], np.float64)[tracks.type_code]
+        np.array([getattr(t, side) for t in vehicle_types], np.float64)[row_actors.type_code]
         for side in ("length_m", "width_m")
     )
-    changing = _changing(tracks, length)
+    changing = _has_other_length(row_actors, length)
     length[changing] = width[changing] = np.nan
     sizeless = np.isnan(length) & ~changing
     ahead = np.where(changing, np.nan, np.nan_to_num(length) / 2)
     if options.ego_size is not None:
-        ahead[sizeless & _is_ego(tracks, actor_class, options.ego)] = options.ego_size.length_m / 2
-    findings = _findings(tracks, changing, sizeless)
-    copies = {
-        name: base for name, (_, base) in zip(tracks.type_names, types_with_originals, strict=True) if base is not None
+        ahead[sizeless & _is_ego(row_actors, actor_class, options.ego)] = options.ego_size.length_m / 2
+    findings = _size_findings(row_actors, changing, sizeless)
+    original_by_copy = {
+        name: base
+        for name, (_, base) in zip(row_actors.type_names, types_with_originals, strict=True)
+        if base is not None
     }
-    if copies:
-        findings.append(_copies(tracks, copies))
+    if original_by_copy:
+        findings.append(_copied_types_finding(row_actors, original_by_copy))
     return Boxes(actor_class, length, width, ahead, findings)
 
 
-def _changing(tracks: Tracks, length: Floats) -> Mask:
+def _has_other_length(row_actors: RowActors, length: Floats) -> Mask:
     """Return which rows have no length, or another length than most rows of their track, if any row of the track has a length."""
-    some = np.zeros(len(tracks.ids), tracks.type_code.dtype)
-    some[tracks.actor] = tracks.type_code
-    if (some[tracks.actor] == tracks.type_code).all():
+    some = np.zeros(len(row_actors.ids), row_actors.type_code.dtype)
+    some[row_actors.actor] = row_actors.type_code
+    if (some[row_actors.actor] == row_actors.type_code).all():
         return np.zeros(len(length), np.bool_)
-    n_types = len(tracks.type_names)
+    n_types = len(row_actors.type_names)
     pairs, row, count = np.unique(
-        tracks.actor.astype(np.int64) * n_types + tracks.type_code, return_inverse=True, return_counts=True
+        row_actors.actor.astype(np.int64) * n_types + row_actors.type_code, return_inverse=True, return_counts=True
     )
     differs = np.zeros(len(pairs), np.bool_)
     lengths = np.full(len(pairs), np.nan)
@@ -100,38 +102,38 @@ def _changing(tracks: Tracks, length: Floats) -> Mask:
     return found
 
 
-def _is_ego(tracks: Tracks, actor_class: Codes, ego: str | None) -> Mask:
-    if ego == ALL_EGOS and ego not in tracks.ids:
+def _is_ego(row_actors: RowActors, actor_class: Codes, ego: str | None) -> Mask:
+    if ego == ALL_EGOS and ego not in row_actors.ids:
         return np.isin(actor_class, [ACTOR_CLASSES.index(word) for word in MOTOR_VEHICLES])
-    found: Mask = tracks.actor == (tracks.ids.index(ego) if ego in tracks.ids else -1)
+    found: Mask = row_actors.actor == (row_actors.ids.index(ego) if ego in row_actors.ids else -1)
     return found
 
 
-def _findings(tracks: Tracks, changing: Mask, sizeless: Mask) -> list[QualityFinding]:
+def _size_findings(row_actors: RowActors, changing: Mask, sizeless: Mask) -> list[QualityFinding]:
     findings = []
     if sizeless.any():
         message = (
-            f"the sizes of the vehicle types {_types(tracks, sizeless)} are not known: give the route file "
+            f"the sizes of the vehicle types {_type_names_text(row_actors, sizeless)} are not known: give the route file "
             "with their vType elements with --mapping; until then their positions are those of the front bumper"
         )
         findings.append(QualityFinding("bumper_position", "warning", message, int(sizeless.sum())))
     if changing.any():
-        ids = [tracks.ids[i] for i in np.unique(tracks.actor[changing])]
+        ids = [row_actors.ids[i] for i in np.unique(row_actors.actor[changing])]
         message = (
-            f"the type of {name_list(ids)} changes to {_types(tracks, changing)}, whose length is different or not known: the log has "
-            "their front bumper, so the place of their box is then not known"
+            f"the type of {name_list(ids)} changes to {_type_names_text(row_actors, changing)}, whose length is different or not known: " " the log
+            hastheir front bumper, so the place of their box is then not known"
         )
         findings.append(QualityFinding("size_changes", "warning", message, int(changing.sum())))
     return findings
 
 
-def _types(tracks: Tracks, rows: Mask) -> str:
-    names = {tracks.type_names[i] for i in np.unique(tracks.type_code[rows])}
+def _type_names_text(row_actors: RowActors, rows: Mask) -> str:
+    names = {row_actors.type_names[i] for i in np.unique(row_actors.type_code[rows])}
     return name_list(sorted(name or "without a name" for name in names))
 
 
-def _copies(tracks: Tracks, copies: Mapping[str, str]) -> QualityFinding:
-    rows = np.isin(tracks.type_code, [i for i, name in enumerate(tracks.type_names) if name in copies])
-    ids = [tracks.ids[i] for i in np.unique(tracks.actor[rows])]
-    message = f"types that were changed for one vehicle have the size of the original type: {name_list(sorted(copies))}"
+def _copied_types_finding(row_actors: RowActors, original_by_copy: Mapping[str, str]) -> QualityFinding:
+    rows = np.isin(row_actors.type_code, [i for i, name in enumerate(row_actors.type_names) if name in original_by_copy])
+    ids = [row_actors.ids[i] for i in np.unique(row_actors.actor[rows])]
+    message = f"types that were changed for one vehicle have the size of the original type: {name_list(sorted(original_by_copy))}"
     return QualityFinding.of_actors("copied_type", "info", message, ids)

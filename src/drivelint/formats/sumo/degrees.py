@@ -25,17 +25,17 @@ if TYPE_CHECKING:
     from drivelint.arrays import Floats
     from drivelint.formats.sumo.rows import Rows
 
-_FARTHEST: Final = np.array([180.0, 90.0])
-_LEAST_MOTION: Final = 1e-7
+_LARGEST_DEGREES: Final = np.array([180.0, 90.0])
+_LEAST_DISPLACEMENT: Final = 1e-7
 """A smaller displacement is no motion: as degrees it is a centimetre, as metres a rounding error."""
-_SLOW_PER_S: Final = 0.01
+_LARGEST_DEGREES_PER_S: Final = 0.01
 """No vehicle drives 0.01 degrees in a second; an actor that moves by less than 0.01 metres in a second stands."""
-_RATIO: Final = 1000.0
+_LEAST_SPEED_RATIO: Final = 1000.0
 """A speed in m/s is 38,000 (at 70 degrees of latitude) to 111,000 times the same speed in degrees per second."""
-_DEGREE_M: Final = 111_195.0
-_LEAST_ERROR_M: Final = 0.005
+_M_PER_DEGREE: Final = 111_195.0
+_LEAST_REPORTED_ERROR_M: Final = 0.005
 _DECIMALS: Final = range(1, 9)
-_DEGREES: Final = "its positions are longitude and latitude (fcd-output.geo)"
+_DEGREES_MESSAGE: Final = "its positions are longitude and latitude (fcd-output.geo)"
 _REMEDY: Final = (
     "give the net that was simulated, with its projection, with --map, or record the log without fcd-output.geo"
 )
@@ -52,26 +52,26 @@ def net_positions(
     if not _are_degrees(path, rows, xy, actor, net):
         return xy, []
     if net is None:
-        raise TraceError(f"{path}: {_DEGREES}: {_REMEDY}")
+        raise TraceError(f"{path}: {_DEGREES_MESSAGE}: {_REMEDY}")
     if (location := read_location(net)) is None:
-        raise TraceError(f"{path}: {_DEGREES}, and {net.name} is no SUMO net: {_REMEDY}")
-    frame, trouble = location.frame(), location.trouble()
+        raise TraceError(f"{path}: {_DEGREES_MESSAGE}, and {net.name} is no SUMO net: {_REMEDY}")
+    frame, trouble = location.geo_frame(), location.why_unconvertible()
     if frame is None or trouble:
         raise TraceError(
-            f"{path}: {_DEGREES}, and the net {net.name} cannot convert them to metres: {trouble}: {_REMEDY}"
+            f"{path}: {_DEGREES_MESSAGE}, and the net {net.name} cannot convert them to metres: {trouble}: {_REMEDY}"
         )
     placed = np.isfinite(xy).all(axis=1)
     found = np.full_like(xy, np.nan)
     found[placed] = frame.unproject(transform(xy[placed], WGS84, frame.reference))
     found[~np.isfinite(found).all(axis=1)] = np.nan
-    return found, _rounding(xy[placed], net)
+    return found, _rounding_findings(xy[placed], net)
 
 
 def _are_degrees(path: Path, rows: Rows, xy: Floats, actor: NDArray[np.int32], net: Path | None) -> bool:
     points = xy[np.isfinite(xy).all(axis=1)]
     if not len(points):
         return False
-    may_be = bool((np.abs(points) <= _FARTHEST).all())
+    may_be = bool((np.abs(points) <= _LARGEST_DEGREES).all())
     moves = _moves_in_degrees(rows, xy, actor) if may_be else False
     if moves is False and rows.geo_option:
         raise TraceError(
@@ -82,10 +82,10 @@ def _are_degrees(path: Path, rows: Rows, xy: Floats, actor: NDArray[np.int32], n
         return bool(rows.geo_option if moves is None else moves)
     # no actor moves, and the unit of the positions is not stated: the net shows the unit
     location = None if net is None else read_location(net)
-    frame = None if location is None else location.frame()
-    if location is None or frame is None or location.trouble():
+    frame = None if location is None else location.geo_frame()
+    if location is None or frame is None or location.why_unconvertible():
         return False
-    return bool(location.surrounds(frame.unproject(transform(points, WGS84, frame.reference))).all())
+    return bool(location.is_in_net(frame.unproject(transform(points, WGS84, frame.reference))).all())
 
 
 def _moves_in_degrees(rows: Rows, xy: Floats, actor: NDArray[np.int32]) -> bool | None:
@@ -94,23 +94,23 @@ def _moves_in_degrees(rows: Rows, xy: Floats, actor: NDArray[np.int32]) -> bool 
     same = np.diff(actor[order]) == 0
     dt = np.diff(rows.numbers("time")[order])
     way = np.hypot(*np.diff(xy[order], axis=0).T)
-    moved = same & (dt > 0.0) & (way >= _LEAST_MOTION)
+    moved = same & (dt > 0.0) & (way >= _LEAST_DISPLACEMENT)
     if not moved.any():
         return None
     per_s = way[moved] / dt[moved]
     speed = rows.numbers("speed")[order]
     mean = (speed[1:] + speed[:-1])[moved] / 2.0
     if np.isfinite(mean).any():
-        return bool(np.nanmedian(mean / per_s) > _RATIO)
-    return bool(np.median(per_s) < _SLOW_PER_S)
+        return bool(np.nanmedian(mean / per_s) > _LEAST_SPEED_RATIO)
+    return bool(np.median(per_s) < _LARGEST_DEGREES_PER_S)
 
 
-def _rounding(degrees: Floats, net: Path) -> list[QualityFinding]:
+def _rounding_findings(degrees: Floats, net: Path) -> list[QualityFinding]:
     """Return a finding on the error of positions that were written with few decimals."""
     digits = next((n for n in _DECIMALS if np.abs(degrees * 10.0**n - np.round(degrees * 10.0**n)).max() < 1e-3), None)
     along = float(np.cos(np.radians(degrees[:, 1].mean())))  # a degree of longitude, as a share of one of latitude
-    error_m = 0.0 if digits is None else _DEGREE_M * 0.5 * 10.0**-digits * float(np.hypot(1.0, along))
-    if error_m < _LEAST_ERROR_M:
+    error_m = 0.0 if digits is None else _M_PER_DEGREE * 0.5 * 10.0**-digits * float(np.hypot(1.0, along))
+    if error_m < _LEAST_REPORTED_ERROR_M:
         return []
     message = (
         f"positions are longitude and latitude with {digits} decimals, converted to the metres of {net.name}: they "

@@ -8,11 +8,11 @@ from typing import Final
 _TAIL_BYTES: Final = 4096
 
 
-def with_end_tag(content: bytes, root: str, last: str) -> tuple[bytes, bool]:
+def with_end_tag(content: bytes, root: str, step_end_pattern: str) -> tuple[bytes, bool]:
     """Return a file with the end tag of its root element, and whether it was missing.
 
-    `last`: a pattern for the end of a complete step. A file that ends within a step is returned unchanged: it is not well-formed.
+    `step_end_pattern`: the end of a complete step. A file that ends within a step is returned unchanged: it is not well-formed.
     """
-    if re.search(rf"(?:{last})\s*\Z".encode(), content[-_TAIL_BYTES:]) is None:
+    if re.search(rf"(?:{step_end_pattern})\s*\Z".encode(), content[-_TAIL_BYTES:]) is None:
         return content, False
     return content.rstrip() + f"\n</{root}>\n".encode(), True

@@ -18,14 +18,14 @@ from drivelint.arrays import wrap_angles
 from drivelint.drive.lost_time import times_of_lost_rows
 from drivelint.drive.trace import BRAKE_LIGHTS, INDICATORS, LostTime, QualityFinding, Recording, States
 from drivelint.errors import TraceError
-from drivelint.formats.sumo.boxes import Tracks, boxes_of
+from drivelint.formats.sumo.boxes import RowActors, boxes_of
 from drivelint.formats.sumo.degrees import net_positions
 from drivelint.formats.sumo.fcd_tables import column_groups, read_csv, read_parquet
-from drivelint.formats.sumo.fcd_xml import ROOT, read_xml
+from drivelint.formats.sumo.fcd_xml import ROOT_TAG, read_xml
 from drivelint.formats.sumo.lights import add_light_states
-from drivelint.formats.sumo.riders import riding
+from drivelint.formats.sumo.riders import is_riding
 from drivelint.formats.sumo.rows import CARRIED, CONTAINER, KINDS, PERSON, UNKNOWN, VEHICLE
-from drivelint.formats.sumo.vehicle_types import type_of, types_for
+from drivelint.formats.sumo.vehicle_types import type_and_original, types_and_notes
 from drivelint.formats.tables import parquet
 from drivelint.phrases import name_list
 
@@ -45,15 +45,15 @@ if TYPE_CHECKING:
 formats: Final = {"sumo-fcd": ("SUMO floating car data", "named with --ego")}
 takes_mapping: Final = True
 HEAD_BYTES = 65536
-_LONGEST_S = 9e9  # beyond it nanoseconds do not fit into 64 bits
+_LARGEST_TIME_S = 9e9  # beyond it nanoseconds do not fit into 64 bits
 _RIGHT, _LEFT, _EMERGENCY, _BRAKE = 1, 2, 4, 8
 _KIND_OF_CLASS: Final = {None: UNKNOWN, "pedestrian": PERSON, "object": CONTAINER}
 
 
 def is_fcd(path: Path, head: bytes) -> bool:
     """Return whether a file is FCD: it has an <fcd-export> element, or is a table with the columns of FCD."""
-    if head.startswith(b"PAR1") or _is_csv(head):
-        return bool(_groups(path, head))
+    if head.startswith(b"PAR1") or _begins_with_time_column(head):
+        return bool(_column_groups_of_file(path, head))
     if b"<fcd-export" in head:
         return True
     if head.lstrip()[:1] != b"<" or b"sumo" not in head.lower():
@@ -68,7 +68,7 @@ def accepts(probe: Probe) -> bool:
         return False
     if probe.options.mapping is None or probe.options.mapping.lower().endswith(".xml"):
         return True
-    groups = _groups(probe.path, probe.head) if not probe.head.lstrip().startswith(b"<") else {}
+    groups = _column_groups_of_file(probe.path, probe.head) if not probe.head.lstrip().startswith(b"<") else {}
     return all(name and "angle" in columns for name, columns in groups.items())
 
 
@@ -78,22 +78,22 @@ def read(probe: Probe) -> Recording:
     Errors: `TraceError` for a file that cannot be read, `UsageError` for a types file without a vType.
     """
     path = probe.path
-    rows = _rows(path)
+    rows = _read_rows(path)
     nameless = pc.equal(rows.table["id"], "").to_numpy()
     # a step without actors is a row with its time alone
     filled = np.any([np.isfinite(rows.numbers(name)) for name in ("x", "y", "angle", "speed")], axis=0)
     dropped = int((nameless & filled).sum())
     lost_times = _lost_times(rows.numbers("time"), nameless & filled, f"{path.name}: rows without an id")
     rows = rows.take(~nameless)
-    untimed = int((~(np.abs(rows.numbers("time")) < _LONGEST_S)).sum())
+    untimed = int((~(np.abs(rows.numbers("time")) < _LARGEST_TIME_S)).sum())
     if untimed:
         raise TraceError(f"{path}: rows of vehicles without a valid time: {untimed}: write the log again")
-    types, notes = types_for(path, probe.options.mapping)
+    types, notes = types_and_notes(path, probe.options.mapping)
     rows = rows._replace(kind=_kinds_by_type(rows, types))
-    rides = riding(rows)
+    rides = is_riding(rows)
     if rides.all():
         raise TraceError(f"{path}: no vehicle in this log")
-    last_ns = int(_t_ns(rows).max())
+    last_ns = int(_times_ns(rows).max())
     recording = _recording(path, rows.take(~rides), types, probe.options)
     recording.notes += notes
     if rides.any():
@@ -104,9 +104,9 @@ def read(probe: Probe) -> Recording:
         recording.findings.append(QualityFinding("riding", "info", message, int(rides.sum())))
     if rows.lacks_end:
         recording.lost_times.append(
-            LostTime(last_ns, None, f"{path.name} ends without </{ROOT}>: its writer did not finish it")
+            LostTime(last_ns, None, f"{path.name} ends without </{ROOT_TAG}>: its writer did not finish it")
         )
-    add_light_states(recording, path, _is_log)
+    add_light_states(recording, path, _is_fcd_file)
     if dropped:
         message = f"rows without an id: {dropped}: they are not judged"
         recording.findings.append(QualityFinding("dropped_row", "error", message, dropped))
@@ -115,36 +115,36 @@ def read(probe: Probe) -> Recording:
 
 
 def _lost_times(time_s: Floats, lost_rows: Mask, cause: str) -> list[LostTime]:
-    timed = np.abs(time_s) < _LONGEST_S
+    timed = np.abs(time_s) < _LARGEST_TIME_S
     return times_of_lost_rows(np.round(np.where(timed, time_s, 0.0) * 1e9).astype(np.int64), timed, lost_rows, cause)
 
 
-def _is_log(file: Path) -> bool:
+def _is_fcd_file(file: Path) -> bool:
     with file.open("rb") as opened:
         return is_fcd(file, opened.read(HEAD_BYTES))
 
 
-def _rows(path: Path) -> Rows:
+def _read_rows(path: Path) -> Rows:
     with path.open("rb") as file:
         start = file.read(16)
     if start.startswith(b"PAR1"):
         return read_parquet(path)
-    return read_csv(path) if _is_csv(start) else read_xml(path)
+    return read_csv(path) if _begins_with_time_column(start) else read_xml(path)
 
 
-def _is_csv(head: bytes) -> bool:
+def _begins_with_time_column(head: bytes) -> bool:
     """Return whether a file begins with the name of SUMO's first column, which other programs may have put in quotes."""
     return head.lstrip(b'\xef\xbb\xbf"').startswith(b"time")
 
 
-def _groups(path: Path, head: bytes) -> dict[str, dict[str, str]]:
+def _column_groups_of_file(path: Path, head: bytes) -> dict[str, dict[str, str]]:
     if head.startswith(b"PAR1"):
         return column_groups(parquet.schema(path).names)
     names = re.split(r"[;,\t]", head.split(b"\n", 1)[0].decode("utf-8-sig", "replace").strip())
     return column_groups([name.strip('"') for name in names])
 
 
-def _t_ns(rows: Rows) -> Times:
+def _times_ns(rows: Rows) -> Times:
     return np.round(rows.numbers("time") * 1e9).astype(np.int64)
 
 
@@ -155,7 +155,7 @@ def _kinds_by_type(rows: Rows, types: Mapping[str, VehicleType]) -> Codes:
         return rows.kind
     names = pc.dictionary_encode(rows.table["type"]).combine_chunks()
     ids = frozenset(pc.unique(rows.table["id"]).to_pylist())
-    said = [type_of(name, types, ids)[0] for name in names.dictionary.to_pylist()]
+    said = [type_and_original(name, types, ids)[0] for name in names.dictionary.to_pylist()]
     by_type = np.array([_KIND_OF_CLASS.get(kind.actor_class, VEHICLE) for kind in said], np.int8)[
         names.indices.to_numpy()
     ]
@@ -164,7 +164,7 @@ def _kinds_by_type(rows: Rows, types: Mapping[str, VehicleType]) -> Codes:
     return np.where(told, by_type, rows.kind)
 
 
-def _actors(rows: Rows) -> tuple[list[str], NDArray[np.int32], list[str]]:
+def _actor_ids_indices_and_notes(rows: Rows) -> tuple[list[str], NDArray[np.int32], list[str]]:
     """Return the ids of all actors, the index of each row's actor, and notes.
 
     SUMO's vehicles, persons and containers may have the same id: then the id of a person or container begins with its kind.
@@ -188,7 +188,7 @@ def _actors(rows: Rows) -> tuple[list[str], NDArray[np.int32], list[str]]:
 
 
 def _recording(path: Path, rows: Rows, types: Mapping[str, VehicleType], options: IngestOptions) -> Recording:
-    ids, actor, notes = _actors(rows)
+    ids, actor, notes = _actor_ids_indices_and_notes(rows)
     angle = rows.numbers("angle")
     if not np.isfinite(angle).any():
         raise TraceError(
@@ -196,8 +196,8 @@ def _recording(path: Path, rows: Rows, types: Mapping[str, VehicleType], options
             "log with the attribute angle (SUMO's option fcd-output.attributes)"
         )
     names = pc.dictionary_encode(rows.table["type"]).combine_chunks()
-    tracks = Tracks(ids, actor, names.dictionary.to_pylist(), names.indices.to_numpy(), rows.kind)
-    boxes = boxes_of(tracks, types, options)
+    row_actors = RowActors(ids, actor, names.dictionary.to_pylist(), names.indices.to_numpy(), rows.kind)
+    boxes = boxes_of(row_actors, types, options)
     xy, findings = net_positions(path, rows, actor, options.map)
     yaw = wrap_angles(np.pi / 2 - np.radians(angle))
     cos, sin = np.cos(yaw), np.sin(yaw)
@@ -206,16 +206,16 @@ def _recording(path: Path, rows: Rows, types: Mapping[str, VehicleType], options
     # in a table, these columns of a person may contain other values
     accel, signals = (np.where(is_vehicle, rows.numbers(name), np.nan) for name in ("acceleration", "signals"))
     numbers = {
-        "x_m": xy[:, 0] - boxes.ahead_m * cos, "y_m": xy[:, 1] - boxes.ahead_m * sin, "yaw_rad": yaw,
+        "x_m": xy[:, 0] - boxes.bumper_ahead_m * cos, "y_m": xy[:, 1] - boxes.bumper_ahead_m * sin, "yaw_rad": yaw,
         "vx_mps": speed * cos, "vy_mps": speed * sin, "ax_mps2": accel * cos, "ay_mps2": accel * sin,
         "length_m": boxes.length_m, "width_m": boxes.width_m,
     }  # fmt: skip
     states = States(
         ids,
         actor,
-        _t_ns(rows),
+        _times_ns(rows),
         numbers,
-        {"actor_class": boxes.actor_class, **_lights(signals)},
+        {"actor_class": boxes.actor_class, **_light_codes(signals)},
         np.any([pc.is_inf(c).to_numpy() for c in rows.table.columns if pa.types.is_floating(c.type)], axis=0),
     )
     angleless = int(np.isnan(angle).sum())
@@ -227,7 +227,7 @@ def _recording(path: Path, rows: Rows, types: Mapping[str, VehicleType], options
     return Recording("sumo-fcd", states, findings=[*boxes.findings, *findings], notes=notes)
 
 
-def _lights(signals: Floats) -> dict[str, Codes]:
+def _light_codes(signals: Floats) -> dict[str, Codes]:
     has_signals = (signals >= 0) & (signals < 2**31)
     bits = np.where(has_signals, signals, 0).astype(np.int64)
     indicator = np.full(len(bits), INDICATORS.index("off"), np.int8)

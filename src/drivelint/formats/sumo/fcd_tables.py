@@ -27,14 +27,14 @@ if TYPE_CHECKING:
 
     Columns = dict[str, str]
 
-_TIME: Final = "timestep_time"
+_TIME_COLUMN: Final = "timestep_time"
 _PLAIN_COLUMNS: Final = frozenset({"time", "id", "x", "y", "angle", "pos", "lane", "edge", "slope"})
 """Columns without the name of an element (`--output.column-header plain`) are SUMO's if all of these are present."""
 _NUMBER_COLUMNS: Final = frozenset({"time", "x", "y", "angle", "speed"})
 """Columns that are read as numbers directly. Columns after `slope` may contain texts of another element."""
 _READ_COLUMNS: Final = (*ATTRIBUTES, "lane", "edge")
-_NUMBER: Final = r"^-?[0-9.]+(e-?[0-9]+)?$"
-_LIGHTS_AND_MORE: Final = ("signals", "acceleration")
+_NUMBER_PATTERN: Final = r"^-?[0-9.]+(e-?[0-9]+)?$"
+_VEHICLE_ATTRIBUTES: Final = ("signals", "acceleration")
 """Attributes that only vehicles have."""
 
 
@@ -47,25 +47,25 @@ def column_groups(names: Sequence[str]) -> dict[str, Columns]:
     if there >= _PLAIN_COLUMNS:
         return {"": {name: name for name in ("time", *_READ_COLUMNS) if name in there}}
     groups = {}
-    for kind in KINDS if _TIME in there else ():
+    for kind in KINDS if _TIME_COLUMN in there else ():
         for prefix in (f"{kind}_", f"timestep_{kind}_"):
             columns = {name: prefix + name for name in _READ_COLUMNS if prefix + name in there}
             if {"id", "x", "y"} <= columns.keys():
-                groups[kind] = {"time": _TIME, **columns}
+                groups[kind] = {"time": _TIME_COLUMN, **columns}
     return groups
 
 
 def read_parquet(path: Path) -> Rows:
     """Read a Parquet table. Errors: `TraceError`."""
     groups = column_groups(parquet.schema(path).names)
-    table = parquet.table(path, _columns(groups))
+    table = parquet.table(path, _columns_of_groups(groups))
     try:
         table.validate(full=True)  # finds invalid texts
     except pa.ArrowInvalid as error:
         raise TraceError(
             f"{path}: not readable as Parquet: {' '.join(str(error).split())}: copy it again, or write it again"
         ) from error
-    return _rows(path, table, groups)
+    return _rows_of_table(path, table, groups)
 
 
 def read_csv(path: Path) -> Rows:
@@ -82,29 +82,29 @@ def read_csv(path: Path) -> Rows:
             path,
             parse_options=pa_csv.ParseOptions(delimiter=delimiter),
             convert_options=pa_csv.ConvertOptions(
-                column_types=dict.fromkeys(texts, pa.string()), include_columns=_columns(groups)
+                column_types=dict.fromkeys(texts, pa.string()), include_columns=_columns_of_groups(groups)
             ),
         )
     except (pa.ArrowInvalid, pa.ArrowKeyError) as error:
         raise TraceError(f"{path}: {' '.join(str(error).split())}") from error
-    return _rows(path, table, groups)
+    return _rows_of_table(path, table, groups)
 
 
-def _columns(groups: Mapping[str, Columns]) -> list[str]:
+def _columns_of_groups(groups: Mapping[str, Columns]) -> list[str]:
     return list(dict.fromkeys(name for columns in groups.values() for name in columns.values()))
 
 
-def _rows(path: Path, table: pa.Table, groups: Mapping[str, Columns]) -> Rows:
+def _rows_of_table(path: Path, table: pa.Table, groups: Mapping[str, Columns]) -> Rows:
     if len(groups) == 1:
         (columns,) = groups.values()
         try:
-            kind, own = _of_one_group({name: table[column] for name, column in columns.items()})
+            kind, own = _kinds_and_columns({name: table[column] for name, column in columns.items()})
         except pa.ArrowException as error:
             raise TraceError(f"{path}: {' '.join(str(error).split())}: write the log again") from error
         return typed_rows(path, own, kind)
     parts, order = [], []
     for element, columns in groups.items():
-        here = np.any([_filled(table[columns[name]]) for name in ("id", "x", "y") if name in columns], axis=0)
+        here = np.any([_is_filled(table[columns[name]]) for name in ("id", "x", "y") if name in columns], axis=0)
         chosen = table.filter(pa.array(here))
         codes = np.full(chosen.num_rows, KINDS.index(element), np.int8)
         parts.append(typed_rows(path, {name: chosen[column] for name, column in columns.items()}, codes))
@@ -114,7 +114,7 @@ def _rows(path: Path, table: pa.Table, groups: Mapping[str, Columns]) -> Rows:
     return Rows(joined.take(pa.array(rows)), np.concatenate([part.kind for part in parts])[rows])
 
 
-def _of_one_group(
+def _kinds_and_columns(
     columns: dict[str, pa.ChunkedArray | pa.Array],
 ) -> tuple[Codes, dict[str, pa.ChunkedArray | pa.Array]]:
     """Return the kinds of the rows, and the columns without the values of other kinds' attributes."""
@@ -124,10 +124,10 @@ def _of_one_group(
     if "vehicle" in columns:
         carried = pa.array(kind == CARRIED)
         columns["vehicle"] = pc.if_else(carried, pc.fill_null(columns["vehicle"].cast(pa.string()), ""), null_text)
-    for name in _LIGHTS_AND_MORE:
+    for name in _VEHICLE_ATTRIBUTES:
         if name in columns and not (kind == VEHICLE).all():
             texts = columns[name].cast(pa.string())
-            may_be = pc.and_(pa.array(kind != CARRIED), pc.match_substring_regex(texts, _NUMBER))
+            may_be = pc.and_(pa.array(kind != CARRIED), pc.match_substring_regex(texts, _NUMBER_PATTERN))
             columns[name] = pc.if_else(pc.or_(pa.array(kind == VEHICLE), may_be), texts, null_text)
     return kind, columns
 
@@ -137,12 +137,12 @@ def _kinds_by_lane(n: int, columns: Mapping[str, pa.ChunkedArray | pa.Array]) ->
 
     In a mesoscopic simulation, no actor is on a lane: the kinds are unknown.
     """
-    lane, edge = (_filled(columns[name]) if name in columns else np.zeros(n, np.bool_) for name in ("lane", "edge"))
+    lane, edge = (_is_filled(columns[name]) if name in columns else np.zeros(n, np.bool_) for name in ("lane", "edge"))
     carried = edge & ~lane & lane.any()
     return np.select([lane, carried], [np.int8(VEHICLE), np.int8(CARRIED)], np.int8(UNKNOWN))
 
 
-def _filled(column: pa.ChunkedArray) -> Mask:
+def _is_filled(column: pa.ChunkedArray) -> Mask:
     if pa.types.is_dictionary(column.type):
         column = column.cast(column.type.value_type)
     empty = pc.is_null(column)

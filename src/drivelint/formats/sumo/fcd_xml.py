@@ -12,44 +12,44 @@ import pyarrow.csv as pa_csv
 
 from drivelint.errors import TraceError
 from drivelint.formats import safe_xml
-from drivelint.formats.sumo.clock import as_seconds
+from drivelint.formats.sumo.clock import seconds_of_texts
 from drivelint.formats.sumo.end_tag import with_end_tag
 from drivelint.formats.sumo.rows import ATTRIBUTES, KINDS, VEHICLE, Rows, typed_rows
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-ROOT: Final = "fcd-export"
-_WHOLE_STEP: Final = r"</timestep>|<timestep\s[^<>]*/>"
-_STEP: Final = re.compile(r'<timestep +time="([^"]*)" *(/?)>')
-_OPTION: Final = re.compile(rb'<(fcd-output(?:\.geo)?) +value="([^"]*)"')
-_TRUE: Final = frozenset({b"1", b"yes", b"true", b"on", b"x", b"t"})
+ROOT_TAG: Final = "fcd-export"
+_STEP_END_PATTERN: Final = r"</timestep>|<timestep\s[^<>]*/>"
+_STEP_TAG: Final = re.compile(r'<timestep +time="([^"]*)" *(/?)>')
+_FCD_OPTION: Final = re.compile(rb'<(fcd-output(?:\.geo)?) +value="([^"]*)"')
+_TRUE_WORDS: Final = frozenset({b"1", b"yes", b"true", b"on", b"x", b"t"})
 
 
 def read_xml(path: Path) -> Rows:
     """Read a log. Errors: `TraceError` if it is not well-formed, or a value is not a number."""
-    content, lacks_end = with_end_tag(path.read_bytes(), ROOT, _WHOLE_STEP)
-    columns = lines(content)
+    content, lacks_end = with_end_tag(path.read_bytes(), ROOT_TAG, _STEP_END_PATTERN)
+    columns = columns_from_lines(content)
     if columns is None:
-        columns, kind = parsed(path, content)
+        columns, kind = parse_columns_and_kinds(path, content)
     else:
         kind = np.full(len(columns["time"]), VEHICLE, np.int8)
     rows = typed_rows(path, columns, kind)
-    head = content[: content.find(f"<{ROOT}".encode())]
-    return rows._replace(geo_option=_geo_option(head), lacks_end=lacks_end)
+    head = content[: content.find(f"<{ROOT_TAG}".encode())]
+    return rows._replace(geo_option=_has_geo_option(head), lacks_end=lacks_end)
 
 
-def _geo_option(head: bytes) -> bool | None:
+def _has_geo_option(head: bytes) -> bool | None:
     """Return whether SUMO's configuration, a comment before the data, asks for longitude and latitude; None without a configuration."""
-    options = dict(_OPTION.findall(head))
-    return options.get(b"fcd-output.geo", b"").lower() in _TRUE if options else None
+    options = dict(_FCD_OPTION.findall(head))
+    return options.get(b"fcd-output.geo", b"").lower() in _TRUE_WORDS if options else None
 
 
-def lines(content: bytes) -> dict[str, pa.ChunkedArray | pa.Array] | None:
+def columns_from_lines(content: bytes) -> dict[str, pa.ChunkedArray | pa.Array] | None:
     """Read a log with one element per line as CSV with the quotation mark as separator; None if any line looks different."""
     begin = content.find(b"<fcd-export")
     first = re.search(rb'^[ \t]*<vehicle(?: +[\w:.-]+="[^"<\n]*")+ */>(?=\r?$)', content[begin:], re.MULTILINE)
-    if first is None or b"&" in content or not _is_plain(content[: content.find(b">", begin) + 1]):
+    if first is None or b"&" in content or not _is_valid_utf8_head(content[: content.find(b">", begin) + 1]):
         return None
     parts = first[0].decode("utf-8", "replace").split('"')
     names = [part.split()[-1].removesuffix("=") for part in parts[:-1:2]]
@@ -77,7 +77,7 @@ def lines(content: bytes) -> dict[str, pa.ChunkedArray | pa.Array] | None:
                 strings_can_be_null=False,
             ),
         )
-        times = _times(other_lines, len(table))
+        times = _times_of_vehicles(other_lines, len(table))
     except pa.ArrowInvalid:
         return None
     alike = (pc.equal(table.column(column), part) for column, part in zip(columns[::2], parts[::2], strict=True))
@@ -92,7 +92,7 @@ def lines(content: bytes) -> dict[str, pa.ChunkedArray | pa.Array] | None:
     return {"time": times, **values}
 
 
-def _is_plain(head: bytes) -> bool:
+def _is_valid_utf8_head(head: bytes) -> bool:
     """Return whether the text up to the root element's tag is valid, and its encoding does not change how lines are read."""
     try:
         root = safe_xml.parse(head + b"</fcd-export>", "", TraceError)
@@ -101,7 +101,7 @@ def _is_plain(head: bytes) -> bool:
     return (root.getroottree().docinfo.encoding or "UTF-8").upper() in {"UTF-8", "US-ASCII"}
 
 
-def _times(other_lines: list[tuple[int, str]], n: int) -> pa.Array | None:
+def _times_of_vehicles(other_lines: list[tuple[int, str]], n: int) -> pa.Array | None:
     """Return the times of `n` vehicles, each the time of its step; None if the other lines are not only tags of steps.
 
     `other_lines`: number and text of each line without a vehicle. Errors: `pa.ArrowInvalid` for an invalid time.
@@ -112,7 +112,7 @@ def _times(other_lines: list[tuple[int, str]], n: int) -> pa.Array | None:
         counts[-1] += number - above - 1
         order += "v" if number > above + 1 else ""
         above = number
-        if step := _STEP.fullmatch(line):
+        if step := _STEP_TAG.fullmatch(line):
             order += "empty " if step[2] else "begin "
             stamps += [step[1]]
             counts += [0]
@@ -120,10 +120,10 @@ def _times(other_lines: list[tuple[int, str]], n: int) -> pa.Array | None:
             order += {"</timestep>": "end ", "</fcd-export>": "last"}.get(line, "first " if order == "" else "?")
     if not re.fullmatch("first (empty |begin v*end )*last", order) or sum(counts) < n:
         return None
-    return as_seconds(pa.array(stamps[1:], pa.string())).take(np.repeat(np.arange(len(stamps) - 1), counts[1:]))
+    return seconds_of_texts(pa.array(stamps[1:], pa.string())).take(np.repeat(np.arange(len(stamps) - 1), counts[1:]))
 
 
-def parsed(path: Path, content: bytes) -> tuple[dict[str, pa.ChunkedArray | pa.Array], np.ndarray]:
+def parse_columns_and_kinds(path: Path, content: bytes) -> tuple[dict[str, pa.ChunkedArray | pa.Array], np.ndarray]:
     """Return the columns, and for each row the index of its element in `KINDS`."""
     root = safe_xml.parse(content, str(path), TraceError)
     columns: dict[str, list[Any]] = {"time": [], **{name: [] for name in ATTRIBUTES}}

@@ -30,10 +30,10 @@ if TYPE_CHECKING:
     from drivelint.arrays import Floats, Mask
     from drivelint.drive.trace import Recording
 
-_BESIDE: Final = "*tls*.xml"
+_LIGHT_STATES_FILE_PATTERN: Final = "*tls*.xml"
 _HEAD_BYTES: Final = 65536
-_LONGEST_S: Final = 1e9
-_LETTERS: Final = {
+_LARGEST_TIME_S: Final = 1e9
+_STATE_BY_LETTER: Final = {
     "r": "red", "u": "red_amber", "y": "amber", "Y": "amber", "g": "green", "G": "green", "o": "flashing", "O": "off",
 }  # fmt: skip
 """The letter s (green for turning right after a stop) has no word here: the state is unknown."""
@@ -45,8 +45,10 @@ def add_light_states(recording: Recording, log: Path, is_log: Callable[[Path], b
     They are in the file with the log's name up to the first dot, or in the only file of light states in a folder with no other log.
     `is_log` returns whether a file is a log. A note reports files that are not read.
     """
-    files = [file for file in sorted(log.parent.glob(_BESIDE)) if file != log and _has_states(file)]
-    log_files = [file for file in files if _first_part(file) == _first_part(log)]
+    files = [
+        file for file in sorted(log.parent.glob(_LIGHT_STATES_FILE_PATTERN)) if file != log and _has_light_states(file)
+    ]
+    log_files = [file for file in files if _name_to_first_dot(file) == _name_to_first_dot(log)]
     if (
         not log_files
         and len(files) == 1
@@ -58,15 +60,15 @@ def add_light_states(recording: Recording, log: Path, is_log: Callable[[Path], b
     elif files:
         what = "it is not known which of them belongs to the log" if log_files else "no log has the name of this file"
         names = name_list([file.name for file in log_files or files])
-        note = f"{log.name}: light states in {names} are not read: {what}: call it {_first_part(log)}.tls.xml"
+        note = f"{log.name}: light states in {names} are not read: {what}: call it {_name_to_first_dot(log)}.tls.xml"
         recording.notes.append(note)
 
 
-def _first_part(file: Path) -> str:
+def _name_to_first_dot(file: Path) -> str:
     return file.name.partition(".")[0]
 
 
-def _has_states(file: Path) -> bool:
+def _has_light_states(file: Path) -> bool:
     with file.open("rb") as opened:
         return b"<tlsStates" in opened.read(_HEAD_BYTES)
 
@@ -78,7 +80,7 @@ def _read_light_states(file: Path, recording: Recording) -> None:
     except TraceError as error:
         recording.findings.append(QualityFinding("lights_unread", "warning", str(error)))
         return
-    recording.signals, times_s, unread = _rows(root.iter("tlsState"))
+    recording.signals, times_s, unread = _rows_times_and_unread(root.iter("tlsState"))
     recording.notes.append(f"the states of traffic lights are those of {file.name} beside it")
     if lacks_end:
         recording.notes.append(f"{file.name} ends without </tlsStates>: its writer did not finish it")
@@ -86,12 +88,12 @@ def _read_light_states(file: Path, recording: Recording) -> None:
         what = f"light states of {file.name} without a time, light or state"
         n = int(unread.sum())
         recording.findings.append(QualityFinding("malformed_row", "warning", f"{what}: {n}: they are left out", n))
-        timed = np.abs(times_s) < _LONGEST_S
+        timed = np.abs(times_s) < _LARGEST_TIME_S
         t_ns = np.round(np.where(timed, times_s, 0.0) * 1e9).astype(np.int64)
         recording.lost_times += times_of_lost_rows(t_ns, timed, unread, what)
 
 
-def _rows(states: Iterable[etree._Element]) -> tuple[pa.Table | None, Floats, Mask]:
+def _rows_times_and_unread(states: Iterable[etree._Element]) -> tuple[pa.Table | None, Floats, Mask]:
     """Return the rows of all connections, and for each state its time in seconds and whether it cannot be read."""
     states_by_light: dict[tuple[str, int], tuple[list[float], list[str]]] = {}
     every: list[float] = []
@@ -100,7 +102,7 @@ def _rows(states: Iterable[etree._Element]) -> tuple[pa.Table | None, Floats, Ma
         light, letters, at = element.get("id"), element.get("state"), seconds(element.get("time"))
         every.append(at)
         dropped.append(False)
-        if not light or not letters or not letters.isascii() or not abs(at) < _LONGEST_S:
+        if not light or not letters or not letters.isascii() or not abs(at) < _LARGEST_TIME_S:
             dropped[-1] = True
             continue
         times, state_texts = states_by_light.setdefault((light, len(letters)), ([], []))
@@ -110,17 +112,19 @@ def _rows(states: Iterable[etree._Element]) -> tuple[pa.Table | None, Floats, Ma
     if not states_by_light:
         return None, *unread
     words = np.full(256, -1, np.int8)
-    for letter, word in _LETTERS.items():
+    for letter, word in _STATE_BY_LETTER.items():
         words[ord(letter)] = SIGNAL_STATES.index(word)
     parts = [
-        _table(light, n, np.array(times), words[np.frombuffer("".join(state_texts).encode(), np.uint8)])
+        _rows_of_light(light, n, np.array(times), words[np.frombuffer("".join(state_texts).encode(), np.uint8)])
         for (light, n), (times, state_texts) in sorted(states_by_light.items())
     ]
     return pa.concat_tables(parts), *unread
 
 
-def _table(light: str, n: int, times: np.ndarray, codes: np.ndarray) -> pa.Table:
-    """Return the rows of one light with `n` connections: `times` (t,) in seconds, `codes` (t * n,) of SIGNAL_STATES, -1: not known."""
-    names = words_of_codes(np.tile(np.arange(n, dtype=np.int32), len(times)), [f"{light}_{k}" for k in range(n)])
-    t_ns = np.repeat(np.round(times * 1e9).astype(np.int64), n)
+def _rows_of_light(light: str, n_connections: int, times_s: np.ndarray, codes: np.ndarray) -> pa.Table:
+    """Return the rows of one light: `times_s` (t,), `codes` (t * `n_connections`,) of SIGNAL_STATES, -1: not known."""
+    names = words_of_codes(
+        np.tile(np.arange(n_connections, dtype=np.int32), len(times_s)), [f"{light}_{k}" for k in range(n_connections)]
+    )
+    t_ns = np.repeat(np.round(times_s * 1e9).astype(np.int64), n_connections)
     return pa.table({"signal_id": names, "t_ns": t_ns, "state": words_of_codes(codes, SIGNAL_STATES)})

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from drivelint.arrays import Floats, Mask
 
 NO_PROJECTION: Final = "!"
-_BEYOND_M: Final = 100.0
+_BOUNDARY_MARGIN_M: Final = 100.0
 """How far outside a net's boundary a vehicle may be: the boundary includes nodes and centre lines, but not parking areas."""
 
 
@@ -27,29 +27,29 @@ class Location(NamedTuple):
     offset_text: str | None
     boundary: tuple[float, ...] | None
 
-    def frame(self) -> GeoFrame | None:
+    def geo_frame(self) -> GeoFrame | None:
         """Return the geodetic frame of the net's coordinates; None: it has no projection, or its offset cannot be read."""
         if self.reference == NO_PROJECTION or self.offset is None:
             return None
         return GeoFrame(self.reference, -self.offset[0], -self.offset[1])
 
-    def trouble(self) -> str | None:
+    def why_unconvertible(self) -> str | None:
         """Return why the net's coordinates cannot be converted to longitude and latitude; None if they can."""
         if self.reference == NO_PROJECTION:
             return "it has no projection"
-        frame = self.frame()
+        frame = self.geo_frame()
         if frame is None:
             return f"its netOffset is {self.offset_text!r}"
         west, south, east, north = self.boundary or (0.0, 0.0, 0.0, 0.0)
         found = why_unusable(frame, (west + east) / 2.0, (south + north) / 2.0)
         return found and f"of its projection {self.reference!r}: {found}"
 
-    def surrounds(self, xy: Floats) -> Mask:
+    def is_in_net(self, xy: Floats) -> Mask:
         """Return for places (n, 2) in the net's coordinates whether they lie in the net; False if its boundary is not known."""
         if self.boundary is None:
             return np.zeros(len(xy), np.bool_)
         low, high = np.array(self.boundary).reshape(2, 2)
-        inside: Mask = np.logical_and.reduce((xy > low - _BEYOND_M) & (xy < high + _BEYOND_M), axis=1)
+        inside: Mask = np.logical_and.reduce((xy > low - _BOUNDARY_MARGIN_M) & (xy < high + _BOUNDARY_MARGIN_M), axis=1)
         return inside
 
 
@@ -57,7 +57,7 @@ def location_of(element: etree._Element | None) -> Location:
     """Return the content of a `location` element; without this element, a net has no projection."""
     if element is None:
         return Location(NO_PROJECTION, None, None, None)
-    offset, boundary = (_numbers(element.get(name)) for name in ("netOffset", "convBoundary"))
+    offset, boundary = (_numbers_in_text(element.get(name)) for name in ("netOffset", "convBoundary"))
     return Location(
         element.get("projParameter", NO_PROJECTION).strip(),
         (offset[0], offset[1]) if len(offset) == 2 else None,
@@ -86,7 +86,7 @@ def read_location(net: Path) -> Location | None:
     return location_of(None) if root == "net" else None
 
 
-def _numbers(text: str | None) -> tuple[float, ...]:
+def _numbers_in_text(text: str | None) -> tuple[float, ...]:
     try:
         return tuple(map(float, (text or "").split(",")))
     except ValueError:

@@ -19,7 +19,7 @@ from drivelint.errors import MapError
 from drivelint.formats import safe_xml
 from drivelint.formats.sumo.location import NO_PROJECTION, location_of
 from drivelint.formats.sumo.opendrive_import import opendrive_import
-from drivelint.formats.sumo.right_of_way import control_rows
+from drivelint.formats.sumo.right_of_way import signal_and_stop_line_rows
 from drivelint.road.boundary_lanes import (
     BoundedLane,
     SpeedLimitSpan,
@@ -45,11 +45,11 @@ if TYPE_CHECKING:
 DEFAULT_LANE_WIDTH_M: Final = 3.2  # SUMO's default, for a lane without a width
 _LARGEST_MITRE_FACTOR: Final = 3.0
 """At a sharp bend, the corner of a lane's bound is at most this multiple of its distance from the centre line away."""
-_ADDED_POINT_M: Final = 0.5
+_ADDED_POINT_DISTANCE_M: Final = 0.5
 """The distance of an added point from the end of a line inside a junction."""
-_LEAST_COS: Final = 0.85
+_LEAST_BEND_COSINE: Final = 0.85
 """A point is added only if the cosine of the angle between the line and the joined lane is at least this."""
-_KINDS: Final = (
+_CLASSES_BY_LANE_KIND: Final = (
     # the type of a lane is the first of these with a class that may drive on it
     ("driving", {"passenger", "private", "truck", "delivery", "motorcycle", "evehicle", "trailer"}),
     ("bus", {"bus", "coach"}),
@@ -61,9 +61,9 @@ _KINDS: Final = (
     ("sidewalk", {"pedestrian", "wheelchair"}),
     ("restricted", {"emergency", "authority", "army", "vip", "custom1", "custom2", "container"}),
 )
-_ALL_CLASSES: Final = frozenset().union(*(classes for _, classes in _KINDS))
-_DRIVABLE: Final = frozenset({"driving", "bus", "taxi", "HOV"})
-_ROADS: Final = {
+_ALL_CLASSES: Final = frozenset().union(*(classes for _, classes in _CLASSES_BY_LANE_KIND))
+_DRIVABLE_KINDS: Final = frozenset({"driving", "bus", "taxi", "HOV"})
+_ROAD_TYPES: Final = {
     "motorway": "motorway",
     "motorway_link": "motorway",
     "residential": "town",
@@ -78,28 +78,28 @@ class _Net:
 
     lanes: dict[str, BoundedLane] = field(default_factory=dict)
     edges: dict[str, list[str]] = field(default_factory=dict)
-    internal: set[str] = field(default_factory=set)  # edges
-    walks: list[BoundedLane] = field(default_factory=list)
+    internal_edges: set[str] = field(default_factory=set)  # edges
+    crossings: list[BoundedLane] = field(default_factory=list)
 
 
 def read(source: MapSource, request: MapOptions) -> MapTables:
     """Return the map's tables. Errors: `MapError` if the file is not XML, or no lane can be built."""
     root = safe_xml.parse_map(source)
     quality = MapQuality()
-    left = root.get("lefthand") in {"true", "1"}
+    left_hand = root.get("lefthand") in {"true", "1"}
     imported = opendrive_import(source.content, root, quality)
-    net = _read(root, imported, left=left, quality=quality)
-    _connect(root, net)
+    net = _read_net(root, imported, left_hand=left_hand, quality=quality)
+    _connect_lanes(root, net)
     lanes = build_lanes(net.lanes.values(), request.offset, quality)
     if not lanes:
         first = next((row["message"] for row in quality.rows), "it has no <lane>")
         raise MapError(f"map {source.name} has no lane that can be built: {first}")
-    side = _handedness(request, "lht" if left else None if imported else "rht", quality)
-    signals, stop_lines = control_rows(root, {lane.lanelet_id: lane for lane in lanes})
+    side = _handedness_and_source(request, "lht" if left_hand else None if imported else "rht", quality)
+    signals, stop_lines = signal_and_stop_line_rows(root, {lane.lanelet_id: lane for lane in lanes})
     furniture = {
         "traffic_signal": signals,
         "stop_line": stop_lines,
-        "crossing": crossings(net.walks, lanes, request.offset, quality),
+        "crossing": crossings(net.crossings, lanes, request.offset, quality),
     }
     geo = _geo_frame(root, quality)
     tables = map_from_bounds(source, request, lanes, furniture, quality, kind="sumo", side=side, geo=geo)
@@ -115,10 +115,10 @@ def _geo_frame(root: etree._Element, quality: MapQuality) -> GeoFrame | None:
     location = location_of(root.find("location"))
     if location.reference != NO_PROJECTION and location.offset is None:
         quality.geo_unusable(location.reference, f"its netOffset is {location.offset_text!r}")
-    return location.frame()
+    return location.geo_frame()
 
 
-def _handedness(request: MapOptions, net_side: str | None, quality: MapQuality) -> tuple[str, str]:
+def _handedness_and_source(request: MapOptions, net_side: str | None, quality: MapQuality) -> tuple[str, str]:
     """Return the side that is driven on, and its source. `net_side`: the side that the net states; None: its import lost the side."""
     if net_side is not None and request.side not in {None, net_side}:
         message = f"the option --handedness: {request.side}; the net: {net_side}; the option is used"
@@ -128,7 +128,7 @@ def _handedness(request: MapOptions, net_side: str | None, quality: MapQuality) 
     )
 
 
-def _read(root: etree._Element, imported: OpenDriveImport | None, *, left: bool, quality: MapQuality) -> _Net:
+def _read_net(root: etree._Element, imported: OpenDriveImport | None, *, left_hand: bool, quality: MapQuality) -> _Net:
     net = _Net()
     for edge in root.iterfind("edge"):
         name, function = edge.get("id", ""), edge.get("function", "normal")
@@ -137,67 +137,70 @@ def _read(root: etree._Element, imported: OpenDriveImport | None, *, left: bool,
         lanes_by_index = []
         for element in edge.iterfind("lane"):
             try:
-                lanes_by_index.append((int(element.attrib["index"]), _lane(edge, element, imported, quality)))
+                lanes_by_index.append((int(element.attrib["index"]), _bounded_lane(edge, element, imported, quality)))
             except (ValueError, KeyError) as error:
                 lane = element.get("id") or f"in line {element.sourceline}"
                 quality.add("invalid_lane", "error", lane, f"lane {lane} is left out: {error}")
         lanes = [lane for _, lane in sorted(lanes_by_index, key=lambda item: item[0])]
         if function == "crossing":
-            net.walks += lanes
+            net.crossings += lanes
             continue
         net.edges[name] = [lane.lanelet_id for lane in lanes]
         net.lanes |= {lane.lanelet_id: lane for lane in lanes}
         if function == "internal":
-            net.internal.add(name)
+            net.internal_edges.add(name)
         for outer, inner in pairwise(lanes):
-            _adjoin(outer, inner.lanelet_id, inward=True, left=left, against=False)
-            _adjoin(inner, outer.lanelet_id, inward=False, left=left, against=False)
+            _set_neighbour(outer, inner.lanelet_id, inward=True, left_hand=left_hand, against=False)
+            _set_neighbour(inner, outer.lanelet_id, inward=False, left_hand=left_hand, against=False)
         for element in edge.iterfind("lane"):
             opposite, lane_id = element.find("neigh"), element.get("id", "")
             if opposite is not None and lane_id in net.lanes:
-                _adjoin(net.lanes[lane_id], opposite.get("lane", ""), inward=True, left=left, against=True)
+                _set_neighbour(
+                    net.lanes[lane_id], opposite.get("lane", ""), inward=True, left_hand=left_hand, against=True
+                )
     return net
 
 
-def _adjoin(lane: BoundedLane, beside: str, *, inward: bool, left: bool, against: bool) -> None:
+def _set_neighbour(lane: BoundedLane, neighbour_id: str, *, inward: bool, left_hand: bool, against: bool) -> None:
     """Set the neighbour of a lane, towards the middle of the road (`inward`) or away from it."""
-    if inward != left:
-        lane.left_id, lane.left_against = beside, against
+    if inward != left_hand:
+        lane.left_id, lane.left_against = neighbour_id, against
     else:
-        lane.right_id, lane.right_against = beside, against
+        lane.right_id, lane.right_against = neighbour_id, against
 
 
-def _lane(
+def _bounded_lane(
     edge: etree._Element, element: etree._Element, imported: OpenDriveImport | None, quality: MapQuality
 ) -> BoundedLane:
     """Return a lane. Errors: `KeyError` or `ValueError` if it is invalid."""
-    middle = _points(str(element.attrib["shape"]))
+    middle = _shape_points(str(element.attrib["shape"]))
     half = float(element.get("width") or DEFAULT_LANE_WIDTH_M) / 2
     limit = float(element.attrib["speed"])
     if not 0 < half < math.inf or not 0 <= limit < math.inf:
         raise ValueError(f"its width of {2 * half:g} m or speed of {limit:g} m/s is not possible")
-    kind = _kind(element.get("allow"), element.get("disallow"))
+    kind = _lane_kind(element.get("allow"), element.get("disallow"))
     inside = edge.get("function") == "internal"
     # inside a junction the speed is what the bend allows, not a limit
-    is_default = imported is not None and imported.is_default(element, edge, limit)
+    is_default = imported is not None and imported.has_default_limit(element, edge, limit)
     posted = None if inside or is_default else quality.posted_limit(limit)
     return BoundedLane(
-        str(element.attrib["id"]), left=_beside(middle, half), right=_beside(middle, -half), kind=kind, drivable=kind in _DRIVABLE,
-        road_type=_ROADS.get((edge.get("type") or "").removeprefix("highway.")),
+        str(element.attrib["id"]), left=_parallel_line(middle, half), right=_parallel_line(middle, -half),
+        kind=kind, drivable=kind in _DRIVABLE_KINDS,
+        road_type=_ROAD_TYPES.get((edge.get("type") or "").removeprefix("highway.")),
         junction_id=edge.get("id", "").removeprefix(":").rpartition("_")[0] if inside else None,
         limits=() if posted is None else ((0.0, 1.0, posted),),
     )  # fmt: skip
 
 
-def _kind(allow: str | None, disallow: str | None) -> str:
+def _lane_kind(allow: str | None, disallow: str | None) -> str:
     if allow is not None:
         may = _ALL_CLASSES if allow == "all" else set(allow.split())
     else:
         may = _ALL_CLASSES - (_ALL_CLASSES if disallow == "all" else set((disallow or "").split()))
-    return next((kind for kind, classes in _KINDS if classes & may), "none")
+    return next((kind for kind, classes in _CLASSES_BY_LANE_KIND if classes & may), "none")
 
 
-def _points(shape: str) -> Floats:
+def _shape_points(shape: str) -> Floats:
     """Return the points (n, 2) of a shape, without heights and repeated points. Errors: `ValueError` for an invalid shape."""
     points = np.array([[float(v) for v in point.split(",")[:2]] for point in shape.split()], np.float64)
     if points.shape[1:] != (2,) or not (np.abs(points) < FARTHEST_M).all():
@@ -208,8 +211,8 @@ def _points(shape: str) -> Floats:
     return points
 
 
-def _beside(line: Floats, off: float) -> Floats:
-    """Return the line beside another at the distance `off` (positive: left), with the same number of points."""
+def _parallel_line(line: Floats, offset_m: float) -> Floats:
+    """Return the line beside another at the distance `offset_m` (positive: left), with the same number of points."""
     step = np.diff(line, axis=0)
     unit = step / np.hypot(*step.T)[:, None]
     normal = np.column_stack([-unit[:, 1], unit[:, 0]])
@@ -217,22 +220,22 @@ def _beside(line: Floats, off: float) -> Floats:
     between = before + after
     # mitre: at a corner the point keeps the distance from both segments
     size = np.maximum((between * before).sum(1), 2 / _LARGEST_MITRE_FACTOR**2)
-    found: Floats = line + off * between / size[:, None]
+    found: Floats = line + offset_m * between / size[:, None]
     return found
 
 
-def _connect(root: etree._Element, net: _Net) -> None:
+def _connect_lanes(root: etree._Element, net: _Net) -> None:
     """Set the successors of the lanes, and the limits of lanes inside junctions to those of the lanes that they continue."""
     follows: dict[str, list[str]] = defaultdict(list)
     for link in root.iterfind("connection"):
-        source = _at(net, link.get("from", ""), link.get("fromLane", ""))
-        target = link.get("via") or _at(net, link.get("to", ""), link.get("toLane", ""))
+        source = _lane_id(net, link.get("from", ""), link.get("fromLane", ""))
+        target = link.get("via") or _lane_id(net, link.get("to", ""), link.get("toLane", ""))
         if source in net.lanes and target in net.lanes:
             follows[source].append(target)
     for name, targets in follows.items():
         net.lanes[name].successors = tuple(dict.fromkeys(targets))
     _bend_internal_lanes(net)
-    inside = [lane for edge in net.edges if edge in net.internal for lane in net.edges[edge]]
+    inside = [lane for edge in net.edges if edge in net.internal_edges for lane in net.edges[edge]]
     for _ in range(2):  # a connection has two internal lanes where vehicles wait inside the junction
         _spread_speed_limits(net.lanes, follows, inside)
 
@@ -242,7 +245,7 @@ def _bend_internal_lanes(net: _Net) -> None:
 
     Their shapes are chords of a bend: without this, two lanes that meet at an angle leave a wedge that belongs to neither.
     """
-    inside = {lane for edge in net.internal for lane in net.edges[edge]}
+    inside = {lane for edge in net.internal_edges for lane in net.edges[edge]}
     before: dict[str, list[str]] = defaultdict(list)
     for name, lane in net.lanes.items():
         for to in lane.successors:
@@ -252,11 +255,11 @@ def _bend_internal_lanes(net: _Net) -> None:
         middle, half = (lane.left + lane.right) / 2, float(np.hypot(*(lane.left - lane.right)[0])) / 2
         for end, others in ((0, before[name]), (-1, [to for to in lane.successors if to not in inside])):
             if len(others) == 1:
-                middle = _with_direction_of_joined_lane(middle, net.lanes[others[0]], end)
-        lane.left, lane.right = _beside(middle, half), _beside(middle, -half)
+                middle = _bent_centre_line(middle, net.lanes[others[0]], end)
+        lane.left, lane.right = _parallel_line(middle, half), _parallel_line(middle, -half)
 
 
-def _with_direction_of_joined_lane(middle: Floats, joined_lane: BoundedLane, end: int) -> Floats:
+def _bent_centre_line(centre_line: Floats, joined_lane: BoundedLane, end: int) -> Floats:
     """Return a centre line with one more point, so that it begins (`end` 0) or ends (-1) in the direction of `joined_lane`.
 
     The line is unchanged if it is short, or its direction differs too much.
@@ -264,20 +267,20 @@ def _with_direction_of_joined_lane(middle: Floats, joined_lane: BoundedLane, end
     line = (joined_lane.left + joined_lane.right) / 2
     step = line[-1] - line[-2] if end == 0 else line[0] - line[1]
     step = step / np.hypot(*step)
-    own = middle[1] - middle[0] if end == 0 else middle[-2] - middle[-1]
+    own = centre_line[1] - centre_line[0] if end == 0 else centre_line[-2] - centre_line[-1]
     length = float(np.hypot(*own))
-    if length < 2 * _ADDED_POINT_M or float(own @ step) < _LEAST_COS * length:
-        return middle
-    at = 1 if end == 0 else len(middle) - 1
-    return np.insert(middle, at, middle[end] + _ADDED_POINT_M * step, axis=0)
+    if length < 2 * _ADDED_POINT_DISTANCE_M or float(own @ step) < _LEAST_BEND_COSINE * length:
+        return centre_line
+    at = 1 if end == 0 else len(centre_line) - 1
+    return np.insert(centre_line, at, centre_line[end] + _ADDED_POINT_DISTANCE_M * step, axis=0)
 
 
 def _spread_speed_limits(
-    lanes: Mapping[str, BoundedLane], follows: Mapping[str, Iterable[str]], inside: Iterable[str]
+    lanes: Mapping[str, BoundedLane], successors: Mapping[str, Iterable[str]], junction_lanes: Iterable[str]
 ) -> None:
-    waiting = {name for name in inside if not lanes[name].limits}
+    waiting = {name for name in junction_lanes if not lanes[name].limits}
     found: dict[str, list[tuple[SpeedLimitSpan, ...]]] = defaultdict(list)
-    for name, targets in follows.items():
+    for name, targets in successors.items():
         for to in targets:
             if to in waiting and lanes[name].limits:
                 found[to].append(lanes[name].limits)
@@ -286,7 +289,7 @@ def _spread_speed_limits(
             lanes[to].limits = limits[0]
 
 
-def _at(net: _Net, edge: str, index: str) -> str:
+def _lane_id(net: _Net, edge: str, index: str) -> str:
     """Return the id of a lane of an edge by its index, '' where there is none."""
     known = net.edges.get(edge, [])
     return f"{edge}_{index}" if f"{edge}_{index}" in known else ""

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from drivelint.road.quality import MapQuality
 
 _HEAD_BYTES: Final = 20_000
-_SOURCE: Final = re.compile(rb'<opendrive(?:-files)? value="([^"]*)"')
+_SOURCE_OPTION: Final = re.compile(rb'<opendrive(?:-files)? value="([^"]*)"')
 
 
 class OpenDriveImport(NamedTuple):
@@ -28,14 +28,14 @@ class OpenDriveImport(NamedTuple):
     file: str
     default_mps: Mapping[str, float]
 
-    def is_default(self, lane: etree._Element, edge: etree._Element, limit_mps: float) -> bool:
+    def has_default_limit(self, lane: etree._Element, edge: etree._Element, limit_mps: float) -> bool:
         """Return whether a lane's limit equals the default of its type, and so may not be the road's limit."""
         return limit_mps == self.default_mps.get(lane.get("type") or edge.get("type") or "")
 
 
 def opendrive_import(content: bytes, root: etree._Element, quality: MapQuality) -> OpenDriveImport | None:
     """Return the OpenDRIVE source of a net, from the configuration in its first comment, and warn in `quality`; None without one."""
-    found = _SOURCE.search(content[:_HEAD_BYTES].partition(b"-->")[0])
+    found = _SOURCE_OPTION.search(content[:_HEAD_BYTES].partition(b"-->")[0])
     if found is None:
         return None
     file = found[1].decode("utf-8", "replace")

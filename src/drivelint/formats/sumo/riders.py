@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from drivelint.formats.sumo.rows import Rows
 
 
-def riding(rows: Rows) -> Mask:
+def is_riding(rows: Rows) -> Mask:
     """Return for each row (n) whether its person or container rides in a vehicle.
 
     Of several rows of unknown kind in one place, all but the first ride: SUMO writes a vehicle before its passengers.

@@ -19,26 +19,26 @@ if TYPE_CHECKING:
 
     from drivelint.road.boundary_lanes import BoundedLane
 
-_TURNS: Final = {
+_TURNS_BY_DIRECTION: Final = {
     "s": ("straight",), "l": ("left",), "r": ("right",), "t": ("u_turn",), "L": ("left", "straight"), "R": ("right", "straight"),
 }  # fmt: skip
 _SIGNED_JUNCTION_TYPES: Final = frozenset({"priority", "priority_stop", "allway_stop"})
 """Types of junctions with signs on the minor roads. At other types, right goes before left, lights decide, or the rule is not known."""
 _SIGN_OF_LINK_STATE: Final = {"s": "stop", "w": "stop", "m": "give_way"}
-_TURNED_ROUND: Final = "t"
+_U_TURN_DIRECTION: Final = "t"
 
 
-def control_rows(root: etree._Element, lanes: Mapping[str, BoundedLane]) -> tuple[Rows, Rows]:
+def signal_and_stop_line_rows(root: etree._Element, lanes: Mapping[str, BoundedLane]) -> tuple[Rows, Rows]:
     """Return rows of `traffic_signal` and of `stop_line`: a stop line is at the end of each lane with a light or a stop sign."""
     links = [link for link in root.iterfind("connection") if not link.get("from", "").startswith(":")]
-    signals, lines = _lights(links, lanes)
-    signed, stops = _signs(root, links, lanes)
+    signals, lines = _light_rows_and_ends(links, lanes)
+    signed, stops = _sign_rows_and_stops(root, links, lanes)
     lines |= stops
     rows = [stop_line_row(f"end of {name}", name, lanes[name].line.length, "connection") for name in sorted(lines)]
     return sorted([*signals, *signed], key=lambda row: (row["signal_id"], row["lanelet_id"])), rows
 
 
-def _lights(links: list[etree._Element], lanes: Mapping[str, BoundedLane]) -> tuple[Rows, set[str]]:
+def _light_rows_and_ends(links: list[etree._Element], lanes: Mapping[str, BoundedLane]) -> tuple[Rows, set[str]]:
     """Return a row for each signal head and lanelet in the junction to which it applies, and the lanes that end at a head.
 
     A head's id is `<light>_<link index>`, as SUMO writes it into OpenDRIVE.
@@ -51,18 +51,18 @@ def _lights(links: list[etree._Element], lanes: Mapping[str, BoundedLane]) -> tu
             continue
         via = link.get("via")
         at, s = (via, 0.0) if via in lanes else (source, lanes[source].line.length)
-        turns[f"{light}_{link.get('linkIndex')}", str(at), s].update(_TURNS.get(link.get("dir", ""), ()))
+        turns[f"{light}_{link.get('linkIndex')}", str(at), s].update(_TURNS_BY_DIRECTION.get(link.get("dir", ""), ()))
         if lanes[source].drivable:
             ends.add(source)
     rows = [
-        _row(name, "traffic_light", lanes[at], s, turns=sorted(said) or None)
+        _signal_row(name, "traffic_light", lanes[at], s, turns=sorted(said) or None)
         for (name, at, s), said in sorted(turns.items())
         if lanes[at].drivable
     ]
     return rows, ends
 
 
-def _signs(
+def _sign_rows_and_stops(
     root: etree._Element, links: list[etree._Element], lanes: Mapping[str, BoundedLane]
 ) -> tuple[Rows, set[str]]:
     kinds = {junction.get("id"): junction.get("type") for junction in root.iterfind("junction")}
@@ -71,7 +71,7 @@ def _signs(
     for link in links:
         if (
             link.get("tl") is None
-            and link.get("dir") != _TURNED_ROUND
+            and link.get("dir") != _U_TURN_DIRECTION
             and ends.get(link.get("from")) in _SIGNED_JUNCTION_TYPES
         ):
             states[link.get("from", "")].add(link.get("state", ""))
@@ -84,12 +84,12 @@ def _signs(
         kind = "stop" if "stop" in found else "give_way"
         for name, lane in sorted(lanes.items()):
             if lane.drivable and name.rpartition("_")[0] == edge:
-                rows.append(_row(f"{kind} {edge}", kind, lane, lane.line.length, turns=None))
+                rows.append(_signal_row(f"{kind} {edge}", kind, lane, lane.line.length, turns=None))
                 if kind == "stop":
                     stops.add(name)
     return rows, stops
 
 
-def _row(name: str, kind: str, lane: BoundedLane, s: float, *, turns: list[str] | None) -> dict[str, Any]:
+def _signal_row(name: str, kind: str, lane: BoundedLane, s: float, *, turns: list[str] | None) -> dict[str, Any]:
     place = lane.line.centre[0 if s == 0.0 else -1]
     return signal_row(lane, s, place, signal_id=name, kind=kind, dynamic=kind == "traffic_light", turns=turns)

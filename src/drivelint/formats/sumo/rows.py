@@ -11,7 +11,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.errors import TraceError
-from drivelint.formats.sumo.clock import as_seconds
+from drivelint.formats.sumo.clock import seconds_of_texts
 
 if TYPE_CHECKING:
     from drivelint.arrays import Codes, Floats, Mask
@@ -22,10 +22,10 @@ VEHICLE, PERSON, CONTAINER = range(3)
 CARRIED: Final = 3
 """The kind of a row that is a person or a container; which of them is not known."""
 UNKNOWN: Final = -1
-NUMBERS: Final = ("x", "y", "angle", "speed", "signals", "acceleration")
-ATTRIBUTES: Final = ("id", "type", "vehicle", *NUMBERS)
+NUMBER_ATTRIBUTES: Final = ("x", "y", "angle", "speed", "signals", "acceleration")
+ATTRIBUTES: Final = ("id", "type", "vehicle", *NUMBER_ATTRIBUTES)
 """The attributes that are read."""
-TEXTS: Final = frozenset({"id", "type", "vehicle"})
+TEXT_ATTRIBUTES: Final = frozenset({"id", "type", "vehicle"})
 
 
 class Rows(NamedTuple):
@@ -60,7 +60,7 @@ def typed_rows(path: Path, columns: dict[str, pa.ChunkedArray | pa.Array], kind:
     for name in ("time", *ATTRIBUTES):
         column = columns.get(name, pa.nulls(n))
         try:
-            arrays[name] = _typed(name, column)
+            arrays[name] = _typed_column(name, column)
         except pa.ArrowException as error:
             raise TraceError(
                 f"{path}: {name} of vehicles: {' '.join(str(error).split())}: write the log again"
@@ -68,13 +68,13 @@ def typed_rows(path: Path, columns: dict[str, pa.ChunkedArray | pa.Array], kind:
     return Rows(pa.table(arrays), kind)
 
 
-def _typed(name: str, column: pa.ChunkedArray | pa.Array) -> pa.ChunkedArray | pa.Array:
-    if name in TEXTS:
+def _typed_column(name: str, column: pa.ChunkedArray | pa.Array) -> pa.ChunkedArray | pa.Array:
+    if name in TEXT_ATTRIBUTES:
         column = column.cast(pa.string())
         return column if name == "vehicle" else pc.fill_null(column, "")
     if pa.types.is_string(column.type) or pa.types.is_binary(column.type):
         column = column.cast(pa.string())
         column = pc.if_else(pc.equal(column, ""), pa.scalar(None, pa.string()), column)
         if name == "time":
-            return pc.fill_null(as_seconds(column), math.nan)
+            return pc.fill_null(seconds_of_texts(column), math.nan)
     return pc.fill_null(column.cast(pa.float64()), math.nan)

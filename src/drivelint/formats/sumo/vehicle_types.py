@@ -13,8 +13,8 @@ from drivelint.phrases import name_list
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping
 
-_BESIDE: Final = ("*.rou.xml", "*.add.xml", "*vtype*.xml")
-_OF_ONE_VEHICLE: Final = "@"
+_TYPE_FILE_PATTERNS: Final = ("*.rou.xml", "*.add.xml", "*vtype*.xml")
+_COPY_SIGN: Final = "@"
 
 
 class VehicleType(NamedTuple):
@@ -25,7 +25,7 @@ class VehicleType(NamedTuple):
     width_m: float = math.nan
 
 
-_OF_CLASS: Final = {
+_DEFAULT_BY_CLASS: Final = {
     **dict.fromkeys(("passenger", "private", "taxi", "evehicle", "hov", "vip"), VehicleType("car", 5.0, 1.8)),
     **dict.fromkeys(("authority", "army", "custom1", "custom2"), VehicleType("vehicle", 5.0, 1.8)),
     "delivery": VehicleType("van", 6.5, 2.16), "emergency": VehicleType("vehicle", 6.5, 2.16),
@@ -36,39 +36,41 @@ _OF_CLASS: Final = {
     "wheelchair": VehicleType("pedestrian", 1.2, 0.72), "container": VehicleType("object", 6.096, 2.438),
 }  # fmt: skip
 """The default sizes of SUMO 1.28 by vClass, for a vType without sizes. Trains are left out, because they bend."""
-_DEFAULTS: Final = {
-    "DEFAULT_VEHTYPE": _OF_CLASS["passenger"], "DEFAULT_PEDTYPE": _OF_CLASS["pedestrian"],
-    "DEFAULT_BIKETYPE": _OF_CLASS["bicycle"], "DEFAULT_TAXITYPE": _OF_CLASS["taxi"],
-    "DEFAULT_CONTAINERTYPE": _OF_CLASS["container"],
+_TYPE_BY_DEFAULT_NAME: Final = {
+    "DEFAULT_VEHTYPE": _DEFAULT_BY_CLASS["passenger"], "DEFAULT_PEDTYPE": _DEFAULT_BY_CLASS["pedestrian"],
+    "DEFAULT_BIKETYPE": _DEFAULT_BY_CLASS["bicycle"], "DEFAULT_TAXITYPE": _DEFAULT_BY_CLASS["taxi"],
+    "DEFAULT_CONTAINERTYPE": _DEFAULT_BY_CLASS["container"],
 }  # fmt: skip
 UNKNOWN_TYPE: Final = VehicleType()
 
 
-def type_of(name: str, types: Mapping[str, VehicleType], ids: Collection[str]) -> tuple[VehicleType, str | None]:
+def type_and_original(
+    name: str, types: Mapping[str, VehicleType], ids: Collection[str]
+) -> tuple[VehicleType, str | None]:
     """Return the facts about a type, and the type of which it is assumed to be a copy.
 
     If a parameter of a single vehicle is changed while SUMO runs, its type becomes a copy with the name BASE@ID, where ID is one
     of the log's `ids`. No route file contains this type. Source: SUMO's documentation of "TraCI/Change Vehicle State".
     """
-    known_type = types.get(name) or _DEFAULTS.get(name)
+    known_type = types.get(name) or _TYPE_BY_DEFAULT_NAME.get(name)
     if known_type is not None:
         return known_type, None
-    at = name.find(_OF_ONE_VEHICLE)
+    at = name.find(_COPY_SIGN)
     while at >= 0:
         base = name[:at]
-        if name[at + 1 :] in ids and (known_type := types.get(base) or _DEFAULTS.get(base)):
+        if name[at + 1 :] in ids and (known_type := types.get(base) or _TYPE_BY_DEFAULT_NAME.get(base)):
             return known_type, base
-        at = name.find(_OF_ONE_VEHICLE, at + 1)
+        at = name.find(_COPY_SIGN, at + 1)
     return UNKNOWN_TYPE, None
 
 
-def types_for(log: Path, types_file: str | None) -> tuple[dict[str, VehicleType], list[str]]:
+def types_and_notes(log: Path, types_file: str | None) -> tuple[dict[str, VehicleType], list[str]]:
     """Return vType id -> its attributes, and notes on their source: `types_file`, the user's file, else the files beside the log.
 
     Errors: `UsageError` for a given file that has no vType.
     """
     if types_file is not None:
-        file_types = _read(Path(types_file))
+        file_types = _read_types(Path(types_file))
         if not file_types:
             raise UsageError(
                 f"--mapping {types_file}: has no vType: give the route or additional file of the simulation"
@@ -78,8 +80,8 @@ def types_for(log: Path, types_file: str | None) -> tuple[dict[str, VehicleType]
     files: dict[str, str] = {}
     used = []
     notes = []
-    for file in sorted({file for pattern in _BESIDE for file in log.parent.glob(pattern)}):
-        here = _read(file)
+    for file in sorted({file for pattern in _TYPE_FILE_PATTERNS for file in log.parent.glob(pattern)}):
+        here = _read_types(file)
         used += [file.name] if here else []
         for name, vehicle_type in here.items():
             if name in types and types[name] != vehicle_type:
@@ -95,7 +97,7 @@ def types_for(log: Path, types_file: str | None) -> tuple[dict[str, VehicleType]
     return types, notes
 
 
-def _read(file: Path) -> dict[str, VehicleType]:
+def _read_types(file: Path) -> dict[str, VehicleType]:
     try:
         content = file.read_bytes()
     except OSError as error:
@@ -103,15 +105,15 @@ def _read(file: Path) -> dict[str, VehicleType]:
     root = safe_xml.parse(content, f"--mapping {file}:", UsageError)
     types = {}
     for element in root.iter("vType"):
-        default = _OF_CLASS.get(element.get("vClass", "passenger"), VehicleType("vehicle"))
+        default = _DEFAULT_BY_CLASS.get(element.get("vClass", "passenger"), VehicleType("vehicle"))
         types[element.get("id", "")] = VehicleType(
             default.actor_class,
-            _positive(element.get("length"), default.length_m),
-            _positive(element.get("width"), default.width_m),
+            _positive_or_nan(element.get("length"), default.length_m),
+            _positive_or_nan(element.get("width"), default.width_m),
         )
     return types
 
 
-def _positive(text: str | None, default: float) -> float:
+def _positive_or_nan(text: str | None, default: float) -> float:
     value = default if text is None else safe_xml.number_or_nan(text)
     return value if value > 0 else math.nan

@@ -13,13 +13,13 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import States
     from drivelint.formats.tables.mapping import Mapping
 
-_SOURCE = {
+_COLUMN_OF_QUANTITY = {
     "x": "x_m", "y": "y_m", "z": "z_m", "yaw": "yaw_rad", "vx": "vx_mps", "vy": "vy_mps",
     "ax": "ax_mps2", "ay": "ay_mps2", "length": "length_m", "width": "width_m", "height": "height_m",
 }  # fmt: skip
 
 
-def to_map_frame(states: States, mapping: Mapping) -> None:
+def convert_to_map_frame(states: States, mapping: Mapping) -> None:
     """Replace the mapping's quantities (SI, log's frame and reference point) by the columns of `STATE_COLUMNS` and `SIZE_COLUMNS`.
 
     Order: axes and heading are flipped, velocities along the vehicle's axes are turned into the world frame, and the reference
@@ -43,11 +43,11 @@ def to_map_frame(states: States, mapping: Mapping) -> None:
             if east in log:
                 log[east], log[north] = rotate_vectors(log[east], log[north], log["yaw"])
     if mapping.reference.point != "centre":
-        _to_centre(states, mapping)
-    states.numbers = {ours: log.get(theirs, unknown_values) for theirs, ours in _SOURCE.items()}
+        _move_to_box_centre(states, mapping)
+    states.numbers = {ours: log.get(theirs, unknown_values) for theirs, ours in _COLUMN_OF_QUANTITY.items()}
 
 
-def _to_centre(states: States, mapping: Mapping) -> None:
+def _move_to_box_centre(states: States, mapping: Mapping) -> None:
     log = states.numbers
     zero = np.zeros(len(states))
     forward = -0.5 * log["length"] if mapping.reference.point == "front_bumper" else log["forward"]

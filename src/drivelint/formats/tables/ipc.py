@@ -20,7 +20,7 @@ def table(path: Path, required: Iterable[str] = (), optional: Iterable[str] = ()
 
     Errors: `TraceError` for a damaged file, a duplicate column, and a missing required column.
     """
-    return _open(path, lambda file: chosen_columns(path, file.read_all(), required, optional))
+    return _take_from_open_file(path, lambda file: chosen_columns(path, file.read_all(), required, optional))
 
 
 def chosen_columns(path: Path, rows: pa.Table, required: Iterable[str], optional: Iterable[str]) -> pa.Table:
@@ -37,16 +37,16 @@ def chosen_columns(path: Path, rows: pa.Table, required: Iterable[str], optional
     return rows.combine_chunks()
 
 
-def columns(path: Path) -> tuple[list[str], int]:
+def column_names_and_n_rows(path: Path) -> tuple[list[str], int]:
     """Return the names of the columns and the number of rows. Errors: `TraceError` for a damaged file."""
 
     def read(file: pa.RecordBatchFileReader) -> tuple[list[str], int]:
         return file.schema.names, sum(file.get_batch(i).num_rows for i in range(file.num_record_batches))
 
-    return _open(path, read)
+    return _take_from_open_file(path, read)
 
 
-def _open(path: Path, take: Callable[[pa.RecordBatchFileReader], T]) -> T:
+def _take_from_open_file(path: Path, take: Callable[[pa.RecordBatchFileReader], T]) -> T:
     try:
         with path.open("rb") as file, pa.ipc.open_file(pa.PythonFile(file)) as opened:
             return take(opened)

@@ -29,7 +29,7 @@ from drivelint.drive.trace import (
 )
 from drivelint.errors import TraceError
 from drivelint.formats.tables import mapping as mappings
-from drivelint.formats.tables.geometry import to_map_frame
+from drivelint.formats.tables.geometry import convert_to_map_frame
 from drivelint.formats.tables.mapping import FIELD_QUANTITIES, GROUP_PLACEHOLDER, UNITS
 from drivelint.formats.tables.sheets import CsvSheet, ParquetSheet, Sheet, describe_places
 from drivelint.phrases import hint, name_list
@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
 formats: Final[dict[str, tuple[str, str]]] = {}
 takes_mapping: Final = True
-_NO_CLASS: Final = frozenset({-1, ACTOR_CLASSES.index("vehicle")})
+_UNKNOWN_CLASS_CODES: Final = frozenset({-1, ACTOR_CLASSES.index("vehicle")})
 """The codes for an unknown class, and for a vehicle of unknown class."""
 _MOST_LISTED_TEXTS: Final = 5
 """A message lists at most this many texts."""
@@ -66,7 +66,7 @@ def read(probe: Probe) -> Recording:
     """
     path, name = probe.path, probe.options.mapping
     if name is None:
-        name, mapping, sheet = _fitting(path)
+        name, mapping, sheet = _fitting_mapping_and_sheet(path)
         notes = [
             f"read through the shipped mapping {name!r}, the only shipped mapping that matches the columns of the file"
         ]
@@ -74,10 +74,10 @@ def read(probe: Probe) -> Recording:
         name, mapping = mappings.load(name)
         sheet = open_sheet(path, mapping)
         notes = []
-    recording = _Body(path, mapping, sheet, _groups(path, name, mapping, sheet)).read()
-    _refuse_misread(path, name, recording)
+    recording = _MappedTable(path, mapping, sheet, _column_group_numbers(path, name, mapping, sheet)).read()
+    _refuse_if_most_rows_unread(path, name, recording)
     recording.format = name
-    recording.findings += _assumptions(name, mapping)
+    recording.findings += _assumption_findings(name, mapping)
     recording.notes = notes
     if mapping.frame.map_offset_m is not None:
         dx, dy = recording.map_offset = mapping.frame.map_offset_m
@@ -85,7 +85,7 @@ def read(probe: Probe) -> Recording:
     return recording
 
 
-def _assumptions(name: str, mapping: Mapping) -> list[QualityFinding]:
+def _assumption_findings(name: str, mapping: Mapping) -> list[QualityFinding]:
     """Return findings on facts that come from the mapping, not from the log: sizes, and a left-handed frame."""
     findings = []
     given = mappings.fields(mapping)
@@ -98,7 +98,7 @@ def _assumptions(name: str, mapping: Mapping) -> list[QualityFinding]:
     return findings
 
 
-def _refuse_misread(path: Path, name: str, recording: Recording) -> None:
+def _refuse_if_most_rows_unread(path: Path, name: str, recording: Recording) -> None:
     """Raise `TraceError` if most rows cannot be read: the mapping is wrong, and the other rows would mislead."""
     lost = sum(finding.n for finding in recording.findings if finding.check_id in LOSS_CHECKS)
     kept = len(recording.states)
@@ -116,13 +116,13 @@ def open_sheet(path: Path, mapping: Mapping) -> Sheet:
     return ParquetSheet(path) if is_parquet else CsvSheet(path, mapping.table)
 
 
-def _fitting(path: Path) -> tuple[str, Mapping, Sheet]:
+def _fitting_mapping_and_sheet(path: Path) -> tuple[str, Mapping, Sheet]:
     fits = []
     for name in mappings.shipped_mappings():
         _, mapping = mappings.load(name)
         try:
             sheet = open_sheet(path, mapping)
-            _groups(path, name, mapping, sheet)
+            _column_group_numbers(path, name, mapping, sheet)
         except TraceError:
             continue  # the mapping does not fit; an error is raised below if no mapping fits
         fits.append((name, mapping, sheet))
@@ -135,7 +135,7 @@ def _fitting(path: Path) -> tuple[str, Mapping, Sheet]:
     raise TraceError(f"{path}: {what}: give a mapping with --mapping FILE|NAME; drivelint inspect drafts one")
 
 
-def _groups(path: Path, name: str, mapping: Mapping, sheet: Sheet) -> list[str]:
+def _column_group_numbers(path: Path, name: str, mapping: Mapping, sheet: Sheet) -> list[str]:
     """Return the numbers of the column groups; only '' for a long table.
 
     Errors: `TraceError` for a needed column that is missing or duplicate.
@@ -157,7 +157,7 @@ def _groups(path: Path, name: str, mapping: Mapping, sheet: Sheet) -> list[str]:
 
 
 @dataclass
-class _Body:
+class _MappedTable:
     """The rows of a table that fits its mapping."""
 
     path: Path
@@ -170,35 +170,35 @@ class _Body:
 
     def read(self) -> Recording:
         columns = mappings.needed_columns(self.mapping)
-        names = dict.fromkeys(column.replace(GROUP_PLACEHOLDER, k) for k in self.groups for column in columns)
-        n = self.sheet.load(names)
-        t_ns, bad_time = self.sheet.time(self.mapping.time.column, self.mapping.time.unit_ns)
-        blank = np.ones(n, np.bool_)  # the rows whose mapped columns are all empty
+        names = dict.fromkeys(column.replace(GROUP_PLACEHOLDER, group) for group in self.groups for column in columns)
+        n_rows = self.sheet.load(names)
+        t_ns, bad_time = self.sheet.times_and_bad(self.mapping.time.column, self.mapping.time.unit_ns)
+        blank = np.ones(n_rows, np.bool_)  # the rows whose mapped columns are all empty
         for name in names:
-            blank &= ~self.sheet.filled(name)
+            blank &= ~self.sheet.is_filled(name)
         self._report_rows(bad_time & ~blank, "the time is missing or not a number", "dropped_row")
-        self._report_lines(n)
+        self._report_malformed_lines(n_rows)
         parts, texts = [], []
         lost_rows = bad_time & ~blank
-        for k in self.groups:
-            ids = self._ids(k, n)
+        for group in self.groups:
+            ids = self._actor_ids(group, n_rows)
             absent = ids.is_null().to_numpy(zero_copy_only=False)
             # in a wide table, an actor without name and place is absent
-            nameless = absent & ~bad_time & ~blank & (True if k == "" else self._has_place(k, n))
+            nameless = absent & ~bad_time & ~blank & (True if group == "" else self._has_position(group, n_rows))
             self._report_rows(nameless, "the actor id is missing", "dropped_row")
             lost_rows |= nameless
             keep = ~(absent | bad_time)
             texts.append(ids.filter(pa.array(keep)))
-            parts.append(self._rows(k, n, t_ns, keep))
+            parts.append(self._states_of_group(group, n_rows, t_ns, keep))
         ids = pc.dictionary_encode(pa.concat_arrays(texts))
         states = States.concatenate(parts)
         states.ids, states.actor = ids.dictionary.to_pylist(), ids.indices.to_numpy()
-        to_map_frame(states, self.mapping)
+        convert_to_map_frame(states, self.mapping)
         self._report_unmapped_classes(states)
         return Recording(
             format="",
             states=states,
-            ego_ids=self._egos(states),
+            ego_ids=self._ego_ids(states),
             findings=self.findings,
             lost_times=self._lost_times(t_ns, ~bad_time, lost_rows),
             # each row of a wide table is a frame, also without actors
@@ -208,18 +208,18 @@ class _Body:
             names_indicator=self.mapping.indicator is not None,
         )
 
-    def _has_place(self, k: str, n: int) -> Mask:
-        placed = np.ones(n, np.bool_)
+    def _has_position(self, group: str, n_rows: int) -> Mask:
+        placed = np.ones(n_rows, np.bool_)
         for name in ("x", "y"):
             column = mappings.fields(self.mapping)[name].column
             if column is not None:
-                placed &= self.sheet.filled(column.replace(GROUP_PLACEHOLDER, k))
+                placed &= self.sheet.is_filled(column.replace(GROUP_PLACEHOLDER, group))
         return placed
 
     def _lost_times(self, t_ns: Times, timed: Mask, lost_rows: Mask) -> list[LostTime]:
         """Return the time ranges of lost rows and of malformed lines, whose times are unknown."""
         cause = f"{self.path.name}: rows that cannot be read"
-        if self.sheet.has_zeros_within:
+        if self.sheet.has_content_after_zeros:
             return [LostTime(None, None, f"{cause}, because the file contains zero bytes there")]
         places = self.sheet.rows_before_bad_lines() + [len(t_ns)] * (self.sheet.zeros_at is not None)
         t_ns, timed, lost_rows = (
@@ -229,32 +229,34 @@ class _Body:
         )
         return times_of_lost_rows(t_ns, timed, lost_rows, cause)
 
-    def _rows(self, k: str, n: int, t_ns: Times, keep: Mask) -> States:
-        numbers, not_finite = {}, np.zeros(n, np.bool_)
+    def _states_of_group(self, group: str, n_rows: int, t_ns: Times, keep: Mask) -> States:
+        numbers, not_finite = {}, np.zeros(n_rows, np.bool_)
         for name, spec in mappings.fields(self.mapping).items():
             if name in FIELD_QUANTITIES:
-                values, odd = self._values(name, spec, k, n, keep)
+                values, odd = self._si_values_and_non_finite(name, spec, group, n_rows, keep)
                 not_finite |= odd
                 numbers[name] = values[keep]
         codes = {
-            name: self._codes(spec, allowed, k)[keep]
+            name: self._word_codes(spec, allowed, group)[keep]
             for name, (spec, allowed) in mappings.word_mappings(self.mapping).items()
         }
         return States([], np.zeros(0, np.int32), t_ns[keep], numbers, codes, not_finite[keep])
 
-    def _values(self, name: str, spec: Field, k: str, n: int, keep: Mask) -> tuple[Floats, Mask]:
+    def _si_values_and_non_finite(
+        self, name: str, spec: Field, group: str, n_rows: int, keep: Mask
+    ) -> tuple[Floats, Mask]:
         """Return SI values (NaN: unknown), and for each row whether the log contains NaN or infinity; an empty cell does not count."""
         units = UNITS[FIELD_QUANTITIES[name]]
         factor = units[spec.unit] if spec.unit is not None else 1.0
         if spec.column is None:
-            return np.full(n, float(spec.value or 0.0) * factor), np.zeros(n, np.bool_)
-        column = spec.column.replace(GROUP_PLACEHOLDER, k)
-        values, bad = self.sheet.number(column)
+            return np.full(n_rows, float(spec.value or 0.0) * factor), np.zeros(n_rows, np.bool_)
+        column = spec.column.replace(GROUP_PLACEHOLDER, group)
+        values, bad = self.sheet.numbers_and_bad(column)
         self._report_rows(bad & keep, f"column {column!r} is not a number", "malformed_cell")
         odd = ~np.isfinite(values)
         if odd.any():
             values = np.where(odd, np.nan, values)
-            odd &= self.sheet.filled(column) & ~bad
+            odd &= self.sheet.is_filled(column) & ~bad
         if FIELD_QUANTITIES[name] == "angle" and factor == 1.0:
             self._refuse_degrees(column, values)
         return (values * factor if factor != 1.0 else values), odd
@@ -268,28 +270,28 @@ class _Body:
                 'give a mapping with --mapping in which the unit is "deg"; drivelint inspect drafts one'
             )
 
-    def _codes(self, spec: WordMapping, words: tuple[str, ...], k: str) -> Codes:
+    def _word_codes(self, spec: WordMapping, words: tuple[str, ...], group: str) -> Codes:
         """Return the column's texts as indices in `words`; -1: unknown. Each distinct text is translated only once."""
-        texts = [self.sheet.text(column.replace(GROUP_PLACEHOLDER, k)) for column in spec.columns]
+        texts = [self.sheet.text_column(column.replace(GROUP_PLACEHOLDER, group)) for column in spec.columns]
         if len(texts) > 1:
             texts = [pc.binary_join_element_wise(*texts, "/", null_handling="emit_null")]
 
         def code_of(text: str) -> int:
-            word = _word(text, spec)
+            word = _mapped_word(text, spec)
             if spec is self.mapping.actor_class and not _is_mapped(text, spec):
                 self.unmapped_classes.add(text)
             return -1 if word is None else words.index(word)
 
         return codes_of_texts(texts[0], code_of)
 
-    def _ids(self, k: str, n: int) -> pa.Array:
-        spec = mappings.as_field(self.mapping.columns.actor_id)
+    def _actor_ids(self, group: str, n_rows: int) -> pa.Array:
+        spec = mappings.to_field(self.mapping.columns.actor_id)
         if spec.column is None:
             value = spec.value if isinstance(spec.value, str) else f"{spec.value:g}"
-            return pa.repeat(pa.scalar(value.replace(GROUP_PLACEHOLDER, k), pa.string()), n)
-        return self.sheet.text(spec.column.replace(GROUP_PLACEHOLDER, k))
+            return pa.repeat(pa.scalar(value.replace(GROUP_PLACEHOLDER, group), pa.string()), n_rows)
+        return self.sheet.text_column(spec.column.replace(GROUP_PLACEHOLDER, group))
 
-    def _egos(self, states: States) -> list[str]:
+    def _ego_ids(self, states: States) -> list[str]:
         for name in self.mapping.ego.ids:
             if name in states.ids:
                 return [name]
@@ -320,14 +322,19 @@ class _Body:
     def _report_unmapped_classes(self, states: States) -> None:
         """Add a finding with the unmapped texts of the class column, if the mapping finds no class for any actor."""
         spec, codes = self.mapping.actor_class, states.codes.get("actor_class")
-        if spec is None or codes is None or not self.unmapped_classes or not set(np.unique(codes)) <= _NO_CLASS:
+        if (
+            spec is None
+            or codes is None
+            or not self.unmapped_classes
+            or not set(np.unique(codes)) <= _UNKNOWN_CLASS_CODES
+        ):
             return
         texts = name_list([repr(text) for text in sorted(self.unmapped_classes)], _MOST_LISTED_TEXTS)
         are = "is" if len(self.unmapped_classes) == 1 else "are"
         message = f"column {'/'.join(spec.columns)}: {texts} {are} not in [class] values of the mapping"
         self.findings.append(QualityFinding("unmapped_class", "warning", message))
 
-    def _report_lines(self, n: int) -> None:
+    def _report_malformed_lines(self, n_rows: int) -> None:
         if self.sheet.zeros_at is not None:
             message = f"{self.path.name}: zero bytes from byte {self.sheet.zeros_at} on: the original content is lost"
             self.findings.append(QualityFinding("malformed_row", "error", message))
@@ -338,7 +345,7 @@ class _Body:
             f"{describe_places('line', lines, len(lines))}: the number of cells differs from the "
             f"{len(self.sheet.names)} cells of the header"
         )
-        if n == 0:
+        if n_rows == 0:
             raise TraceError(f"{self.path}: {what}: no row is left; check the mapping's separator and skip_rows")
         message = f"{self.path.name}, {what}: not judged"
         self.findings.append(QualityFinding("malformed_row", "error", message, len(lines)))
@@ -348,7 +355,7 @@ def _is_mapped(text: str, spec: WordMapping) -> bool:
     return text in spec.values or any(re.search(pattern.match, text) for pattern in spec.patterns)
 
 
-def _word(text: str, spec: WordMapping) -> str | None:
+def _mapped_word(text: str, spec: WordMapping) -> str | None:
     if text in spec.values:
         return spec.values[text]
     return next((pattern.word for pattern in spec.patterns if re.search(pattern.match, text)), spec.default)

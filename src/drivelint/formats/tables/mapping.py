@@ -177,7 +177,7 @@ def shipped_mappings() -> list[str]:
     return sorted(file.stem for file in MAPPINGS_FOLDER.glob("*.toml"))
 
 
-def refuse_if_none(name: str) -> None:
+def refuse_unknown_mapping(name: str) -> None:
     """Raise `UsageError` if `name` is neither a file nor a shipped mapping; it proposes the most similar name."""
     known = sorted(file.stem for file in MAPPINGS_FOLDER.parents[1].glob("*/mappings/*.toml"))  # also mappings of films
     if is_pipe_or_device(name):
@@ -193,10 +193,10 @@ def load(name: str) -> tuple[str, Mapping]:
     """
     path = Path(name)
     if not os.path.isfile(name):  # noqa: PTH113 - as above
-        refuse_if_none(name)
+        refuse_unknown_mapping(name)
         path = MAPPINGS_FOLDER / f"{name}.toml"
     raw = read_toml(path)
-    _refuse_unknown(path, raw, Mapping, "")
+    _refuse_unknown_keys(path, raw, Mapping, "")
     try:
         mapping = msgspec.convert(raw, Mapping)
     except msgspec.ValidationError as error:
@@ -215,7 +215,7 @@ def read_toml(path: Path) -> dict[str, Any]:
         raise UsageError(f"mapping {path}: not valid TOML: {error}") from error
 
 
-def as_field(spec: FieldSpec) -> Field:
+def to_field(spec: FieldSpec) -> Field:
     """Convert a column name, a number or a Field into a Field."""
     if isinstance(spec, Field):
         return spec
@@ -225,7 +225,7 @@ def as_field(spec: FieldSpec) -> Field:
 def fields(mapping: Mapping) -> dict[str, Field]:
     """Return name -> field for all fields in the mapping, including the offsets of the reference point."""
     specs = {**msgspec.structs.asdict(mapping.columns), **msgspec.structs.asdict(mapping.reference)}
-    return {name: as_field(spec) for name, spec in specs.items() if spec is not None and name != "point"}
+    return {name: to_field(spec) for name, spec in specs.items() if spec is not None and name != "point"}
 
 
 def word_mappings(mapping: Mapping) -> dict[str, tuple[WordMapping, tuple[str, ...]]]:
@@ -245,8 +245,8 @@ def needed_columns(mapping: Mapping) -> list[str]:
     return list(dict.fromkeys(names))
 
 
-def _refuse_unknown(path: Path, raw: Any, kind: Any, where: str) -> None:
-    parts = _parts(kind)
+def _refuse_unknown_keys(path: Path, raw: Any, kind: Any, key_prefix: str) -> None:
+    parts = _component_types(kind)
     struct = next((part for part in parts if isinstance(part, type) and issubclass(part, msgspec.Struct)), None)
     if struct is None or isinstance(raw, list) != any(get_origin(part) is list for part in parts):
         return
@@ -254,12 +254,12 @@ def _refuse_unknown(path: Path, raw: Any, kind: Any, where: str) -> None:
     for table in raw if isinstance(raw, list) else [raw]:
         for key, value in table.items() if isinstance(table, dict) else ():
             if key not in known:
-                raise UsageError(f"mapping {path}: unknown key {where + key!r}: {hint(key, known, cutoff=0.5)}")
-            _refuse_unknown(path, value, known[key].type, f"{where}{key}.")
+                raise UsageError(f"mapping {path}: unknown key {key_prefix + key!r}: {hint(key, known, cutoff=0.5)}")
+            _refuse_unknown_keys(path, value, known[key].type, f"{key_prefix}{key}.")
 
 
-def _parts(kind: Any) -> tuple[Any, ...]:
-    return (kind, *(part for item in get_args(kind) for part in _parts(item)))
+def _component_types(kind: Any) -> tuple[Any, ...]:
+    return (kind, *(part for item in get_args(kind) for part in _component_types(item)))
 
 
 def _validate(path: Path, mapping: Mapping) -> None:

@@ -24,12 +24,12 @@ _MAGIC: Final = b"PAR1"
 
 def schema(path: Path) -> pa.Schema:
     """Return the schema of a file. Errors: `TraceError` if the file is damaged."""
-    return _open(path, lambda file: file.schema_arrow)
+    return _take_from_open_file(path, lambda file: file.schema_arrow)
 
 
 def n_rows(path: Path) -> int:
     """Return the number of rows of a file. Errors: `TraceError` if the file is damaged."""
-    return _open(path, lambda file: int(file.metadata.num_rows))
+    return _take_from_open_file(path, lambda file: int(file.metadata.num_rows))
 
 
 def table(path: Path, columns: Iterable[str] | None = None) -> pa.Table:
@@ -37,10 +37,10 @@ def table(path: Path, columns: Iterable[str] | None = None) -> pa.Table:
     names = None if columns is None else list(columns)
 
     def read(file: pq.ParquetFile) -> pa.Table:
-        _refuse_bomb(path, file.metadata, len(names or file.schema_arrow.names))
+        _refuse_if_unpacked_too_large(path, file.metadata, len(names or file.schema_arrow.names))
         return file.read(columns=names).combine_chunks()
 
-    return _open(path, read)
+    return _take_from_open_file(path, read)
 
 
 def column(rows: pa.Table, name: str) -> pa.Array:
@@ -49,7 +49,7 @@ def column(rows: pa.Table, name: str) -> pa.Array:
     return array.cast(array.type.value_type) if pa.types.is_dictionary(array.type) else array
 
 
-def _open(path: Path, take: Callable[[pq.ParquetFile], T]) -> T:
+def _take_from_open_file(path: Path, take: Callable[[pq.ParquetFile], T]) -> T:
     try:
         with path.open("rb") as file:
             head = file.read(len(_MAGIC) * 8)
@@ -66,7 +66,7 @@ def _open(path: Path, take: Callable[[pq.ParquetFile], T]) -> T:
         raise TraceError(f"{path}: not readable as Parquet: {' '.join(str(error).split())}: copy it again") from error
 
 
-def _refuse_bomb(path: Path, metadata: pq.FileMetaData, n_columns: int) -> None:
+def _refuse_if_unpacked_too_large(path: Path, metadata: pq.FileMetaData, n_columns: int) -> None:
     unpacked = metadata.num_rows * n_columns * 8
     if unpacked > max(FREE_UNPACKED_BYTES, MOST_UNPACKED_PER_PACKED_BYTE * path.stat().st_size):
         raise TraceError(
@@ -84,14 +84,14 @@ def _refuse_second_file(path: Path, file: BufferedReader) -> None:
         at = data.find(_MAGIC * 2)
         while at >= 0:
             end = at + len(_MAGIC)
-            if _is_whole(data[:end]):
+            if _is_complete_parquet(data[:end]):
                 raise TraceError(
                     f"{path}: a second Parquet file begins at byte {end}: split the file, and give each part by itself"
                 )
             at = data.find(_MAGIC * 2, at + 1)
 
 
-def _is_whole(content: bytes) -> bool:
+def _is_complete_parquet(content: bytes) -> bool:
     try:
         pq.read_metadata(pa.BufferReader(content))
     except (pa.ArrowException, OSError):

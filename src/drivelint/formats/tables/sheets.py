@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from drivelint.formats.tables.mapping import TextLayout
 
 MAX_NS = 2.0**63
-TEXT_BLOCK = 1 << 20
+TEXT_BLOCK_BYTES = 1 << 20
 _MOST_LISTED_PLACES = 5
 """A message lists at most this many places."""
 
@@ -39,12 +39,12 @@ class CsvSheet:
         self.metadata: dict[bytes, bytes] = {}
         self._skipped: list[int] = []
         self._columns: dict[str, pl.Series] = {}
-        header, following = self._first_lines()
+        header, following = self._header_and_first_row()
         self.names = [name.strip() for name in header]
         # some writers put a separator at the end of every line except the header
         self._spare = int(len(following) == len(header) + 1 and not following[-1].strip())
 
-    def _first_lines(self) -> tuple[list[str], list[str]]:
+    def _header_and_first_row(self) -> tuple[list[str], list[str]]:
         import csv
 
         try:
@@ -55,7 +55,7 @@ class CsvSheet:
                 header = next(lines, [])
                 following = next((line for line in lines if any(cell.strip() for cell in line)), [])
         except UnicodeDecodeError:
-            self._check_text()
+            self._check_utf8()
             raise
         except csv.Error as error:
             raise TraceError(f"{self._path}: not a CSV table: {error}") from error
@@ -65,12 +65,12 @@ class CsvSheet:
             )
         return header, following
 
-    def _check_text(self) -> None:
+    def _check_utf8(self) -> None:
         """Raise `TraceError` with the place of bytes that are not UTF-8: in malformed lines, the CSV parser ignores them."""
         decoder, at = codecs.getincrementaldecoder("utf-8")(), 0
         with self._path.open("rb") as file:
             while True:
-                block = file.read(TEXT_BLOCK)
+                block = file.read(TEXT_BLOCK_BYTES)
                 if self.zeros_at is None and b"\0" in block:
                     self.zeros_at = at + block.index(b"\0")
                 pending = len(decoder.getstate()[0])
@@ -87,7 +87,7 @@ class CsvSheet:
         """Read these columns as text, and return the number of rows."""
         import pyarrow.csv as arrow_csv
 
-        self._check_text()
+        self._check_utf8()
         width = len(self.names) + self._spare
         column_names = {str(self.names.index(name)): name for name in names}
         options = (
@@ -95,7 +95,7 @@ class CsvSheet:
                 skip_rows=self._layout.skip_rows + 1, column_names=[str(i) for i in range(width)], use_threads=False
             ),
             arrow_csv.ParseOptions(
-                delimiter=self._layout.separator, invalid_row_handler=self._refuse, ignore_empty_lines=False
+                delimiter=self._layout.separator, invalid_row_handler=self._skip_bad_line, ignore_empty_lines=False
             ),
             arrow_csv.ConvertOptions(
                 include_columns=list(column_names),
@@ -111,7 +111,7 @@ class CsvSheet:
                 raise TraceError(f"{self._path}: no row follows the header: nothing can be judged") from error
             raise TraceError(f"{self._path}: not a CSV table: {' '.join(str(error).split())}") from error
         self._columns = {
-            name: _trimmed(table.column(key), self._layout.null_values) for key, name in column_names.items()
+            name: _trimmed_texts(table.column(key), self._layout.null_values) for key, name in column_names.items()
         }
         return int(table.num_rows)
 
@@ -121,7 +121,7 @@ class CsvSheet:
         return [line - self._layout.skip_rows - 2 - int(np.searchsorted(skipped, line)) for line in self.bad_lines]
 
     @property
-    def has_zeros_within(self) -> bool:
+    def has_content_after_zeros(self) -> bool:
         """Whether anything but zeros follows the first zero byte."""
         if self.zeros_at is None:
             return False
@@ -129,22 +129,22 @@ class CsvSheet:
             file.seek(self.zeros_at)
             return bool(file.read().strip(b"\0\r\n"))
 
-    def _refuse(self, row: Any) -> str:
+    def _skip_bad_line(self, row: Any) -> str:
         """Record a line with the wrong number of cells, as pyarrow's callback, and skip it; a blank line is no loss."""
         if row.text.strip(f" \t\r\n{self._layout.separator}"):
             self.bad_lines.append(row.number)
         self._skipped.append(row.number)
         return "skip"
 
-    def text(self, name: str) -> pa.Array:
+    def text_column(self, name: str) -> pa.Array:
         """Return the column as trimmed strings; NULL for empty cells."""
         return self._columns[name].to_arrow().cast(pa.string())
 
-    def filled(self, name: str) -> Mask:
+    def is_filled(self, name: str) -> Mask:
         """Return for each cell whether it is not empty."""
         return self._columns[name].is_not_null().to_numpy()
 
-    def number(self, name: str) -> tuple[Floats, Mask]:
+    def numbers_and_bad(self, name: str) -> tuple[Floats, Mask]:
         """Return values (NaN: empty or not a number), and for each cell whether it is text that is not a number."""
         import polars as pl
 
@@ -152,11 +152,11 @@ class CsvSheet:
         values = column.cast(pl.Float64, strict=False)
         return values.fill_null(float("nan")).to_numpy(), (column.is_not_null() & values.is_null()).to_numpy()
 
-    def time(self, name: str, unit_ns: float) -> tuple[Times, Mask]:
+    def times_and_bad(self, name: str, unit_ns: float) -> tuple[Times, Mask]:
         """Return nanoseconds (exact for integers), and for each cell whether it is empty or not a time. `unit_ns`: those of 1."""
         import polars as pl
 
-        t_ns, bad = _nanoseconds(*self.number(name), factor=unit_ns)
+        t_ns, bad = _nanoseconds_and_bad(*self.numbers_and_bad(name), factor=unit_ns)
         if unit_ns > 1:
             return t_ns, bad
         exact = self._columns[name].cast(pl.Int64, strict=False)  # beyond 2^53 a double is not exact to the nanosecond
@@ -164,9 +164,9 @@ class CsvSheet:
 
     def describe_rows(self, rows: Indices) -> str:
         """Return words with the line numbers of the first rows in `rows`."""
-        return describe_places("line", [self._line(int(row)) for row in rows[:_MOST_LISTED_PLACES]], len(rows))
+        return describe_places("line", [self._line_number(int(row)) for row in rows[:_MOST_LISTED_PLACES]], len(rows))
 
-    def _line(self, row: int) -> int:
+    def _line_number(self, row: int) -> int:
         line = row + self._layout.skip_rows + 2
         for skipped in self._skipped:
             line += skipped <= line
@@ -181,7 +181,7 @@ class ParquetSheet:
         self._path = path
         self.bad_lines: list[int] = []
         self.zeros_at: int | None = None
-        self.has_zeros_within = False
+        self.has_content_after_zeros = False
         schema = parquet.schema(path)
         self.names = list(schema.names)
         self.metadata: dict[bytes, bytes] = dict(schema.metadata or {})
@@ -198,21 +198,21 @@ class ParquetSheet:
     def _column(self, name: str) -> pa.Array:
         return parquet.column(self._table, name)
 
-    def text(self, name: str) -> pa.Array:
+    def text_column(self, name: str) -> pa.Array:
         """Return the column as trimmed strings. A column of only whole numbers has no decimal points."""
         column = self._column(name)
         try:
             if pa.types.is_floating(column.type) and not pc.any(pc.not_equal(column, pc.floor(column))).as_py():
                 column = column.cast(pa.int64())
-            return _trimmed(column.cast(pa.string()), []).to_arrow().cast(pa.string())
+            return _trimmed_texts(column.cast(pa.string()), []).to_arrow().cast(pa.string())
         except pa.ArrowException as error:
             raise TraceError(f"{self._path}: column {name!r} is {column.type}, not text: map another column") from error
 
-    def filled(self, name: str) -> Mask:
+    def is_filled(self, name: str) -> Mask:
         """Return for each cell whether it is not NULL."""
         return np.asarray(self._column(name).is_valid().to_numpy(zero_copy_only=False), np.bool_)
 
-    def number(self, name: str) -> tuple[Floats, Mask]:
+    def numbers_and_bad(self, name: str) -> tuple[Floats, Mask]:
         """Return values (NaN: NULL), and False for each cell. Errors: `TraceError` if the column's type is not numeric."""
         column = self._column(name)
         try:
@@ -223,13 +223,13 @@ class ParquetSheet:
             ) from error
         return pc.fill_null(values, float("nan")).to_numpy(zero_copy_only=False), np.zeros(len(column), np.bool_)
 
-    def time(self, name: str, unit_ns: float) -> tuple[Times, Mask]:
+    def times_and_bad(self, name: str, unit_ns: float) -> tuple[Times, Mask]:
         """Return nanoseconds, and for each cell whether it is NULL or out of range. Time stamps and durations ignore `unit_ns`."""
         column = self._column(name)
         if pa.types.is_timestamp(column.type) or pa.types.is_duration(column.type):
             column, unit_ns = column.cast(pa.int64()), TIME_UNITS[column.type.unit]
         if not pa.types.is_integer(column.type) or unit_ns != int(unit_ns):
-            return _nanoseconds(*self.number(name), factor=unit_ns)
+            return _nanoseconds_and_bad(*self.numbers_and_bad(name), factor=unit_ns)
         whole = pc.fill_null(column.cast(pa.int64(), safe=False), 0).to_numpy(zero_copy_only=False)
         factor = int(unit_ns)
         most = int(MAX_NS) // factor
@@ -253,14 +253,14 @@ def describe_places(noun: str, first: list[int], n: int) -> str:
     )
 
 
-def _trimmed(column: pa.Array | pa.ChunkedArray, null_texts: list[str]) -> pl.Series:
+def _trimmed_texts(column: pa.Array | pa.ChunkedArray, null_texts: list[str]) -> pl.Series:
     import polars as pl
 
     series = pl.Series(column).str.strip_chars()
     return series.set(series.is_in(["", *null_texts]) if null_texts else series == "", None)
 
 
-def _nanoseconds(values: Floats, bad: Mask, *, factor: float) -> tuple[Times, Mask]:
+def _nanoseconds_and_bad(values: Floats, bad: Mask, *, factor: float) -> tuple[Times, Mask]:
     """Return values scaled to nanoseconds and rounded (8.3 s is 8,300,000,000 ns), and for each cell whether it is bad or too large."""
     with np.errstate(invalid="ignore", over="ignore"):
         scaled = np.rint(values * factor)

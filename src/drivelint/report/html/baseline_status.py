@@ -51,11 +51,11 @@ def finding_status(gate: Gate | None, finding_id: str) -> BaselineStatus | None:
     waiver, entry = gate.waiver(finding_id), gate.compared_finding(finding_id)
     why = ""
     if waiver is not None:
-        why = f"{descriptions.waiver_reason(waiver)} ({waiver.where})"
+        why = f"{descriptions.waiver_reason_phrase(waiver)} ({waiver.where})"
     elif kind == "possible":
         why = descriptions.reason_not_gating(gate, finding_id)
     elif entry is not None and entry.standing == "new":
-        why = f"before: {descriptions.verdict_there(entry)}: {entry.why}"
+        why = f"before: {descriptions.other_verdict_words(entry)}: {entry.why}"
     elif entry is not None and entry.standing == "changed":
         why = entry.why
     return BaselineStatus(kind, _status_label(gate, kind), why)
@@ -83,7 +83,7 @@ def gate_summary(gate: Gate | None, finding_ids: list[str]) -> dict[str, Any] | 
         "confidence": gate.confidence,
         "counts": [(kind, _status_label(gate, kind), kinds[kind]) for kind in shown if given.get(kind, True)],
         "waivers": [
-            (waiver, label, descriptions.waiver_scope(waiver))
+            (waiver, label, descriptions.waiver_scope_phrase(waiver))
             for state, label in _WAIVER_STATES.items()
             for waiver in gate.waivers
             if waiver.state == state

@@ -12,7 +12,7 @@ from collections import defaultdict, deque
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-from drivelint.formats.protobuf.scan import fields, signed
+from drivelint.formats.protobuf.scan import fields, signed_integer
 from drivelint.formats.protobuf.wire import nested
 
 if TYPE_CHECKING:
@@ -143,7 +143,7 @@ class _Protobuf:
 
 def _time(data: bytes) -> int:
     parts = {each.number: each.value for each in fields(data)}
-    return signed(parts.get(1, 0)) * _NS + signed(parts.get(2, 0))
+    return signed_integer(parts.get(1, 0)) * _NS + signed_integer(parts.get(2, 0))
 
 
 class _Json:

@@ -9,7 +9,7 @@ from itertools import count
 from typing import TYPE_CHECKING, Final, Protocol, cast
 
 from drivelint.errors import TraceError, UsageError
-from drivelint.formats.osi.trace_file import LENGTH
+from drivelint.formats.osi.trace_file import LENGTH_FIELD_BYTES
 from drivelint.watch.source import Frame, WrittenWindows
 from drivelint.watch.sources import transports
 from drivelint.watch.sources.background import BackgroundReader
@@ -104,7 +104,7 @@ class OsiSource(WrittenWindows):
 
 def with_length(data: bytes) -> bytes:
     """Return a message preceded by its length, as in a trace file."""
-    return len(data).to_bytes(LENGTH, "little") + data
+    return len(data).to_bytes(LENGTH_FIELD_BYTES, "little") + data
 
 
 class FileReceiver:

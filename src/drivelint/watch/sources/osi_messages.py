@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Final
 
 from drivelint.formats.osi.schema import GROUND_TRUTH, SENSOR_VIEW
-from drivelint.formats.osi.trace_file import LENGTH, MOST_MESSAGE_BYTES, is_osi_trace
-from drivelint.formats.protobuf.scan import fields, signed
+from drivelint.formats.osi.trace_file import LENGTH_FIELD_BYTES, MOST_MESSAGE_BYTES, may_be_osi_trace
+from drivelint.formats.protobuf.scan import fields, signed_integer
 
 _NS: Final = 1_000_000_000
 _TIMESTAMP, _TRUTH, _MOVING_OBJECT, _BASE, _POSITION = 2, 7, 5, 2, 2
@@ -30,7 +30,7 @@ class MessageCutter:
         found: list[bytes] = []
         place = 0
         while self.trouble is None:
-            begin = place + LENGTH
+            begin = place + LENGTH_FIELD_BYTES
             length = int.from_bytes(self._buffer[place:begin], "little")
             end = begin + length
             if len(self._buffer) < begin or (0 < length <= MOST_MESSAGE_BYTES and len(self._buffer) < end):
@@ -41,7 +41,7 @@ class MessageCutter:
                 self._stop(place, f"no message, but one of {length} bytes, begins")
                 break
             sure = _is_message_start(self._buffer, place)
-            if not sure and not ended and len(self._buffer) < end + LENGTH + 1:
+            if not sure and not ended and len(self._buffer) < end + LENGTH_FIELD_BYTES + 1:
                 break  # the following bytes show whether the length was right
             if not sure and len(self._buffer) > end and not _is_message_start(self._buffer, end):
                 self._stop(place, f"no message of {length} bytes and another one behind it begin")
@@ -58,7 +58,7 @@ class MessageCutter:
 
 def _is_message_start(buffer: bytearray, at: int) -> bool:
     """Return whether a message and its length may begin at byte `at`."""
-    return is_osi_trace(bytes(buffer[at : at + LENGTH + 1]), LENGTH + MOST_MESSAGE_BYTES)
+    return may_be_osi_trace(bytes(buffer[at : at + LENGTH_FIELD_BYTES + 1]), LENGTH_FIELD_BYTES + MOST_MESSAGE_BYTES)
 
 
 def message_kind(data: bytes) -> str | None:
@@ -113,4 +113,4 @@ def is_whole(data: bytes) -> bool:
 
 def _nanoseconds(data: bytes, start: int, end: int) -> int:
     parts = {field.number: field.value for field in fields(data, start, end)}
-    return signed(parts.get(1, 0)) * _NS + parts.get(2, 0)
+    return signed_integer(parts.get(1, 0)) * _NS + parts.get(2, 0)
