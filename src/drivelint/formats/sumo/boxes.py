@@ -120,8 +120,8 @@ def _size_findings(row_actors: RowActors, changing: Mask, sizeless: Mask) -> lis
     if changing.any():
         ids = [row_actors.ids[i] for i in np.unique(row_actors.actor[changing])]
         message = (
-            f"the type of {name_list(ids)} changes to {_type_names_text(row_actors, changing)}, whose length is different or not known: " " the log
-            hastheir front bumper, so the place of their box is then not known"
+            f"the type of {name_list(ids)} changes to {_type_names_text(row_actors, changing)}, whose length is different or not known: "
+            "the log has their front bumper, so the place of their box is then not known"
         )
         findings.append(QualityFinding("size_changes", "warning", message, int(changing.sum())))
     return findings
@@ -133,7 +133,9 @@ def _type_names_text(row_actors: RowActors, rows: Mask) -> str:
 
 
 def _copied_types_finding(row_actors: RowActors, original_by_copy: Mapping[str, str]) -> QualityFinding:
-    rows = np.isin(row_actors.type_code, [i for i, name in enumerate(row_actors.type_names) if name in original_by_copy])
+    rows = np.isin(
+        row_actors.type_code, [i for i, name in enumerate(row_actors.type_names) if name in original_by_copy]
+    )
     ids = [row_actors.ids[i] for i in np.unique(row_actors.actor[rows])]
     message = f"types that were changed for one vehicle have the size of the original type: {name_list(sorted(original_by_copy))}"
     return QualityFinding.of_actors("copied_type", "info", message, ids)
