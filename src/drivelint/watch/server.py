@@ -145,7 +145,7 @@ class LiveServer:
     def _publish_json(self, channel: int, message: Mapping[str, Any], t_ns: int) -> None:
         # viewers refuse a schema that allows null, so a message leaves out fields with unknown values
         known = {name: value for name, value in message.items() if replace_non_finite(value) is not None}
-        self._server.publish(channel, msgspec.json.encode(known), self._times(t_ns).at(t_ns))
+        self._server.publish(channel, msgspec.json.encode(known), self._clock_for(t_ns).at(t_ns))
 
     def _clock_for(self, t_ns: int) -> LogClock:
         """Return the clock of the log times. It is kept for the whole watch, unless a time would be negative with it."""
