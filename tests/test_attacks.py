@@ -15,7 +15,7 @@ import pyarrow as pa
 import pytest
 
 from drivelint.scene import document
-from drivelint.scene.judge import Verdicts, judge_scenes
+from drivelint.scene.judge import VerdictsOfScenes, judge_scenes
 from drivelint.scene.scene import Scene, scenes_of
 from tests.drawn import SCENES, TOPICS
 
@@ -170,22 +170,24 @@ def scenes(topic: str, most: int | None) -> tuple[Scene, ...]:
     return tuple(scenes_of(file.scenes[:most], file.roads))
 
 
-def worse(clean: Verdicts, attacked: Verdicts) -> list[str]:
+def worse(clean: VerdictsOfScenes, attacked: VerdictsOfScenes) -> list[str]:
     """Return the verdicts that rest on the fault."""
     wrong = []
     for key in sorted(clean.rows.keys() | attacked.rows.keys()):
         before, after = clean.verdict(key), attacked.verdict(key)
         if after == "fail" != before or (before == "fail" and after in {"pass", "not_applicable"}):
-            wrong.append(f"{key}: {before} -> {after}: {attacked.reasons(key)}")
+            wrong.append(f"{key}: {before} -> {after}: {attacked.reasons_text(key)}")
     return wrong
 
 
 @pytest.fixture(scope="module")
-def clean(tmp_path_factory: pytest.TempPathFactory) -> Callable[[tuple[str, ...], int], tuple[list[Scene], Verdicts]]:
+def clean(
+    tmp_path_factory: pytest.TempPathFactory,
+) -> Callable[[tuple[str, ...], int], tuple[list[Scene], VerdictsOfScenes]]:
     """Return what judges the first scenes of topics, as they are."""
 
     @cache
-    def judge(topics: tuple[str, ...], most: int) -> tuple[list[Scene], Verdicts]:
+    def judge(topics: tuple[str, ...], most: int) -> tuple[list[Scene], VerdictsOfScenes]:
         chosen = [scene for topic in topics for scene in scenes(topic, most)]
         return chosen, judge_scenes(chosen, ["status:stable"], tmp_path_factory.mktemp("clean") / "scenes")
 

@@ -273,7 +273,7 @@ def test_the_memory_limit_is_really_lifted() -> None:
     large = "CREATE OR REPLACE TEMP TABLE large AS SELECT list(i) AS all FROM range(20_000_000) r(i)"
     with store.connect(memory_limit="100MB") as con:
         con.execute("SET temp_directory=''")
-        store.lock(con)
+        store.lock_down(con)
         with pytest.raises(duckdb.OutOfMemoryException):
             con.execute(large)
         store.lift_memory_limit(con)
@@ -328,7 +328,7 @@ def test_the_database_spills_into_a_folder_of_its_own(tmp_path: Path, monkeypatc
     """DuckDB's own choice is a folder where the user is."""
     monkeypatch.chdir(tmp_path)
     with store.workspace(LEAST_MEMORY_BYTES) as con:
-        store.lock(con)
+        store.lock_down(con)
         ((spill,),) = con.execute("SELECT current_setting('temp_directory')").fetchall()
         con.execute("CREATE TABLE large AS SELECT i, hash(i) AS h FROM range(10_000_000) r(i)")
         assert any(Path(spill).iterdir())

@@ -31,7 +31,7 @@ def con() -> Iterator[duckdb.DuckDBPyConnection]:
 
 def only(monkeypatch: pytest.MonkeyPatch, found: Mapping[str, tuple[str, set[str]]]) -> None:
     made = {table: derivations.Derivation(table, sql, frozenset(reads)) for table, (sql, reads) in found.items()}
-    monkeypatch.setattr(derivations, "_files", lambda: made)
+    monkeypatch.setattr(derivations, "_file_by_table", lambda: made)
     monkeypatch.setattr(derivations, "_derivation", made.__getitem__)
 
 
@@ -46,7 +46,7 @@ def test_without_an_occasion_a_table_of_few_states_stays_empty(
 ) -> None:
     """Of many, nothing is run twice: the statement itself finds that there are no rows; here it is made to have some."""
     made = {"step": derivations.Derivation("step", STEP, frozenset(), occasion="SELECT 1 WHERE false")}
-    monkeypatch.setattr(derivations, "_files", lambda: made)
+    monkeypatch.setattr(derivations, "_file_by_table", lambda: made)
     monkeypatch.setattr(derivations, "_derivation", made.__getitem__)
     monkeypatch.setattr(derive, "ASKED_STATES", most)
     derive.derive(con, ["step"], of_the_map=False, also=())

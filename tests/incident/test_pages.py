@@ -17,7 +17,7 @@ from drivelint.incident import IncidentRequest, open_case, pdf, render
 from drivelint.incident.sheet import content
 from drivelint.report.outputs import write
 from drivelint.report.progress import Silent
-from drivelint.road.geo_reference import tangent_plane
+from drivelint.road.geo_reference import tangent_plane_frame
 from drivelint.run import CheckOptions, check
 from tests.report.browser import CHROMIUM, Page
 from tests.shared_data import shared
@@ -149,7 +149,7 @@ def crowded_first_page(case: Case) -> Case:
     again = replace(case.again, steps=steps)
     said = QualityFinding(ASSUMED_SIZE, "info", f"size by the option {'of the user ' * 5}, not recorded")
     trace = with_quality_finding(case.drive.trace, said)
-    again_drive = replace(case.drive, trace=trace, geo=tangent_plane(52.946849, 2.907433))
+    again_drive = replace(case.drive, trace=trace, geo=tangent_plane_frame(52.946849, 2.907433))
     return replace(case, result=result, again=again, drive=again_drive, finding=replace(finding, row=row, drive=drive))
 
 

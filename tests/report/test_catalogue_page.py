@@ -19,7 +19,7 @@ from drivelint.report.catalogue_page import (
     render_markdown,
 )
 from drivelint.resources import folder
-from drivelint.road.signcodes import kind_of
+from drivelint.road.signcodes import signal_kind
 
 PACKS = folder("queries") / "assertions"
 
@@ -104,7 +104,7 @@ def test_every_condition_is_explained() -> None:
 
 def test_a_signal_is_recognised_by_the_name_that_the_page_gives() -> None:
     parts = map_features()["name_parts"]
-    assert {kind: kind_of("", "", name) for kind, name in parts.items()} == {kind: kind for kind in parts}
+    assert {kind: signal_kind("", "", name) for kind, name in parts.items()} == {kind: kind for kind in parts}
 
 
 def map_feature_rows() -> list[list[str]]:

@@ -22,7 +22,7 @@ KARLSRUHE = "+proj=tmerc +lat_0=49 +lon_0=8.4 +datum=WGS84"
 def placed(geo: GeoFrame, *places: tuple[float, float]) -> list[tuple[float | None, float | None]]:
     """Return longitude and latitude of findings at these places (m) of a drive, as a run writes them, in a locked database."""
     with store.connect() as con:
-        store.lock(con)
+        store.lock_down(con)
         row = {"drive_id": "d", "geo_reference": geo.reference, "geo_x_m": geo.x_m, "geo_y_m": geo.y_m}
         add(con, "data_log", row | {"geo_yaw_rad": geo.yaw_rad})
         add(con, "actor", {"drive_id": "d", "actor_id": "e", "is_ego": True})

@@ -8,7 +8,7 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from drivelint.road.boundary_lanes import BoundedLane, build_lanes, lane_points, side_driven_on
+from drivelint.road.boundary_lanes import BoundedLane, build_lanes, lane_point_columns, side_driven_on
 from drivelint.road.quality import MapQuality
 
 
@@ -30,7 +30,7 @@ def test_a_straight_lane() -> None:
     assert np.allclose(lane.line.centre, np.array([(100, 50), (100 + 10 / 3, 50), (100 + 20 / 3, 50), (110, 50)]))
     assert np.allclose(lane.line.half_width, 1.75)
     assert np.allclose(lane.line.tangent, [1, 0])
-    assert (lane.line.width, lane.line.area, lane.line.turn) == pytest.approx((3.5, 35.0, 0.0))
+    assert (lane.line.width, lane.line.area, lane.line.turn_rad) == pytest.approx((3.5, 35.0, 0.0))
 
 
 @given(
@@ -53,7 +53,7 @@ def test_an_arc_with_differently_many_points(radius: float, angle: float, left: 
     sagitta = (radius + 1.75) * (1 - np.cos(angle / (min(left, right) - 1) / 2))
     assert built.line.area == pytest.approx(area, rel=0.02)
     assert abs(built.line.s[-1] - radius * angle) < 0.02 * radius * angle + sagitta
-    assert built.line.turn == pytest.approx(turn * angle, abs=angle / 3)
+    assert built.line.turn_rad == pytest.approx(turn * angle, abs=angle / 3)
     assert abs(built.line.width - 3.5) < 2 * sagitta + 0.05
     assert not quality.rows
 
@@ -78,7 +78,7 @@ def test_what_lies_side_by_side_is_one_road() -> None:
         "20": ("r20", -1, 1),
     }
     assert side_driven_on(lanes) == "rht"
-    points = lane_points(lanes)
+    points = lane_point_columns(lanes)
     last = np.array(points["lanelet_id"]) == "13"
     assert points["road_s_m"][last].tolist() == pytest.approx([10, 20 / 3, 10 / 3, 0])
 

@@ -32,8 +32,11 @@ KARLSRUHE = "+proj=tmerc +lat_0=49 +lon_0=8.4 +k=1 +x_0=0 +y_0=0 +datum=WGS84"
     ],
 )
 def test_references(one: str, other: str, same: bool, comparable: bool) -> None:
-    assert (geo_reference.same_reference(one, other), geo_reference.different_places(one, other)) == (same, comparable)
-    assert geo_reference.same_reference(other, one) == same
+    assert (geo_reference.is_same_reference(one, other), geo_reference.is_conflicting_reference(one, other)) == (
+        same,
+        comparable,
+    )
+    assert geo_reference.is_same_reference(other, one) == same
 
 
 def with_reference(text: str | None) -> str:
@@ -44,9 +47,15 @@ def with_reference(text: str | None) -> str:
 
 
 def test_the_reference_of_a_map() -> None:
-    found = [geo_reference.reference_of(MapSource("m", with_reference(text).encode())) for text in (UTM, None, " ")]
+    found = [
+        geo_reference.opendrive_geo_reference(MapSource("m", with_reference(text).encode()))
+        for text in (UTM, None, " ")
+    ]
     assert found == [UTM, None, None]
-    assert geo_reference.reference_of(MapSource("m", f"<header><geoReference>\n{UTM}</geoReference>".encode())) == UTM
+    assert (
+        geo_reference.opendrive_geo_reference(MapSource("m", f"<header><geoReference>\n{UTM}</geoReference>".encode()))
+        == UTM
+    )
 
 
 def put(folder: Path, **references: str | None) -> MapLibrary:

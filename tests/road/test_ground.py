@@ -7,7 +7,7 @@ import pytest
 
 from drivelint.errors import MapError
 from drivelint.formats import load_map, map_registry
-from drivelint.road.ground import ground_squares
+from drivelint.road.ground import approximate_square_count
 from drivelint.road.map_reader import MapSource
 from tests.hostile import huge
 
@@ -19,10 +19,10 @@ def points(*rows: tuple[str, float, float, float]) -> pa.Table:
 
 def test_squares_are_those_of_boxes_round_segments() -> None:
     straight = (("a", 0.0, 0.0, 1.5), ("a", 10.0, 0.0, 1.0))
-    assert ground_squares(points(*straight)) == 7.5 * 2.5
+    assert approximate_square_count(points(*straight)) == 7.5 * 2.5
     aslant = (("b", 50.0, 0.0, 2.0), ("b", 56.0, 8.0, 2.0), ("b", 62.0, 16.0, 2.0))
-    assert ground_squares(points(*straight, *aslant)) == 7.5 * 2.5 + 2 * 6.0 * 7.0
-    assert ground_squares(points(("a", 0.0, 0.0, 1.5))) == 0.0
+    assert approximate_square_count(points(*straight, *aslant)) == 7.5 * 2.5 + 2 * 6.0 * 7.0
+    assert approximate_square_count(points(("a", 0.0, 0.0, 1.5))) == 0.0
 
 
 def test_a_road_network_for_a_small_file_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,7 +12,7 @@ from drivelint.errors import MapError
 from drivelint.formats import load_map
 from drivelint.road import tree_parts
 from drivelint.road.map_reader import MapSource
-from drivelint.road.tree_parts import CrowdedPlaceError, all_in_parts, query_in_parts
+from drivelint.road.tree_parts import CrowdedPlaceError, all_pairs, query_in_parts
 from tests.hostile import huge
 
 if TYPE_CHECKING:
@@ -31,8 +31,8 @@ def test_parts_are_what_one_call_returns(most: int, monkeypatch: pytest.MonkeyPa
     tree, shapes = shapely.STRtree(boxes(300)), boxes(200, 1)
     for predicate, distance in (("intersects", None), ("dwithin", 3.0)):
         whole = tree.query(shapes, predicate=predicate, distance=distance)
-        assert np.array_equal(np.stack(all_in_parts(tree, shapes, predicate, distance)), whole)  # type: ignore[arg-type]
-    assert [part.tolist() for part in all_in_parts(tree, [], "intersects")] == [[], []]
+        assert np.array_equal(np.stack(all_pairs(tree, shapes, predicate, distance)), whole)  # type: ignore[arg-type]
+    assert [part.tolist() for part in all_pairs(tree, [], "intersects")] == [[], []]
 
 
 def test_no_call_gives_far_more_pairs_than_a_part_may_have(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -41,7 +41,7 @@ def test_no_call_gives_far_more_pairs_than_a_part_may_have(monkeypatch: pytest.M
     same = [shapely.box(0, 0, 1, 1)] * 500
     sizes = [len(first) for first, _ in query_in_parts(shapely.STRtree(same), same, "intersects")]
     assert sum(sizes) == 500 * 500
-    assert max(sizes) <= tree_parts.FIRST_PART * 500
+    assert max(sizes) <= tree_parts.FIRST_PART_SHAPES * 500
 
 
 def test_a_crowded_place_is_told_before_the_work(monkeypatch: pytest.MonkeyPatch) -> None:

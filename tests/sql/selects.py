@@ -15,7 +15,7 @@ from drivelint.evaluate.evaluation import Evaluation, PlanRecorder
 from drivelint.evaluate.sql_fragments import Binding
 from drivelint.resources import folder
 from drivelint.sql import store
-from drivelint.sql.statements import statement, texts
+from drivelint.sql.statements import statement, statement_texts
 
 if TYPE_CHECKING:
     from drivelint.catalogue import Rule
@@ -44,7 +44,7 @@ def fixed() -> dict[str, str]:
     """Return name -> SELECT of the statements that are the same for all rules."""
     found: dict[str, str] = {}
     for part in PARTS:
-        for name, text in texts(part).items():
+        for name, text in statement_texts(part).items():
             for each in duckdb.extract_statements(text) if not _INCOMPLETE.search(text) else ():
                 if sql := select(each.query):
                     found[f"{part}/{name}" + (f" {len(found)}" if f"{part}/{name}" in found else "")] = sql

@@ -11,7 +11,7 @@ import pytest
 
 from drivelint.reasons.reason_table import make_reason_table
 from drivelint.sql import store, syntax
-from drivelint.sql.statements import statement, texts
+from drivelint.sql.statements import statement, statement_texts
 from tests.sql import selects
 
 SOURCE = Path(__file__).resolve().parents[2] / "src" / "drivelint"
@@ -31,7 +31,8 @@ VALUES: dict[str, Any] = {
 
 def test_fragments_are_replaced_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(
-        "drivelint.sql.statements.texts", lambda _part: {"x": "SELECT {'a': {value}}, format('{}', 1) -- {value}"}
+        "drivelint.sql.statements.statement_texts",
+        lambda _part: {"x": "SELECT {'a': {value}}, format('{}', 1) -- {value}"},
     )
     assert statement("part/x", value="{value}") == "SELECT {'a': {value}}, format('{}', 1) -- {value}"
     with pytest.raises(KeyError, match="value"):
@@ -46,7 +47,7 @@ def test_a_fixed_statement_is_read(name: str) -> None:
 def test_python_runs_every_statement() -> None:
     sources = "\n".join(file.read_text(encoding="utf-8") for file in SOURCE.rglob("*.py"))
     named = set(re.findall(r'"(?:\w+/)?(\w+)"', sources))
-    assert {f"{part}/{name}" for part in selects.PARTS for name in texts(part) if name not in named} == set()
+    assert {f"{part}/{name}" for part in selects.PARTS for name in statement_texts(part) if name not in named} == set()
 
 
 def test_the_plans_join_on_keys() -> None:

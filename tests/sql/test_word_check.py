@@ -11,13 +11,13 @@ from hypothesis import strategies as st
 from drivelint.resources import folder
 from drivelint.sql import macro_trees, store, syntax, word_check
 from drivelint.sql.derivations import derivations
-from drivelint.sql.word_check import CheckedQuery, check
+from drivelint.sql.word_check import CheckedQuery, check_query
 from drivelint.sql.word_scope import Relation
 from drivelint.sql.words import Vocabulary, WordColumn
 
 
 def checked(sql: str, tables: dict[str, Relation] | None = None) -> CheckedQuery:
-    return check(syntax.parse_select(sql, "a test"), tables)
+    return check_query(syntax.parse_select(sql, "a test"), tables)
 
 
 def wrong(sql: str) -> list[str]:
@@ -261,7 +261,7 @@ def test_tables_beside_those_of_the_schemas_are_known() -> None:
 def test_a_derivation_has_only_words_that_its_tables_have_and_fills_every_column(name: str) -> None:
     """Both what it compares and what it gives; a column that nothing fills would be NULL for ever."""
     found = checked(derivations()[name].sql)
-    assert [each.message for each in (*found.wrong, *word_check.wrong_in_columns(name, found.relation))] == []
+    assert [each.message for each in (*found.wrong, *word_check.wrong_words_in_columns(name, found.relation))] == []
     assert found.relation.complete
     filled = dict(found.relation.columns)
     assert list(store.column_comments()[name].keys() - filled.keys() - {"geom"}) == []
@@ -272,7 +272,7 @@ def test_a_derivation_has_only_words_that_its_tables_have_and_fills_every_column
 
 def test_a_derivation_that_gives_another_word_is_found() -> None:
     found = checked("SELECT CASE WHEN k = 0 THEN 'left' ELSE 'rigth' END AS side FROM step")
-    (only,) = word_check.wrong_in_columns("lane_change", found.relation)
+    (only,) = word_check.wrong_words_in_columns("lane_change", found.relation)
     assert (only.message, only.offset) == ("'rigth' is no side; did you mean 'right'?", 40)
 
 
@@ -297,7 +297,7 @@ def test_what_reads_the_tables_beside_the_rules_has_only_words_that_they_have(pa
         if tree["error"]:
             continue  # with fragments, or no SELECT
         read += 1
-        assert [each.message for each in check(tree["statements"][0]["node"]).wrong] == [], file.name
+        assert [each.message for each in check_query(tree["statements"][0]["node"]).wrong] == [], file.name
     assert read
 
 

@@ -83,9 +83,9 @@ def test_a_vocabulary_knows_its_words_and_proposes_the_nearest_for_another(vocab
     assert vocabulary.says
     for word in vocabulary.words:
         assert vocabulary.problem(word) is None
-        assert vocabulary.spelled(word.upper()) == word
+        assert vocabulary.known_spelling(word.upper()) == word
         wrong = f"{word}{word[-1]}x" if len(word) < 3 else f"{word[:-1]}{word[-2]}{word[-1]}"
-        if wrong not in vocabulary.words and vocabulary.is_listed:
+        if wrong not in vocabulary.words and vocabulary.has_all_words:
             assert str(vocabulary.problem(wrong)).startswith(
                 f"{wrong!r} is no {vocabulary.name.replace('_', ' ')}; "
             ), wrong
@@ -138,7 +138,7 @@ def check_ids() -> dict[str, set[str]]:
                 found["log_check"].add(first)
             if name == "findings" and isinstance(second, str):
                 found["log_check"].add(second)
-            if name in {"add", "_row"} and len(said) >= 4 and isinstance(first, str):
+            if name in {"add", "_quality_row"} and len(said) >= 4 and isinstance(first, str):
                 found["map_check"].add(first)
     return found
 
@@ -174,7 +174,7 @@ def test_a_comment_is_shown_with_the_words_in_place_of_the_mark() -> None:
     assert comments["lanelet"]["lane_type"] == "a word of lane_type"
     assert comments["ego_condition"]["nation"] == "gb, gb-eng, gb-wls, gb-sct, de, ...; NULL: not given"
     assert comments["actor"]["actor_id"] == "the log's own id of the actor, as text"
-    assert not [text for columns in comments.values() for text in columns.values() if words.MARK.match(text)]
+    assert not [text for columns in comments.values() for text in columns.values() if words.VOCABULARY_MARK.match(text)]
 
 
 def handed_over(table: str, column: str, value: Any) -> None:

@@ -19,7 +19,7 @@ from drivelint.errors import DriveLintError
 from drivelint.watch.options import WatchOptions
 from drivelint.watch.run import Watch
 from drivelint.watch.sources.replay import Replay
-from drivelint.watch.window import S
+from drivelint.watch.window import NS_PER_S
 from tests.demo.scenes import all_scenes
 from tests.false_alarms.count import REAL
 from tests.shared_data import DATA, ROOT
@@ -93,7 +93,7 @@ def _in_words(counts: dict[str, int]) -> str:
 def memory(log: Path, road: Path, window_s: float, every_s: float) -> int:
     """Watch a log without looking at what is said; print the process's memory now and then."""
     options = WatchOptions(source=str(log), map=road, window_s=window_s, every_s=every_s, robustness=False)
-    source = Replay(log, options.ingest_options(), speed=0, every_ns=round(every_s * S))
+    source = Replay(log, options.ingest_options(), speed=0, every_ns=round(every_s * NS_PER_S))
     over = threading.Event()
     with Watch(options, source, lambda _message: None, Interruption()) as watching:
 

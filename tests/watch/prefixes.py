@@ -16,7 +16,7 @@ from drivelint.watch.options import WatchOptions
 from drivelint.watch.run import egos_of
 from drivelint.watch.settled import SettledVerdicts
 from drivelint.watch.sources.replay import Replay
-from drivelint.watch.window import S, Window
+from drivelint.watch.window import NS_PER_S, Window
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Watched:
+class WatchOutcome:
     """The alarms of a log, the findings of the whole log that no alarm is of, and the windows.
 
     `settled`: how many verdicts were said before its end. `revised`: those of the whole log that are others than was said.
@@ -61,20 +61,22 @@ class Made(NamedTuple):
 
 def windows_of(options: WatchOptions, folder: Path) -> list[Made]:
     """Return each window of a replayed log."""
-    every_ns = round(options.every_s * S)
+    every_ns = round(options.every_s * NS_PER_S)
     source = Replay(folder / options.source, options.ingest_options(), speed=0, every_ns=every_ns)
-    window = Window(round(options.window_s * S))
+    window = Window(round(options.window_s * NS_PER_S))
     found = []
     while (frames := source.read(0)) is not None:
         window.add(frames)
         while window.advance(every_ns):
             ingest = options.ingest_options()
-            latest = source.latest(window.since(frames[0].t_ns - contact.LOOK_NS), folder, ingest)
-            found.append(Made(source.window(window.frames, folder, ingest)(), window.is_whole, latest))
+            latest = source.latest_trace(
+                window.frames_since(frames[0].t_ns - contact.LEAST_EXAMINED_NS), folder, ingest
+            )
+            found.append(Made(source.window_reader(window.frames, folder, ingest)(), window.is_whole, latest))
     return found
 
 
-def watch(options: WatchOptions, folder: Path, *, at_once: int = 60) -> Watched:
+def watch(options: WatchOptions, folder: Path, *, at_once: int = 60) -> WatchOutcome:
     """Watch a log of a folder, with so many windows in a pass."""
     made = windows_of(options, folder)
     start_ns = made[0].trace.tables["data_log"]["t_start_ns"][0].as_py()
@@ -84,23 +86,25 @@ def watch(options: WatchOptions, folder: Path, *, at_once: int = 60) -> Watched:
             judged += judge.judge([each.trace for each in made[at : at + at_once]], start_ns)
         alarms = AlarmLog(judge.gaps_ns, judge.profiles)
         settled = SettledVerdicts()
-        contacts = judge.contact_look()
+        contacts = judge.contact_finder()
         egos: set[str] = set()
         until: int | None = None
         for each, (trace, is_whole, latest) in zip(judged, made, strict=True):
             if contacts is not None and until is not None and egos == egos_of(latest):
-                alarms.look(contacts.look(latest, until), latest.tables["data_log"]["t_end_ns"][0].as_py())
+                alarms.add_contacts(
+                    contacts.new_contacts(latest, until), latest.tables["data_log"]["t_end_ns"][0].as_py()
+                )
             if isinstance(each, JudgedWindow):
                 egos = egos_of(trace)
-                from_ns = None if is_whole else each.t_end_ns - round(options.window_s * S)
-                settled.take(each, each.t_start_ns if from_ns is None else from_ns + WARM_UP_NS)
-                alarms.take(each, until, from_ns)
+                from_ns = None if is_whole else each.t_end_ns - round(options.window_s * NS_PER_S)
+                settled.new_settled_rows(each, each.t_start_ns if from_ns is None else from_ns + WARM_UP_NS)
+                alarms.add_window(each, until, from_ns)
                 until = each.t_end_ns
     result = run.check(checked(options, folder), Silent())
     findings = result.findings.to_pylist()
-    missed = alarms.hold_against(findings, result.verdicts)
-    _, revised = settled.hold_against(result.verdicts)
-    return Watched(alarms.alarms, missed, findings, judged, len(settled), revised)
+    missed = alarms.assign_findings(findings, result.verdicts)
+    _, revised = settled.late_and_revised_rows(result.verdicts)
+    return WatchOutcome(alarms.alarms, missed, findings, judged, len(settled), revised)
 
 
 def checked(options: WatchOptions, folder: Path) -> run.CheckOptions:
@@ -113,4 +117,4 @@ def checked(options: WatchOptions, folder: Path) -> run.CheckOptions:
 
 def told(rows: Sequence[Row]) -> list[tuple[str, str | None, str | None, float]]:
     """Return rule, profile, object and start of findings, for a message."""
-    return [(r["rule_id"], r["profile"], r["object_id"], round(r["t_start_ns"] / S, 2)) for r in rows]
+    return [(r["rule_id"], r["profile"], r["object_id"], round(r["t_start_ns"] / NS_PER_S, 2)) for r in rows]

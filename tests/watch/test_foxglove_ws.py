@@ -46,7 +46,7 @@ def scene_log(path: Path, encoding: str) -> Path:
     return write(path, messages, encoding)
 
 
-def received(source: foxglove_ws.FoxgloveWebSocket, least: int) -> list[Frame]:
+def received(source: foxglove_ws.FoxgloveSource, least: int) -> list[Frame]:
     """Return frames until there are so many."""
     frames: list[Frame] = []
 
@@ -81,7 +81,7 @@ def test_the_recording_has_the_states_of_what_is_played(tmp_path: Path) -> None:
         assert mine[table].drop_columns("drive_id").equals(there)
 
     since = frames[-60].t_ns
-    window = source.window(frames[-60:], tmp_path, options)().tables["actor_state"].to_pylist()
+    window = source.window_reader(frames[-60:], tmp_path, options)().tables["actor_state"].to_pylist()
     whole = [row for row in mine["actor_state"].to_pylist() if row["t_ns"] >= min(row["t_ns"] for row in window)]
     key = ("t_ns", "actor_id", "x_m", "y_m")
     assert since > frames[0].t_ns

@@ -18,7 +18,7 @@ from drivelint.drive.time_span import cut_trace
 from drivelint.drive.trace import IngestOptions
 from drivelint.errors import UsageError
 from drivelint.formats import read_trace
-from drivelint.watch.server import ALARMS, LiveServer, alarm_schema, open_server
+from drivelint.watch.server import ALARMS_TOPIC, LiveServer, alarm_schema, open_server
 from tests.shared_data import ROOT
 
 pytest.importorskip("websockets")
@@ -119,7 +119,11 @@ def test_alarms_and_margins(server: LiveServer, monkeypatch: pytest.MonkeyPatch)
     server.publish_margins([{**MARGIN, "drive_id": "d"}])
     alarm, margin = client.messages(2)
     client.close()
-    assert (alarm.channel.topic, alarm.channel.schema.name, alarm.log_ns) == (ALARMS, "drivelint.Alarm", 1_000_000_000)
+    assert (alarm.channel.topic, alarm.channel.schema.name, alarm.log_ns) == (
+        ALARMS_TOPIC,
+        "drivelint.Alarm",
+        1_000_000_000,
+    )
     assert json.loads(alarm.content) == {k: v for k, v in ALARM.items() if k not in {"object_id", "observed"}}
     topic = f"/drivelint/{measures.margin_topic(RULE)}"
     assert (margin.channel.topic, margin.channel.schema.name, margin.log_ns) == (

@@ -16,12 +16,12 @@ from drivelint.engine.judging_options import JudgingOptions
 from drivelint.errors import UsageError
 from drivelint.run import CheckOptions
 from drivelint.watch import triggers
-from drivelint.watch.halting import Child
+from drivelint.watch.halting import ChildProgram
 from drivelint.watch.interruption import WatchInterruption
 from drivelint.watch.judge import JudgedWindow
 from drivelint.watch.options import WatchOptions
 from drivelint.watch.shrinking import ShrinkingMargins
-from drivelint.watch.window import S
+from drivelint.watch.window import NS_PER_S
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -63,11 +63,11 @@ def test_a_child_that_does_not_want_to_end_is_killed_with_all_that_it_started(
         "time.sleep(60)\n",
         encoding="utf-8",
     )
-    child = Child([PYTHON, str(script)])
+    child = ChildProgram([PYTHON, str(script)])
     wait_for(tmp_path / "pids")
-    assert child.code is None
+    assert child.exit_code is None
     child.end()
-    assert child.code == -9
+    assert child.exit_code == -9
     pids = [int(pid) for pid in (tmp_path / "pids").read_text(encoding="utf-8").split()]
     for _ in range(100):
         if not any(map(is_running, pids)):
@@ -77,46 +77,46 @@ def test_a_child_that_does_not_want_to_end_is_killed_with_all_that_it_started(
 
 
 def test_a_child_that_ends_by_itself_is_asked_only() -> None:
-    child = Child([PYTHON, "-c", "import time; time.sleep(60)"])
+    child = ChildProgram([PYTHON, "-c", "import time; time.sleep(60)"])
     child.end()
-    assert child.code == -15
+    assert child.exit_code == -15
 
 
 def test_a_program_that_is_not_there() -> None:
     with pytest.raises(UsageError, match="no-such-program: cannot be started"):
-        Child(["no-such-program"])
+        ChildProgram(["no-such-program"])
 
 
 def test_a_command_runs_at_most_once_a_second(tmp_path: Path) -> None:
     (trigger,) = triggers.parse([f"{RULE}={PYTHON} -c pass"], KNOWN, KNOWN)
     for _ in range(5):
-        assert trigger.pull([{"rule_id": RULE}]) is None
-    assert trigger.pull([{"rule_id": "another"}]) is None
+        assert trigger.run_for_alarms([{"rule_id": RULE}]) is None
+    assert trigger.run_for_alarms([{"rule_id": "another"}]) is None
     assert (trigger.n_run, trigger.n_left_out) == (1, 4)
     trigger.close()
 
 
 def test_alarms_that_a_command_did_not_get_are_counted_when_it_starts_again_and_at_the_end() -> None:
     (trigger,) = triggers.parse([f"{RULE}={PYTHON} -c pass"], KNOWN, KNOWN)
-    told = [trigger.pull([{"rule_id": RULE}] * 2) for _ in range(3)]
+    told = [trigger.run_for_alarms([{"rule_id": RULE}] * 2) for _ in range(3)]
     trigger._last_s -= triggers.LEAST_PAUSE_S
-    told += [trigger.pull([{"rule_id": RULE}]), trigger.left_out()]
+    told += [trigger.run_for_alarms([{"rule_id": RULE}]), trigger.left_out_note()]
     assert told == [None, None, None, f"--on: {PYTHON} was not started for 4 alarms: {LIMITS}", None]
-    trigger.pull([{"rule_id": RULE}])
-    assert trigger.left_out() == f"--on: {PYTHON} was not started for 1 alarm: {LIMITS}"
+    trigger.run_for_alarms([{"rule_id": RULE}])
+    assert trigger.left_out_note() == f"--on: {PYTHON} was not started for 1 alarm: {LIMITS}"
     trigger.close()
 
 
 def test_a_command_gets_no_shell(tmp_path: Path) -> None:
     (trigger,) = triggers.parse([f"{RULE}=echo > {tmp_path}/b"], KNOWN, KNOWN)
-    assert trigger.pull([{"rule_id": RULE}]) is None
+    assert trigger.run_for_alarms([{"rule_id": RULE}]) is None
     trigger.close()
     assert not (tmp_path / "b").exists()
 
 
 def test_a_command_that_is_not_there_is_told() -> None:
     (trigger,) = triggers.parse([f"{RULE}=no-such-program"], KNOWN, KNOWN)
-    assert "no-such-program: cannot be started" in (trigger.pull([{"rule_id": RULE}]) or "")
+    assert "no-such-program: cannot be started" in (trigger.run_for_alarms([{"rule_id": RULE}]) or "")
 
 
 @pytest.mark.parametrize("text", ["true", "=true", f"{RULE}=", f"{RULE}='"])
@@ -127,7 +127,7 @@ def test_a_trigger_that_cannot_be_read(text: str) -> None:
 
 def near(margins: Sequence[float], *, end_s: float = 10.0) -> JudgedWindow:
     """Return a window at whose end a rule has these margins, one every 0.1 s."""
-    times = [round((end_s - 0.1 * k) * S) for k in reversed(range(len(margins)))]
+    times = [round((end_s - 0.1 * k) * NS_PER_S) for k in reversed(range(len(margins)))]
     row: dict[str, Any] = {
         "finding_id": None,
         "rule_id": RULE,
@@ -142,20 +142,22 @@ def near(margins: Sequence[float], *, end_s: float = 10.0) -> JudgedWindow:
         ("object_id", pa.string()),
         ("t_ns", pa.list_(pa.int64())), ("margin", pa.list_(pa.float64())),
     ])  # fmt: skip
-    return JudgedWindow(0, round(10.0 * S), pa.table({}), pa.table({}), pa.Table.from_pylist([row], schema=kinds))
+    return JudgedWindow(
+        0, round(10.0 * NS_PER_S), pa.table({}), pa.table({}), pa.Table.from_pylist([row], schema=kinds)
+    )
 
 
 def test_a_margin_that_shrinks_is_told_once_with_the_time_that_is_left() -> None:
     edge = KNOWN[RULE].near_margin
     assert edge is not None
     shrinking, falling = ShrinkingMargins(), [edge * share for share in (0.9, 0.8, 0.7, 0.6, 0.5)]
-    (message,) = shrinking.take(near(falling), KNOWN, 0)
+    (message,) = shrinking.new_messages(near(falling), KNOWN, 0)
     assert message["shrinks_per_s"] == pytest.approx(edge)
     assert message["to_violation_s"] == pytest.approx(0.5)
     assert (message["t_s"], message["object_id"]) == (10.0, "2")
-    assert shrinking.take(near(falling), KNOWN, 0) == []
-    assert shrinking.take(near([edge * 2] * 5), KNOWN, 0) == []
-    assert len(shrinking.take(near(falling), KNOWN, 0)) == 1
+    assert shrinking.new_messages(near(falling), KNOWN, 0) == []
+    assert shrinking.new_messages(near([edge * 2] * 5), KNOWN, 0) == []
+    assert len(shrinking.new_messages(near(falling), KNOWN, 0)) == 1
 
 
 def test_a_margin_that_grows_or_was_small_before_is_not_told() -> None:
@@ -165,7 +167,7 @@ def test_a_margin_that_grows_or_was_small_before_is_not_told() -> None:
         near([edge * 0.6, edge * 0.5], end_s=8.0),
         near([-1.0, -2.0]),
     ):
-        assert ShrinkingMargins().take(window, KNOWN, 0) == []
+        assert ShrinkingMargins().new_messages(window, KNOWN, 0) == []
 
 
 def test_the_check_at_the_end_judges_by_all_options_of_the_watch() -> None:

@@ -18,7 +18,7 @@ from drivelint.watch.judge import JudgedWindow, WindowJudge
 from drivelint.watch.options import WatchOptions
 from drivelint.watch.run import Watch
 from drivelint.watch.sources import sumo
-from drivelint.watch.window import S
+from drivelint.watch.window import NS_PER_S
 from tests.sumo import world
 from tests.watch import faults
 from tests.watch.prefixes import told, watch
@@ -81,7 +81,7 @@ def live(made: Scenario, folder: Path, *rules: str, halt_on: str, every_s: float
             result = check_recording(
                 options, source.recording, None, watching, folder=folder, progress=Silent(), interruption=interruption
             )
-            watching.alarms.hold_against(result.findings.to_pylist(), result.verdicts)
+            watching.alarms.assign_findings(result.findings.to_pylist(), result.verdicts)
     finally:
         source.close()
     times = read_trace(source.recording, IngestOptions(ego="ego")).tables["actor_state"]["t_ns"].to_numpy()
@@ -99,7 +99,7 @@ def finding(log: Path, made: Scenario, rule: str) -> Row:
 def known_ns(log: Path, made: Scenario, rule: str, from_ns: int, until_ns: int) -> int:
     """Return the first step with which the log is long enough to have a finding of a rule."""
     trace = read_trace(log, IngestOptions(ego="ego", mapping=str(made.routes)))
-    ends = range(from_ns, until_ns + 1, round(faults.STEP_S * S))
+    ends = range(from_ns, until_ns + 1, round(faults.STEP_S * NS_PER_S))
     with WindowJudge(WatchOptions(source=str(log), map=made.map, ego="ego", rules=(rule,))) as judge:
         judged = judge.judge([cut_trace(trace, 0, end) for end in ends])
     return next(w.t_end_ns for w in judged if isinstance(w, JudgedWindow) and w.findings.num_rows)
@@ -121,7 +121,7 @@ def test_a_fault_halts_the_simulation(fault: Fault, places: Path, tmp_path: Path
     since_ns = (
         row["t_start_ns"] if fault.at_once else known_ns(log, made, fault.rule, row["t_start_ns"], came.halted.said_ns)
     )
-    assert 0 <= came.halted.said_ns - since_ns <= EVERY_S * S
+    assert 0 <= came.halted.said_ns - since_ns <= EVERY_S * NS_PER_S
 
     (halt,) = came.of_type("halt")
     assert halt["t_ns"] == came.halted.said_ns == came.last_ns  # SUMO went no further
@@ -138,7 +138,7 @@ def test_the_same_scenario_without_the_fault_is_not_halted(fault: Fault, places:
     )
     assert came.halted is None
     assert came.alarms == []
-    assert came.last_ns > 10 * S
+    assert came.last_ns > 10 * NS_PER_S
 
 
 @pytest.mark.slow
@@ -148,7 +148,7 @@ def test_ordinary_traffic_is_not_halted(places: Path, tmp_path: Path, *, overtak
     made = faults.ordinary(places, ORDINARY_S, overtakes=overtakes)
     came = live(made, tmp_path, halt_on="critical")
     assert came.halted is None
-    assert came.last_ns == ORDINARY_S * S - round(faults.STEP_S * S)
+    assert came.last_ns == ORDINARY_S * NS_PER_S - round(faults.STEP_S * NS_PER_S)
     assert {row["verdict"] for row in came.result.verdicts.to_pylist()} >= {"pass"}
     law = [alarm for alarm in came.alarms if alarm.withdrawn_ns is None and not alarm.finding_ids]
     assert told([alarm.row for alarm in law]) == []

@@ -71,7 +71,7 @@ def scenario(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def played(source: sumo.SumoSimulation) -> list[Frame]:
+def played(source: sumo.SumoSource) -> list[Frame]:
     """Return all frames until it ends."""
     frames: list[Frame] = []
     try:
@@ -150,7 +150,7 @@ def test_who_rides_is_no_road_user(scenario: Path, tmp_path: Path) -> None:
     options = IngestOptions(ego="cab")
     for trace, n in (
         (read_trace(source.recording, options), waits),
-        (source.window(frames[-rides:], tmp_path, options)(), 0),
+        (source.window_reader(frames[-rides:], tmp_path, options)(), 0),
     ):
         ids = trace.tables["actor_state"]["actor_id"].to_pylist()
         assert (ids.count("rider"), set(ids) - {"rider"}) == (n, {"cab"})
@@ -160,7 +160,7 @@ def test_a_window_is_the_end_of_the_recording(scenario: Path, tmp_path: Path) ->
     source = sumo.open(str(config(scenario, "window.sumocfg", "c.rou.xml", end=15)), tmp_path)
     frames = played(source)
     options = IngestOptions(ego="all")
-    window = source.window(frames[-50:], tmp_path, options)().tables
+    window = source.window_reader(frames[-50:], tmp_path, options)().tables
     whole = read_trace(source.recording, options).tables
     for table in ("actor_state", "signal_state"):
         since = [row for row in whole[table].to_pylist() if row["t_ns"] >= frames[-50].t_ns]
@@ -188,7 +188,7 @@ def recorded(conf: Path, folder: Path) -> Path:
 def test_it_waits_until_it_is_asked(scenario: Path, tmp_path: Path) -> None:
     source = sumo.open(str(config(scenario, "asked.sumocfg", "c.rou.xml", step=0.05)), tmp_path, span_s=0.25)
     try:
-        assert source.in_step
+        assert source.is_advanced_by_reads
         assert [len(source.read(5.0) or ()) for _ in range(3)] == [6, 5, 5]  # each span ends where a window does
         time.sleep(0.1)
         last = source.read(5.0)

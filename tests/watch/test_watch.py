@@ -23,8 +23,8 @@ from drivelint.watch.ending import check_recording
 from drivelint.watch.options import WatchOptions
 from drivelint.watch.run import Watch
 from drivelint.watch.source import Frame
-from drivelint.watch.sources.choice import open_source
-from drivelint.watch.window import S
+from drivelint.watch.sources.choice import source_of_watch
+from drivelint.watch.window import NS_PER_S
 from tests.shared_data import ROOT
 
 if TYPE_CHECKING:
@@ -221,14 +221,14 @@ def test_a_program_that_ends_by_itself_is_waited_for(tmp_path: Path) -> None:
 def test_mistakes(asked: dict[str, Any], said: str) -> None:
     asked = {"source": str(LOG), "map": ROAD, "rules": RULES, "replay": 0.0, **asked}
     wanted = WatchOptions(**asked)
-    with pytest.raises(UsageError, match=said), open_source(wanted, Silent()) as source:
+    with pytest.raises(UsageError, match=said), source_of_watch(wanted, Silent()) as source:
         Watch(wanted, source, print, Interruption())
 
 
 @pytest.mark.parametrize("name", ["ws://127.0.0.1:1", "{}/ws-new.mcap"])
 def test_a_program_may_bring_the_source_into_being(name: str, tmp_path: Path) -> None:
     wanted = WatchOptions(source=name.format(tmp_path), command=("true",))
-    with open_source(wanted, Silent()) as source:
+    with source_of_watch(wanted, Silent()) as source:
         assert source.read(0.0) == []
 
 
@@ -255,7 +255,7 @@ def test_a_map_that_cannot_be_read_is_known_before_anything_is_started(tmp_path:
 class Broken:
     """A source that has a recording, gives windows that no reader can read, and then breaks."""
 
-    in_step = is_due = True
+    is_advanced_by_reads = is_window_due = True
     recording = LOG
 
     def __init__(self) -> None:
@@ -265,15 +265,15 @@ class Broken:
         self.left -= 1
         if self.left < 0:
             raise TraceError("the other side is gone")
-        return [Frame(self.left * S, None, 0)]
+        return [Frame(self.left * NS_PER_S, None, 0)]
 
     def notes(self) -> list[str]:
         return []
 
-    def window(self, frames: Any, folder: Path, options: Any) -> Any:  # noqa: ARG002 - of all sources
+    def window_reader(self, frames: Any, folder: Path, options: Any) -> Any:  # noqa: ARG002 - of all sources
         raise ValueError("what a reader never expected")
 
-    latest = window
+    latest_trace = window_reader
 
     def halt(self) -> None: ...
 
@@ -286,7 +286,7 @@ def test_neither_a_window_that_cannot_be_read_nor_a_source_that_breaks_costs_the
     asked = WatchOptions(source="x.mcap", map=ROAD, rules=("ukhc.no-collision",), robustness=False, on=on)
     with Watch(asked, Broken(), told.append, Interruption()) as watch:
         for _ in range(2):
-            watch._triggers[0].pull([{"rule_id": "ukhc.no-collision"}])
+            watch._triggers[0].run_for_alarms([{"rule_id": "ukhc.no-collision"}])
         watched = watch.watch()
         checked: dict[str, Any] = {"folder": tmp_path, "progress": Silent(), "interruption": Interruption()}
         result = check_recording(asked, LOG, None, watch, **checked)

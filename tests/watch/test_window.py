@@ -56,10 +56,10 @@ def test_where_the_clock_jumps_the_window_begins_anew_and_every_frame_is_judged(
 
 def test_how_far_it_is_behind() -> None:
     window = Window(10)
-    assert window.behind_ns == 0
+    assert window.unjudged_ns == 0
     window.add(Frame(t, t, 1) for t in (3, 9))
-    assert window.behind_ns == 6
+    assert window.unjudged_ns == 6
     window.advance(100)
-    assert window.behind_ns == 0
+    assert window.unjudged_ns == 0
     window.add([Frame(19, 19, 1)])
-    assert window.behind_ns == 10
+    assert window.unjudged_ns == 10

@@ -42,7 +42,7 @@ def location_messages(tracks: Tracks, geo: GeoFrame, clock: LogClock, frame: str
     A map's projection has no heights above the ellipsoid: the altitude stays 0, and the type of the covariance 0, unknown.
     """
     rows = _thinned_rows(tracks, tracks.egos[0]) if tracks.egos else np.zeros(0, np.intp)
-    degrees = geo.degrees(_positions(tracks, rows))
+    degrees = geo.longitude_latitude(_positions(tracks, rows))
     known = np.isfinite(degrees).all(axis=1)
     times = clock.log_times(tracks.t_ns[rows])
     return [
@@ -56,7 +56,7 @@ def geojson_message(
 ) -> bytes:
     """Return a `foxglove.GeoJSON` with the drivable lanes near the paths of all actors, the paths of the egos, and the findings."""
     shapes = [*_lane_outlines(road, tracks), *_ego_paths(tracks)]
-    degrees = geo.degrees(np.concatenate([points for _, _, points in shapes] or [np.zeros((0, 2))]))
+    degrees = geo.longitude_latitude(np.concatenate([points for _, _, points in shapes] or [np.zeros((0, 2))]))
     ends = np.cumsum([len(points) for _, _, points in shapes])[:-1]
     features = []
     for (kind, name, _), points in zip(shapes, np.split(degrees, ends), strict=False):

@@ -32,7 +32,7 @@ Row = dict[str, Any]
 def case_database() -> duckdb.DuckDBPyConnection:
     """Return the process's database for all cases, locked; every case leaves it empty."""
     con = store.connect(threads=1)
-    store.lock(con)
+    store.lock_down(con)
     return con
 
 

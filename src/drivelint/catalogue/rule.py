@@ -50,9 +50,9 @@ class Rule(Header, frozen=True, forbid_unknown_fields=True, kw_only=True):
     @property
     def needed_signals(self) -> tuple[str, ...]:
         """The signals that the rule needs: `requires`, and `road_users` if it is about other actors."""
-        from drivelint.sql.derivations import with_sources  # imported here, since it imports the database
+        from drivelint.sql.derivations import tables_with_sources  # imported here, since it imports the database
 
-        return (*self.requires, *((ROAD_USERS_SIGNAL,) if "pair" in with_sources(self.reads) else ()))
+        return (*self.requires, *((ROAD_USERS_SIGNAL,) if "pair" in tables_with_sources(self.reads) else ()))
 
     def has_column(self, column: str) -> bool:
         """Return whether the condition returns this column."""

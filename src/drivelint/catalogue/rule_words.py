@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from drivelint.errors import RuleError
 from drivelint.sql import syntax, word_check
-from drivelint.sql.word_types import Literal, Words, wrong_words
+from drivelint.sql.word_types import LiteralPlace, PossibleWords, wrong_words
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -39,7 +39,7 @@ def parameter_problem(sections: Mapping[str, str], name: str, value: object) -> 
     """Return why a column that the rule compares with this parameter can never have this value; None if the value is possible."""
     if not isinstance(value, str):
         return None
-    given = Words(literals={value: Literal(None)}, direct=True)
+    given = PossibleWords(literals={value: LiteralPlace(None)}, direct=True)
     for checked in _checked_queries(sections).values():
         for other in checked.parameters.get(name, ()):
             for wrong in wrong_words(given, other):
@@ -52,7 +52,7 @@ def _checked_queries(sections: Mapping[str, str]) -> dict[str, word_check.Checke
     found: dict[str, word_check.CheckedQuery] = {}
     tables: dict[str, Relation] = {}
     for name in sorted(sections, key=lambda each: each != "reference"):
-        found[name] = word_check.check(syntax.parse_select(sections[name], name), tables)
+        found[name] = word_check.check_query(syntax.parse_select(sections[name], name), tables)
         if name == "reference":
             columns = found[name].relation._replace(complete=False)
             tables = {"reference": columns, "reference_step": columns}

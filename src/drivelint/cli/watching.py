@@ -212,18 +212,18 @@ def _watch_and_check(
     from drivelint.report.outputs import write
     from drivelint.result.model import exit_status
     from drivelint.watch import messages
-    from drivelint.watch.ending import check_recording, conclude
+    from drivelint.watch.ending import check_recording, report_outcome
     from drivelint.watch.judge import WindowJudge
     from drivelint.watch.run import Watch
     from drivelint.watch.server import open_server
-    from drivelint.watch.sources.choice import open_source
+    from drivelint.watch.sources.choice import source_of_watch
 
     with (
         temporary_folder() as folder,
         # reads rules and map, so that an error in them ends the watch before the source or COMMAND starts
         WindowJudge(settings) as judge,
         open_server(settings.serve, judge.rules, settings.allow_origin) as server,
-        open_source(settings, progress) as opened,
+        source_of_watch(settings, progress) as opened,
         Watch(settings, opened, emit, interruption.of_watch, server, judge=judge) as watch,
     ):
         progress.stage("watching")
@@ -244,7 +244,7 @@ def _watch_and_check(
         )
         if interruption.of_check.requested and not result.interrupted:
             emit(messages.note("interrupted: the test of how sure the findings are was not finished"))
-        told = conclude(result, watch, emit)
+        told = report_outcome(result, watch, emit)
         if settings.out is not None:
             write(result, settings.out, work, overwrite=overwrite)
         progress.note(told)

@@ -82,7 +82,7 @@ def is_far_from_projection(environment: MapTables) -> bool:
 
 def _is_said_by_the_user(environment: MapTables) -> bool:
     (row,) = environment.tables["environment"].to_pylist()
-    return bool(row["offset_x_m"] or row["offset_y_m"] or geo_reference.is_tangent_plane(row["geo_reference"]))
+    return bool(row["offset_x_m"] or row["offset_y_m"] or geo_reference.is_from_map_origin(row["geo_reference"]))
 
 
 def _similarity(log_frame: GeoFrame, map_frame: GeoFrame, low: Floats, high: Floats) -> tuple[float, float]:

@@ -14,7 +14,7 @@ import duckdb
 from drivelint.errors import DriveLintError
 from drivelint.sql import store
 from drivelint.sql.derivations import ALWAYS_NEEDED, needed_derivations
-from drivelint.sql.statements import statement, texts
+from drivelint.sql.statements import statement, statement_texts
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable
@@ -55,8 +55,8 @@ def derive(
     (n_states,) = con.execute("SELECT count(*) FROM actor_state").fetchall()[0]
     if n_states > ASKED_STATES:
         todo = {table: replace(step, occasion="") for table, step in todo.items()}
-    empty = store.empty_tables(con) - todo.keys()
-    for table in texts("map_shapes").keys() - empty if of_the_map else ():
+    empty = store.tables_without_rows(con) - todo.keys()
+    for table in statement_texts("map_shapes").keys() - empty if of_the_map else ():
         con.execute(statement(f"map_shapes/{table}"))
     workers = WORKERS if n_states < ONE_WORKER_STATES else 1
     with ThreadPoolExecutor(workers) as pool, ExitStack() as stack:
@@ -96,7 +96,7 @@ def _stop(cursors: Iterable[duckdb.DuckDBPyConnection], running: Iterable[Future
 def _fill(con: duckdb.DuckDBPyConnection, step: Derivation) -> int:
     """Fill one table, and return the number of its rows."""
     try:
-        with store.telling_short_memory():
+        with store.uniform_memory_errors():
             if step.occasion and con.execute(step.occasion).fetchone() is None:
                 return 0
             return int(con.execute(f"INSERT INTO {step.table} BY NAME {step.sql}").fetchall()[0][0])

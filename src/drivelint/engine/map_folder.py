@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 from drivelint.errors import MapError
 from drivelint.formats.map_registry import READERS_BY_ROOT, read_source, root_element_name
 from drivelint.phrases import name_list
-from drivelint.road.geo_reference import reference_of, same_reference
+from drivelint.road.geo_reference import is_same_reference, opendrive_geo_reference
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -55,7 +55,9 @@ class MapFolder:
 
     def with_reference(self, reference: str) -> MapSource | None:
         """Return the map with this geo reference; None: not exactly one map has it."""
-        found = [source for source in self.sources() if same_reference(reference_of(source) or "", reference)]
+        found = [
+            source for source in self.sources() if is_same_reference(opendrive_geo_reference(source) or "", reference)
+        ]
         return found[0] if len(found) == 1 else None
 
     def sources(self) -> Sequence[MapSource]:

@@ -119,7 +119,7 @@ class MapLibrary:
         except MapError as error:
             both, refused = [trace], str(error)
         theirs = environment.tables["environment"]["geo_reference"][0].as_py() or ""
-        if not any(trace.geo_offset) and geo_reference.same_reference(trace.geo_reference or "", theirs):
+        if not any(trace.geo_offset) and geo_reference.is_same_reference(trace.geo_reference or "", theirs):
             both.reverse()
         ground = self._ground(environment)
         troubles = [_elsewhere(environment, ground, each.tables["actor_state"]) for each in both]
@@ -160,7 +160,7 @@ class MapLibrary:
             "map_unread": self._unread.get(trace.path),
         }
         reference, theirs = trace.geo_reference, environment.tables["environment"]["geo_reference"][0].as_py()
-        if reference and theirs and geo_reference.different_places(reference, theirs):
+        if reference and theirs and geo_reference.is_conflicting_reference(reference, theirs):
             found["geo_reference_differs"] = (
                 f"the log's coordinates are {reference!r}, the map's {theirs!r}: if they are not of one place and frame, set the "
                 "right --map or --map-offset"

@@ -87,7 +87,7 @@ class Memory:
     def run_job(self, job: Callable[[duckdb.DuckDBPyConnection], T]) -> T:
         """Run a job on the database and return its result; if memory is short, repeat it with a raised limit."""
         try:
-            with store.telling_short_memory():
+            with store.uniform_memory_errors():
                 return job(self._con)
         except duckdb.OutOfMemoryException:
             if not self.lift_limit():

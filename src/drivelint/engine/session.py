@@ -109,7 +109,7 @@ class JudgingSession:
         self._kept = out / "drivelint.duckdb" if keep_db and out else None
         if self._kept:
             self._attach(self._kept)
-        store.lock(con)  # from here on, rules of other authors may run in the database
+        store.lock_down(con)  # from here on, rules of other authors may run in the database
 
     @property
     def margins_file(self) -> Path | None:
@@ -144,7 +144,7 @@ class JudgingSession:
         while not done:
             try:
                 one_core = store.one_thread(self._con) if are_few(drives) else nullcontext()
-                with one_core, store.telling_short_memory(), self._interruption.interruptible(self._con):
+                with one_core, store.uniform_memory_errors(), self._interruption.interruptible(self._con):
                     done = self._judge(drives)
             except InterruptedRunError:
                 self._forget([drive.trace.drive_id for drive in drives])  # `_judge`'s deletion may be incomplete
@@ -201,7 +201,7 @@ class JudgingSession:
                 cuttable = len(drives) == 1 and len(judged) > 1
                 try:
                     may_retry = len(drives) > 1 or cuttable or self._memory.limited
-                    with store.telling_short_memory():
+                    with store.uniform_memory_errors():
                         self._judge_part(
                             ids, may_retry=may_retry, release=self._memory.release if are_large(drives) else None
                         )

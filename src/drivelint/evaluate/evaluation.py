@@ -129,7 +129,7 @@ class Evaluation:
         self._evaluate_all(todo)
         while self._pending:
             try:
-                with store.telling_short_memory():
+                with store.uniform_memory_errors():
                     self.conclude()
             except duckdb.Error:
                 self._evaluate_all(deque(self._apart(self._pending)))
@@ -159,7 +159,7 @@ class Evaluation:
             concludes = False
             with self.limits.hold(self.con, binding.rule.id, alone=self.alone) as held:
                 try:
-                    with store.telling_short_memory():
+                    with store.uniform_memory_errors():
                         self.judge_rule(binding)
                         concludes = binding.no in self._alone or self._n_pending > MOST_PENDING_ROWS
                         if concludes:
@@ -182,7 +182,7 @@ class Evaluation:
         self._has_holes = self._count("SELECT count(*) FROM _segment WHERE seg > 0") > 0
         self._run("watched")
         self._check_engagement = self._count("SELECT count(*) FROM _watched") > 0
-        self._empty = store.empty_tables(self.con)
+        self._empty = store.tables_without_rows(self.con)
         self._has_doubts = "doubt" not in self._empty
         self._has_sensors = bool(self._count("SELECT count(*) FROM data_log WHERE sensor_range_m IS NOT NULL"))
         if self._has_doubts:

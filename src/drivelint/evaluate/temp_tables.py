@@ -12,8 +12,8 @@ from drivelint.drive import conditions
 from drivelint.evaluate import applicability
 from drivelint.reasons.signals import SIGNALS_OF_FEW_LOGS
 from drivelint.sql import store
-from drivelint.sql.derivations import with_sources
-from drivelint.sql.statements import statement, texts
+from drivelint.sql.derivations import tables_with_sources
+from drivelint.sql.statements import statement, statement_texts
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -58,7 +58,7 @@ def _rules(bindings: Sequence[Binding]) -> pa.Table:
     told = ("kind", "subtype", "severity", "sense", "unit", "observes", "near_margin", "without_time", "without_anchor")
     rows = []
     for binding in bindings:
-        rule, sources = binding.rule, with_sources(binding.rule.reads)
+        rule, sources = binding.rule, tables_with_sources(binding.rule.reads)
         row = {"rule_no": binding.no, "rule_id": rule.id, "rule_version": rule.version}
         row |= {name: getattr(rule, name) for name in told}
         row |= {"of_others": ROAD_USERS_SIGNAL in rule.needed_signals, "of_hidden": "hidden" in sources}
@@ -106,5 +106,5 @@ def _allowed_words(bindings: Sequence[Binding]) -> pa.Table:
 
 def drop_tables(con: duckdb.DuckDBPyConnection) -> None:
     """Drop the temporary tables of an evaluation."""
-    made = [("TABLE", "_worded"), *_CREATED_TABLE.findall("\n".join(texts("judging").values()))]
+    made = [("TABLE", "_worded"), *_CREATED_TABLE.findall("\n".join(statement_texts("judging").values()))]
     con.execute(";".join(f"DROP {kind} IF EXISTS temp.{name}" for kind, name in made))

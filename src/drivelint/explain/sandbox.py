@@ -72,7 +72,7 @@ class Sandbox:
         if environment is not None:
             for table, rows in environment.tables.items():
                 self._insert(table, rows)
-        store.lock(self.con)
+        store.lock_down(self.con)
         place = environment.environment_id if environment else None
         for table in drives[0].trace.tables:
             rows = pa.concat_tables([drive.trace.tables[table] for drive in drives])

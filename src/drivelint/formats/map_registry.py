@@ -14,7 +14,7 @@ from drivelint.formats.limits import read_within_limits
 from drivelint.formats.probe import wrapping_and_remedy
 from drivelint.formats.search import is_pipe_or_device
 from drivelint.phrases import escape_invisible
-from drivelint.road.ground import BYTES_PER_SQUARE, SQUARE_M, ground_squares
+from drivelint.road.ground import BYTES_PER_SQUARE, SQUARE_SIDE_M, approximate_square_count
 from drivelint.road.map_reader import MapOptions, MapSource, MapTables
 from drivelint.road.tree_parts import CrowdedPlaceError
 
@@ -115,11 +115,14 @@ def load_map(
 
 def _refuse_too_large_ground(source: MapSource, tables: MapTables) -> None:
     """Raise `MapError` if the grid squares under the lanes would take more memory in the database than reading the file may take."""
-    squares, most = ground_squares(tables.tables["lane_point"]), limits.memory_limit_bytes(len(source.content))
+    squares, most = (
+        approximate_square_count(tables.tables["lane_point"]),
+        limits.memory_limit_bytes(len(source.content)),
+    )
     if squares * BYTES_PER_SQUARE > most:
         lanes = tables.tables["lanelet"].num_rows
         raise MapError(
-            f"map {source.name}: its {lanes} lanes cover {squares:.0f} squares of {SQUARE_M:g} m, and each takes "
+            f"map {source.name}: its {lanes} lanes cover {squares:.0f} squares of {SQUARE_SIDE_M:g} m, and each takes "
             f"{BYTES_PER_SQUARE} bytes: more than the limit of {most >> 20} MiB for a map of {len(source.content)} "
             "bytes: give a smaller part of the map"
         )

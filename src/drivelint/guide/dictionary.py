@@ -114,7 +114,7 @@ def table_text(name: str) -> str:
 def _vocabulary_text(name: str) -> str:
     """Return a vocabulary as plain text: its name, its words and their meaning."""
     known = vocabularies()[name]
-    return f"[{name}]\n  {', '.join(known.words)}{'' if known.is_listed else ', ...'}\n  {known.says}\n"
+    return f"[{name}]\n  {', '.join(known.words)}{'' if known.has_all_words else ', ...'}\n  {known.says}\n"
 
 
 def escape_markdown(text: str) -> str:

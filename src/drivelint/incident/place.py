@@ -48,7 +48,7 @@ def place(case: Case) -> Place:
         return Place(row["t_worst_ns"], *(row[name] for name in Place._fields[1:]))
     lat = lon = None
     if case.drive.geo is not None:
-        ((lon, lat),) = case.drive.geo.degrees(np.array([[at["x_m"], at["y_m"]]])).tolist()
+        ((lon, lat),) = case.drive.geo.longitude_latitude(np.array([[at["x_m"], at["y_m"]]])).tolist()
     known = lat is not None and np.isfinite([lat, lon]).all()
     return Place(moment_ns, lat if known else None, lon if known else None, at["x_m"], at["y_m"], at["lanelet_id"])
 

@@ -70,7 +70,7 @@ def draft_mapping(columns: Sequence[str], texts_of: Callable[[str], Sequence[str
 
 def _actor_class_of(text: str) -> str | None:
     """Return the actor class that a text names, ignoring case, spaces and hyphens; None if it names no class."""
-    return vocabularies()["actor_class"].spelled("_".join(text.split()).replace("-", "_"))
+    return vocabularies()["actor_class"].known_spelling("_".join(text.split()).replace("-", "_"))
 
 
 def _field_of_column(column: str) -> str | None:

@@ -54,7 +54,7 @@ def evidence(
     if not finding_sql.is_read_alike(sql):
         return "DuckDB's shell would read it otherwise: the rule has a comment in /* */, or a text in E'' or $$"
     with duckdb.connect(config={"threads": "1"}) as con:
-        store.lock(con)  # the rule, or the pack that is verified, may be untrusted
+        store.lock_down(con)  # the rule, or the pack that is verified, may be untrusted
         try:
             con.execute(";".join(finding_sql.macros(sql)))
             least_rows = _fewest_sufficient_rows(con, sql, finding, tables)

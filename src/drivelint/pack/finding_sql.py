@@ -11,7 +11,7 @@ import duckdb
 from drivelint.evaluate.sql_fragments import condition_ctes
 from drivelint.phrases import terminal_safe_line
 from drivelint.sql import syntax
-from drivelint.sql.statements import texts
+from drivelint.sql.statements import statement_texts
 from drivelint.sql.store import macro_definitions
 
 if TYPE_CHECKING:
@@ -94,7 +94,7 @@ def macros(sql: str) -> list[str]:
 @cache
 def _macros() -> dict[str, str]:
     """Return name -> definition of the macros for rules and for judging."""
-    both = f"{macro_definitions()}\n{texts('judging')['macros']}"
+    both = f"{macro_definitions()}\n{statement_texts('judging')['macros']}"
     found = {}
     for each in syntax.parser().extract_statements(both):
         text = "\n".join(line for line in each.query.strip().splitlines() if line.strip() and not line.startswith("--"))

@@ -20,7 +20,7 @@ from drivelint.facts import toml_beside
 from drivelint.phrases import escape_invisible
 from drivelint.result.counts import group_rows
 from drivelint.result.text_templates import cell, text_template
-from drivelint.road.signcodes import codes_of
+from drivelint.road.signcodes import signal_codes_by_list
 from drivelint.toml_text import parse_toml
 
 if TYPE_CHECKING:
@@ -142,7 +142,7 @@ def map_features() -> dict[str, Any]:
 
 def _signal_codes_text(kind: str, name_part: str) -> str:
     """Return in Markdown how a signal of this kind is recognised."""
-    codes = "; ".join(f"{country} {', '.join(numbers)}" for country, numbers in codes_of(kind).items())
+    codes = "; ".join(f"{country} {', '.join(numbers)}" for country, numbers in signal_codes_by_list(kind).items())
     return f"`signal` {codes}; or {name_part} in its name"
 
 

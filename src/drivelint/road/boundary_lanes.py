@@ -104,7 +104,7 @@ def build_lanes(lanes: Iterable[BoundedLane], offset: tuple[float, float], quali
             lane.left_id = lane.left_against = None
         if lane.right_id not in built:
             lane.right_id = lane.right_against = None
-    _roads(built)
+    _group_into_roads(built)
     return list(built.values())
 
 
@@ -113,12 +113,12 @@ def _lane_sort_key(name: str) -> tuple[int, int, str]:
     return (0, int(name), name) if name.isdecimal() else (1, 0, name)
 
 
-def _roads(lanes: Mapping[str, BoundedLane]) -> None:
+def _group_into_roads(lanes: Mapping[str, BoundedLane]) -> None:
     """Group lanes side by side as one road, and number them: -1, -2, ... to the right of its middle, 1, 2, ... to the left."""
     for first in lanes.values():
         if first.road_id:
             continue
-        row = _row(first, lanes)
+        row = _lanes_side_by_side(first, lanes)
         name = f"r{first.lanelet_id}"
         rightmost_left = max((i for i, (_, along) in enumerate(row) if along < 0), default=-1)
         for i, (lane, along) in enumerate(row):
@@ -126,7 +126,7 @@ def _roads(lanes: Mapping[str, BoundedLane]) -> None:
             lane.lane_no = rightmost_left - i if i > rightmost_left else rightmost_left - i + 1
 
 
-def _row(first: BoundedLane, lanes: Mapping[str, BoundedLane]) -> list[tuple[BoundedLane, int]]:
+def _lanes_side_by_side(first: BoundedLane, lanes: Mapping[str, BoundedLane]) -> list[tuple[BoundedLane, int]]:
     """Return the lanes side by side with `first`, from left to right in its direction; 1: same direction, -1: opposite."""
     row, lane_ids = [(first, 1)], {first.lanelet_id}
     for step in (1, -1):
@@ -150,18 +150,18 @@ def map_from_bounds(
     furniture: Mapping[str, Rows],
     quality: MapQuality,
     *,
-    kind: str,
-    side: tuple[str, str],
+    map_format: str,
+    side_and_source: tuple[str, str],
     geo: GeoFrame | None = None,
     nation: str | None = None,
 ) -> MapTables:
     """Return the map of lanes from `build_lanes`. `furniture`: table -> rows, such as signals. Other parameters: see `map_tables`."""
     by_id = {lane.lanelet_id: lane for lane in lanes}
     content: dict[str, Rows | dict[str, Any]] = {
-        "lanelet": [_lanelet(lane) for lane in lanes],
-        "lane_point": lane_points(lanes),
+        "lanelet": [_lanelet_row(lane) for lane in lanes],
+        "lane_point": lane_point_columns(lanes),
         "lane_link": [
-            {"from_id": lane.lanelet_id, "to_id": to, "turn_rad": by_id[to].line.turn}
+            {"from_id": lane.lanelet_id, "to_id": to, "turn_rad": by_id[to].line.turn_rad}
             for lane in lanes
             for to in sorted(set(lane.successors))
         ],
@@ -184,7 +184,16 @@ def map_from_bounds(
         "road_object": [],
         **furniture,
     }  # fmt: skip
-    return map_tables(source, request, content, quality, kind=kind, side=side, geo=geo, nation=nation)
+    return map_tables(
+        source,
+        request,
+        content,
+        quality,
+        map_format=map_format,
+        side_and_source=side_and_source,
+        geo=geo,
+        nation=nation,
+    )
 
 
 def signal_row(lane: BoundedLane, s_m: float, place: Floats, **columns: Any) -> dict[str, Any]:
@@ -196,7 +205,7 @@ def signal_row(lane: BoundedLane, s_m: float, place: Floats, **columns: Any) -> 
     }  # fmt: skip
 
 
-def _lanelet(lane: BoundedLane) -> dict[str, Any]:
+def _lanelet_row(lane: BoundedLane) -> dict[str, Any]:
     return {
         "lanelet_id": lane.lanelet_id, "road_id": lane.road_id, "section": 0, "lane_no": lane.lane_no,
         "lane_type": lane.kind, "drivable": lane.drivable, "bidirectional": lane.bidirectional,
@@ -207,7 +216,7 @@ def _lanelet(lane: BoundedLane) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def lane_points(lanes: Sequence[Any]) -> dict[str, Any]:
+def lane_point_columns(lanes: Sequence[Any]) -> dict[str, Any]:
     """Return the columns of `lane_point`.
 
     Each lane has `lanelet_id`, `line`, `road_s` (stations on its road) and `z` (heights, NaN: unknown).
@@ -244,13 +253,16 @@ def side_driven_on(lanes: Sequence[BoundedLane]) -> str | None:
     if left != right:
         return "rht" if left > right else "lht"
     outside = [lane.line for lane in one_way.values() if lane.junction_id is None]
-    return driving_side.side_driven_on([line.driving_side_points(np.full(len(line.s), np.nan)) for line in outside])
+    return driving_side.side_driven_on([line.points_with_half_widths(np.full(len(line.s), np.nan)) for line in outside])
 
 
 def crossings(
-    walks: Iterable[BoundedLane], lanes: Sequence[BoundedLane], offset: tuple[float, float], quality: MapQuality
+    pedestrian_lanes: Iterable[BoundedLane],
+    lanes: Sequence[BoundedLane],
+    offset: tuple[float, float],
+    quality: MapQuality,
 ) -> Rows:
-    """Return the rows of `crossing`: one for each pair of a pedestrian lane (`walks`) and a drivable lanelet that it crosses.
+    """Return the rows of `crossing`: one for each pair of a pedestrian lane (`pedestrian_lanes`) and a drivable lanelet that it crosses.
 
     A pedestrian lane that crosses no lanelet, or has no valid shape, is reported in `quality`.
     """
@@ -258,7 +270,7 @@ def crossings(
     lines = [shapely.LineString(lane.line.centre) for lane in drivable_lanes]
     tree = shapely.STRtree(lines)
     rows = []
-    for walk in walks:
+    for walk in pedestrian_lanes:
         try:
             check_bounds(walk.left, walk.right)
         except UnbuildableError as error:

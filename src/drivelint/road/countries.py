@@ -10,7 +10,7 @@ from drivelint.facts import toml_beside
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-_LEFT_DRIVEN: Final = frozenset({
+_LEFT_DRIVING_NATIONS: Final = frozenset({
     "au", "bd", "cy", "gb", "hk", "id", "ie", "in", "jp", "ke", "lk", "mt", "my", "np", "nz", "pk", "sg", "th", "tz", "ug", "za",
     "zm", "zw",
 })  # fmt: skip
@@ -19,12 +19,12 @@ _LEFT_DRIVEN: Final = frozenset({
 
 def nation_of(code: str | int | None) -> str | None:
     """Return the two-letter code of a country by its two or three letters, in any case, or its number; None: unknown code."""
-    return _nations().get(code.strip().lower() if isinstance(code, str) else code)
+    return _nation_by_code().get(code.strip().lower() if isinstance(code, str) else code)
 
 
 def side_of_nation(nation: str) -> str:
     """Return the driving side (lht, rht) of a country."""
-    return "lht" if nation in _LEFT_DRIVEN else "rht"
+    return "lht" if nation in _LEFT_DRIVING_NATIONS else "rht"
 
 
 def only_nation(codes: Iterable[str | None]) -> str | None:
@@ -34,7 +34,7 @@ def only_nation(codes: Iterable[str | None]) -> str | None:
 
 
 @cache
-def _nations() -> dict[str | int | None, str]:
+def _nation_by_code() -> dict[str | int | None, str]:
     countries: dict[str, tuple[str, int]] = toml_beside(__file__, "countries.toml")["countries"]
     found: dict[str | int | None, str] = {"uk": "gb"}
     for letters, (three, number) in countries.items():

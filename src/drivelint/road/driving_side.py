@@ -20,18 +20,18 @@ if TYPE_CHECKING:
     from drivelint.road.quality import MapQuality
 
 
-SAME_CARRIAGEWAY_M: Final = 2.0  # the largest gap between opposite lanes of one carriageway, as in lane_beside.sql
-CENTRAL_RESERVATION_M: Final = 15.0  # the largest gap between the two carriageways of a road
-LEAST_LENGTH_M: Final = 20.0  # shorter lanes beside each other are a corner or an error of the map
+MOST_CARRIAGEWAY_GAP_M: Final = 2.0  # the largest gap between opposite lanes of one carriageway, as in lane_beside.sql
+MOST_RESERVATION_GAP_M: Final = 15.0  # the largest gap between the two carriageways of a road
+LEAST_OPPOSING_LENGTH_M: Final = 20.0  # shorter lanes beside each other are a corner or an error of the map
 DECISIVE_SHARE: Final = 2 / 3
-_OVERLAP_M: Final = 0.5  # lanes that overlap more are not neighbours, such as lanes that fork
-_LEVEL_M: Final = 3.0  # lanes with at least this difference in height are not neighbours
-_ALONG: Final = float(np.cos(np.radians(30)))
-_WIDEST_HALF_M: Final = 4.0
-_PROBES: Final = 20_000  # the most segments that are examined, evenly spread
+_MOST_OVERLAP_M: Final = 0.5  # lanes that overlap more are not neighbours, such as lanes that fork
+_OTHER_LEVEL_M: Final = 3.0  # lanes with at least this difference in height are not neighbours
+_LEAST_PARALLEL_COS: Final = float(np.cos(np.radians(30)))
+_WIDEST_HALF_LANE_M: Final = 4.0
+_MOST_PROBES: Final = 20_000  # the most segments that are examined, evenly spread
 
 
-class _Pieces(NamedTuple):
+class _LaneSegments(NamedTuple):
     """The segments (m) of the centre lines of all lanes: lane, start and end (m, 4), length, unit direction."""
 
     lane: Indices
@@ -42,85 +42,93 @@ class _Pieces(NamedTuple):
     uy: Floats
 
 
-def side_driven_on(courses: Sequence[Floats]) -> str | None:
+def side_driven_on(lanes_points: Sequence[Floats]) -> str | None:
     """Return the driving side (lht, rht) by neighbouring lanes of opposite directions; None: there are none, or they disagree.
 
-    `courses`: the one-way lanes outside junctions, as arrays (n, 4) in metres: x and y of the centre line, its height (NaN: unknown) and
-    half the width. Lanes across a central reservation count only if too few lanes adjoin.
+    `lanes_points`: the one-way lanes outside junctions, as arrays (n, 4) in metres: x and y of the centre line, its height (NaN: unknown)
+    and half the width. Lanes across a central reservation count only if too few lanes adjoin.
     """
-    if len(courses) < 2:
+    if len(lanes_points) < 2:
         return None
-    pieces = _pieces(courses)
-    if not len(pieces.lane):
+    segments = _lane_segments(lanes_points)
+    if not len(segments.lane):
         return None
-    for reach_m in (SAME_CARRIAGEWAY_M, CENTRAL_RESERVATION_M):
-        left, right = _opposing(pieces, reach_m)
-        if left + right >= LEAST_LENGTH_M:
+    for most_gap_m in (MOST_CARRIAGEWAY_GAP_M, MOST_RESERVATION_GAP_M):
+        left, right = _opposing_lengths_m(segments, most_gap_m)
+        if left + right >= LEAST_OPPOSING_LENGTH_M:
             decisive = DECISIVE_SHARE * (left + right)
             return "rht" if left >= decisive else "lht" if right >= decisive else None
     return None
 
 
-def _pieces(courses: Sequence[Floats]) -> _Pieces:
-    lane = np.repeat(np.arange(len(courses)), [len(c) for c in courses])
-    points = np.concatenate(courses)
+def _lane_segments(lanes_points: Sequence[Floats]) -> _LaneSegments:
+    lane = np.repeat(np.arange(len(lanes_points)), [len(c) for c in lanes_points])
+    points = np.concatenate(lanes_points)
     k = np.flatnonzero(lane[:-1] == lane[1:])
     dx, dy = points[k + 1, 0] - points[k, 0], points[k + 1, 1] - points[k, 1]
     length = np.hypot(dx, dy)
     k, dx, dy, length = k[length > 0], dx[length > 0], dy[length > 0], length[length > 0]
-    return _Pieces(lane[k], points[k], points[k + 1], length, dx / length, dy / length)
+    return _LaneSegments(lane[k], points[k], points[k + 1], length, dx / length, dy / length)
 
 
-def _opposing(pieces: _Pieces, reach_m: float) -> tuple[float, float]:
+def _opposing_lengths_m(segments: _LaneSegments, most_gap_m: float) -> tuple[float, float]:
     """Return the lengths (m) along which the nearest lane on the left, and on the right, has the opposite direction.
 
-    Gaps of more than `reach_m` do not count. If both sides have an opposite lane, only the nearer counts.
+    Gaps of more than `most_gap_m` do not count. If both sides have an opposite lane, only the nearer counts.
     """
-    n = len(pieces.lane)
-    chosen = np.unique(np.linspace(0, n - 1, min(_PROBES, n)).astype(np.intp))
-    tree = shapely.STRtree(shapely.linestrings(np.stack([pieces.begin[:, :2], pieces.end[:, :2]], axis=1)))
-    left, right = (_gap_to_opposing(pieces, tree, chosen, side, reach_m) for side in (1.0, -1.0))
-    length = pieces.length[chosen]
+    n = len(segments.lane)
+    chosen = np.unique(np.linspace(0, n - 1, min(_MOST_PROBES, n)).astype(np.intp))
+    tree = shapely.STRtree(shapely.linestrings(np.stack([segments.begin[:, :2], segments.end[:, :2]], axis=1)))
+    left, right = (_gaps_to_opposing_m(segments, tree, chosen, side, most_gap_m) for side in (1.0, -1.0))
+    length = segments.length[chosen]
     return float(length[left < right].sum()), float(length[right < left].sum())
 
 
-def _gap_to_opposing(pieces: _Pieces, tree: shapely.STRtree, indices: Indices, side: float, reach_m: float) -> Floats:
-    """Return the gap (m) from these pieces to the nearest lane on one side (1: left, -1: right); infinity if it is no opposite lane."""
-    x, y, _, half = ((pieces.begin + pieces.end) / 2)[indices].T
-    ux, uy = pieces.ux[indices], pieces.uy[indices]
-    reach = (half - _OVERLAP_M, half + reach_m + _WIDEST_HALF_M)
+def _gaps_to_opposing_m(
+    segments: _LaneSegments, tree: shapely.STRtree, indices: Indices, side: float, most_gap_m: float
+) -> Floats:
+    """Return the gap (m) from these segments to the nearest lane on one side (1: left, -1: right); infinity if it is no opposite lane."""
+    x, y, _, half = ((segments.begin + segments.end) / 2)[indices].T
+    ux, uy = segments.ux[indices], segments.uy[indices]
+    reach = (half - _MOST_OVERLAP_M, half + most_gap_m + _WIDEST_HALF_LANE_M)
     across = (np.stack([a + side * r * n for r in reach], axis=1) for a, n in ((x, -uy), (y, ux)))
     gaps = np.full(len(indices), np.inf)
-    for probe, other_piece in query_in_parts(tree, shapely.linestrings(*across), "intersects"):
-        nearest, gap = _nearest_opposing(pieces, indices, probe, other_piece, side=side, reach_m=reach_m)
+    for probes, other_segments in query_in_parts(tree, shapely.linestrings(*across), "intersects"):
+        nearest, gap = _probes_and_gaps_m(segments, indices, probes, other_segments, side=side, most_gap_m=most_gap_m)
         gaps[nearest] = gap
     return gaps
 
 
-def _nearest_opposing(
-    pieces: _Pieces, indices: Indices, probe: Indices, other_piece: Indices, *, side: float, reach_m: float
+def _probes_and_gaps_m(
+    segments: _LaneSegments,
+    indices: Indices,
+    probes: Indices,
+    other_segments: Indices,
+    *,
+    side: float,
+    most_gap_m: float,
 ) -> tuple[Indices, Floats]:
-    """Return the pieces (positions in `indices`) with a lane beside them, and the gap to the nearest; infinity if it is no opposite lane.
+    """Return the segments (positions in `indices`) with a lane beside them, and the gap to the nearest; infinity if it is no opposite lane.
 
-    `probe`, `other_piece`: pairs of a position in `indices`, and a piece that the line across meets.
+    `probes`, `other_segments`: pairs of a position in `indices`, and a segment that the line across meets.
     """
-    x, y, z, half = ((pieces.begin + pieces.end) / 2)[indices].T
-    ux, uy = pieces.ux[indices], pieces.uy[indices]
-    along = ux[probe] * pieces.ux[other_piece] + uy[probe] * pieces.uy[other_piece]
-    beside = (pieces.lane[other_piece] != pieces.lane[indices[probe]]) & (np.abs(along) > _ALONG)
-    probe, other_piece, along = probe[beside], other_piece[beside], along[beside]
-    # the point where the line across meets the other piece's centre line
-    other_x, other_y, other_z, other_half = pieces.begin[other_piece].T
-    dx, dy = other_x - x[probe], other_y - y[probe]
-    cross = ux[probe] * pieces.uy[other_piece] - uy[probe] * pieces.ux[other_piece]
-    off = dy * ux[probe] - dx * uy[probe] - (dx * ux[probe] + dy * uy[probe]) * cross / along
-    gap = side * off - half[probe] - other_half
-    on_level = ~(np.abs(z[probe] - other_z) >= _LEVEL_M)  # also true for an unknown height
-    fits = (gap > -_OVERLAP_M) & (gap <= reach_m) & on_level
-    probe, gap, along = probe[fits], gap[fits], along[fits]
-    order = np.lexsort((along, gap, probe))
-    nearest = order[np.r_[True, np.diff(probe[order]) > 0]] if len(order) else order
-    return probe[nearest], np.where(along[nearest] < 0, gap[nearest], np.inf)
+    x, y, z, half = ((segments.begin + segments.end) / 2)[indices].T
+    ux, uy = segments.ux[indices], segments.uy[indices]
+    along = ux[probes] * segments.ux[other_segments] + uy[probes] * segments.uy[other_segments]
+    beside = (segments.lane[other_segments] != segments.lane[indices[probes]]) & (np.abs(along) > _LEAST_PARALLEL_COS)
+    probes, other_segments, along = probes[beside], other_segments[beside], along[beside]
+    # the point where the line across meets the other segment
+    other_x, other_y, other_z, other_half = segments.begin[other_segments].T
+    dx, dy = other_x - x[probes], other_y - y[probes]
+    cross = ux[probes] * segments.uy[other_segments] - uy[probes] * segments.ux[other_segments]
+    off = dy * ux[probes] - dx * uy[probes] - (dx * ux[probes] + dy * uy[probes]) * cross / along
+    gap = side * off - half[probes] - other_half
+    on_level = ~(np.abs(z[probes] - other_z) >= _OTHER_LEVEL_M)  # also true for an unknown height
+    fits = (gap > -_MOST_OVERLAP_M) & (gap <= most_gap_m) & on_level
+    probes, gap, along = probes[fits], gap[fits], along[fits]
+    order = np.lexsort((along, gap, probes))
+    nearest = order[np.r_[True, np.diff(probes[order]) > 0]] if len(order) else order
+    return probes[nearest], np.where(along[nearest] < 0, gap[nearest], np.inf)
 
 
 def opposite_side(side: str) -> str:

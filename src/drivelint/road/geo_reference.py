@@ -19,21 +19,21 @@ if TYPE_CHECKING:
 
 WGS84: Final = "EPSG:4326"
 
-_REFERENCE: Final = re.compile(rb"<geoReference[^>]*>(.*?)</geoReference>", re.DOTALL)
+_GEO_REFERENCE_ELEMENT: Final = re.compile(rb"<geoReference[^>]*>(.*?)</geoReference>", re.DOTALL)
 _CDATA: Final = re.compile(r"<!\[CDATA\[(.*?)\]\]>", re.DOTALL)
-_HEAD_BYTES: Final = 65536
-_SILENT: Final = frozenset({"no_defs", "wktext", "type", "units", "vunits", "geoidgrids"})
+_SEARCHED_BYTES: Final = 65536
+_PARAMETERS_WITHOUT_EFFECT: Final = frozenset({"no_defs", "wktext", "type", "units", "vunits", "geoidgrids"})
 """PROJ parameters that do not change positions in the plane (lengths are in metres in all supported formats)."""
-_DEFAULTS: Final = {("x_0", "0.0"), ("y_0", "0.0"), ("k", "1.0"), ("k_0", "1.0")}
+_DEFAULT_PARAMETERS: Final = {("x_0", "0.0"), ("y_0", "0.0"), ("k", "1.0"), ("k_0", "1.0")}
 """PROJ parameters with their default values."""
-_DIGITS: Final = 9
+_COMPARED_DECIMALS: Final = 9
 """The number of decimals that are compared, because writers round the last ones: 0.1 mm on the ground, even for degrees."""
-_TANGENT_PLANE: Final = "ortho"
-_LOCAL_M: Final = 100_000.0
-_EQUATOR_DEG: Final = 1.0
-_POLE_DEG: Final = 5.0  # 0,0 of the southern zones of UTM is 4.5 degrees from the pole
-_DEGREE_M: Final = 111_195.0  # of a great circle, on the sphere of the earth's mean radius
-_METRE: Final = (0.4, 1.6)
+_TANGENT_PLANE_PROJECTION: Final = "ortho"
+_LARGEST_LOCAL_M: Final = 100_000.0
+_NEAR_EQUATOR_DEG: Final = 1.0
+_NEAR_POLE_DEG: Final = 5.0  # 0,0 of the southern zones of UTM is 4.5 degrees from the pole
+_METRES_PER_DEGREE: Final = 111_195.0  # of a great circle, on the sphere of the earth's mean radius
+_GROUND_METRE_RANGE_M: Final = (0.4, 1.6)
 """The range of the length on the ground (m) of one metre of a projection: Mercator's is 0.4 m at 66 degrees of latitude."""
 
 
@@ -51,29 +51,31 @@ class GeoFrame(NamedTuple):
 
     def project(self, xy: NDArray[np.float64]) -> NDArray[np.float64]:
         """Convert coordinates (n, 2) in this frame to projected coordinates."""
-        return xy @ self._turn().T + (self.x_m, self.y_m)
+        return xy @ self._rotation_matrix().T + (self.x_m, self.y_m)
 
     def unproject(self, xy: NDArray[np.float64]) -> NDArray[np.float64]:
         """Convert projected coordinates (n, 2) to coordinates in this frame."""
-        return (xy - (self.x_m, self.y_m)) @ self._turn()
+        return (xy - (self.x_m, self.y_m)) @ self._rotation_matrix()
 
     def after_shift(self, x_m: float, y_m: float) -> GeoFrame:
         """Return the frame that is valid after x and y (metres) were added to all coordinates."""
         ((x, y),) = self.project(-np.array([[x_m, y_m]])).tolist()
         return self._replace(x_m=x, y_m=y)
 
-    def degrees(self, xy: NDArray[np.float64]) -> NDArray[np.float64]:
+    def longitude_latitude(self, xy: NDArray[np.float64]) -> NDArray[np.float64]:
         """Convert coordinates (n, 2) in this frame to longitude and latitude. Errors: as `transform`."""
         return transform(self.project(xy), self.reference, WGS84)
 
-    def _turn(self) -> NDArray[np.float64]:
+    def _rotation_matrix(self) -> NDArray[np.float64]:
         cos, sin = math.cos(self.yaw_rad), math.sin(self.yaw_rad)
         return np.array([[cos, -sin], [sin, cos]])
 
 
-def tangent_plane(latitude: float, longitude: float) -> GeoFrame:
+def tangent_plane_frame(latitude: float, longitude: float) -> GeoFrame:
     """Return the frame whose coordinates are metres to the east and north of a point (degrees, WGS 84)."""
-    return GeoFrame(f"+proj={_TANGENT_PLANE} +lat_0={latitude!r} +lon_0={longitude!r} +datum=WGS84 +units=m +no_defs")
+    return GeoFrame(
+        f"+proj={_TANGENT_PLANE_PROJECTION} +lat_0={latitude!r} +lon_0={longitude!r} +datum=WGS84 +units=m +no_defs"
+    )
 
 
 def why_unusable(frame: GeoFrame, x_m: float, y_m: float) -> str | None:
@@ -91,10 +93,14 @@ def why_unusable(frame: GeoFrame, x_m: float, y_m: float) -> str | None:
         return "it gives no latitude and longitude for the coordinates"
     (longitude, latitude), (beside, above) = places.tolist()
     turned = math.remainder(beside - longitude, 360.0) * math.cos(math.radians(latitude))
-    if not _METRE[0] < math.hypot(turned, above - latitude) * _DEGREE_M < _METRE[1]:
+    if (
+        not _GROUND_METRE_RANGE_M[0]
+        < math.hypot(turned, above - latitude) * _METRES_PER_DEGREE
+        < _GROUND_METRE_RANGE_M[1]
+    ):
         return "its unit is not the metre, or the coordinates are far outside its area"
-    local = max(abs(x), abs(y)) < _LOCAL_M and not _has_local_origin(frame.reference)
-    if local and (abs(latitude) < _EQUATOR_DEG or abs(latitude) > 90.0 - _POLE_DEG):
+    local = max(abs(x), abs(y)) < _LARGEST_LOCAL_M and not _has_local_origin(frame.reference)
+    if local and (abs(latitude) < _NEAR_EQUATOR_DEG or abs(latitude) > 90.0 - _NEAR_POLE_DEG):
         return (
             f"it is a placeholder: the coordinates are local, and it would place them at latitude {latitude:.3f}, "
             f"longitude {longitude:.3f}"
@@ -112,7 +118,7 @@ def transform(xy: NDArray[np.float64], source: str, target: str) -> NDArray[np.f
         "FROM (SELECT ST_Transform(ST_Point(x, y), $source, $target, always_xy := true) AS p FROM places)"
     )
     with store.open_as_is() as con:
-        store.lock(con)  # a reference may contain the names of grid files
+        store.lock_down(con)  # a reference may contain the names of grid files
         con.register("places", pa.table({"x": xy[:, 0], "y": xy[:, 1]}))
         found = con.execute(sql, {"source": source, "target": target}).fetchnumpy()
     return np.stack([np.ma.filled(found[axis], np.nan) for axis in ("x", "y")], axis=1)
@@ -120,13 +126,13 @@ def transform(xy: NDArray[np.float64], source: str, target: str) -> NDArray[np.f
 
 def _has_local_origin(reference: str) -> bool:
     """Return whether a PROJ string has its own latitude of origin; UTM ignores this parameter."""
-    said = dict(_parsed(reference))
+    said = dict(_reference_parameters(reference))
     return said.get("proj") != "utm" and said.get("lat_0", "0.0") != "0.0"
 
 
-def reference_of(source: MapSource) -> str | None:
+def opendrive_geo_reference(source: MapSource) -> str | None:
     """Return the geo reference in an OpenDRIVE header; None: it is absent or empty."""
-    found = _REFERENCE.search(source.content[:_HEAD_BYTES])
+    found = _GEO_REFERENCE_ELEMENT.search(source.content[:_SEARCHED_BYTES])
     if found is None:
         return None
     text = found[1].decode("utf-8", "replace")
@@ -134,34 +140,34 @@ def reference_of(source: MapSource) -> str | None:
     return (inner[1] if inner else text).strip() or None
 
 
-def same_reference(first: str, second: str) -> bool:
+def is_same_reference(first: str, second: str) -> bool:
     """Return whether two references are equal: PROJ strings by their parameters, other texts by their words."""
-    return _parsed(first) == _parsed(second)
+    return _reference_parameters(first) == _reference_parameters(second)
 
 
-def different_places(first: str, second: str) -> bool:
-    """Return whether two references contradict each other: unequal PROJ strings, both with a projection that is no `tangent_plane`."""
-    return not same_reference(first, second) and all(
-        "proj" in dict(_parsed(text)) and not is_tangent_plane(text) for text in (first, second)
+def is_conflicting_reference(first: str, second: str) -> bool:
+    """Return whether two references contradict each other: unequal PROJ strings with projections other than `tangent_plane_frame`."""
+    return not is_same_reference(first, second) and all(
+        "proj" in dict(_reference_parameters(text)) and not is_from_map_origin(text) for text in (first, second)
     )
 
 
-def is_tangent_plane(reference: str) -> bool:
-    """Return whether a reference was made by `tangent_plane`, from the user's `--map-origin`."""
-    return dict(_parsed(reference)).get("proj") == _TANGENT_PLANE
+def is_from_map_origin(reference: str) -> bool:
+    """Return whether a reference was made by `tangent_plane_frame`, from the user's `--map-origin`."""
+    return dict(_reference_parameters(reference)).get("proj") == _TANGENT_PLANE_PROJECTION
 
 
-def _parsed(text: str) -> frozenset[tuple[str, str]]:
+def _reference_parameters(text: str) -> frozenset[tuple[str, str]]:
     words = text.split()
     if not any(word.startswith("+") for word in words):
         return frozenset({("", " ".join(words))})
     pairs = (word.removeprefix("+").partition("=")[::2] for word in words)
-    said = {(key, _plain(value)) for key, value in pairs if key not in _SILENT}
-    return frozenset(said - _DEFAULTS)
+    said = {(key, _rounded_if_number(value)) for key, value in pairs if key not in _PARAMETERS_WITHOUT_EFFECT}
+    return frozenset(said - _DEFAULT_PARAMETERS)
 
 
-def _plain(value: str) -> str:
+def _rounded_if_number(value: str) -> str:
     try:
-        return repr(round(float(value), _DIGITS) + 0.0)
+        return repr(round(float(value), _COMPARED_DECIMALS) + 0.0)
     except ValueError:
         return value

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from drivelint.arrays import Floats, Mask
 
 _SPACING_M = 4.0  # the most between points of a lane, because positions are searched by the grid cells of each segment
-_SAME_M = 0.0005  # points at most this far apart are one point
+_SAME_POINT_M = 0.0005  # points at most this far apart are one point
 _JITTER_M = 0.01  # a step back that is at most this long is inaccurate drawing
 _WIDEST_M = 60.0  # a wider lane is an error in the bounds
 FARTHEST_M: Final = 1e12  # a larger coordinate is an error, and GEOS may fail on it
@@ -50,7 +50,7 @@ class LaneGeometry:
         return float(self.s[-1])
 
     @property
-    def turn(self) -> float:
+    def turn_rad(self) -> float:
         """The change of heading along the lane (rad), positive to the left."""
         a, b = self.tangent[:-1], self.tangent[1:]
         return float(np.arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], (a * b).sum(1)).sum())
@@ -72,7 +72,7 @@ class LaneGeometry:
         """The polygon between the bounds."""
         return shapely.Polygon(np.vstack([self.right, self.left[::-1]])).buffer(0.0)
 
-    def driving_side_points(self, z: Floats) -> Floats:
+    def points_with_half_widths(self, z: Floats) -> Floats:
         """Return x, y, height and half width (m) of each point, (n, 4), for `driving_side`; `z`: heights (m), NaN: unknown."""
         return np.column_stack([self.centre, z, self.half_width])
 
@@ -92,8 +92,8 @@ def check_bounds(left: Floats, right: Floats) -> None:
 def lane_geometry(left: Floats, right: Floats) -> LaneGeometry:
     """Return the geometry of a lane with these bounds. Errors: `UnbuildableError` with the problem."""
     check_bounds(left, right)
-    left, right = _paired(left, right)
-    for keep_points in (_distinct, _mask_without_backward_steps):
+    left, right = _bounds_of_equal_size(left, right)
+    for keep_points in (_mask_of_distinct_points, _mask_without_backward_steps):
         keep = keep_points((left + right) / 2)
         left, right = left[keep], right[keep]
     centre = (left + right) / 2
@@ -102,7 +102,7 @@ def lane_geometry(left: Floats, right: Floats) -> LaneGeometry:
     total_m = float(np.hypot(*np.diff(centre, axis=0).T).sum())
     if total_m > _LONGEST_M:
         raise UnbuildableError(f"it is {total_m / 1000:.0f} km long")
-    left, right = _dense(centre, left), _dense(centre, right)
+    left, right = _bound_with_added_points(centre, left), _bound_with_added_points(centre, right)
     centre = (left + right) / 2
     step = np.diff(centre, axis=0)
     length = np.hypot(*step.T)
@@ -122,9 +122,9 @@ def lane_geometry(left: Floats, right: Floats) -> LaneGeometry:
     return LaneGeometry(np.r_[0.0, np.cumsum(length)], centre, left, right, tangent, half)
 
 
-def _distinct(centre: Floats) -> Mask:
+def _mask_of_distinct_points(centre: Floats) -> Mask:
     """Return the mask of points of a centre line (n, 2) that do not repeat the point before them."""
-    distinct: Mask = np.r_[True, np.hypot(*np.diff(centre, axis=0).T) > _SAME_M]
+    distinct: Mask = np.r_[True, np.hypot(*np.diff(centre, axis=0).T) > _SAME_POINT_M]
     return distinct
 
 
@@ -137,7 +137,7 @@ def _mask_without_backward_steps(centre: Floats) -> Mask:
     return forwards
 
 
-def _paired(left: Floats, right: Floats) -> tuple[Floats, Floats]:
+def _bounds_of_equal_size(left: Floats, right: Floats) -> tuple[Floats, Floats]:
     """Return the bounds with equal numbers of points: unchanged if the numbers are equal, else at equal shares of their lengths."""
     if len(left) == len(right):
         return left, right
@@ -146,7 +146,7 @@ def _paired(left: Floats, right: Floats) -> tuple[Floats, Floats]:
     return resampled(left, shares[0], at), resampled(right, shares[1], at)
 
 
-def _dense(centre: Floats, bound: Floats) -> Floats:
+def _bound_with_added_points(centre: Floats, bound: Floats) -> Floats:
     """Return a bound with points added, so that the points of the centre line are at most `_SPACING_M` apart."""
     length = np.hypot(*np.diff(centre, axis=0).T)
     pieces = np.maximum(1, np.ceil(length / _SPACING_M)).astype(np.int64)

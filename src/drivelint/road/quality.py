@@ -10,7 +10,7 @@ from drivelint.sql.words import vocabularies
 
 SIGNS_UNMAPPED: Final = "signs_unmapped"
 """The id of the check for a map without stop and give-way signs, even if they exist on the road."""
-_UNKNOWN_WORDS: Final = {
+_EFFECTS_OF_UNKNOWN_WORDS: Final = {
     "lane_type": ("warning", "types of lanes", "vehicles are assumed not to drive there"),
     "road_type": ("info", "types of roads", "treated as not stated"),
     "marking": ("info", "road marks", "whether they may be crossed is not known"),
@@ -28,7 +28,7 @@ class MapQuality:
 
     def __init__(self) -> None:
         self.rows: list[dict[str, Any]] = []
-        self._unknown_words: dict[str, Counter[str]] = {name: Counter() for name in _UNKNOWN_WORDS}
+        self._unknown_words: dict[str, Counter[str]] = {name: Counter() for name in _EFFECTS_OF_UNKNOWN_WORDS}
         self._stand_ins = 0
         self._sides_by_number = 0
 
@@ -39,13 +39,13 @@ class MapQuality:
         self._stand_ins += 1
         return None
 
-    def side_by_number(self) -> None:
+    def count_side_by_number(self) -> None:
         """Count an OpenDRIVE lane section whose lanes are all under `<left>` or all under `<right>`, with numbers of the other side."""
         self._sides_by_number += 1
 
     def known_word(self, vocabulary: str, word: str) -> str | None:
         """Return a word of the map in the vocabulary's spelling, whatever its case; None, and count it, if it is unknown."""
-        known = vocabularies()[vocabulary].spelled(word)
+        known = vocabularies()[vocabulary].known_spelling(word)
         if known is None:
             self._unknown_words[vocabulary][word] += 1
         return known
@@ -53,9 +53,9 @@ class MapQuality:
     def add(self, check: str, severity: str, lanelet: str | None, message: str, n: int = 1) -> None:
         """Add a row; `lanelet`: the lanelet or road concerned, None: the whole map."""
         assert severity in _ORDER, severity  # noqa: S101 - a programming error
-        self.rows.append(_row(check, severity, lanelet, message, n))
+        self.rows.append(_quality_row(check, severity, lanelet, message, n))
 
-    def geo_unusable(self, reference: str, why: object) -> None:
+    def add_unusable_geo_reference(self, reference: str, why: object) -> None:
         """Add a row on why the map's geo reference gives no positions on the earth."""
         message = f"the geo reference {reference!r} gives no positions on the earth: {why}"
         self.add("geo_reference_unusable", "info", None, message)
@@ -64,22 +64,22 @@ class MapQuality:
         """Return the rows, the most severe first, including one for each kind of counted problem."""
         rows = list(self.rows)
         for vocabulary, words in self._unknown_words.items():
-            severity, what, follows = _UNKNOWN_WORDS[vocabulary]
+            severity, what, follows = _EFFECTS_OF_UNKNOWN_WORDS[vocabulary]
             counted = name_list([f"{escape_invisible(word[:40])} ({n})" for word, n in sorted(words.items())])
             message = f"{what} with unknown names: {counted}: {follows}"
             if words:
-                rows.append(_row("unknown_word", severity, None, message, words.total()))
+                rows.append(_quality_row("unknown_word", severity, None, message, words.total()))
         if self._stand_ins:
             message = (
                 f"{_NETCONVERT_STAND_IN_MPS:g} m/s is the value that netconvert writes for a road without a "
                 "limit: the limit is treated as unknown"
             )
-            rows.append(_row("invalid_speed", "warning", None, message, self._stand_ins))
+            rows.append(_quality_row("invalid_speed", "warning", None, message, self._stand_ins))
         if self._sides_by_number:
             message = "lane sections list lanes under <left> or <right> whose numbers belong to the other side: the numbers are used"
-            rows.append(_row("lane_side", "info", None, message, self._sides_by_number))
+            rows.append(_quality_row("lane_side", "info", None, message, self._sides_by_number))
         return sorted(rows, key=lambda r: (_ORDER[r["severity"]], r["check_id"], r["lanelet_id"] or "", r["message"]))
 
 
-def _row(check: str, severity: str, lanelet: str | None, message: str, n: int) -> dict[str, Any]:
+def _quality_row(check: str, severity: str, lanelet: str | None, message: str, n: int) -> dict[str, Any]:
     return {"check_id": check, "severity": severity, "lanelet_id": lanelet, "n": n, "message": message}

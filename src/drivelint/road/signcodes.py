@@ -12,30 +12,30 @@ from typing import Final
 
 from drivelint.facts import toml_beside
 
-_FACTS: Final = toml_beside(__file__, "signnames.toml")
-_NAMES: Final = [(re.compile(pattern), kind) for kind, pattern in _FACTS["names"].items()]
+_NAMES_AND_ARROWS: Final = toml_beside(__file__, "signnames.toml")
+_KINDS_BY_NAME_PATTERN: Final = [(re.compile(pattern), kind) for kind, pattern in _NAMES_AND_ARROWS["names"].items()]
 _ARROW_LIGHTS: Final = frozenset({"1000010", "1000011", "1000012"})
-_DOTTED: Final = re.compile(r"\d\.\d{3}\.\d{3}")
+_CODE_WITH_DOTS: Final = re.compile(r"\d\.\d{3}\.\d{3}")
 
 
-def kind_of(country: str, code: str, name: str) -> str | None:
+def signal_kind(country: str, code: str, name: str) -> str | None:
     """Return the kind of a signal by country (any case), code and name; None: not recognised."""
-    codes = _kinds(_FACTS["countries"].get(country.lower(), ""))
-    plain = _plain(code).upper()
+    codes = _kind_by_code(_NAMES_AND_ARROWS["countries"].get(country.lower(), ""))
+    plain = _code_without_dots(code).upper()
     for candidate in (plain, plain.partition("-")[0] if plain[:1].isdecimal() else plain.replace("-", "")):
         if candidate in codes:
             return codes[candidate]
     lowered = name.lower().replace(" ", "_").replace("-", "_")
-    return next((kind for pattern, kind in _NAMES if pattern.search(lowered)), None)
+    return next((kind for pattern, kind in _KINDS_BY_NAME_PATTERN if pattern.search(lowered)), None)
 
 
-def codes_of(kind: str) -> dict[str, list[str]]:
+def signal_codes_by_list(kind: str) -> dict[str, list[str]]:
     """Return name of a list (OpenDRIVE, de, gb, us, es) -> its codes for this kind of signal; lists without such a code are left out."""
     return dict(toml_beside(__file__, "signcodes.toml").get(kind, {}))
 
 
 @cache
-def _kinds(country: str) -> dict[str, str]:
+def _kind_by_code(country: str) -> dict[str, str]:
     """Return code -> kind, from the lists of OpenDRIVE and of the country."""
     return {
         code: kind
@@ -45,23 +45,23 @@ def _kinds(country: str) -> dict[str, str]:
     }
 
 
-def turns_of(code: str, subtype: str) -> list[str] | None:
+def turns_of_light_code(code: str, subtype: str) -> list[str] | None:
     """Return the turns that an OpenDRIVE traffic light applies to, by its code; None: the code does not show it.
 
     Source: the signal list of OpenDRIVE as openPASS reads it (1.000.011: arrows 10 left, 20 right, 30 straight, 40 left
     and straight, 50 right and straight) and SUMO writes it.
     """
-    plain, finer = _plain(code), subtype.lower().removesuffix(".0")
-    if finer in _FACTS["full_lights"].get(plain, ()):
-        return turns_of_direction("all")
-    return list(_FACTS["arrows"].get(finer, ())) or None if plain in _ARROW_LIGHTS else None
+    plain, finer = _code_without_dots(code), subtype.lower().removesuffix(".0")
+    if finer in _NAMES_AND_ARROWS["full_lights"].get(plain, ()):
+        return turns_of_light_direction("all")
+    return list(_NAMES_AND_ARROWS["arrows"].get(finer, ())) or None if plain in _ARROW_LIGHTS else None
 
 
-def turns_of_direction(word: str) -> list[str] | None:
+def turns_of_light_direction(word: str) -> list[str] | None:
     """Return the turns that a CommonRoad traffic light applies to, by its `direction`; None: unknown word."""
-    return list(_FACTS["directions"].get(word, ())) or None
+    return list(_NAMES_AND_ARROWS["directions"].get(word, ())) or None
 
 
-def _plain(code: str) -> str:
+def _code_without_dots(code: str) -> str:
     """Return a code without dots between thousands (1.000.011), or without a final `.0`."""
-    return code.replace(".", "") if _DOTTED.fullmatch(code) else code.removesuffix(".0")
+    return code.replace(".", "") if _CODE_WITH_DOTS.fullmatch(code) else code.removesuffix(".0")

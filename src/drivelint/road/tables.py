@@ -41,8 +41,8 @@ def map_tables(
     content: Mapping[str, Rows | dict[str, Any]],
     quality: MapQuality,
     *,
-    kind: str,
-    side: tuple[str, str],
+    map_format: str,
+    side_and_source: tuple[str, str],
     geo: GeoFrame | None = None,
     lanes_reversed: bool = False,
     nation: str | None = None,
@@ -52,32 +52,32 @@ def map_tables(
     The map's id is `<map stem>-<first 8 hex of sha256><offset, if any>@<lht or rht>`, the same on every machine. A question mark follows if
     the side is a guess, and a tilde if `lanes_reversed`.
 
-    `kind`: the map's format; `side`: the driving side and its source; `geo`: the frame of the map's own coordinates; `lanes_reversed`: the
-    lanes' directions are opposite to those of the driving side; `nation`: the country of the roads, as two letters, None: unknown.
+    `side_and_source`: the driving side and its source; `geo`: the frame of the map's own coordinates; `lanes_reversed`: the lanes'
+    directions are opposite to those of the driving side; `nation`: the country of the roads, as two letters, None: unknown.
     """
     x, y = (float(v) + 0.0 for v in request.offset)
     shift = f"{x:+}{y:+}" if x or y else ""
     # a default side is marked, because the traces of another drive may show the real one
-    marks = f"{'?' if side[1] == 'default' else ''}{'~' if lanes_reversed else ''}"
-    name = f"{PurePath(source.name).stem}-{source.sha256[:8]}{shift}@{side[0]}{marks}"
-    tables = {table: owned_table(table, name, rows, kind) for table, rows in content.items()}
-    trouble = _geo_trouble(geo, tables["lane_point"], request) if geo else None
+    marks = f"{'?' if side_and_source[1] == 'default' else ''}{'~' if lanes_reversed else ''}"
+    name = f"{PurePath(source.name).stem}-{source.sha256[:8]}{shift}@{side_and_source[0]}{marks}"
+    tables = {table: owned_table(table, name, rows, map_format) for table, rows in content.items()}
+    trouble = _why_unusable_for_lanes(geo, tables["lane_point"], request) if geo else None
     if geo and trouble:
-        quality.geo_unusable(geo.reference, trouble)
+        quality.add_unusable_geo_reference(geo.reference, trouble)
     environment = {
-        "name": source.name, "sha256": source.sha256, "format": kind,
+        "name": source.name, "sha256": source.sha256, "format": map_format,
         "offset_x_m": request.offset[0], "offset_y_m": request.offset[1],
-        "handedness": side[0], "handedness_source": side[1], "geo_reference": geo.reference if geo else None,
+        "handedness": side_and_source[0], "handedness_source": side_and_source[1], "geo_reference": geo.reference if geo else None,
         **{f"geo_offset_{part}": getattr(geo, part, None) for part in ("x_m", "y_m", "z_m", "yaw_rad")},
         "geo_usable": trouble is None if geo else None,
         "signs_mapped": all(row["check_id"] != SIGNS_UNMAPPED for row in quality.rows),
     }  # fmt: skip
-    about = owned_table("environment", name, [environment], kind)
-    found = owned_table("map_quality", name, quality.sorted_rows(), kind)
-    return MapTables(name, *side, {"environment": about, **tables, "map_quality": found}, nation=nation)
+    about = owned_table("environment", name, [environment], map_format)
+    found = owned_table("map_quality", name, quality.sorted_rows(), map_format)
+    return MapTables(name, *side_and_source, {"environment": about, **tables, "map_quality": found}, nation=nation)
 
 
-def _geo_trouble(geo: GeoFrame, points: pa.Table, request: MapOptions) -> str | None:
+def _why_unusable_for_lanes(geo: GeoFrame, points: pa.Table, request: MapOptions) -> str | None:
     """Return why the frame gives no positions on the earth, tested in the middle of the lanes; None: it is usable."""
     middle = [sum(pc.min_max(points[axis]).as_py().values()) / 2.0 for axis in ("x_m", "y_m")]
     return why_unusable(geo, middle[0] - request.offset[0], middle[1] - request.offset[1])

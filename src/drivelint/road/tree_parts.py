@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
     from drivelint.arrays import Indices
 
-FIRST_PART: Final = 8
-GROWTH: Final = 8
+FIRST_PART_SHAPES: Final = 8
+MOST_GROWTH_OF_PART: Final = 8
 PAIRS_PER_PART: Final = 1_000_000
 """The aim for the number of pairs in a part; the size of a part follows from the pairs per shape in the part before."""
 MOST_SHAPES_AT_ONE_PLACE: Final = 1000
@@ -42,17 +42,17 @@ def query_in_parts(
     too many pairs.
     """
     every = np.asarray(shapes, dtype=object)
-    begin, n = 0, FIRST_PART
+    begin, n = 0, FIRST_PART_SHAPES
     while begin < len(every):
         shape, found = tree.query(every[begin : begin + n], predicate=predicate, distance=distance)
         if (n_at_one := len(found) // len(every[begin : begin + n])) > MOST_SHAPES_AT_ONE_PLACE:
             raise CrowdedPlaceError(n_at_one)
         yield shape + begin, found
         begin += n
-        n = max(1, min(GROWTH * n, n * PAIRS_PER_PART // max(1, len(found))))
+        n = max(1, min(MOST_GROWTH_OF_PART * n, n * PAIRS_PER_PART // max(1, len(found))))
 
 
-def all_in_parts(
+def all_pairs(
     tree: shapely.STRtree,
     shapes: Sequence[shapely.Geometry] | NDArray[np.object_],
     predicate: Literal["intersects", "within", "dwithin"],

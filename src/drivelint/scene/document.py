@@ -15,7 +15,7 @@ import yaml
 from drivelint.casefile import OnOffAsTextLoader
 from drivelint.errors import UsageError
 from drivelint.phrases import hint
-from drivelint.scene.strange_words import problems
+from drivelint.scene.strange_words import problem_lines
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -30,13 +30,13 @@ Spans = list[Annotated[Numbers, msgspec.Meta(min_length=2, max_length=2)]]
 """[first second, last second] of each span."""
 
 
-class _Part(
+class _StrictMapping(
     msgspec.Struct, forbid_unknown_fields=True, frozen=True, kw_only=True, rename=lambda name: name.rstrip("_")
 ):
     """A mapping of the document; only the names of its fields are allowed as keys."""
 
 
-class LaneText(_Part, frozen=True):
+class LaneText(_StrictMapping, frozen=True):
     """A lane as a mapping. Most lanes are written as a text instead: kind, width and outer mark."""
 
     kind: str = "driving"
@@ -49,7 +49,7 @@ class LaneText(_Part, frozen=True):
     """The lane exists from station `from_` to station `to`; None: to the end of the road."""
 
 
-class Thing(_Part, frozen=True):
+class RoadThing(_StrictMapping, frozen=True):
     """A thing at or on a road: a light, a stop line, a crossing, or a sign."""
 
     kind: str = msgspec.field(name="what")
@@ -63,7 +63,7 @@ class Thing(_Part, frozen=True):
     deep: float = 3.0
 
 
-class RoadText(_Part, frozen=True):
+class RoadText(_StrictMapping, frozen=True):
     """A road: a line, and lanes on both sides of it."""
 
     line: list[float | Numbers] = msgspec.field(default_factory=lambda: [1000.0])
@@ -81,21 +81,21 @@ class RoadText(_Part, frozen=True):
     middle: str | list[tuple[float, str]] = "broken"
     height: Knots = 0.0
     """Metres, or [station, metres] pairs, linear between them."""
-    things: list[Thing] = []
+    things: list[RoadThing] = []
 
 
-class Crossing(_Part, frozen=True):
+class Crossroads(_StrictMapping, frozen=True):
     """A junction whose arms, roads with the same lanes, lead away from it to points of the compass."""
 
     arms: tuple[Arm, ...] = ("west", "north", "east", "south")
     half: float = 12.0
     """Metres from the middle of the junction to the start of the arms."""
     road: RoadText = RoadText(line=[200.0], kind="town", limit="30 mph")
-    things: dict[str, list[Thing]] = {}
+    things: dict[str, list[RoadThing]] = {}
     """Arm -> things on this arm alone."""
 
 
-class Roundabout(_Part, frozen=True):
+class Roundabout(_StrictMapping, frozen=True):
     """A ring with arms to points of the compass."""
 
     arms: tuple[Arm, ...] = ("west", "north", "east", "south")
@@ -104,18 +104,18 @@ class Roundabout(_Part, frozen=True):
     road: RoadText = RoadText(line=[150.0], kind="town", limit="30 mph")
 
 
-class Layout(_Part, frozen=True):
+class RoadLayout(_StrictMapping, frozen=True):
     """Roads that belong together, and the turns that connect them."""
 
     traffic: Side | Literal["both"] = "right"
     roads: dict[str, RoadText] = {}
-    crossing: Crossing | None = None
+    crossing: Crossroads | None = None
     roundabout: Roundabout | None = None
     turns: Literal["all"] | list[str] = []
     """Pairs of lanes that a junction connects, as `west -1 > north 1`; all: each arriving lane with the leaving lanes of other roads."""
 
 
-class Step(_Part, frozen=True):
+class MotionStep(_StrictMapping, frozen=True):
     """A change of an actor's motion that begins at a time or a place. Steps can be written instead of knots."""
 
     at: float | None = None
@@ -135,7 +135,7 @@ class Step(_Part, frozen=True):
     indicator: str | None = None
 
 
-class Faults(_Part, frozen=True):
+class RecorderFaults(_StrictMapping, frozen=True):
     """The faults of the recorder in the samples of one actor."""
 
     jitter: float = 0.0
@@ -152,7 +152,7 @@ class Faults(_Part, frozen=True):
     unknown: list[Literal["speed", "heading", "size", "width", "class"]] = []
 
 
-class ActorText(_Part, frozen=True):
+class ActorText(_StrictMapping, frozen=True):
     """An actor and its motion. One of `lane`, `route`, `path`, `track` and `place` defines where the actor is."""
 
     kind: str | None = "car"
@@ -174,7 +174,7 @@ class ActorText(_Part, frozen=True):
     """m/s; linear between knots."""
     offset: Knots = 0.0
     """Metres to the left of its path as drawn, which is the side to overtake on; smooth between knots."""
-    do: list[Step] = []
+    do: list[MotionStep] = []
     facing: Literal["ahead", "back"] = "ahead"
     """back: the actor is turned round, so that it drives backwards if it moves."""
     heading: Knots | None = None
@@ -187,10 +187,10 @@ class ActorText(_Part, frozen=True):
     """Height of the ground under the actor, in metres; None: the height of its road."""
     there: list[float] | None = None
     """First and last second of the actor in the log; None: all seconds."""
-    faults: Faults = Faults()
+    faults: RecorderFaults = RecorderFaults()
 
 
-class SceneText(_Part, frozen=True, kw_only=True):
+class SceneText(_StrictMapping, frozen=True, kw_only=True):
     """A scene and its expected verdicts."""
 
     name: str
@@ -212,23 +212,23 @@ class SceneText(_Part, frozen=True, kw_only=True):
     """The line of the scene in the file; set by the reader, not by an author."""
 
 
-class SceneFile(_Part, frozen=True):
+class SceneFile(_StrictMapping, frozen=True):
     """The content of a file of scenes."""
 
     roads_from: list[str] = []
     """Files in the same folder whose roads can be used, too."""
     all_fails: bool = False
     """Whether a critical or major fail of a stable rule is an error if it is not expected."""
-    roads: dict[str, Layout] = {}
+    roads: dict[str, RoadLayout] = {}
     scenes: list[SceneText] = []
 
 
 def read(path: Path) -> SceneFile:
     """Read a file of scenes, and the roads of the files that it names. Errors: `UsageError` with file and line."""
-    scene_file = _parsed(path)
-    roads: dict[str, Layout] = {}
+    scene_file = _scene_file(path)
+    roads: dict[str, RoadLayout] = {}
     for name in scene_file.roads_from:
-        roads |= _parsed(path.parent / name).roads
+        roads |= _scene_file(path.parent / name).roads
     scene_file = msgspec.structs.replace(scene_file, roads=roads | scene_file.roads)
     names: dict[str, int] = {}
     for scene in scene_file.scenes:
@@ -242,7 +242,7 @@ def read(path: Path) -> SceneFile:
     return scene_file
 
 
-def _parsed(path: Path) -> SceneFile:
+def _scene_file(path: Path) -> SceneFile:
     try:
         loader = OnOffAsTextLoader(path.read_text(encoding="utf-8"))
         root = loader.get_single_node()
@@ -255,12 +255,12 @@ def _parsed(path: Path) -> SceneFile:
     if not isinstance(raw, dict):
         raise UsageError(f"{path}:1: a file of scenes has the keys roads and scenes")
     for line, part in _parts_with_lines(raw, root):
-        for problem in problems(part, SceneFile):
+        for problem in problem_lines(part, SceneFile):
             raise UsageError(f"{path}:{line}: {problem}")
     try:
         return msgspec.convert(raw, SceneFile, strict=True)
     except msgspec.ValidationError as error:
-        raise UsageError(f"{path}:{_line_of(str(error), root)}: {error}") from error
+        raise UsageError(f"{path}:{_line_of_scene(str(error), root)}: {error}") from error
 
 
 def _parts_with_lines(raw: dict[str, Any], root: Any) -> Iterator[tuple[int, dict[str, Any]]]:
@@ -280,7 +280,7 @@ def _parts_with_lines(raw: dict[str, Any], root: Any) -> Iterator[tuple[int, dic
             yield key_node.start_mark.line + 1, {key: value}
 
 
-def _line_of(message: str, root: Any) -> int:
+def _line_of_scene(message: str, root: Any) -> int:
     """Return the line of the scene that a message of msgspec is about: `... at `$.scenes[3].actors`."""
     number = re.search(r"\$\.scenes\[(\d+)\]", message)
     nodes: Any = next((node.value for key, node in root.value if key.value == "scenes"), [])

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 NOT_JUDGED: Final = "refused"
 """The verdict on a scene whose log could not be judged."""
-_MET: Final = {
+_VERDICTS_BY_EXPECTATION: Final = {
     "fail": {"fail"},
     "pass": {"pass"},
     "unknown": {"unknown"},
@@ -42,8 +42,8 @@ _MET: Final = {
 _EXPECTATION: Final = re.compile(
     r"(?P<verdict>[a-z_]+(?: [a-z]+)?)(?: \((?P<code>\w+)\))?(?:: (?P<why>.+))?", re.DOTALL
 )
-_WORST: Final = ("error", "fail", "unknown", "pass", "not_applicable")
-_GRAVE: Final = {"critical", "major"}
+_VERDICTS_WORST_FIRST: Final = ("error", "fail", "unknown", "pass", "not_applicable")
+_GRAVE_SEVERITIES: Final = {"critical", "major"}
 
 Row = dict[str, Any]
 Key = tuple[str, str]
@@ -58,7 +58,7 @@ class Expectation(NamedTuple):
     why: str
 
 
-class Verdicts(NamedTuple):
+class VerdictsOfScenes(NamedTuple):
     """The rows of verdicts of some scenes, by scene and rule."""
 
     rows: Mapping[Key, Sequence[Row]]
@@ -66,14 +66,14 @@ class Verdicts(NamedTuple):
     def verdict(self, key: Key) -> str:
         """Return the verdict of a rule on a scene: the worst verdict of its rows."""
         found = {row["verdict"] for row in self.rows.get(key, ())}
-        return next((verdict for verdict in _WORST if verdict in found), NOT_JUDGED)
+        return next((verdict for verdict in _VERDICTS_WORST_FIRST if verdict in found), NOT_JUDGED)
 
     def codes(self, key: Key) -> set[str]:
         """Return the reason codes of the rows with the worst verdict."""
         worst = self.verdict(key)
         return {code for row in self.rows.get(key, ()) if row["verdict"] == worst for code in reason_codes(row)}
 
-    def reasons(self, key: Key) -> str:
+    def reasons_text(self, key: Key) -> str:
         """Return the reasons, as sentences, of the rows with the worst verdict."""
         worst = self.verdict(key)
         return "; ".join(sorted({row["reason"] for row in self.rows.get(key, ()) if row["verdict"] == worst}))
@@ -91,14 +91,14 @@ def expectation(text: str) -> Expectation:
     """Read an expectation, such as `fail: it touches the car`. Errors: `UsageError`."""
     found = _EXPECTATION.fullmatch(text.strip())
     verdict = found["verdict"] if found else text.partition(":")[0]
-    if found is None or verdict not in _MET:
-        raise UsageError(f"{verdict!r} is no verdict: {hint(verdict, _MET)}")
+    if found is None or verdict not in _VERDICTS_BY_EXPECTATION:
+        raise UsageError(f"{verdict!r} is no verdict: {hint(verdict, _VERDICTS_BY_EXPECTATION)}")
     return Expectation(verdict, found["code"], found["why"] or "")
 
 
 def judge_scenes(
     scenes: Sequence[Scene], rules: Sequence[str], folder: Path, rules_dirs: Sequence[Path] = ()
-) -> Verdicts:
+) -> VerdictsOfScenes:
     """Write the scenes into an empty folder and judge them as drives of one run. Errors: as `check`."""
     for scene in scenes:
         at = folder / scene.name
@@ -121,26 +121,26 @@ def judge_scenes(
     for row in rows:
         drive = row["drive_id"]
         rows_by_key[drive if drive in names else drive.rpartition("-")[0], row["rule_id"]].append(row)
-    return Verdicts(rows_by_key)
+    return VerdictsOfScenes(rows_by_key)
 
 
-def differences(scene: Scene, verdicts: Verdicts, gating: Container[str]) -> Iterator[str]:
+def differences(scene: Scene, verdicts: VerdictsOfScenes, gating: Container[str]) -> Iterator[str]:
     """Yield each difference between verdicts and expectations. `gating`: rules whose critical and major fails must be expected."""
     expectations = {rule: expectation(text) for rule, text in scene.text.expect.items()}
     for rule, expected_verdict in expectations.items():
         key = scene.name, rule
         got = verdicts.verdict(key)
-        if got not in _MET[expected_verdict.verdict]:
+        if got not in _VERDICTS_BY_EXPECTATION[expected_verdict.verdict]:
             why = f" ({expected_verdict.why})" if expected_verdict.why else ""
-            yield f"{rule}: expected {expected_verdict.verdict}{why}, got {got}: {verdicts.reasons(key)}"
+            yield f"{rule}: expected {expected_verdict.verdict}{why}, got {got}: {verdicts.reasons_text(key)}"
         elif expected_verdict.code and expected_verdict.code not in verdicts.codes(key):
             codes = ", ".join(sorted(verdicts.codes(key)))
-            yield f"{rule}: expected {got} for {expected_verdict.code}, got {codes}: {verdicts.reasons(key)}"
+            yield f"{rule}: expected {got} for {expected_verdict.code}, got {codes}: {verdicts.reasons_text(key)}"
     for (name, rule), rows in sorted(verdicts.rows.items()):
         if name != scene.name or rule in expectations or rule not in gating:
             continue
-        if any(row["verdict"] in {"fail", "error"} and row["severity"] in _GRAVE for row in rows):
-            yield f"{rule}: not expected to fail: {verdicts.reasons((name, rule))}"
+        if any(row["verdict"] in {"fail", "error"} and row["severity"] in _GRAVE_SEVERITIES for row in rows):
+            yield f"{rule}: not expected to fail: {verdicts.reasons_text((name, rule))}"
 
 
 def scene_test(
@@ -170,9 +170,9 @@ def scene_test(
         except DriveLintError as error:
             raise UsageError(f"{path}:{scene.text.line}: scene {scene.text.name!r}: {error}") from error
         if out is not None:
-            _write(out / scene.name, files, to)
+            _write_log(out / scene.name, files, to)
     with TemporaryDirectory() as folder:
-        verdicts = judge_scenes(scenes, rules_for(texts, all_fails=file.all_fails), Path(folder), rules_dirs)
+        verdicts = judge_scenes(scenes, rules_to_judge_by(texts, all_fails=file.all_fails), Path(folder), rules_dirs)
     gating = gating_rules(rules) if file.all_fails else frozenset()
     code = ExitCode.OK
     for scene in scenes:
@@ -183,7 +183,7 @@ def scene_test(
     return code
 
 
-def rules_for(texts: Sequence[SceneText], *, all_fails: bool) -> list[str]:
+def rules_to_judge_by(texts: Sequence[SceneText], *, all_fails: bool) -> list[str]:
     """Return the rules by which scenes are judged: the rules that they name, and with `all_fails` all stable rules."""
     return [*(["status:stable"] if all_fails else []), *sorted({rule for text in texts for rule in text.expect})]
 
@@ -193,7 +193,7 @@ def gating_rules(rules: Mapping[str, Rule]) -> frozenset[str]:
     return frozenset(rule.id for rule in rules.values() if rule.status == "stable")
 
 
-def _no_rule(rule_id: str, rules: Mapping[str, Rule]) -> str:
+def _unknown_rule_message(rule_id: str, rules: Mapping[str, Rule]) -> str:
     """Return the message for an unknown rule, with the most similar known rule, or with how to add its pack."""
     pack, dot, name = rule_id.partition(".")
     packs = {rule.pack for rule in rules.values()}
@@ -209,11 +209,11 @@ def _no_rule(rule_id: str, rules: Mapping[str, Rule]) -> str:
 def _refuse_wrong_expectations(scene: Scene, rules: Mapping[str, Rule]) -> None:
     for rule, said in scene.text.expect.items():
         if rule not in rules:
-            raise UsageError(f"expect: {_no_rule(rule, rules)}")
+            raise UsageError(f"expect: {_unknown_rule_message(rule, rules)}")
         expectation(said)
 
 
-def _write(folder: Path, files: dict[str, bytes], to: Literal["mcap", "parquet"]) -> None:
+def _write_log(folder: Path, files: dict[str, bytes], to: Literal["mcap", "parquet"]) -> None:
     if to == "parquet":
         publish(folder, files, {})
         return

@@ -10,17 +10,17 @@ import msgspec
 
 from drivelint.errors import UsageError
 from drivelint.phrases import hint
-from drivelint.scene.road import DRIVABLE_KINDS, Lane, Piece, Pose, Road, Turn, connecting_piece
+from drivelint.scene.road import DRIVABLE_KINDS, Lane, LinePiece, Pose, Road, Turn, connecting_piece
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from drivelint.scene.document import Crossing, LaneText, Layout, RoadText, Roundabout
+    from drivelint.scene.document import Crossroads, LaneText, RoadLayout, RoadText, Roundabout
 
-_COMPASS: Final = {"east": 0.0, "north": math.pi / 2, "west": math.pi, "south": 3 * math.pi / 2}
+_ANGLE_BY_COMPASS_POINT: Final = {"east": 0.0, "north": math.pi / 2, "west": math.pi, "south": 3 * math.pi / 2}
 _LANE: Final = re.compile(r"(.+) (-?\d+)")
-_THINGS: Final = ("light", "stop line", "zebra", "signalled crossing", "crossing", "sign")
-_FORM_WITH_NAME: Final = {"light": "light NAME", "sign": "sign COUNTRY CODE, or sign NAME"}
+_KINDS_OF_THINGS: Final = ("light", "stop line", "zebra", "signalled crossing", "crossing", "sign")
+_FORMS_OF_NAMED_THINGS: Final = {"light": "light NAME", "sign": "sign COUNTRY CODE, or sign NAME"}
 _LANE_KINDS: Final = (
     *DRIVABLE_KINDS,
     "shoulder",
@@ -37,30 +37,30 @@ _MARK_WORDS: Final = ("none", "solid", "broken", "curb", "grass", "botts")
 _LIMIT: Final = re.compile(r"(\d+(?:\.\d+)?) (mph|km/h|m/s)|no limit")
 
 
-def roads_of(layout: Layout) -> dict[str, Road]:
+def roads_of(layout: RoadLayout) -> dict[str, Road]:
     """Return name -> road of a layout, including the roads through its junctions. Errors: `UsageError`."""
     texts = dict(layout.roads)
     turns: str | Sequence[str] = layout.turns
     if layout.crossing:
-        texts |= _arms(layout.crossing)
+        texts |= _arm_texts(layout.crossing)
         turns = turns or "all"
     ring: list[tuple[str, int, str, int]] = []
     if layout.roundabout:
-        texts |= _ring(layout.roundabout)
+        texts |= _arm_and_ring_texts(layout.roundabout)
         ring = _ring_turns(layout.roundabout)
     if not texts:
         raise UsageError("a layout has roads, a crossing or a roundabout")
     roads: dict[str, Road] = {}
-    for name in _in_order(texts):
+    for name in _names_after_predecessors(texts):
         roads[name] = _road(name, texts[name], roads)
     for name in ("crossing", "roundabout"):
         if name in roads:
             raise UsageError(f"road {name}: this name is reserved: choose another name")
-    pairs = _all_turns(roads) if turns == "all" else [_turn(text, roads) for text in turns]
+    pairs = _all_turns(roads) if turns == "all" else [_lanes_of_turn(text, roads) for text in turns]
     return roads | _junction_roads(roads, [*pairs, *ring])
 
 
-def lane_named(text: str, roads: Mapping[str, Road]) -> tuple[str, int]:
+def road_and_lane_number(text: str, roads: Mapping[str, Road]) -> tuple[str, int]:
     """Return the name of the road and the number of the lane in a text such as `main -1`. Errors: `UsageError`."""
     if (found := _LANE.fullmatch(text.strip())) is None:
         raise UsageError(f"{text!r} is no lane: write the name of a road and a number, such as {next(iter(roads))} 1")
@@ -71,7 +71,7 @@ def lane_named(text: str, roads: Mapping[str, Road]) -> tuple[str, int]:
     return name, number
 
 
-def _in_order(texts: Mapping[str, RoadText]) -> list[str]:
+def _names_after_predecessors(texts: Mapping[str, RoadText]) -> list[str]:
     """Return the names of the roads, each after the road that it continues."""
     order: list[str] = []
     for name in texts:
@@ -95,9 +95,9 @@ def _road(name: str, text: RoadText, roads: Mapping[str, Road]) -> Road:
         x, y, heading = text.start
         start = Pose(x, y, math.radians(heading))
     else:
-        start = roads[text.after].end() if text.after else Pose(0.0, 0.0, 0.0)
+        start = roads[text.after].end_pose() if text.after else Pose(0.0, 0.0, 0.0)
     pieces = [
-        Piece(float(part)) if isinstance(part, int | float) else Piece(float(part[0]), 1 / part[1])
+        LinePiece(float(part)) if isinstance(part, int | float) else LinePiece(float(part[0]), 1 / part[1])
         for part in text.line
     ]
     length = sum(piece.length for piece in pieces)
@@ -106,7 +106,7 @@ def _road(name: str, text: RoadText, roads: Mapping[str, Road]) -> Road:
     for _, limit in limits:
         if _LIMIT.fullmatch(limit) is None:
             raise UsageError(f"road {name}: limit {limit!r}: write a number and mph, km/h or m/s, or 'no limit'")
-    _refuse_strange(name, text, lanes)
+    _refuse_unknown_words(name, text, lanes)
     return Road(
         name,
         start,
@@ -121,14 +121,14 @@ def _road(name: str, text: RoadText, roads: Mapping[str, Road]) -> Road:
     )
 
 
-def _refuse_strange(name: str, text: RoadText, lanes: Sequence[Lane]) -> None:
+def _refuse_unknown_words(name: str, text: RoadText, lanes: Sequence[Lane]) -> None:
     """Raise `UsageError` for unknown words of things, lanes and marks."""
     for thing in text.things:
         what, _, rest = thing.kind.partition(" ")
-        if what in _FORM_WITH_NAME and not rest:
-            raise UsageError(f"road {name}: what: {thing.kind!r}: write {_FORM_WITH_NAME[what]}")
-        if what not in _FORM_WITH_NAME and thing.kind not in _THINGS:
-            raise UsageError(f"road {name}: what: {thing.kind!r}: {hint(thing.kind, _THINGS)}")
+        if what in _FORMS_OF_NAMED_THINGS and not rest:
+            raise UsageError(f"road {name}: what: {thing.kind!r}: write {_FORMS_OF_NAMED_THINGS[what]}")
+        if what not in _FORMS_OF_NAMED_THINGS and thing.kind not in _KINDS_OF_THINGS:
+            raise UsageError(f"road {name}: what: {thing.kind!r}: {hint(thing.kind, _KINDS_OF_THINGS)}")
     for lane in lanes:
         if lane.kind not in _LANE_KINDS:
             raise UsageError(f"road {name}: lane {lane.number}: {lane.kind!r}: {hint(lane.kind, _LANE_KINDS)}")
@@ -139,28 +139,28 @@ def _refuse_strange(name: str, text: RoadText, lanes: Sequence[Lane]) -> None:
                 raise UsageError(f"road {name}: mark {mark!r}: {hint(word, _MARK_WORDS)}")
 
 
-def _lanes(texts: Iterable[str | LaneText], side: int, length: float) -> list[Lane]:
+def _lanes(texts: Iterable[str | LaneText], sign: int, length: float) -> list[Lane]:
     texts = list(texts)
-    driven = [n for n, text in enumerate(texts) if _kind(text) in DRIVABLE_KINDS]
+    driven = [n for n, text in enumerate(texts) if _lane_kind(text) in DRIVABLE_KINDS]
     lanes = []
     for n, text in enumerate(texts):
         usual = "broken" if n in driven and n != driven[-1] else "solid" if n in driven else "none"
         if isinstance(text, str):
-            kind, width, mark = _lane_words(text)
+            kind, width, mark = _kind_width_mark(text)
             marks, start, end = [(0.0, mark or usual)], 0.0, length
         else:
             kind, width = text.kind, text.width
             marks = [(0.0, text.mark or usual)] if not isinstance(text.mark, list) else text.mark
             start, end = text.from_, length if text.to is None else text.to
-        lanes.append(Lane(side * (n + 1), kind, width, marks, start, end))
+        lanes.append(Lane(sign * (n + 1), kind, width, marks, start, end))
     return lanes
 
 
-def _kind(text: str | LaneText) -> str:
+def _lane_kind(text: str | LaneText) -> str:
     return text.split()[0] if isinstance(text, str) else text.kind
 
 
-def _lane_words(text: str) -> tuple[str, float, str | None]:
+def _kind_width_mark(text: str) -> tuple[str, float, str | None]:
     kind, width, *mark = text.split()
     try:
         return kind, float(width), " ".join(mark) or None
@@ -168,11 +168,11 @@ def _lane_words(text: str) -> tuple[str, float, str | None]:
         raise UsageError(f"lane {text!r}: write kind, width and mark, such as 'driving 3.5 solid'") from error
 
 
-def _turn(text: str, roads: Mapping[str, Road]) -> tuple[str, int, str, int]:
+def _lanes_of_turn(text: str, roads: Mapping[str, Road]) -> tuple[str, int, str, int]:
     before, arrow, behind = text.partition(" > ")
     if not arrow:
         raise UsageError(f"turn {text!r}: write two lanes, such as 'west -1 > north 1'")
-    return (*lane_named(before, roads), *lane_named(behind, roads))
+    return (*road_and_lane_number(before, roads), *road_and_lane_number(behind, roads))
 
 
 def _all_turns(roads: Mapping[str, Road]) -> list[tuple[str, int, str, int]]:
@@ -196,7 +196,7 @@ def _junction_roads(roads: Mapping[str, Road], turns: Sequence[tuple[str, int, s
     for a, n, b, m in turns:
         before, behind = roads[a], roads[b]
         lane = before.lane(n)
-        start, end = before.lane_end(lane, last=True), behind.lane_end(behind.lane(m), last=False)
+        start, end = before.lane_end_pose(lane, last=True), behind.lane_end_pose(behind.lane(m), last=False)
         width = min(lane.width, behind.lane(m).width)
         aside = width / 2  # the line is the lane's left border
         start, end = (
@@ -218,25 +218,25 @@ def _junction_roads(roads: Mapping[str, Road], turns: Sequence[tuple[str, int, s
     return turn_roads
 
 
-def _arms(crossing: Crossing) -> dict[str, RoadText]:
+def _arm_texts(crossroads: Crossroads) -> dict[str, RoadText]:
     arms: dict[str, RoadText] = {}
-    for arm in crossing.arms:
-        angle = _COMPASS[arm]
-        start = [crossing.half * math.cos(angle), crossing.half * math.sin(angle), math.degrees(angle)]
-        things = [*crossing.road.things, *crossing.things.get(arm, ())]
-        arms[arm] = msgspec.structs.replace(crossing.road, start=start, things=things)
-    if unknown := next((arm for arm in crossing.things if arm not in arms), None):
+    for arm in crossroads.arms:
+        angle = _ANGLE_BY_COMPASS_POINT[arm]
+        start = [crossroads.half * math.cos(angle), crossroads.half * math.sin(angle), math.degrees(angle)]
+        things = [*crossroads.road.things, *crossroads.things.get(arm, ())]
+        arms[arm] = msgspec.structs.replace(crossroads.road, start=start, things=things)
+    if unknown := next((arm for arm in crossroads.things if arm not in arms), None):
         raise UsageError(f"crossing: no arm {unknown!r}: {hint(unknown, arms)}")
     return arms
 
 
-def _ring(roundabout: Roundabout) -> dict[str, RoadText]:
+def _arm_and_ring_texts(roundabout: Roundabout) -> dict[str, RoadText]:
     """Return the arms, and for each arm the part of the ring that begins after it; the ring is driven anticlockwise."""
     ring: dict[str, RoadText] = {}
     gap = 10.0 / roundabout.radius  # half of the part of the ring that an arm's junction occupies, as an angle
-    angles = sorted((_COMPASS[arm], arm) for arm in roundabout.arms)
+    angles = sorted((_ANGLE_BY_COMPASS_POINT[arm], arm) for arm in roundabout.arms)
     lane = next(iter(roundabout.road.lanes))
-    width = _lane_words(lane)[1] if isinstance(lane, str) else lane.width
+    width = _kind_width_mark(lane)[1] if isinstance(lane, str) else lane.width
     inner = roundabout.radius - width / 2
     for n, (angle, arm) in enumerate(angles):
         away = roundabout.radius + 15.0
@@ -258,7 +258,7 @@ def _ring(roundabout: Roundabout) -> dict[str, RoadText]:
 
 
 def _ring_turns(roundabout: Roundabout) -> list[tuple[str, int, str, int]]:
-    arms = [arm for _, arm in sorted((_COMPASS[arm], arm) for arm in roundabout.arms)]
+    arms = [arm for _, arm in sorted((_ANGLE_BY_COMPASS_POINT[arm], arm) for arm in roundabout.arms)]
     turns = []
     for n, arm in enumerate(arms):
         before = arms[n - 1]

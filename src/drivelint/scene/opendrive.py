@@ -12,17 +12,17 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from drivelint.scene.document import Thing
+    from drivelint.scene.document import RoadThing
     from drivelint.scene.road import Lane, Road, Turn
 
-_FACING: Final = {"along": "+", "against": "-", "both": "none"}
+_ORIENTATIONS: Final = {"along": "+", "against": "-", "both": "none"}
 _NO_CODE: Final = "-1"
-_LIGHT: Final = ("OpenDRIVE", "1000001")
+_LIGHT_COUNTRY_AND_CODE: Final = ("OpenDRIVE", "1000001")
 
 
-def opendrive(roads: Mapping[str, Road], *, left: bool) -> str:
+def opendrive_text(roads: Mapping[str, Road], *, left: bool) -> str:
     """Return the text of the map. `left`: mirror the drawing for left-hand traffic."""
-    return _Writer(roads, left=left).text()
+    return _Writer(roads, left=left).map_text()
 
 
 class _Writer:
@@ -34,12 +34,14 @@ class _Writer:
         self.after = {road.after: road.name for road in roads.values() if road.after}
         self.things = 0
 
-    def text(self) -> str:
+    def map_text(self) -> str:
         head = '<header revMajor="1" revMinor="7" name="scene" version="1"/>'
-        roads = "".join(map(self.road, self.roads.values()))
-        return f'<?xml version="1.0" encoding="UTF-8"?>\n<OpenDRIVE>{head}{roads}{self.junctions()}</OpenDRIVE>\n'
+        roads = "".join(map(self.road_element, self.roads.values()))
+        return (
+            f'<?xml version="1.0" encoding="UTF-8"?>\n<OpenDRIVE>{head}{roads}{self.junction_elements()}</OpenDRIVE>\n'
+        )
 
-    def road(self, road: Road) -> str:
+    def road_element(self, road: Road) -> str:
         plan, pose, s = "", road.start, 0.0
         for piece in road.pieces:
             if piece.curve:
@@ -53,66 +55,66 @@ class _Writer:
                 shape = f'<arc curvature="{self.hand * piece.curvature!r}"/>' if piece.curvature else "<line/>"
             place = f'x="{pose.x!r}" y="{self.hand * pose.y!r}" hdg="{self.hand * pose.heading!r}"'
             plan += f'<geometry s="{s!r}" {place} length="{piece.length!r}">{shape}</geometry>'
-            x, y, heading = (float(v) for v in road.at(np.array(s + piece.length)))
+            x, y, heading = (float(v) for v in road.places_at(np.array(s + piece.length)))
             pose, s = type(pose)(x, y, heading), s + piece.length
-        kinds = "".join(self.kind(road, at, limit) for at, limit in road.limits or [(0.0, "")])
+        kinds = "".join(self.type_element(road, at, limit) for at, limit in road.limits or [(0.0, "")])
         junction = road.turn.junction if road.turn else -1
-        objects = "".join(self.object(road, thing) for thing in road.things)
-        signals = "".join(self.signal(thing) for thing in road.things)
+        objects = "".join(self.object_element(road, thing) for thing in road.things)
+        signals = "".join(self.signal_element(thing) for thing in road.things)
         return (
             f'<road name={quoteattr(road.name)} id="{self.numbers[road.name]}" length="{road.length!r}" junction="{junction}" '
-            f'rule="{"LHT" if self.hand < 0 else "RHT"}"><link>{self.links(road)}</link>{kinds}<planView>{plan}</planView>'
-            f"<elevationProfile>{self.elevations(road)}</elevationProfile><lateralProfile/><lanes>{self.sections(road)}</lanes>"
+            f'rule="{"LHT" if self.hand < 0 else "RHT"}"><link>{self.link_elements(road)}</link>{kinds}<planView>{plan}</planView>'
+            f"<elevationProfile>{self.elevation_elements(road)}</elevationProfile><lateralProfile/><lanes>{self.section_elements(road)}</lanes>"
             f"<objects>{objects}</objects><signals>{signals}</signals></road>"
         )
 
     @staticmethod
-    def kind(road: Road, at: float, limit: str) -> str:
+    def type_element(road: Road, at: float, limit: str) -> str:
         value, _, unit = (limit, "", "") if limit == "no limit" else limit.partition(" ")
         speed = f'<speed max="{value}" unit="{unit}"/>' if unit else f'<speed max="{value}"/>' if value else ""
         return f'<type s="{at!r}" type="{road.kind}">{speed}</type>'
 
     @staticmethod
-    def elevations(road: Road) -> str:
+    def elevation_elements(road: Road) -> str:
         heights = list(road.heights)
         slopes = [(z1 - z0) / (s1 - s0) for (s0, z0), (s1, z1) in pairwise(heights)]
         rows = zip(heights, [*slopes, 0.0], strict=True)
         return "".join(f'<elevation s="{s!r}" a="{z!r}" b="{slope!r}" c="0" d="0"/>' for (s, z), slope in rows)
 
-    def sections(self, road: Road) -> str:
+    def section_elements(self, road: Road) -> str:
         starts = road.section_starts()
         there = [[lane for lane in road.lanes if lane.start <= s < lane.end] for s in starts]
-        numbers = [_numbered(lanes) for lanes in there]
+        numbers = [_numbers_without_gaps(lanes) for lanes in there]
         text = ""
         for n, (s, lanes) in enumerate(zip(starts, there, strict=True)):
             end = starts[n + 1] if n + 1 < len(starts) else road.length
-            before = numbers[n - 1] if n else self.over_the_end(road, "predecessor")
-            behind = numbers[n + 1] if n + 1 < len(starts) else self.over_the_end(road, "successor")
+            before = numbers[n - 1] if n else self.lane_numbers_beyond_end(road, "predecessor")
+            behind = numbers[n + 1] if n + 1 < len(starts) else self.lane_numbers_beyond_end(road, "successor")
             sides: dict[int, list[tuple[int, str]]] = {1: [], -1: []}
             for lane in lanes:
                 number = numbers[n][lane.number]
                 links = (("predecessor", before.get(lane.number)), ("successor", behind.get(lane.number)))
                 link = "".join(f'<{end_} id="{-self.hand * other}"/>' for end_, other in links if other)
                 lane_id = -self.hand * number
-                sides[1 if lane_id > 0 else -1].append((lane_id, self.lane(lane, lane_id, link, (s, end))))
+                sides[1 if lane_id > 0 else -1].append((lane_id, self.lane_element(lane, lane_id, link, (s, end))))
             left, right = ("".join(text for _, text in sorted(sides[side], reverse=True)) for side in (1, -1))
-            middle = self.marks([(at, self.mirrored(mark)) for at, mark in road.middle], (s, end))
+            middle = self.mark_elements([(at, self.mirrored_mark(mark)) for at, mark in road.middle], (s, end))
             text += f'<laneSection s="{s!r}">' + (f"<left>{left}</left>" if left else "")
             text += f'<center><lane id="0" type="none" level="false">{middle}</lane></center>'
             text += (f"<right>{right}</right>" if right else "") + "</laneSection>"
         return text
 
-    def mirrored(self, mark: str) -> str:
+    def mirrored_mark(self, mark: str) -> str:
         """Return the mark of the road's middle; the parts of a double mark are listed from left to right, so mirroring swaps them."""
         return mark if self.hand > 0 else " ".join(reversed(mark.split()))
 
-    def lane(self, lane: Lane, lane_id: int, link: str, span: tuple[float, float]) -> str:
+    def lane_element(self, lane: Lane, lane_id: int, link: str, span: tuple[float, float]) -> str:
         width = f'<width sOffset="0" a="{lane.width!r}" b="0" c="0" d="0"/>'
-        marks = self.marks(lane.marks, span)
+        marks = self.mark_elements(lane.marks, span)
         return f'<lane id="{lane_id}" type="{lane.kind}" level="false"><link>{link}</link>{width}{marks}</lane>'
 
     @staticmethod
-    def marks(marks: Sequence[tuple[float, str]], span: tuple[float, float]) -> str:
+    def mark_elements(marks: Sequence[tuple[float, str]], span: tuple[float, float]) -> str:
         begin, end = span
         first = max((n for n, (at, _) in enumerate(marks) if at <= begin), default=0)
         return "".join(
@@ -121,7 +123,7 @@ class _Writer:
             if at < end
         )
 
-    def over_the_end(self, road: Road, end: str) -> dict[int, int]:
+    def lane_numbers_beyond_end(self, road: Road, end: str) -> dict[int, int]:
         """Return lane number -> number, in the neighbouring road, of the lane that continues it beyond `end`."""
         if road.turn:
             turn = road.turn
@@ -131,13 +133,13 @@ class _Writer:
             return {}
         other = self.roads[name]
         station = other.length - 1e-6 if end == "predecessor" else 0.0
-        return _numbered([lane for lane in other.lanes if lane.start <= station < lane.end])
+        return _numbers_without_gaps([lane for lane in other.lanes if lane.start <= station < lane.end])
 
-    def links(self, road: Road) -> str:
+    def link_elements(self, road: Road) -> str:
         if turn := road.turn:
             from_end = "end" if turn.from_lane > 0 else "start"
             to_end = "start" if turn.to_lane > 0 else "end"
-            return self.road_link("predecessor", turn.from_road, from_end) + self.road_link(
+            return self.road_link_element("predecessor", turn.from_road, from_end) + self.road_link_element(
                 "successor", turn.to_road, to_end
             )
         text = ""
@@ -146,29 +148,29 @@ class _Writer:
             ("successor", self.after.get(road.name), "start"),
         ):
             if other:
-                text += self.road_link(end, other, contact)
+                text += self.road_link_element(end, other, contact)
             elif junction := self.junction_at(road, end):
                 text += f'<{end} elementType="junction" elementId="{junction}"/>'
         return text
 
-    def road_link(self, end: str, name: str, contact: str) -> str:
+    def road_link_element(self, end: str, name: str, contact: str) -> str:
         return f'<{end} elementType="road" elementId="{self.numbers[name]}" contactPoint="{contact}"/>'
 
-    def turns(self) -> Iterable[tuple[Road, Turn]]:
+    def roads_with_turns(self) -> Iterable[tuple[Road, Turn]]:
         return [(road, road.turn) for road in self.roads.values() if road.turn]
 
     def junction_at(self, road: Road, end: str) -> int | None:
         leaving = 1 if end == "successor" else -1
-        for _, turn in self.turns():
+        for _, turn in self.roads_with_turns():
             if (turn.from_road == road.name and turn.from_lane * leaving > 0) or (
                 turn.to_road == road.name and turn.to_lane * leaving < 0
             ):
                 return turn.junction
         return None
 
-    def junctions(self) -> str:
+    def junction_elements(self) -> str:
         found: dict[int, str] = defaultdict(str)
-        for n, (road, turn) in enumerate(self.turns()):
+        for n, (road, turn) in enumerate(self.roads_with_turns()):
             link = f'<laneLink from="{-self.hand * turn.from_lane}" to="{-self.hand}"/>'
             ends = f'incomingRoad="{self.numbers[turn.from_road]}" connectingRoad="{self.numbers[road.name]}" contactPoint="start"'
             found[turn.junction] += f'<connection id="{n}" {ends}>{link}</connection>'
@@ -178,10 +180,10 @@ class _Writer:
         self.things += 1
         return 5000 + self.things
 
-    def signal(self, thing: Thing) -> str:
+    def signal_element(self, thing: RoadThing) -> str:
         what, _, rest = thing.kind.partition(" ")
         if what == "light":
-            number, (country, code), dynamic = rest, _LIGHT, "yes"
+            number, (country, code), dynamic = rest, _LIGHT_COUNTRY_AND_CODE, "yes"
         elif what == "sign":
             country, _, code = rest.partition(" ") if " " in rest else ("", "", _NO_CODE)
             number, dynamic = str(self.new_id()), "no"
@@ -193,11 +195,11 @@ class _Writer:
         )
         return (
             f'<signal id={quoteattr(number)} name={quoteattr(name)} s="{thing.at!r}" t="{self.hand * thing.off!r}" dynamic="{dynamic}" '
-            f'orientation="{_FACING[thing.facing]}" zOffset="2" country={quoteattr(country)} type={quoteattr(code)} subtype="-1" '
+            f'orientation="{_ORIENTATIONS[thing.facing]}" zOffset="2" country={quoteattr(country)} type={quoteattr(code)} subtype="-1" '
             f'value="-1" height="1" width="1">{lanes}</signal>'
         )
 
-    def object(self, road: Road, thing: Thing) -> str:
+    def object_element(self, road: Road, thing: RoadThing) -> str:
         if thing.kind.startswith(("light ", "sign ")):
             return ""
         number = self.new_id()
@@ -206,9 +208,9 @@ class _Writer:
             box = f'length="0.3" width="{width!r}" height="0" hdg="0" pitch="0" roll="0"'
             return (
                 f'<object type="stopLine" id="{number}" name="stopLine" s="{thing.at!r}" t="{self.hand * thing.off!r}" zOffset="0" '
-                f'orientation="{_FACING[thing.facing]}" {box}/>'
+                f'orientation="{_ORIENTATIONS[thing.facing]}" {box}/>'
             )
-        width = _driven_width(road) if thing.width is None else thing.width
+        width = _width_without_sidewalks_m(road) if thing.width is None else thing.width
         deep, off = thing.deep / 2, self.hand * thing.off
         corners = [(-deep, -width / 2), (-deep, width / 2), (deep, width / 2), (deep, -width / 2)]
         outline = "".join(
@@ -222,7 +224,7 @@ class _Writer:
         )
 
 
-def _driven_width(road: Road) -> float:
+def _width_without_sidewalks_m(road: Road) -> float:
     """Return twice the width of the wider side of the road, without sidewalks."""
     halves = [
         sum(lane.width for lane in road.lanes if lane.number * side > 0 and lane.kind != "sidewalk") for side in (1, -1)
@@ -230,7 +232,7 @@ def _driven_width(road: Road) -> float:
     return 2 * max(halves) if all(halves) else sum(halves) * 2
 
 
-def _numbered(lanes: Sequence[Lane]) -> dict[int, int]:
+def _numbers_without_gaps(lanes: Sequence[Lane]) -> dict[int, int]:
     """Return lane number -> number without gaps among the given lanes: 1, 2, ... or -1, -2, ... from the middle outwards."""
     found: dict[int, int] = {}
     for side in (1, -1):

@@ -10,7 +10,7 @@ import numpy as np
 from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS
 from drivelint.errors import UsageError
 from drivelint.phrases import hint
-from drivelint.scene.actor import BRAKING_MPS2, DT_S, WITH_LIGHTS, light_states
+from drivelint.scene.actor import BRAKE_LIGHT_MPS2, CLASSES_WITH_LIGHTS, DT_S, light_states
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     from drivelint.arrays import Floats, Mask
     from drivelint.scene.actor import Actor, Motion
 
-_MIRRORED: Final = {"left": "right", "right": "left"}
+_OTHER_SIDE: Final = {"left": "right", "right": "left"}
 _STANDING_MPS: Final = 0.05
-_STRONG_MPS2: Final = 6.0
+_STRONG_BRAKING_MPS2: Final = 6.0
 
 
 def actor_row(actor: Actor) -> dict[str, Any]:
@@ -45,20 +45,22 @@ def actor_row(actor: Actor) -> dict[str, Any]:
     }
 
 
-def states(actor: Actor, seconds: float, rate: float, *, left: bool, with_height: bool, seed: int) -> dict[str, Any]:
+def state_columns(
+    actor: Actor, seconds: float, rate: float, *, left: bool, with_height: bool, seed: int
+) -> dict[str, Any]:
     """Return the columns of an actor's samples, mirrored if `left`, that is, for left-hand traffic."""
     motion = actor.motion(seconds)
-    picked = np.arange(0, len(motion.t), round(1 / rate / DT_S))
-    t = motion.t[picked]
-    present = _present_steps(actor, t)
-    picked, t = picked[present], t[present]
-    x, y, yaw, vx, vy = _recorded(actor, motion, picked, seed)
+    indices = np.arange(0, len(motion.t), round(1 / rate / DT_S))
+    t = motion.t[indices]
+    present = _mask_of_samples(actor, t)
+    indices, t = indices[present], t[present]
+    x, y, yaw, vx, vy = _states_with_faults(actor, motion, indices, seed)
     hand = -1.0 if left else 1.0
     n, unknown = len(t), actor.text.faults.unknown
-    indicator, brake = _lights(actor, motion, picked)
+    indicator, brake = _indicator_and_brake_light(actor, motion, indices)
     if left:
-        indicator = [_MIRRORED.get(word, word) if word else None for word in indicator]
-    middle = motion.z[picked] + (actor.size[2] or 1.5) / 2
+        indicator = [_OTHER_SIDE.get(word, word) if word else None for word in indicator]
+    middle = motion.z[indices] + (actor.size[2] or 1.5) / 2
     return {
         "actor_id": [actor.name] * n,
         "t_ns": np.round(t * 1e9).astype(np.int64),
@@ -83,49 +85,51 @@ def light_rows(lights: Mapping[str, Sequence[tuple[float, str]]], seconds: float
             yield {"signal_id": name, "t_ns": round(float(when) * 1e9), "state": state}
 
 
-def _present_steps(actor: Actor, t: Floats) -> Mask:
+def _mask_of_samples(actor: Actor, t: Floats) -> Mask:
     """Return for each of n times whether the log has a sample of the actor."""
     first, last = actor.text.there or (-1.0, math.inf)
     present: Mask = (t >= first - 1e-6) & (t <= last + 1e-6)
     for begin, end in actor.text.faults.lost_spans:
-        present &= ~_within(t, begin, end)
+        present &= ~_mask_of_span(t, begin, end)
     return present
 
 
-def _recorded(actor: Actor, motion: Motion, picked: Any, seed: int) -> tuple[Floats, Floats, Floats, Floats, Floats]:
+def _states_with_faults(
+    actor: Actor, motion: Motion, indices: Any, seed: int
+) -> tuple[Floats, Floats, Floats, Floats, Floats]:
     faults = actor.text.faults
-    t, x, y, yaw = (column[picked].copy() for column in (motion.t, motion.x, motion.y, motion.yaw))
-    vx, vy = motion.vx[picked].copy(), motion.vy[picked].copy()
+    t, x, y, yaw = (column[indices].copy() for column in (motion.t, motion.x, motion.y, motion.yaw))
+    vx, vy = motion.vx[indices].copy(), motion.vy[indices].copy()
     for begin, end in faults.frozen:
-        still = np.flatnonzero(_within(t, begin, end))
+        still = np.flatnonzero(_mask_of_span(t, begin, end))
         if len(still):
             x[still], y[still] = x[still[0]], y[still[0]]
     for begin, end, ahead, aside in faults.shift:
-        moved = _within(t, begin, end)
+        moved = _mask_of_span(t, begin, end)
         x[moved] += ahead * np.cos(yaw[moved]) - aside * np.sin(yaw[moved])
         y[moved] += ahead * np.sin(yaw[moved]) + aside * np.cos(yaw[moved])
     if faults.jitter:
         draw = np.random.default_rng(seed)
         x, y, vx, vy = (column + draw.normal(0.0, faults.jitter, len(column)) for column in (x, y, vx, vy))
     for begin, end in faults.turned:
-        yaw[_within(t, begin, end)] += math.pi
+        yaw[_mask_of_span(t, begin, end)] += math.pi
     return x, y, yaw, vx, vy
 
 
-def _within(t: Floats, begin: float, end: float) -> Mask:
+def _mask_of_span(t: Floats, begin: float, end: float) -> Mask:
     return (t >= begin - 1e-6) & (t <= end + 1e-6)
 
 
-def _lights(actor: Actor, motion: Motion, picked: Any) -> tuple[list[str | None], list[str | None]]:
-    t, text = motion.t[picked], actor.text
+def _indicator_and_brake_light(actor: Actor, motion: Motion, indices: Any) -> tuple[list[str | None], list[str | None]]:
+    t, text = motion.t[indices], actor.text
     who = f"actor {actor.name}"
-    if text.kind not in WITH_LIGHTS:
+    if text.kind not in CLASSES_WITH_LIGHTS:
         return [None] * len(t), [None] * len(t)
     indicator = light_states(text.indicator, t, INDICATORS, f"{who}: indicator")
     if text.brake is not None:
         return indicator, light_states(text.brake, t, BRAKE_LIGHTS, f"{who}: brake")
-    push, speed = motion.push[picked], np.hypot(motion.vx, motion.vy)[picked]
-    strong = push < -_STRONG_MPS2
-    braking = (push < -BRAKING_MPS2) | (speed < _STANDING_MPS)
+    push, speed = motion.push[indices], np.hypot(motion.vx, motion.vy)[indices]
+    strong = push < -_STRONG_BRAKING_MPS2
+    braking = (push < -BRAKE_LIGHT_MPS2) | (speed < _STANDING_MPS)
     shine = np.where(strong, "strong", np.where(braking, "on", "off"))
     return indicator, [str(word) for word in shine]

@@ -17,12 +17,12 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from drivelint.arrays import Floats
-    from drivelint.scene.document import Thing
+    from drivelint.scene.document import RoadThing
 
-STEP_M: Final = 0.1
+PATH_STEP_M: Final = 0.1
 """Distance between the points of a path along lanes."""
 DRIVABLE_KINDS: Final = ("driving", "exit", "entry", "onRamp", "offRamp", "bidirectional")
-_STRAIGHT_RAD: Final = 1e-6
+_MOST_STRAIGHT_TURN_RAD: Final = 1e-6
 
 
 class Pose(NamedTuple):
@@ -33,7 +33,7 @@ class Pose(NamedTuple):
     heading: float
 
 
-class Piece(NamedTuple):
+class LinePiece(NamedTuple):
     """A straight or an arc; with `curve`, a cubic with the coefficients (bu, cu, du, bv, cv, dv) in its own frame, over 0..1."""
 
     length: float
@@ -61,13 +61,13 @@ class Road:
 
     name: str
     start: Pose
-    pieces: Sequence[Piece]
+    pieces: Sequence[LinePiece]
     lanes: Sequence[Lane]
     kind: str = "rural"
     limits: Sequence[tuple[float, str]] = ()
     middle: Sequence[tuple[float, str]] = ((0.0, "none"),)
     heights: Sequence[tuple[float, float]] = ((0.0, 0.0),)
-    things: Sequence[Thing] = field(default_factory=tuple)
+    things: Sequence[RoadThing] = field(default_factory=tuple)
     after: str | None = None
     """The road that this road continues."""
     turn: Turn | None = None
@@ -90,7 +90,7 @@ class Road:
         ends = {station for lane in self.lanes for station in (lane.start, lane.end) if 0 < station < self.length}
         return [0.0, *sorted(ends)]
 
-    def aside(self, lane: Lane, s: float) -> float:
+    def lane_offset_m(self, lane: Lane, s: float) -> float:
         """Return the offset of a lane's middle from the line, left positive; where the lane is absent, the offset at its nearer end."""
         s = min(max(s, lane.start), lane.end - 1e-6)
         sign = int(math.copysign(1, lane.number))
@@ -101,16 +101,16 @@ class Road:
         )
         return -sign * (inner + lane.width / 2)
 
-    def at(self, s: Floats, aside: Floats | float = 0.0) -> tuple[Floats, Floats, Floats]:
+    def places_at(self, s: Floats, aside: Floats | float = 0.0) -> tuple[Floats, Floats, Floats]:
         """Return x, y and heading at stations, `aside` metres to the left of the line, which is straight beyond both ends."""
         s = np.asarray(s, float)
         x, y, heading = np.zeros(s.shape), np.zeros(s.shape), np.zeros(s.shape)
         pose, begin = self.start, 0.0
         for n, piece in enumerate(self.pieces):
             here = (s >= begin) | (n == 0)
-            px, py, ph = _along(pose, piece, s - begin)
+            px, py, ph = _points_on_piece(pose, piece, s - begin)
             x, y, heading = np.where(here, px, x), np.where(here, py, y), np.where(here, ph, heading)
-            pose, begin = end_of(pose, piece), begin + piece.length
+            pose, begin = end_of_piece(pose, piece), begin + piece.length
         past = s > begin
         over = np.maximum(s - begin, 0.0)
         x = np.where(past, pose.x + over * math.cos(pose.heading), x)
@@ -118,17 +118,17 @@ class Road:
         heading = np.where(past, pose.heading, heading)
         return x - aside * np.sin(heading), y + aside * np.cos(heading), heading
 
-    def end(self) -> Pose:
+    def end_pose(self) -> Pose:
         """Return the pose at the end of the line."""
         pose = self.start
         for piece in self.pieces:
-            pose = end_of(pose, piece)
+            pose = end_of_piece(pose, piece)
         return pose
 
-    def lane_end(self, lane: Lane, *, last: bool) -> Pose:
+    def lane_end_pose(self, lane: Lane, *, last: bool) -> Pose:
         """Return the pose at which traffic leaves a lane (`last`) or enters it, in the direction of the traffic."""
         s = self.length if last == (lane.number > 0) else 0.0
-        x, y, heading = (float(v) for v in self.at(np.array(s), self.aside(lane, s)))
+        x, y, heading = (float(v) for v in self.places_at(np.array(s), self.lane_offset_m(lane, s)))
         return Pose(x, y, heading if lane.number > 0 else heading + math.pi)
 
 
@@ -142,7 +142,7 @@ class Turn(NamedTuple):
     to_lane: int
 
 
-def _along(pose: Pose, piece: Piece, u: Floats) -> tuple[Floats, Floats, Floats]:
+def _points_on_piece(pose: Pose, piece: LinePiece, u: Floats) -> tuple[Floats, Floats, Floats]:
     if piece.curve:
         bu, cu, du, bv, cv, dv = piece.curve
         p = np.clip(u / piece.length, 0.0, 1.0)
@@ -161,22 +161,22 @@ def _along(pose: Pose, piece: Piece, u: Floats) -> tuple[Floats, Floats, Floats]
     return x + before * math.cos(pose.heading), y + before * math.sin(pose.heading), heading
 
 
-def end_of(pose: Pose, piece: Piece) -> Pose:
+def end_of_piece(pose: Pose, piece: LinePiece) -> Pose:
     """Return the pose at the end of a piece that begins at `pose`."""
-    return Pose(*(float(v) for v in _along(pose, piece, np.array(piece.length))))
+    return Pose(*(float(v) for v in _points_on_piece(pose, piece, np.array(piece.length))))
 
 
-def connecting_piece(start: Pose, end: Pose) -> Piece:
+def connecting_piece(start: Pose, end: Pose) -> LinePiece:
     """Return a piece from one pose to another: a straight, an arc, or a cubic."""
-    ahead, left = _in_frame(start, end.x, end.y)
+    ahead, left = _ahead_and_left_m(start, end.x, end.y)
     turn = float(wrap_angles(np.asarray(end.heading - start.heading)))
     away = math.hypot(ahead, left)
-    if abs(turn) < _STRAIGHT_RAD and abs(left) < 1e-3:
-        return Piece(away)
-    if abs(turn) > _STRAIGHT_RAD:
+    if abs(turn) < _MOST_STRAIGHT_TURN_RAD and abs(left) < 1e-3:
+        return LinePiece(away)
+    if abs(turn) > _MOST_STRAIGHT_TURN_RAD:
         radius = ahead / math.sin(turn) if abs(math.sin(turn)) > 1e-3 else left / 2
         if radius * turn > 0 and abs(radius * (1 - math.cos(turn)) - left) < 0.02:
-            return Piece(radius * turn, 1 / radius)
+            return LinePiece(radius * turn, 1 / radius)
     # the control points are as far away as those of the cubic that is nearest to an arc
     hold = (
         away if abs(turn) < 0.1 else min(4 * math.tan(abs(turn) / 4) * away / (2 * abs(math.sin(turn / 2))), 2 * away)
@@ -186,17 +186,17 @@ def connecting_piece(start: Pose, end: Pose) -> Piece:
     p = np.linspace(0.0, 1.0, 201)
     u = p * (cubic[0] + p * (cubic[1] + p * cubic[2]))
     v = p * (cubic[3] + p * (cubic[4] + p * cubic[5]))
-    return Piece(float(np.hypot(np.diff(u), np.diff(v)).sum()), 0.0, cubic)
+    return LinePiece(float(np.hypot(np.diff(u), np.diff(v)).sum()), 0.0, cubic)
 
 
-def _in_frame(pose: Pose, x: float, y: float) -> tuple[float, float]:
+def _ahead_and_left_m(pose: Pose, x: float, y: float) -> tuple[float, float]:
     dx, dy = x - pose.x, y - pose.y
     cos, sin = math.cos(pose.heading), math.sin(pose.heading)
     return dx * cos + dy * sin, dy * cos - dx * sin
 
 
 @dataclass(frozen=True)
-class Way:
+class ActorPath:
     """The path of an actor: points with stations from 0; beyond both ends, the path is straight."""
 
     s: Floats
@@ -206,7 +206,7 @@ class Way:
     z: Floats
 
     @classmethod
-    def through(cls, x: Floats, y: Floats, heading: Floats | None = None, z: Floats | None = None) -> Way:
+    def through_points(cls, x: Floats, y: Floats, heading: Floats | None = None, z: Floats | None = None) -> ActorPath:
         """Return the path through points; without `heading`, the headings are the directions from point to point."""
         steps = np.hypot(np.diff(x), np.diff(y))
         distinct = np.concatenate([[True], steps > 1e-9])
@@ -219,35 +219,35 @@ class Way:
             heading = heading[distinct]
         return cls(s, x, y, np.unwrap(heading), z)
 
-    def at(self, s: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    def places_at(self, s: Floats) -> tuple[Floats, Floats, Floats, Floats]:
         """Return x, y, heading and height at stations."""
         over = np.minimum(s, 0.0) + np.maximum(s - self.s[-1], 0.0)
         x, y, heading, z = (np.interp(s, self.s, column) for column in (self.x, self.y, self.heading, self.z))
         return x + over * np.cos(heading), y + over * np.sin(heading), heading, z
 
 
-def way_along(roads: Mapping[str, Road], lanes: Sequence[tuple[str, int]]) -> Way:
+def path_along_lanes(roads: Mapping[str, Road], lanes: Sequence[tuple[str, int]]) -> ActorPath:
     """Return the path along the middles of these lanes, in the direction of their traffic, with the turns through junctions."""
     parts = []
-    for road_name, number in with_turns(roads, lanes):
+    for road_name, number in lanes_with_turns(roads, lanes):
         road = roads[road_name]
         lane = road.lane(number)
-        s = np.append(np.arange(0.0, road.length, STEP_M), road.length)
+        s = np.append(np.arange(0.0, road.length, PATH_STEP_M), road.length)
         aside = (
-            np.array([road.aside(lane, float(v)) for v in s])
+            np.array([road.lane_offset_m(lane, float(v)) for v in s])
             if len(road.section_starts()) > 1
-            else road.aside(lane, 0.0)
+            else road.lane_offset_m(lane, 0.0)
         )
-        x, y, heading = road.at(s, aside)
+        x, y, heading = road.places_at(s, aside)
         stations, heights = np.array(road.heights, float).T
         z = np.interp(s, stations, heights)
         if number < 0:
             x, y, heading, z = x[::-1], y[::-1], heading[::-1] + math.pi, z[::-1]
         parts.append((x, y, heading, z))
-    return Way.through(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+    return ActorPath.through_points(*(np.concatenate(column) for column in zip(*parts, strict=True)))
 
 
-def with_turns(roads: Mapping[str, Road], lanes: Sequence[tuple[str, int]]) -> list[tuple[str, int]]:
+def lanes_with_turns(roads: Mapping[str, Road], lanes: Sequence[tuple[str, int]]) -> list[tuple[str, int]]:
     """Return the lanes, and between them the lanes of the junctions that connect them."""
     found = list(lanes[:1])
     for (before, n), (behind, m) in pairwise(lanes):

@@ -16,18 +16,18 @@ from drivelint.result.files import parquet_bytes_with_metadata
 from drivelint.scene import recorder
 from drivelint.scene.actor import Actor
 from drivelint.scene.layout import roads_of
-from drivelint.scene.opendrive import opendrive
+from drivelint.scene.opendrive import opendrive_text
 from drivelint.sql.store import arrow_schemas
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from drivelint.scene.document import Layout, SceneText
+    from drivelint.scene.document import RoadLayout, SceneText
     from drivelint.scene.road import Road
 
-USUAL: Final = {"weather": "dry", "light": "day"}
+DEFAULT_CONDITIONS: Final = {"weather": "dry", "light": "day"}
 """The default conditions of a scene."""
-NOT_GIVEN: Final = "unknown"
+NOT_IN_LOG: Final = "unknown"
 """The value of a condition that the log shall not have."""
 MAP_FILE: Final = "map.xodr"
 
@@ -37,7 +37,7 @@ class Scene:
     """A scene for right-hand or left-hand traffic."""
 
     text: SceneText
-    layout: Layout
+    layout: RoadLayout
     left: bool
     """Whether the traffic is left-hand."""
     name: str
@@ -50,7 +50,7 @@ class Scene:
     @property
     def map_text(self) -> str:
         """The map of the scene as OpenDRIVE."""
-        return opendrive(self.roads, left=self.left)
+        return opendrive_text(self.roads, left=self.left)
 
     def tables(self) -> dict[str, pa.Table]:
         """Return the tables of the scene's log, named and typed as in `schemas/model.sql`. Errors: `UsageError`."""
@@ -60,7 +60,7 @@ class Scene:
         actors = [Actor(name, actor, self.roads) for name, actor in text.actors.items()]
         with_height = any(z for road in self.roads.values() for _, z in road.heights)
         parts = [
-            recorder.states(actor, text.seconds, text.rate, left=self.left, with_height=with_height, seed=n)
+            recorder.state_columns(actor, text.seconds, text.rate, left=self.left, with_height=with_height, seed=n)
             for n, actor in enumerate(actors)
         ]
         columns = {
@@ -70,11 +70,11 @@ class Scene:
             if all(thing.kind != f"light {name}" for road in self.roads.values() for thing in road.things) and lights:
                 raise UsageError(f"light {name}: no road has a thing of this name")
         return {
-            "actor": _rows("actor", [recorder.actor_row(actor) for actor in actors]),
-            "actor_state": _table("actor_state", columns),
-            "drive_condition": _rows("drive_condition", self._conditions()),
-            "signal_state": _rows("signal_state", list(recorder.light_rows(text.lights, text.seconds))),
-            "declared_event": _rows("declared_event", self._events()),
+            "actor": _typed_table_of_rows("actor", [recorder.actor_row(actor) for actor in actors]),
+            "actor_state": _typed_table("actor_state", columns),
+            "drive_condition": _typed_table_of_rows("drive_condition", self._condition_rows()),
+            "signal_state": _typed_table_of_rows("signal_state", list(recorder.light_rows(text.lights, text.seconds))),
+            "declared_event": _typed_table_of_rows("declared_event", self._event_rows()),
         }
 
     def files(self) -> dict[str, bytes]:
@@ -83,14 +83,16 @@ class Scene:
         log = {f"{name}.parquet": parquet_bytes_with_metadata(table, name, {}) for name, table in tables.items()}
         return {**log, MAP_FILE: self.map_text.encode()}
 
-    def _conditions(self) -> list[dict[str, Any]]:
-        given = {name: value for name, value in (USUAL | self.text.conditions).items() if value != NOT_GIVEN}
+    def _condition_rows(self) -> list[dict[str, Any]]:
+        given = {
+            name: value for name, value in (DEFAULT_CONDITIONS | self.text.conditions).items() if value != NOT_IN_LOG
+        }
         for condition, value in given.items():
             if problem := condition_problem(condition) or value_problem(condition, value):
                 raise UsageError(f"given: {problem}")
         return [{"condition": name, "value": value} for name, value in given.items()]
 
-    def _events(self) -> list[dict[str, Any]]:
+    def _event_rows(self) -> list[dict[str, Any]]:
         events = []
         for declaration in self.text.says:
             if len(declaration) not in {2, 3} or not isinstance(declaration[0], int | float):
@@ -103,7 +105,7 @@ class Scene:
         return events
 
 
-def scenes_of(texts: Sequence[SceneText], layouts: Mapping[str, Layout]) -> list[Scene]:
+def scenes_of(texts: Sequence[SceneText], layouts: Mapping[str, RoadLayout]) -> list[Scene]:
     """Return the scenes; a scene for both right-hand and left-hand traffic is returned twice, once for each."""
     scenes = []
     for text in texts:
@@ -115,11 +117,11 @@ def scenes_of(texts: Sequence[SceneText], layouts: Mapping[str, Layout]) -> list
     return scenes
 
 
-def _table(name: str, columns: Mapping[str, Sequence[Any]]) -> pa.Table:
+def _typed_table(name: str, columns: Mapping[str, Sequence[Any]]) -> pa.Table:
     schema = arrow_schemas()[name]
     return pa.table({column: pa.array(values, schema.field(column).type) for column, values in columns.items()})
 
 
-def _rows(name: str, rows: Sequence[Mapping[str, Any]]) -> pa.Table:
+def _typed_table_of_rows(name: str, rows: Sequence[Mapping[str, Any]]) -> pa.Table:
     columns = list(rows[0]) if rows else ["actor_id"] if name == "actor" else []
-    return _table(name, {column: [row[column] for row in rows] for column in columns})
+    return _typed_table(name, {column: [row[column] for row in rows] for column in columns})

@@ -62,34 +62,34 @@ class Derivation:
 @cache
 def derivations() -> dict[str, Derivation]:
     """Return table -> derivation, ordered so that each derivation follows the tables that it reads."""
-    if missing := sorted(column_comments("derived").keys() - _files().keys() - _TABLES_FROM_TOML):
+    if missing := sorted(column_comments("derived").keys() - _file_by_table().keys() - _TABLES_FROM_TOML):
         raise DriveLintError(
             f"queries/derive: no query for the library table {missing[0]!r} of schemas/derived.sql: reinstall drivelint"
         )
-    return {each.table: each for each in _with_sources(_files())}
+    return {each.table: each for each in _derivations_with_sources(_file_by_table())}
 
 
 @cache
-def _files() -> dict[str, Path]:
+def _file_by_table() -> dict[str, Path]:
     return {file.stem: file for file in sorted((folder("queries") / "derive").glob("*.sql"))}
 
 
 @cache
 def _derivation(table: str) -> Derivation:
     """Return the derivation of one table. Only this file is parsed: parsing all files takes longer than judging a short drive."""
-    file = _files()[table]
+    file = _file_by_table()[table]
     if table not in column_comments():
         raise DriveLintError(f"{file}: no table {table!r} in schemas/")
     sql = file.read_text(encoding="utf-8")
-    reads, needs, occasion = _READS.find_or_compute(sql, lambda: _reads(sql, str(file)))
-    return Derivation(table, sql, reads & _files().keys() - {table}, needs, occasion)
+    reads, needs, occasion = _READS_BY_SQL.find_or_compute(sql, lambda: _reads_needs_occasion(sql, str(file)))
+    return Derivation(table, sql, reads & _file_by_table().keys() - {table}, needs, occasion)
 
 
 _Reads = tuple[frozenset[str], frozenset[str], str]
-_READS: Final = Memo[_Reads]("derivations", _Reads)
+_READS_BY_SQL: Final = Memo[_Reads]("derivations", _Reads)
 
 
-def _reads(sql: str, where: str) -> _Reads:
+def _reads_needs_occasion(sql: str, where: str) -> _Reads:
     """Return the tables that a SELECT reads, the tables that must have rows for it to return rows, and `Derivation.occasion`.
 
     Errors: `DriveLintError` if the SELECT may return rows although the CTEs of its occasion have none.
@@ -107,10 +107,10 @@ def _reads(sql: str, where: str) -> _Reads:
     return syntax.tables_read(tree), syntax.tables_needing_rows(tree), occasion
 
 
-def _with_sources(tables: Iterable[str]) -> list[Derivation]:
+def _derivations_with_sources(tables: Iterable[str]) -> list[Derivation]:
     """Return the derivations of these tables and of all tables that they read, in order; other tables are skipped."""
     graph: dict[str, list[str]] = {}
-    todo = [table for table in tables if table in _files()]
+    todo = [table for table in tables if table in _file_by_table()]
     while todo:
         table = todo.pop()
         if table not in graph:
@@ -121,20 +121,20 @@ def _with_sources(tables: Iterable[str]) -> list[Derivation]:
 
 def derived_tables() -> frozenset[str]:
     """Return the names of the tables that have a derivation."""
-    return frozenset(_files())
+    return frozenset(_file_by_table())
 
 
-def with_sources(tables: Iterable[str]) -> frozenset[str]:
+def tables_with_sources(tables: Iterable[str]) -> frozenset[str]:
     """Return these tables and all library tables that they read, directly or indirectly."""
-    return frozenset[str]().union(*map(_with_its_sources, tables))
+    return frozenset[str]().union(*map(_table_with_sources, tables))
 
 
 @cache
-def _with_its_sources(table: str) -> frozenset[str]:
-    reads = _derivation(table).reads if table in _files() else ()
-    return frozenset({table}).union(*map(_with_its_sources, reads))
+def _table_with_sources(table: str) -> frozenset[str]:
+    reads = _derivation(table).reads if table in _file_by_table() else ()
+    return frozenset({table}).union(*map(_table_with_sources, reads))
 
 
 def needed_derivations(tables: Iterable[str], also: Iterable[str] = ALWAYS_NEEDED) -> list[Derivation]:
     """Return the derivations that fill these tables and the tables `also`, with all tables that they read, in order."""
-    return _with_sources([*tables, *also])
+    return _derivations_with_sources([*tables, *also])

@@ -13,16 +13,16 @@ if TYPE_CHECKING:
 
     import pyarrow as pa
 
-_SCHEMAS: Final = Memo[dict[str, bytes]]("schemas", dict[str, bytes])
+_SERIALIZED_SCHEMAS: Final = Memo[dict[str, bytes]]("schemas", dict[str, bytes])
 
 
-def kept_schemas(
+def cached_schemas(
     create_tables: Callable[[duckdb.DuckDBPyConnection], None], tables: Iterable[str]
 ) -> dict[str, pa.Schema]:
     """Return table -> Arrow schema without the geometry column, for tables that `create_tables` creates."""
     import pyarrow as pa
 
-    def written_schemas() -> dict[str, bytes]:
+    def serialized_schemas() -> dict[str, bytes]:
         with duckdb.connect() as con:
             create_tables(con)
             empty = {name: f"SELECT COLUMNS(lambda c: c <> 'geom') FROM {name} LIMIT 0" for name in tables}
@@ -32,5 +32,5 @@ def kept_schemas(
 
     return {
         name: pa.ipc.read_schema(pa.py_buffer(content))
-        for name, content in _SCHEMAS.find_or_compute("", written_schemas).items()
+        for name, content in _SERIALIZED_SCHEMAS.find_or_compute("", serialized_schemas).items()
     }

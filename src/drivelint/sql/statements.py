@@ -17,11 +17,11 @@ def statement(name: str, **fragments: str) -> str:
     Errors: `KeyError` if a fragment of the file is not given.
     """
     part, _, file = name.rpartition("/")
-    return _FRAGMENT.sub(lambda found: fragments[found[1]], texts(part)[file])
+    return _FRAGMENT.sub(lambda found: fragments[found[1]], statement_texts(part)[file])
 
 
 @cache
-def texts(part: str) -> dict[str, str]:
+def statement_texts(subfolder: str) -> dict[str, str]:
     """Return file name -> text for every statement of `queries/<part>`."""
-    files = sorted((folder("queries") / part).glob("*.sql"))
+    files = sorted((folder("queries") / subfolder).glob("*.sql"))
     return {file.stem: file.read_text(encoding="utf-8") for file in files}

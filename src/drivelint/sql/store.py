@@ -14,8 +14,8 @@ import duckdb
 from drivelint.errors import DriveLintError, MemoryShortError
 from drivelint.resources import folder
 from drivelint.sql import progress_bar, words
-from drivelint.sql.kept_schemas import kept_schemas
-from drivelint.sql.statements import texts
+from drivelint.sql.kept_schemas import cached_schemas
+from drivelint.sql.statements import statement_texts
 from drivelint.temporary import temporary_folder
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ LIFETIMES: Final = ("map", "drive", "part", "run")
 one part of a drive are judged. `run`: until the end of the run."""
 ACTOR_ID_COLUMNS = frozenset({"ego_id", "object_id", "actor_id"})
 """Columns with the id of an actor."""
-_AS_TOLD = frozenset({"margin"})
+_TABLES_WITH_TEXT_IDS = frozenset({"margin"})
 """Tables with ids from a rule's SQL: the rule may return an actor id that no log contains."""
 _CODES = r"SELECT regexp_extract(type_name, '^actor_ids_(\d+)$', 1) FROM duckdb_types() WHERE regexp_matches(type_name, '^actor_ids_\d+$')"
 _COLUMN = re.compile(r"^    (\w+) (.*?),?\s*-- (.+)$", re.MULTILINE)
@@ -66,14 +66,14 @@ def connect(
         con.execute("SET memory_limit=?", [memory_limit])
     if spill:
         con.execute("SET temp_directory=?", [str(spill)])
-    with _made_at_once(con):
+    with _fast_transaction(con):
         create_tables(con, comments=path is not None)
         create_macros(con)
     return con
 
 
 @contextmanager
-def _made_at_once(con: duckdb.DuckDBPyConnection) -> Iterator[None]:
+def _fast_transaction(con: duckdb.DuckDBPyConnection) -> Iterator[None]:
     """Run statements in one transaction, without optimiser, on one core: opening a database then takes a third less time."""
     with one_thread(con):
         con.execute("PRAGMA disable_optimizer; BEGIN")
@@ -82,7 +82,7 @@ def _made_at_once(con: duckdb.DuckDBPyConnection) -> Iterator[None]:
 
 
 @contextmanager
-def telling_short_memory() -> Iterator[None]:
+def uniform_memory_errors() -> Iterator[None]:
     """Raise `duckdb.OutOfMemoryException` also if memory runs out at a commit, for which DuckDB raises `TransactionException`."""
     try:
         yield
@@ -102,7 +102,7 @@ def workspace(memory: int | None, *, threads: int | None = None) -> Iterator[duc
     limit = None if memory is None else f"{memory}B"
     with temporary_folder() as spill, connect(threads=threads, memory_limit=limit, spill=spill) as con:
         try:
-            with telling_short_memory():
+            with uniform_memory_errors():
                 yield con
         except duckdb.OutOfMemoryException as error:
             raise MemoryShortError("the database") from error
@@ -138,7 +138,7 @@ def interrupt(con: duckdb.DuckDBPyConnection) -> None:
         each.interrupt()
 
 
-def lock(con: duckdb.DuckDBPyConnection) -> None:
+def lock_down(con: duckdb.DuckDBPyConnection) -> None:
     """Forbid a database to open files, use the network or change settings, before rules run in it.
 
     Attached databases stay attached, Arrow tables can still be registered, and spilling still works. Only `memory_limit` and `threads`
@@ -232,14 +232,14 @@ def column_comments(file: str = "*") -> dict[str, dict[str, str]]:
     """Return table -> column -> comment for every table of `schemas/<file>.sql` (`*`: of all files), in file order."""
     return {
         table: {column: words.readable_comment(_QUANTITIES.sub("", comment).rstrip()) for column, _, comment in columns}
-        for table, columns in _columns(file).items()
+        for table, columns in _column_declarations(file).items()
     }
 
 
 @cache
-def _columns(file: str = "*") -> dict[str, list[tuple[str, str, str]]]:
+def _column_declarations(file: str = "*") -> dict[str, list[tuple[str, str, str]]]:
     """Return table -> its columns as (name, type, comment); the raw comment includes the mark of a vocabulary, see `words`."""
-    return {name: _COLUMN.findall(body) for name, body in _TABLE.findall(_declarations(file))}
+    return {name: _COLUMN.findall(body) for name, body in _TABLE.findall(_schema_sql(file))}
 
 
 @cache
@@ -247,7 +247,7 @@ def word_columns() -> dict[str, dict[str, words.WordColumn]]:
     """Return table -> column -> its vocabulary, for the columns with words of a vocabulary."""
     return {
         table: {column: said for column, kind, comment in columns if (said := words.word_column(kind, comment))}
-        for table, columns in _columns().items()
+        for table, columns in _column_declarations().items()
     }
 
 
@@ -260,7 +260,7 @@ def column_quantities() -> dict[str, dict[str, frozenset[str]]]:
             for name, _, comment in columns
             if (made_of := _QUANTITIES.search(comment))
         }
-        for table, columns in _columns().items()
+        for table, columns in _column_declarations().items()
     }
 
 
@@ -270,13 +270,13 @@ def arrow_schemas() -> dict[str, pa.Schema]:
 
     Geometries are omitted: the database makes them from the other columns.
     """
-    return kept_schemas(create_tables, column_comments())
+    return cached_schemas(create_tables, column_comments())
 
 
 def owned_table(
-    name: str, owner: str, content: Sequence[Mapping[str, Any]] | Mapping[str, Any], reader: str
+    name: str, owner_id: str, content: Sequence[Mapping[str, Any]] | Mapping[str, Any], reader: str
 ) -> pa.Table:
-    """Return a table of `schemas/` from rows or columns, with `owner` (the id of the drive or map) as its first column.
+    """Return a table of `schemas/` from rows or columns, with `owner_id` (the id of the drive or map) as its first column.
 
     Errors: `KeyError` for a missing column; `InternalError`, which names the `reader`, for a word outside its column's vocabulary.
     """
@@ -288,18 +288,18 @@ def owned_table(
     }
     table = pa.table(columns, schema=pa.schema(others))
     words.refuse_wrong_words(table, word_columns()[name], f"reader {reader}: table {name}")
-    return table.add_column(0, first, pa.repeat(pa.scalar(owner), table.num_rows))
+    return table.add_column(0, first, pa.repeat(pa.scalar(owner_id), table.num_rows))
 
 
 @cache
-def _declarations(file: str = "*") -> str:
+def _schema_sql(file: str = "*") -> str:
     return "\n".join(path.read_text(encoding="utf-8") for path in sorted(folder("schemas").glob(f"{file}.sql")))
 
 
 @cache
 def lifetimes() -> dict[str, str]:
     """Return table -> its lifetime, from the line above it in `schemas/`. Errors: `DriveLintError` for a table without a lifetime."""
-    found = {table: lifetime for lifetime, table in _LIFETIME.findall(_declarations())}
+    found = {table: lifetime for lifetime, table in _LIFETIME.findall(_schema_sql())}
     for table in column_comments():
         if found.get(table) not in LIFETIMES:
             raise DriveLintError(
@@ -321,7 +321,7 @@ def recreate_with_enums(
     Nearly every join is on these ids; with numbers, derivations take a fifth less time. The values of the ENUM are sorted, so ENUM and
     text have the same order. `drives`, `actors`: all ids that the tables will contain.
     """
-    old = _codes(con)
+    old = _enum_numbers(con)
     for kind, ids in (("drive", drives), ("actor", actors)):
         names = sorted(set(ids))
         can_be_enum = names and not any("\0" in name for name in names)  # SQL text cannot contain NUL
@@ -338,25 +338,27 @@ def recreate_empty(con: duckdb.DuckDBPyConnection, tables: Iterable[str]) -> Non
     Deleted rows use memory until a checkpoint, and a database in memory has no checkpoints.
     """
     types = {}
-    if codes := _codes(con):
+    if codes := _enum_numbers(con):
         types = {"drive_id": f"drive_ids_{max(codes)}", **dict.fromkeys(ACTOR_ID_COLUMNS, f"actor_ids_{max(codes)}")}
-    bodies, made = dict(_TABLE.findall(_declarations())), list[str]()
+    bodies, made = dict(_TABLE.findall(_schema_sql())), list[str]()
     for table in tables:
         body = bodies[table]
-        as_text = table in _AS_TOLD or lifetimes()[table] == "run"  # such a table has the ids of several batches
+        as_text = (
+            table in _TABLES_WITH_TEXT_IDS or lifetimes()[table] == "run"
+        )  # such a table has the ids of several batches
         for column in types.keys() & column_comments()[table].keys() if not as_text else ():
             body = re.sub(rf"^    {column} VARCHAR", f"    {column} {types[column]}", body, flags=re.MULTILINE)
         made.append(f"CREATE OR REPLACE TABLE {table} (\n{body})")
     con.execute(";".join(made))
 
 
-def _codes(con: duckdb.DuckDBPyConnection) -> list[int]:
+def _enum_numbers(con: duckdb.DuckDBPyConnection) -> list[int]:
     return [int(no) for (no,) in con.execute(_CODES).fetchall()]
 
 
 def macro_definitions() -> str:
     """Return the text of all macros in `queries/macros`."""
-    return "\n".join(texts("macros").values())
+    return "\n".join(statement_texts("macros").values())
 
 
 def create_macros(con: duckdb.DuckDBPyConnection) -> None:
@@ -366,12 +368,12 @@ def create_macros(con: duckdb.DuckDBPyConnection) -> None:
 
 def create_tables(con: duckdb.DuckDBPyConnection, *, comments: bool = False) -> None:
     """Create every table of `schemas/*.sql`, with `comments` including the comments of its columns."""
-    con.execute(_declarations())
+    con.execute(_schema_sql())
     for table, columns in column_comments().items() if comments else ():
         con.execute(";".join(f"COMMENT ON COLUMN {table}.{c} IS {quoted(text)}" for c, text in columns.items()))
 
 
-def empty_tables(con: duckdb.DuckDBPyConnection) -> set[str]:
+def tables_without_rows(con: duckdb.DuckDBPyConnection) -> set[str]:
     """Return the tables without rows. A table whose rows were deleted may be missing; callers then only run unneeded statements."""
     sql = "SELECT table_name FROM duckdb_tables() WHERE database_name = current_database() AND estimated_size = 0"
     return {table for (table,) in con.execute(sql).fetchall()}

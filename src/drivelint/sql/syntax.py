@@ -24,8 +24,8 @@ _NO_NAMES: Final[frozenset[str]] = frozenset()
 _CALL: Final = re.compile(r"(\w+)\"?\(")
 _MACRO: Final = re.compile(r"^CREATE OR REPLACE MACRO (\w+)\(", re.MULTILINE)
 _PARAMETER: Final = re.compile(rb"\$(\w+)")
-_NO_ROWS: Final = "ctes without rows"
-_INNER: Final = (dict, list)
+_TABLE_WITHOUT_ROWS: Final = "ctes without rows"
+_INNER_NODE_TYPES: Final = (dict, list)
 """The types of a tree's inner nodes. Nine tenths of a tree are single values, which `walk` skips."""
 
 
@@ -70,24 +70,24 @@ def parse_select(sql: str, where: str) -> Node:
 def tables_read(tree: Node) -> Names:
     """Return the tables that a SELECT reads, without the names of CTEs in scope."""
     sources = ((node, ctes) for node, ctes in walk(tree) if node.get("type") == "BASE_TABLE")
-    return frozenset(_folded(node["table_name"]) for node, ctes in sources if not _is_cte(node, ctes))
+    return frozenset(_lower_case(node["table_name"]) for node, ctes in sources if not _is_cte(node, ctes))
 
 
 def tables_needing_rows(tree: Node) -> Names:
     """Return tables that must have rows for the SELECT to return rows. The answer may be incomplete, which only costs time."""
-    return _query(tree, {}, beside=False)
+    return _needed_by_query(tree, {}, lateral=False)
 
 
 def has_no_rows_without(tree: Node, ctes: Names) -> bool:
     """Return whether a SELECT has no rows if these CTEs have none; false if that is unknown, or several CTEs have one name."""
-    n_named = Counter(_folded(entry["key"]) for node, _ in walk(tree) for entry in _ctes(node))
+    n_named = Counter(_lower_case(entry["key"]) for node, _ in walk(tree) for entry in _cte_entries(node))
     if any(n_named[name] != 1 for name in ctes):
         return False
     tree = deepcopy(tree)
     for node, in_sight in walk(tree):
-        if node.get("type") == "BASE_TABLE" and _folded(node["table_name"]) in ctes and _is_cte(node, in_sight):
-            node["table_name"] = _NO_ROWS  # one table name replaces all of these CTEs
-    return _NO_ROWS in _query(tree, {}, beside=False)
+        if node.get("type") == "BASE_TABLE" and _lower_case(node["table_name"]) in ctes and _is_cte(node, in_sight):
+            node["table_name"] = _TABLE_WITHOUT_ROWS  # one table name replaces all of these CTEs
+    return _TABLE_WITHOUT_ROWS in _needed_by_query(tree, {}, lateral=False)
 
 
 def walk(root: Any) -> Iterator[tuple[Node, Names]]:
@@ -96,63 +96,73 @@ def walk(root: Any) -> Iterator[tuple[Node, Names]]:
     while todo:
         part, ctes = todo.pop()
         if isinstance(part, list):
-            todo += [(item, ctes) for item in reversed(part) if isinstance(item, _INNER)]
+            todo += [(item, ctes) for item in reversed(part) if isinstance(item, _INNER_NODE_TYPES)]
         else:
             yield part, ctes
             # a CTE can read earlier CTEs; only the SELECT that defines the CTE, and its inner parts, can read it
-            for entry in _ctes(part):
+            for entry in _cte_entries(part):
                 todo.append((entry["value"], ctes))
-                ctes |= {_folded(entry["key"])}
+                ctes |= {_lower_case(entry["key"])}
             if part.get("type") == "RECURSIVE_CTE_NODE":
-                ctes |= {_folded(part["cte_name"])}
-            todo += [(part[key], ctes) for key in reversed(part) if isinstance(part[key], _INNER) and key != "cte_map"]
+                ctes |= {_lower_case(part["cte_name"])}
+            todo += [
+                (part[key], ctes)
+                for key in reversed(part)
+                if isinstance(part[key], _INNER_NODE_TYPES) and key != "cte_map"
+            ]
 
 
-def _query(node: Node, ctes: Mapping[str, Names], *, beside: bool) -> Names:
+def _needed_by_query(node: Node, ctes: Mapping[str, Names], *, lateral: bool) -> Names:
     """Return the tables that must have rows for a query to return rows.
 
-    `ctes`: CTE in scope -> the tables that it needs. `beside`: the query is right of a join, so it may use columns of the left side.
+    `ctes`: CTE in scope -> the tables that it needs. `lateral`: the query is right of a join, so it may use columns of the left side.
     """
     own = dict(ctes)
-    for entry in _ctes(node):
-        own[_folded(entry["key"])] = _query(entry["value"]["query"]["node"], own, beside=beside)
+    for entry in _cte_entries(node):
+        own[_lower_case(entry["key"])] = _needed_by_query(entry["value"]["query"]["node"], own, lateral=lateral)
     match node["type"]:
-        case "SELECT_NODE" if not _has_a_row_of_none(node, beside=beside):
-            return _source(node["from_table"], own, beside=beside)
+        case "SELECT_NODE" if not _has_row_without_source_rows(node, lateral=lateral):
+            return _needed_by_source(node["from_table"], own, lateral=lateral)
         case "SET_OPERATION_NODE" if node["setop_type"].startswith("UNION"):
-            return _query(node["left"], own, beside=beside) & _query(node["right"], own, beside=beside)
+            return _needed_by_query(node["left"], own, lateral=lateral) & _needed_by_query(
+                node["right"], own, lateral=lateral
+            )
         case "RECURSIVE_CTE_NODE":
-            first = _query(node["left"], own, beside=beside)
-            return first & _query(node["right"], own | {_folded(node["cte_name"]): first}, beside=beside)
+            first = _needed_by_query(node["left"], own, lateral=lateral)
+            return first & _needed_by_query(
+                node["right"], own | {_lower_case(node["cte_name"]): first}, lateral=lateral
+            )
     return _NO_NAMES
 
 
-def _source(node: Node, ctes: Mapping[str, Names], *, beside: bool) -> Names:
+def _needed_by_source(node: Node, ctes: Mapping[str, Names], *, lateral: bool) -> Names:
     match node["type"], node.get("join_type"), node.get("ref_type"):
         case "BASE_TABLE", _, _:
-            name = _folded(node["table_name"])
+            name = _lower_case(node["table_name"])
             return ctes[name] if _is_cte(node, ctes) else frozenset({name})
         case "SUBQUERY", _, _:
-            return _query(node["subquery"]["node"], ctes, beside=beside)
+            return _needed_by_query(node["subquery"]["node"], ctes, lateral=lateral)
         case "JOIN", "INNER" | "SEMI", "REGULAR" | "CROSS" | "ASOF":
-            return _source(node["left"], ctes, beside=beside) | _source(node["right"], ctes, beside=True)
+            return _needed_by_source(node["left"], ctes, lateral=lateral) | _needed_by_source(
+                node["right"], ctes, lateral=True
+            )
         case "JOIN", "LEFT" | "ANTI", "REGULAR" | "ASOF":
-            return _source(node["left"], ctes, beside=beside)
+            return _needed_by_source(node["left"], ctes, lateral=lateral)
     return _NO_NAMES
 
 
-def _has_a_row_of_none(node: Node, *, beside: bool) -> bool:
+def _has_row_without_source_rows(node: Node, *, lateral: bool) -> bool:
     """Return whether a SELECT may have a row although its source has none, because it aggregates all rows."""
     if node["group_sets"]:
         return not all(node["group_sets"])
     items = node["select_list"]
     if node["aggregate_handling"] == "FORCE_AGGREGATES":
         # GROUP BY ALL makes groups if an item is a column of the source, and not an alias of another item
-        named = {_folded(item["alias"]) for item in items}
-        columns = (_folded(item["column_names"][-1]) for item in items if item["class"] == "COLUMN_REF")
-        return beside or named.issuperset(columns)
+        named = {_lower_case(item["alias"]) for item in items}
+        columns = (_lower_case(item["column_names"][-1]) for item in items if item["class"] == "COLUMN_REF")
+        return lateral or named.issuperset(columns)
     calls = {
-        _folded(each["function_name"])
+        _lower_case(each["function_name"])
         for each, _ in walk([items, node["qualify"], node["modifiers"]])
         if each.get("class") == "FUNCTION"
     }
@@ -166,7 +176,7 @@ def branches(node: Node) -> list[Node]:
 
 def column_name(item: Node) -> str:
     """Return the name of a column of a SELECT, in lower case; '' for a column without a name."""
-    return _folded(item.get("alias") or (item["column_names"][-1] if item["class"] == "COLUMN_REF" else ""))
+    return _lower_case(item.get("alias") or (item["column_names"][-1] if item["class"] == "COLUMN_REF" else ""))
 
 
 def offset_of(part: Any) -> int | None:
@@ -185,15 +195,15 @@ def offset_of(part: Any) -> int | None:
 
 
 def _is_cte(table: Node, ctes: Container[str]) -> bool:
-    return _folded(table["table_name"]) in ctes and not table["schema_name"] and not table["catalog_name"]
+    return _lower_case(table["table_name"]) in ctes and not table["schema_name"] and not table["catalog_name"]
 
 
-def _ctes(node: Node) -> list[Node]:
+def _cte_entries(node: Node) -> list[Node]:
     found: list[Node] = node.get("cte_map", {}).get("map", [])
     return found
 
 
-def _folded(name: str) -> str:
+def _lower_case(name: str) -> str:
     """Return a name in lower case, since DuckDB ignores case."""
     return name.lower()
 

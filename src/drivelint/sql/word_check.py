@@ -13,20 +13,20 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from drivelint.sql import store, syntax, word_types
 from drivelint.sql.macro_trees import macro, macro_texts
-from drivelint.sql.word_functions import compared, value_of
-from drivelint.sql.word_scope import UNKNOWN, Relation, Scope, Source, renamed, united
+from drivelint.sql.word_functions import compared_types, type_of_call
+from drivelint.sql.word_scope import UNKNOWN, Relation, Scope, Source, union_of_relations, with_column_names
 from drivelint.sql.word_types import (
     NULL,
     ListOf,
-    Literal,
+    LiteralPlace,
     Parameter,
+    PossibleWords,
     StructOf,
     Type,
-    Words,
     WrongWord,
-    indirect,
-    item_of,
-    member_of,
+    as_indirect,
+    type_of_item,
+    type_of_member,
     union,
 )
 
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 _COMPARISONS: Final = frozenset(
     {"COMPARE_EQUAL", "COMPARE_NOTEQUAL", "COMPARE_DISTINCT_FROM", "COMPARE_NOT_DISTINCT_FROM"}
 )
-_LAMBDAS: Final = frozenset({"list_filter", "list_transform", "list_apply"})
+_FUNCTIONS_WITH_LAMBDA: Final = frozenset({"list_filter", "list_transform", "list_apply"})
 
 
 class CheckedQuery(NamedTuple):
@@ -46,17 +46,17 @@ class CheckedQuery(NamedTuple):
 
     relation: Relation
     wrong: Sequence[WrongWord]
-    parameters: Mapping[str, Sequence[Words]]
+    parameters: Mapping[str, Sequence[PossibleWords]]
 
 
-def check(tree: Node, tables: Mapping[str, Relation] | None = None) -> CheckedQuery:
+def check_query(tree: Node, tables: Mapping[str, Relation] | None = None) -> CheckedQuery:
     """Check the tree of a SELECT. `tables`: additional tables outside `schemas/`, such as a rule's reference points."""
-    walker = _Walker({**_tables(), **(tables or {})})
-    relation = walker.query(tree, {}, None)
+    walker = _Walker({**_relation_by_table(), **(tables or {})})
+    relation = walker.relation_of_query(tree, {}, None)
     return CheckedQuery(relation, walker.wrong, walker.parameters)
 
 
-def wrong_in_columns(table: str, relation: Relation) -> list[WrongWord]:
+def wrong_words_in_columns(table: str, relation: Relation) -> list[WrongWord]:
     """Return the literals that a query puts into a column of this table although they are not words of the column's vocabulary.
 
     The columns of a UNION, matched by position, have the names in its first query.
@@ -64,8 +64,8 @@ def wrong_in_columns(table: str, relation: Relation) -> list[WrongWord]:
     known = store.word_columns()[table]
     found = []
     for name, kind in relation.columns:
-        column = word_types.of_column(known[name]) if name in known else None
-        if isinstance(column, Words) and isinstance(kind, Words):
+        column = word_types.type_of_column(known[name]) if name in known else None
+        if isinstance(column, PossibleWords) and isinstance(kind, PossibleWords):
             found += [
                 WrongWord(word, place.offset, column)
                 for word, place in kind.literals.items()
@@ -76,29 +76,32 @@ def wrong_in_columns(table: str, relation: Relation) -> list[WrongWord]:
 
 def check_macro(name: str) -> list[WrongWord]:
     """Return the wrong words in a macro; a parameter may have the values of the columns with its name."""
-    walker = _Walker(_tables())
-    walker.macro(name, None)
+    walker = _Walker(_relation_by_table())
+    walker.type_of_macro_call(name, None)
     return walker.wrong
 
 
 @cache
-def _tables() -> dict[str, Relation]:
+def _relation_by_table() -> dict[str, Relation]:
     columns = store.word_columns()
     return {
         table: Relation(
-            [(name, word_types.of_column(columns[table][name]) if name in columns[table] else None) for name in names]
+            [
+                (name, word_types.type_of_column(columns[table][name]) if name in columns[table] else None)
+                for name in names
+            ]
         )
         for table, names in store.column_comments().items()
     }
 
 
 @cache
-def _columns_of_words() -> dict[str, Type]:
+def _type_by_column() -> dict[str, Type]:
     """Return column -> its possible values, for columns with the same values in every table that has them."""
     found: dict[str, list[Type]] = {}
     for columns in store.word_columns().values():
         for name, column in columns.items():
-            found.setdefault(name, []).append(word_types.of_column(column))
+            found.setdefault(name, []).append(word_types.type_of_column(column))
     return {name: kinds[0] for name, kinds in found.items() if all(kind == kinds[0] for kind in kinds)}
 
 
@@ -106,13 +109,13 @@ class _Walker:
     """Walks trees: each method returns the possible values of a node, and collects the node's wrong words."""
 
     def __init__(self, tables: Mapping[str, Relation]) -> None:
-        self._tables = tables
+        self._relation_by_table = tables
         self._depth = 0
         """The number of macro calls around the current node."""
         self._call: int | None = None
         """The byte offset of the outermost of these macro calls."""
         self._wrong: dict[tuple[str, int | None], WrongWord] = {}
-        self.parameters: dict[str, list[Words]] = {}
+        self.parameters: dict[str, list[PossibleWords]] = {}
 
     @property
     def wrong(self) -> list[WrongWord]:
@@ -121,38 +124,42 @@ class _Walker:
 
     # ---- queries
 
-    def query(self, node: Node, ctes: Mapping[str, Relation], outer: Scope | None) -> Relation:
+    def relation_of_query(self, node: Node, ctes: Mapping[str, Relation], outer: Scope | None) -> Relation:
         known = dict(ctes)
         for entry in node.get("cte_map", {}).get("map", ()):
             value = entry["value"]
             name = entry["key"].lower()
-            known[name] = renamed(self.query(value["query"]["node"], known, outer), value.get("aliases", ()))
+            known[name] = with_column_names(
+                self.relation_of_query(value["query"]["node"], known, outer), value.get("aliases", ())
+            )
         match node["type"]:
             case "SELECT_NODE":
-                return self._select(node, known, outer)
+                return self._relation_of_select(node, known, outer)
             case "SET_OPERATION_NODE":
-                first, *others = (self.query(part, known, outer) for part in syntax.branches(node))
-                return reduce(partial(united, by_name="BY_NAME" in node["setop_type"]), others, first)
+                first, *others = (self.relation_of_query(part, known, outer) for part in syntax.branches(node))
+                return reduce(partial(union_of_relations, by_name="BY_NAME" in node["setop_type"]), others, first)
             case "RECURSIVE_CTE_NODE":
-                return self._recursive(node, known, outer)
+                return self._relation_of_recursive_cte(node, known, outer)
         return UNKNOWN
 
-    def _recursive(self, node: Node, ctes: Mapping[str, Relation], outer: Scope | None) -> Relation:
+    def _relation_of_recursive_cte(self, node: Node, ctes: Mapping[str, Relation], outer: Scope | None) -> Relation:
         """Return the columns of a recursive CTE. Wrong words are collected only after its possible values no longer change."""
         name = node["cte_name"].lower()
-        relation = self.query(node["left"], ctes, outer)
+        relation = self.relation_of_query(node["left"], ctes, outer)
         for _ in range(4):
-            apart = _Walker(self._tables)
-            more = united(relation, apart.query(node["right"], {**ctes, name: relation}, outer), by_name=False)
+            apart = _Walker(self._relation_by_table)
+            more = union_of_relations(
+                relation, apart.relation_of_query(node["right"], {**ctes, name: relation}, outer), by_name=False
+            )
             if more == relation:
-                self.query(node["right"], {**ctes, name: relation}, outer)
+                self.relation_of_query(node["right"], {**ctes, name: relation}, outer)
                 return relation
             relation = more
         return Relation([(column, None) for column, _ in relation.columns], relation.complete)
 
-    def _select(self, node: Node, ctes: Mapping[str, Relation], outer: Scope | None) -> Relation:
+    def _relation_of_select(self, node: Node, ctes: Mapping[str, Relation], outer: Scope | None) -> Relation:
         scope = Scope(outer, ctes)
-        scope.sources = self._sources(node["from_table"], scope)
+        scope.sources = self._sources_of_from_clause(node["from_table"], scope)
         columns: list[tuple[str, Type]] = []
         complete = True
         for item in node["select_list"]:
@@ -161,17 +168,17 @@ class _Walker:
                 columns += star.columns
                 complete = complete and star.complete
                 continue
-            kind = self.of(item, scope)
+            kind = self.type_of(item, scope)
             if item.get("function_name", "").lower() == "unnest" and isinstance(kind, StructOf) and _is_recursive(item):
                 columns += kind.fields.items()
                 continue
             name = syntax.column_name(item)
-            columns.append((name, indirect(kind)))
+            columns.append((name, as_indirect(kind)))
             if item.get("alias"):
-                scope.aliases.setdefault(name, indirect(kind))
+                scope.aliases.setdefault(name, as_indirect(kind))
         for key, value in node.items():
             if key not in {"select_list", "from_table", "cte_map"}:
-                self._visit(value, scope)
+                self._check_inner_expressions(value, scope)
         return Relation(columns, complete)
 
     def _columns_of_star(self, item: Node, scope: Scope) -> Relation:
@@ -183,9 +190,10 @@ class _Walker:
         if wanted and not sources:
             kind = scope.lookup([wanted])
             return Relation(list(kind.fields.items())) if isinstance(kind, StructOf) else UNKNOWN
-        dropped = {_last(name) for name in item.get("exclude_list") or ()}
+        dropped = {_excluded_column_name(name) for name in item.get("exclude_list") or ()}
         replaced = {
-            entry["key"].lower(): indirect(self.of(entry["value"], scope)) for entry in item.get("replace_list") or ()
+            entry["key"].lower(): as_indirect(self.type_of(entry["value"], scope))
+            for entry in item.get("replace_list") or ()
         }
         columns = [
             (name, replaced.get(name, kind))
@@ -195,62 +203,62 @@ class _Walker:
         ]
         return Relation(columns, all(source.relation.complete for source in sources) and not item.get("rename_list"))
 
-    def _sources(self, node: Node, scope: Scope) -> list[Source]:
+    def _sources_of_from_clause(self, node: Node, scope: Scope) -> list[Source]:
         name = (node.get("alias") or node.get("table_name") or "").lower()
         match node["type"]:
             case "EMPTY":
                 return []
             case "JOIN":
-                return self._join(node, scope)
+                return self._sources_of_join(node, scope)
             case "BASE_TABLE":
                 table = node["table_name"].lower()
-                relation = scope.ctes.get(table) or self._tables.get(table) or UNKNOWN
+                relation = scope.ctes.get(table) or self._relation_by_table.get(table) or UNKNOWN
             case "SUBQUERY":
-                relation = self.query(node["subquery"]["node"], scope.ctes, scope)
+                relation = self.relation_of_query(node["subquery"]["node"], scope.ctes, scope)
             case "EXPRESSION_LIST":
-                rows = [[self.of(value, scope) for value in row] for row in node["values"]]
+                rows = [[self.type_of(value, scope) for value in row] for row in node["values"]]
                 relation = Relation(
-                    [(f"col{n}", indirect(union(kinds))) for n, kinds in enumerate(zip(*rows, strict=True))]
+                    [(f"col{n}", as_indirect(union(kinds))) for n, kinds in enumerate(zip(*rows, strict=True))]
                 )
             case "TABLE_FUNCTION":
                 call = node["function"]
-                kind = self.of(call, scope)
+                kind = self.type_of(call, scope)
                 known = call["function_name"].lower() in {"unnest", "range", "generate_series"}
-                relation = Relation([(call["function_name"].lower(), indirect(kind))], complete=known)
+                relation = Relation([(call["function_name"].lower(), as_indirect(kind))], complete=known)
             case _:
                 relation = UNKNOWN
-        return [Source(name, renamed(relation, node.get("column_name_alias", ())))]
+        return [Source(name, with_column_names(relation, node.get("column_name_alias", ())))]
 
-    def _join(self, node: Node, scope: Scope) -> list[Source]:
-        left = self._sources(node["left"], scope)
-        right = self._sources(node["right"], Scope(scope.outer, scope.ctes, left))
-        self._visit(node.get("condition"), Scope(scope.outer, scope.ctes, [*left, *right]))
+    def _sources_of_join(self, node: Node, scope: Scope) -> list[Source]:
+        left = self._sources_of_from_clause(node["left"], scope)
+        right = self._sources_of_from_clause(node["right"], Scope(scope.outer, scope.ctes, left))
+        self._check_inner_expressions(node.get("condition"), Scope(scope.outer, scope.ctes, [*left, *right]))
         if node.get("join_type") in {"SEMI", "ANTI"}:
             return left
         shared = {name.lower() for name in node.get("using_columns", ())}
         if node.get("ref_type") == "NATURAL":
             shared |= {name for source in left for name, _ in source.relation.columns}
-        return [*left, *(source.hiding(frozenset(shared)) for source in right)]
+        return [*left, *(source.with_hidden_columns(frozenset(shared)) for source in right)]
 
     # ---- expressions
 
-    def of(self, node: Node, scope: Scope) -> Type:
+    def type_of(self, node: Node, scope: Scope) -> Type:
         """Return the possible values of an expression."""
         of_class = getattr(self, f"_{node['class'].lower()}", None)
         if of_class is not None:
             kind: Type = of_class(node, scope)
             return kind
-        self._visit([value for key, value in node.items() if key != "class"], scope)
+        self._check_inner_expressions([value for key, value in node.items() if key != "class"], scope)
         return None
 
-    def _visit(self, part: Any, scope: Scope) -> None:
+    def _check_inner_expressions(self, part: Any, scope: Scope) -> None:
         """Check all expressions in a part of a tree."""
         if isinstance(part, dict) and "class" in part:
-            self.of(part, scope)
+            self.type_of(part, scope)
         elif isinstance(part, dict | list):
             for inner in part.values() if isinstance(part, dict) else part:
                 if isinstance(inner, dict | list):
-                    self._visit(inner, scope)
+                    self._check_inner_expressions(inner, scope)
 
     def _constant(self, node: Node, _scope: Scope) -> Type:
         value = node["value"]
@@ -258,8 +266,8 @@ class _Walker:
             return NULL
         if value["type"]["id"] != "VARCHAR":
             return None
-        place = Literal(self._call if self._depth else syntax.offset_of(node), in_macro=bool(self._depth))
-        return Words(literals={value["value"]: place}, direct=True)
+        place = LiteralPlace(self._call if self._depth else syntax.offset_of(node), in_macro=bool(self._depth))
+        return PossibleWords(literals={value["value"]: place}, direct=True)
 
     @staticmethod
     def _column_ref(node: Node, scope: Scope) -> Type:
@@ -272,29 +280,29 @@ class _Walker:
     def _case(self, node: Node, scope: Scope) -> Type:
         checks = node["case_checks"]
         for each in checks:
-            self.of(each["when_expr"], scope)
-        return union(self.of(part, scope) for part in (*(each["then_expr"] for each in checks), node["else_expr"]))
+            self.type_of(each["when_expr"], scope)
+        return union(self.type_of(part, scope) for part in (*(each["then_expr"] for each in checks), node["else_expr"]))
 
     def _cast(self, node: Node, scope: Scope) -> Type:
-        kind = self.of(node["child"], scope)
+        kind = self.type_of(node["child"], scope)
         return kind if node["cast_type"]["id"] == "VARCHAR" or kind == NULL else None
 
     def _comparison(self, node: Node, scope: Scope) -> Type:
-        left, right = self.of(node["left"], scope), self.of(node["right"], scope)
+        left, right = self.type_of(node["left"], scope), self.type_of(node["right"], scope)
         if node["type"] in _COMPARISONS:
-            self._compare(left, right)
+            self._check_comparison(left, right)
         return None
 
     def _operator(self, node: Node, scope: Scope) -> Type:
-        kinds = [self.of(child, scope) for child in node["children"]]
+        kinds = [self.type_of(child, scope) for child in node["children"]]
         match node["type"]:
             case "COMPARE_IN" | "COMPARE_NOT_IN":
                 for kind in kinds[1:]:
-                    self._compare(kinds[0], kind.item if isinstance(kind, ListOf) else kind)
+                    self._check_comparison(kinds[0], kind.item if isinstance(kind, ListOf) else kind)
             case "OPERATOR_COALESCE":
                 return union(kinds)
             case "ARRAY_EXTRACT" | "STRUCT_EXTRACT":
-                return member_of(*kinds)
+                return type_of_member(*kinds)
             case "ARRAY_SLICE":
                 return kinds[0]
         return None
@@ -305,80 +313,82 @@ class _Walker:
     def _function(self, node: Node, scope: Scope) -> Type:
         name = node["function_name"].lower()
         children = node["children"]
-        if name in _LAMBDAS and children[1]["class"] == "LAMBDA":
-            return self._items(name, node, scope)
-        kinds = [self.of(child, scope) for child in children]
-        self._visit({key: value for key, value in node.items() if key not in {"children", "class"}}, scope)
+        if name in _FUNCTIONS_WITH_LAMBDA and children[1]["class"] == "LAMBDA":
+            return self._type_of_list_lambda(name, node, scope)
+        kinds = [self.type_of(child, scope) for child in children]
+        self._check_inner_expressions(
+            {key: value for key, value in node.items() if key not in {"children", "class"}}, scope
+        )
         if name in macro_texts():
-            return self.macro(name, kinds, node)
+            return self.type_of_macro_call(name, kinds, node)
         if name == "struct_pack":
             return StructOf(
-                {child["alias"].lower(): indirect(kind) for child, kind in zip(children, kinds, strict=True)}
+                {child["alias"].lower(): as_indirect(kind) for child, kind in zip(children, kinds, strict=True)}
             )
-        if pair := compared(name, kinds):
-            self._compare(*pair)
+        if pair := compared_types(name, kinds):
+            self._check_comparison(*pair)
         if len(kinds) == 2:
-            self._keep(word_types.wrong_patterns(name, *kinds))
-        return value_of(name, kinds)
+            self._collect_wrong_words(word_types.wrong_patterns(name, *kinds))
+        return type_of_call(name, kinds)
 
-    def _items(self, name: str, node: Node, scope: Scope) -> Type:
+    def _type_of_list_lambda(self, name: str, node: Node, scope: Scope) -> Type:
         """Return the possible values of a list function with a lambda, such as `list_filter`."""
-        items, function = self.of(node["children"][0], scope), node["children"][1]
+        items, function = self.type_of(node["children"][0], scope), node["children"][1]
         left = function["lhs"]
         names = [column["column_names"][0].lower() for column in left.get("children") or [left]]
-        bound = {**dict.fromkeys(names), names[0]: indirect(item_of(items))}
-        value = self.of(function["expr"], Scope(scope, scope.ctes, bound=bound))
+        bound = {**dict.fromkeys(names), names[0]: as_indirect(type_of_item(items))}
+        value = self.type_of(function["expr"], Scope(scope, scope.ctes, bound=bound))
         return items if name == "list_filter" else ListOf(value)
 
-    def macro(self, name: str, kinds: Sequence[Type] | None, call: Node | None = None) -> Type:
+    def type_of_macro_call(self, name: str, kinds: Sequence[Type] | None, call: Node | None = None) -> Type:
         """Return the possible values of a macro call. `kinds`: possible values of the arguments; None: any values."""
         called = macro(name)
         if called is None or (kinds is not None and len(kinds) != len(called.parameters)):
             return None
         if kinds is not None and all(kind is None for kind in kinds):
-            return _of_macro(name)
+            return _type_of_macro(name)
         given = zip(called.parameters, kinds or [None] * len(called.parameters), strict=True)
-        bound = {parameter: _columns_of_words().get(parameter) if kind is None else kind for parameter, kind in given}
+        bound = {parameter: _type_by_column().get(parameter) if kind is None else kind for parameter, kind in given}
         if not self._depth:
             self._call = None if call is None else syntax.offset_of(call)
         self._depth += 1
-        kind = self.of(called.value, Scope(bound=bound))
+        kind = self.type_of(called.value, Scope(bound=bound))
         self._depth -= 1
-        return indirect(kind)
+        return as_indirect(kind)
 
     def _subquery(self, node: Node, scope: Scope) -> Type:
-        relation = self.query(node["subquery"]["node"], scope.ctes, scope)
+        relation = self.relation_of_query(node["subquery"]["node"], scope.ctes, scope)
         first = relation.columns[0][1] if relation.columns else None
         if node["subquery_type"] == "ANY":
-            kind = self.of(node["child"], scope)
+            kind = self.type_of(node["child"], scope)
             if node["comparison_type"] in _COMPARISONS:  # the literals in the list of ANY are written at this place
-                self._compare(
-                    kind, replace(first, direct=not first.vocabularies) if isinstance(first, Words) else first
+                self._check_comparison(
+                    kind, replace(first, direct=not first.vocabularies) if isinstance(first, PossibleWords) else first
                 )
             return None
         return first if node["subquery_type"] == "SCALAR" else None
 
-    def _compare(self, left: Type, right: Type) -> None:
+    def _check_comparison(self, left: Type, right: Type) -> None:
         for one, other in ((left, right), (right, left)):
-            if isinstance(one, Parameter) and isinstance(other, Words) and not other.direct:
+            if isinstance(one, Parameter) and isinstance(other, PossibleWords) and not other.direct:
                 self.parameters.setdefault(one.name, []).append(other)
-        self._keep(word_types.wrong_words(left, right))
+        self._collect_wrong_words(word_types.wrong_words(left, right))
 
-    def _keep(self, wrong_words: Iterable[WrongWord]) -> None:
+    def _collect_wrong_words(self, wrong_words: Iterable[WrongWord]) -> None:
         for wrong in wrong_words:
             self._wrong.setdefault((wrong.word, wrong.offset), wrong)
 
 
 @cache
-def _of_macro(name: str) -> Type:
+def _type_of_macro(name: str) -> Type:
     """Return the possible values of a macro for any arguments."""
-    return _Walker(_tables()).macro(name, None)
+    return _Walker(_relation_by_table()).type_of_macro_call(name, None)
 
 
 def _is_recursive(unnest: Node) -> bool:
     return any(child.get("alias") == "recursive" for child in unnest["children"])
 
 
-def _last(name: Any) -> str:
+def _excluded_column_name(name: Any) -> str:
     """Return the name of a column that a `*` excludes, in lower case."""
     return str(name if isinstance(name, str) else name["column"]).lower()

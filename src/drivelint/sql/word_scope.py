@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
-from drivelint.sql.word_types import Type, field_of, union
+from drivelint.sql.word_types import Type, type_of_field, union
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -28,11 +28,11 @@ class Source:
         self.name, self.relation, self.hidden = name, relation, hidden
 
     @cached_property
-    def kinds(self) -> dict[str, Type]:
+    def type_by_column(self) -> dict[str, Type]:
         """Column -> its possible values; if two columns have the same name, the first one counts."""
         return dict(reversed(self.relation.columns))
 
-    def hiding(self, names: frozenset[str]) -> Source:
+    def with_hidden_columns(self, names: frozenset[str]) -> Source:
         """Return the source with more hidden columns."""
         return Source(self.name, self.relation, self.hidden | names)
 
@@ -54,35 +54,35 @@ class Scope:
         """Return the possible values of a column. `names`: its parts in lower case: [source], column, [fields]."""
         first, *rest = names
         if first in self.bound:
-            return field_of(self.bound[first], rest)
+            return type_of_field(self.bound[first], rest)
         for source in self.sources:
-            if rest and source.name == first and rest[0] in source.kinds:
-                return field_of(source.kinds[rest[0]], rest[1:])
+            if rest and source.name == first and rest[0] in source.type_by_column:
+                return type_of_field(source.type_by_column[rest[0]], rest[1:])
         for source in self.sources:
-            if first in source.kinds:
-                return field_of(source.kinds[first], rest)
+            if first in source.type_by_column:
+                return type_of_field(source.type_by_column[first], rest)
         if first in self.aliases:
-            return field_of(self.aliases[first], rest)
+            return type_of_field(self.aliases[first], rest)
         if self.outer is None or not all(source.relation.complete for source in self.sources):
             return None
         return self.outer.lookup(names)
 
 
-def renamed(relation: Relation, names: Sequence[str]) -> Relation:
+def with_column_names(relation: Relation, names: Sequence[str]) -> Relation:
     """Return the relation with its first columns renamed to `names`."""
     columns = list(relation.columns)
     columns[: len(names)] = [(name.lower(), kind) for name, (_, kind) in zip(names, columns, strict=False)]
     return Relation(columns, relation.complete)
 
 
-def united(left: Relation, right: Relation, *, by_name: bool) -> Relation:
+def union_of_relations(left: Relation, right: Relation, *, by_name: bool) -> Relation:
     """Return the columns of a UNION of two relations."""
     complete = left.complete and right.complete
     if by_name:
         first, second = dict(left.columns), dict(right.columns)
         names = dict.fromkeys([*first, *second])
-        kinds = {name: [each[name] for each in (first, second) if name in each] for name in names}
-        return Relation([(name, union(kinds[name])) for name in names], complete)
+        type_by_column = {name: [each[name] for each in (first, second) if name in each] for name in names}
+        return Relation([(name, union(type_by_column[name])) for name in names], complete)
     if not complete:
         return Relation([(name, None) for name, _ in left.columns], complete=False)
     pairs = zip(left.columns, right.columns, strict=False)

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from itertools import product
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from drivelint.sql.words import Vocabulary, nearest
+from drivelint.sql.words import Vocabulary, nearest_word_hint
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -21,7 +21,7 @@ _MOST_CONCATENATIONS = 200
 """`concatenation` gives up beyond this number of texts."""
 
 
-class Literal(NamedTuple):
+class LiteralPlace(NamedTuple):
     """The position of a literal: its byte offset in the SQL (None: unknown), and whether it is within a macro.
 
     For a literal within a macro, the offset is that of the call.
@@ -32,14 +32,14 @@ class Literal(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Words:
+class PossibleWords:
     """A text: a word of any of these vocabularies, or one of these literals; NULL if both are empty.
 
     `direct`: the expression itself consists of literals only.
     """
 
     vocabularies: frozenset[Vocabulary] = frozenset()
-    literals: Mapping[str, Literal] = field(default_factory=dict)
+    literals: Mapping[str, LiteralPlace] = field(default_factory=dict)
     direct: bool = False
 
     def may_be(self, word: str) -> bool:
@@ -79,8 +79,8 @@ class Parameter:
     name: str
 
 
-Type = Words | ListOf | StructOf | Parameter | None
-NULL = Words(direct=True)
+Type = PossibleWords | ListOf | StructOf | Parameter | None
+NULL = PossibleWords(direct=True)
 
 
 class WrongWord(NamedTuple):
@@ -91,40 +91,40 @@ class WrongWord(NamedTuple):
 
     word: str
     offset: int | None
-    against: Words
+    against: PossibleWords
 
     @property
     def message(self) -> str:
         """The error message, with the nearest valid word."""
         names = " or ".join(known.name.replace("_", " ") for known in sorted(self.against.vocabularies))
         what = f"is no {names}" if names else "is never what it is compared with"
-        return f"{self.word!r} {what}; {nearest(self.word.strip('%'), self.against.possible_words)}"
+        return f"{self.word!r} {what}; {nearest_word_hint(self.word.strip('%'), self.against.possible_words)}"
 
 
-def of_column(column: WordColumn) -> Type:
+def type_of_column(column: WordColumn) -> Type:
     """Return the possible values of a table's column."""
-    item: Type = Words(frozenset({column.vocabulary}))
+    item: Type = PossibleWords(frozenset({column.vocabulary}))
     item = StructOf({column.field: item}) if column.field else item
     return ListOf(item) if column.is_list else item
 
 
-def indirect(kind: Type) -> Type:
+def as_indirect(kind: Type) -> Type:
     """Return the type without `direct`: for a value that is read by a column's name, or returned by a macro."""
-    return replace(kind, direct=False) if isinstance(kind, Words) else kind
+    return replace(kind, direct=False) if isinstance(kind, PossibleWords) else kind
 
 
 def union(kinds: Iterable[Type]) -> Type:
     """Return the union of possible values; NULL adds nothing."""
-    parts = [kind for kind in kinds if not (isinstance(kind, Words) and kind.is_null)]
+    parts = [kind for kind in kinds if not (isinstance(kind, PossibleWords) and kind.is_null)]
     if len(parts) < 2:
         return parts[0] if parts else NULL
-    words = [part for part in parts if isinstance(part, Words)]
+    words = [part for part in parts if isinstance(part, PossibleWords)]
     lists = [part for part in parts if isinstance(part, ListOf)]
     structs = [part for part in parts if isinstance(part, StructOf)]
     if len(words) == len(parts):
         literals = {word: place for part in reversed(words) for word, place in part.literals.items()}
         known = frozenset[Vocabulary]().union(*(part.vocabularies for part in words))
-        return Words(known, literals, all(part.direct for part in words))
+        return PossibleWords(known, literals, all(part.direct for part in words))
     if len(lists) == len(parts):
         return ListOf(union(part.item for part in lists))
     if len(structs) == len(parts):
@@ -135,32 +135,32 @@ def union(kinds: Iterable[Type]) -> Type:
 
 def concatenation(parts: Iterable[Type]) -> Type:
     """Return all concatenations of the possible values of `parts`; None if unknown or too many."""
-    texts: list[list[tuple[str, Literal]]] = []
+    texts: list[list[tuple[str, LiteralPlace]]] = []
     for part in parts:
-        if not isinstance(part, Words) or not all(known.is_listed for known in part.vocabularies):
+        if not isinstance(part, PossibleWords) or not all(known.has_all_words for known in part.vocabularies):
             return None
-        texts.append([(word, part.literals.get(word, Literal(None))) for word in part.possible_words])
+        texts.append([(word, part.literals.get(word, LiteralPlace(None))) for word in part.possible_words])
     combinations = list(product(*texts)) if len(texts) < 4 else []
     if not 0 < len(combinations) <= _MOST_CONCATENATIONS:
         return None
-    return Words(literals={"".join(word for word, _ in each): each[0][1] for each in combinations})
+    return PossibleWords(literals={"".join(word for word, _ in each): each[0][1] for each in combinations})
 
 
-def field_of(kind: Type, names: Iterable[str]) -> Type:
+def type_of_field(kind: Type, names: Iterable[str]) -> Type:
     """Return the type of a field of a STRUCT. `names`: the field, then fields within it."""
     for name in names:
         kind = kind.fields.get(name) if isinstance(kind, StructOf) else None
     return kind
 
 
-def item_of(kind: Type) -> Type:
+def type_of_item(kind: Type) -> Type:
     """Return the possible values of an item of a list."""
     return kind.item if isinstance(kind, ListOf) else None
 
 
-def member_of(kind: Type, key: Type) -> Type:
+def type_of_member(kind: Type, key: Type) -> Type:
     """Return the possible values of `kind[key]`: an item of a list, or a field of a STRUCT."""
-    return field_of(kind, map(str.lower, key.literals)) if isinstance(key, Words) else item_of(kind)
+    return type_of_field(kind, map(str.lower, key.literals)) if isinstance(key, PossibleWords) else type_of_item(kind)
 
 
 def wrong_words(left: Type, right: Type) -> Iterator[WrongWord]:
@@ -170,7 +170,7 @@ def wrong_words(left: Type, right: Type) -> Iterator[WrongWord]:
     the macro supports. Indirect literals, as from a CASE in a CTE, are wrong only if all of them are: some may mean "none of these".
     """
     for literals, other in ((left, right), (right, left)):
-        if not (isinstance(literals, Words) and isinstance(other, Words)) or literals.vocabularies:
+        if not (isinstance(literals, PossibleWords) and isinstance(other, PossibleWords)) or literals.vocabularies:
             continue
         if other.direct or not (literals.direct or other.vocabularies):
             continue
@@ -188,7 +188,7 @@ def _is_like(word: str, pattern: str) -> bool:
     return re.fullmatch("".join(parts), word, re.DOTALL) is not None
 
 
-_TESTS: Final[Mapping[str, Callable[[str, str], bool]]] = {
+_PATTERN_TEST_BY_FUNCTION: Final[Mapping[str, Callable[[str, str], bool]]] = {
     **dict.fromkeys(("~~", "!~~"), _is_like),
     **dict.fromkeys(("~~*", "!~~*"), lambda word, pattern: _is_like(word.casefold(), pattern.casefold())),
     **dict.fromkeys(("starts_with", "prefix", "^@"), str.startswith),
@@ -200,10 +200,14 @@ _TESTS: Final[Mapping[str, Callable[[str, str], bool]]] = {
 
 def wrong_patterns(function: str, text: Type, pattern: Type) -> Iterator[WrongWord]:
     """Yield the patterns of a LIKE, or of a function such as starts_with, that match no possible word of the text."""
-    if function not in _TESTS or not (isinstance(text, Words) and isinstance(pattern, Words) and pattern.direct):
+    if function not in _PATTERN_TEST_BY_FUNCTION or not (
+        isinstance(text, PossibleWords) and isinstance(pattern, PossibleWords) and pattern.direct
+    ):
         return
-    if text.direct or text.is_null or not all(known.is_listed for known in text.vocabularies):
+    if text.direct or text.is_null or not all(known.has_all_words for known in text.vocabularies):
         return
     for wanted, place in pattern.literals.items():
-        if not place.in_macro and not any(_TESTS[function](word, wanted) for word in text.possible_words):
+        if not place.in_macro and not any(
+            _PATTERN_TEST_BY_FUNCTION[function](word, wanted) for word in text.possible_words
+        ):
             yield WrongWord(wanted, place.offset, text)

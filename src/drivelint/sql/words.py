@@ -21,13 +21,13 @@ if TYPE_CHECKING:
 
     import pyarrow as pa
 
-MARK: Final = re.compile(r"\[(?:(\w+): )?(\w+)((?: \+ \w+)*)\] ?")
+VOCABULARY_MARK: Final = re.compile(r"\[(?:(\w+): )?(\w+)((?: \+ \w+)*)\] ?")
 """The mark at the start of a column's comment: the field of a STRUCT, the vocabulary, and additional words."""
 _MOST_LISTED_WORDS: Final = 14
 """A readable comment lists at most this many words of a vocabulary; it only names a longer vocabulary."""
-_NEAR: Final = 0.55
+_LEAST_HINT_SIMILARITY: Final = 0.55
 """Least similarity of a word that is suggested (`difflib`): `cyclist` and `bicycle` have 0.57."""
-_MISSPELLED: Final = 0.85
+_MISSPELLING_SIMILARITY: Final = 0.85
 """From this similarity on, a word is taken for a misspelled word of an open vocabulary, not for a new word."""
 
 
@@ -51,14 +51,14 @@ class Vocabulary(NamedTuple):
         """Return whether the word is valid."""
         if word in self.words or (self.pattern and re.fullmatch(self.pattern, str(word))):
             return True
-        return self.open and not get_close_matches(str(word), self.words, n=1, cutoff=_MISSPELLED)
+        return self.open and not get_close_matches(str(word), self.words, n=1, cutoff=_MISSPELLING_SIMILARITY)
 
     @property
-    def is_listed(self) -> bool:
+    def has_all_words(self) -> bool:
         """Whether `words` has all valid words."""
         return not self.pattern and not self.open
 
-    def spelled(self, word: str) -> str | None:
+    def known_spelling(self, word: str) -> str | None:
         """Return a word as the vocabulary spells it, ignoring case; None if the vocabulary lacks it."""
         if word in self.words:
             return word
@@ -66,7 +66,11 @@ class Vocabulary(NamedTuple):
 
     def problem(self, word: str) -> str | None:
         """Return an error message for an invalid word, with the nearest valid word; None for a valid word."""
-        return None if word in self else f"{word!r} is no {self.name.replace('_', ' ')}; {nearest(word, self.words)}"
+        return (
+            None
+            if word in self
+            else f"{word!r} is no {self.name.replace('_', ' ')}; {nearest_word_hint(word, self.words)}"
+        )
 
 
 class WordColumn(NamedTuple):
@@ -80,9 +84,9 @@ class WordColumn(NamedTuple):
     is_list: bool = False
 
 
-def nearest(word: str, known_words: Iterable[str]) -> str:
+def nearest_word_hint(word: str, known_words: Iterable[str]) -> str:
     """Return "did you mean 'x'?" for the nearest known word, else "known are ..."."""
-    return hint(word, known_words, cutoff=_NEAR)
+    return hint(word, known_words, cutoff=_LEAST_HINT_SIMILARITY)
 
 
 @cache
@@ -102,7 +106,7 @@ def word_column(kind: str, comment: str) -> WordColumn | None:
 
     Errors: `DriveLintError` for an unknown vocabulary.
     """
-    mark = MARK.match(comment)
+    mark = VOCABULARY_MARK.match(comment)
     if mark is None:
         return None
     field, name, more = mark.groups()
@@ -120,9 +124,9 @@ def readable_comment(comment: str) -> str:
         return comment
     known = column.vocabulary.words
     listed = ", ".join(known) if len(known) <= _MOST_LISTED_WORDS else f"a word of {column.vocabulary.name}"
-    if not column.vocabulary.is_listed:
+    if not column.vocabulary.has_all_words:
         listed += ", ..."
-    rest = MARK.sub("", comment, count=1)
+    rest = VOCABULARY_MARK.sub("", comment, count=1)
     return "; ".join(part for part in (f"{column.field}: {listed}" if column.field else listed, rest) if part)
 
 
@@ -135,12 +139,12 @@ def refuse_wrong_words(table: pa.Table, columns: dict[str, WordColumn], where: s
     for name, column in columns.items():
         if column.vocabulary.open or column.field or name not in table.column_names:
             continue
-        for word in _distinct(table[name]):
+        for word in _distinct_words(table[name]):
             if wrong := column.vocabulary.problem(word):
                 raise InternalError(f"{where}, column {name}: {wrong}: a fault of the reader")
 
 
-def _distinct(values: pa.ChunkedArray) -> list[str]:
+def _distinct_words(values: pa.ChunkedArray) -> list[str]:
     """Return the distinct texts in a column of texts or of lists of texts."""
     import pyarrow as pa
     import pyarrow.compute as pc

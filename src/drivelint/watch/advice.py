@@ -13,14 +13,14 @@ if TYPE_CHECKING:
 _REFERENCE = ("rule_id", "ego_id", "object_id", "t_ref_ns")
 
 
-class Advice:
+class ProfileAdvice:
     """The advice of a watch: each occasion is reported once."""
 
     def __init__(self, styles: Mapping[str, int]) -> None:
         self._styles = styles
         self._told: set[tuple[object, ...]] = set()
 
-    def take(self, window: JudgedWindow, start_ns: int) -> list[dict[str, Any]]:
+    def new_messages(self, window: JudgedWindow, start_ns: int) -> list[dict[str, Any]]:
         """Return a message for each new occasion: the most relaxed profile whose verdict is pass, or none.
 
         An occasion is a rule, ego, object and reference point, judged by profile. A profile whose verdict is unknown is never the answer.

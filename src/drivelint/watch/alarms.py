@@ -44,7 +44,7 @@ class Alarm:
     """The finding was seen in the newest frames, before a window with these frames was judged."""
 
     @property
-    def from_ns(self) -> int:
+    def needed_from_ns(self) -> int:
         """The earliest time that a window must contain to show the finding."""
         start, ref = int(self.row["t_start_ns"]), self.row["t_ref_ns"]
         return start if ref is None else min(start, int(ref))
@@ -54,7 +54,7 @@ class Alarm:
         """Seconds of log time from the first failing step to the newest step at the report."""
         return float((self.said_ns - self.row["t_start_ns"]) / 1e9)
 
-    def is_seen_in(self, row: Row, gap_ns: int) -> bool:
+    def is_continued_by(self, row: Row, gap_ns: int) -> bool:
         """Return whether a finding of another window, or of the whole log, is the finding of this alarm or continues it."""
         mine = self.row
         if mine["t_ref_ns"] is not None or row["t_ref_ns"] is not None:
@@ -64,7 +64,7 @@ class Alarm:
 
 
 @dataclass(frozen=True)
-class Change:
+class AlarmChanges:
     """The changes that a window causes: new alarms, alarms whose rule is kept again, and withdrawn alarms."""
 
     new: list[Alarm]
@@ -72,7 +72,7 @@ class Change:
     withdrawn: list[Alarm]
 
 
-def key_of(row: Row) -> Key:
+def finding_key(row: Row) -> Key:
     """Return the values that are equal in two records of the same finding."""
     return row["rule_id"], row["ego_id"], row["profile"], row["object_id"]
 
@@ -89,7 +89,7 @@ class AlarmLog:
         self.alarms: list[Alarm] = []
         self._standing: list[Alarm] = []
 
-    def look(self, rows: Sequence[Row], now_ns: int) -> list[Alarm]:
+    def add_contacts(self, rows: Sequence[Row], now_ns: int) -> list[Alarm]:
         """Add the contacts in the newest frames, up to the step at `now_ns`, and return the new alarms."""
         new: list[Alarm] = []
         for row in rows:
@@ -103,7 +103,7 @@ class AlarmLog:
                 each.t_end_ns = max(each.t_end_ns, row["t_end_ns"])
         return new
 
-    def take(self, window: JudgedWindow, judged_until_ns: int | None, from_ns: int | None) -> Change:
+    def add_window(self, window: JudgedWindow, judged_until_ns: int | None, from_ns: int | None) -> AlarmChanges:
         """Add the findings of a window, and return the changes.
 
         `judged_until_ns`: the last step of the previous window; None: this is the first window. `from_ns`: the start of the window, which
@@ -113,14 +113,14 @@ class AlarmLog:
         is_first = judged_until_ns is None and from_ns is None
         new: list[Alarm] = []
         shown_numbers: set[int] = set()
-        for row in _with_reference_times(window.findings.to_pylist(), window.verdicts):
+        for row in _findings_with_reference_times(window.findings.to_pylist(), window.verdicts):
             if row["profile"] is not None and row["profile"] not in self._profiles:
                 continue
             same = [each for each in self._standing if self._is_same(each, row)]
             if not same:
                 alarm = Alarm(len(self.alarms), row, window.t_end_ns, row["t_end_ns"])
                 fails_now = is_first or (judged_until_ns is not None and row["t_end_ns"] > judged_until_ns)
-                if alarm.from_ns < known_from_ns and not fails_now:
+                if alarm.needed_from_ns < known_from_ns and not fails_now:
                     continue
                 for alarms in (self.alarms, self._standing, new):
                     alarms.append(alarm)
@@ -128,17 +128,19 @@ class AlarmLog:
             for each in same:
                 each.t_end_ns = max(each.t_end_ns, row["t_end_ns"])
                 shown_numbers.add(each.number)
-        withdrawn = self._withdrawn(window, shown_numbers, known_from_ns)
+        withdrawn = self._withdraw_missing_alarms(window, shown_numbers, known_from_ns)
         self._standing = [each for each in self._standing if each not in withdrawn]
-        over = self._over(window.t_end_ns)
+        over = self._mark_alarms_over(window.t_end_ns)
         self._standing = [
             each
             for each in self._standing
             if not each.is_over or each.t_end_ns + self._gap_ns(each) >= window.t_start_ns
         ]
-        return Change(new, over, withdrawn)
+        return AlarmChanges(new, over, withdrawn)
 
-    def _withdrawn(self, window: JudgedWindow, shown_numbers: Collection[int], known_from_ns: int) -> list[Alarm]:
+    def _withdraw_missing_alarms(
+        self, window: JudgedWindow, shown_numbers: Collection[int], known_from_ns: int
+    ) -> list[Alarm]:
         """Return the alarms whose finding is missing in a window that covers its time. An unknown verdict or an error withdraws none."""
         silent = {
             (row["rule_id"], row["ego_id"], row["profile"])
@@ -149,15 +151,15 @@ class AlarmLog:
             each
             for each in self._standing
             if each.number not in shown_numbers
-            and each.from_ns >= known_from_ns
+            and each.needed_from_ns >= known_from_ns
             and each.row["t_start_ns"] <= window.t_end_ns
-            and not {(*key_of(each.row)[:2], profile) for profile in (None, each.row["profile"])} & silent
+            and not {(*finding_key(each.row)[:2], profile) for profile in (None, each.row["profile"])} & silent
         ]
         for alarm in found:
             alarm.withdrawn_ns = window.t_end_ns
         return found
 
-    def _over(self, now_ns: int) -> list[Alarm]:
+    def _mark_alarms_over(self, now_ns: int) -> list[Alarm]:
         """Return the alarms whose rule is kept again; an alarm that continues later can be over a second time."""
         found = []
         for each in self._standing:
@@ -171,19 +173,19 @@ class AlarmLog:
         return self._gaps_ns[alarm.row["rule_id"]]
 
     def _is_same(self, alarm: Alarm, row: Row) -> bool:
-        return key_of(alarm.row) == key_of(row) and alarm.is_seen_in(row, self._gap_ns(alarm))
+        return finding_key(alarm.row) == finding_key(row) and alarm.is_continued_by(row, self._gap_ns(alarm))
 
-    def hold_against(self, findings: Sequence[Row], verdicts: pa.Table) -> list[Row]:
+    def assign_findings(self, findings: Sequence[Row], verdicts: pa.Table) -> list[Row]:
         """Assign the findings of the whole log to the alarms, and return the findings without an alarm.
 
         Withdrawn alarms are included: the whole log may confirm their findings.
         """
         by_key: dict[Key, list[Alarm]] = {}
         for alarm in self.alarms:
-            by_key.setdefault(key_of(alarm.row), []).append(alarm)
+            by_key.setdefault(finding_key(alarm.row), []).append(alarm)
         left = []
-        for row in _with_reference_times(findings, verdicts):
-            mine = [each for each in by_key.get(key_of(row), []) if self._is_same(each, row)]
+        for row in _findings_with_reference_times(findings, verdicts):
+            mine = [each for each in by_key.get(finding_key(row), []) if self._is_same(each, row)]
             for alarm in mine:
                 alarm.finding_ids.append(row["finding_id"])
             if not mine:
@@ -191,7 +193,7 @@ class AlarmLog:
         return left
 
 
-def _with_reference_times(findings: Sequence[Row], verdicts: pa.Table) -> list[Row]:
+def _findings_with_reference_times(findings: Sequence[Row], verdicts: pa.Table) -> list[Row]:
     """Return findings with the time of their reference point, `t_ref_ns`; None without a reference point."""
     columns = ("drive_id", "rule_id", "ego_id", "ref_id")
     rows = verdicts.select([*columns, "t_ref_ns"]).to_pylist()

@@ -26,15 +26,15 @@ OVERLAP_RULE: Final = "ukhc.no-collision"
 JOLT_RULE: Final = "ukhc.contact-signature"
 CONTACT_RULES: Final = (OVERLAP_RULE, JOLT_RULE)
 """The rules on contacts, whose alarms can come before a window is judged."""
-LOOK_NS: Final = 1_000_000_000
+LEAST_EXAMINED_NS: Final = 1_000_000_000
 """The least length of log that is examined: readers derive values from earlier steps, and boxes must be seen apart before a contact."""
 NEAR_M: Final = 50.0
 """Actors whose centres are farther apart than this along x or y are not examined."""
 _JOLT_PARAMS: Final = ("within_m", "tyre_mps2", "jolt_s", "walk_mps")
-_NOT_KNOWN: Final = ("profile", "t_ref_ns", "lon", "lat", "lanelet_id", "closing_mps")
+_UNKNOWN_COLUMNS: Final = ("profile", "t_ref_ns", "lon", "lat", "lanelet_id", "closing_mps")
 
 
-class ContactLook:
+class ContactFinder:
     """Finds contacts in the newest frames of a log. Memory: the actors that are near an ego.
 
     `con`: a database with the macros, used by this thread alone. `rules_by_id`: the catalogue's rules. `rule_ids`: the examined rules, a
@@ -55,20 +55,20 @@ class ContactLook:
         self._statement = statement("watch/contact")
         self._apart: set[tuple[str, str, str]] = set()
 
-    def look(self, trace: Trace, since_ns: int | None) -> list[Row]:
+    def new_contacts(self, trace: Trace, since_ns: int | None) -> list[Row]:
         """Return the contacts at the steps after `since_ns` (None: at all steps), each as a row of `finding` that lasts one step.
 
-        `trace`: the newest steps and about `LOOK_NS` before them.
+        `trace`: the newest steps and about `LEAST_EXAMINED_NS` before them.
         """
         tables = {f"_{name}": trace.tables[table] for name, table in _TRACE_TABLES.items()}
         with store.registered(self._con, tables):
             pairs = self._con.execute(self._statement, self._values).to_arrow_table().to_pylist()
-        self._apart &= {_key(pair) for pair in pairs}
-        self._apart |= {_key(pair) for pair in pairs if pair["is_apart"]}
+        self._apart &= {_pair_key(pair) for pair in pairs}
+        self._apart |= {_pair_key(pair) for pair in pairs if pair["is_apart"]}
         return [
-            _finding(self._rules[pair["rule_id"]], pair, step)
+            _finding_row(self._rules[pair["rule_id"]], pair, step)
             for pair in pairs
-            if pair["rule_id"] in self._rules and _key(pair) in self._apart
+            if pair["rule_id"] in self._rules and _pair_key(pair) in self._apart
             for step in pair["steps"] or ()
             if since_ns is None or step["t_ns"] > since_ns
         ]
@@ -77,11 +77,11 @@ class ContactLook:
 _TRACE_TABLES: Final = {"state": "actor_state", "actor": "actor", "quality": "quality"}
 
 
-def _key(pair: Row) -> tuple[str, str, str]:
+def _pair_key(pair: Row) -> tuple[str, str, str]:
     return pair["rule_id"], pair["ego_id"], pair["object_id"]
 
 
-def _finding(rule: Rule, pair: Row, step: Row) -> Row:
+def _finding_row(rule: Rule, pair: Row, step: Row) -> Row:
     if rule.id == OVERLAP_RULE:
         reason = f"contact, {-step['clearance_m']:.2f} m deep"
     else:
@@ -89,7 +89,7 @@ def _finding(rule: Rule, pair: Row, step: Row) -> Row:
             f"change of speed of the ego or the other by {step['observed']:.4g} m/s2, {step['clearance_m']:.2f} m apart"
         )
     return {
-        **dict.fromkeys(_NOT_KNOWN),
+        **dict.fromkeys(_UNKNOWN_COLUMNS),
         "rule_id": rule.id,
         "severity": rule.severity,
         "ego_id": pair["ego_id"],

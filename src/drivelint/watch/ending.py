@@ -11,7 +11,7 @@ from drivelint.errors import ChangedLogError, TraceError
 from drivelint.phrases import plural
 from drivelint.result.model import exit_status
 from drivelint.watch import messages
-from drivelint.watch.window import S
+from drivelint.watch.window import NS_PER_S
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -55,22 +55,22 @@ def check_recording(
         return result
     start_ns = result.drives["t_start_ns"][0].as_py() or 0
     told = (
-        f"halted at {(watch.watched.halted_ns - start_ns) / S:.2f} s by an alarm of {halted.row['rule_id']} "
-        f"at {(halted.row['t_start_ns'] - start_ns) / S:.2f} s"
+        f"halted at {(watch.watched.halted_ns - start_ns) / NS_PER_S:.2f} s by an alarm of {halted.row['rule_id']} "
+        f"at {(halted.row['t_start_ns'] - start_ns) / NS_PER_S:.2f} s"
     )
     return replace(result, halted=told, notes=(*result.notes, told))
 
 
-def conclude(result: Result, watch: Watch, emit: Callable[[Message], None]) -> str:
+def report_outcome(result: Result, watch: Watch, emit: Callable[[Message], None]) -> str:
     """Report for each alarm whether the whole log confirms it, then the late and the revised verdicts. Return the counts as a text."""
-    missed = watch.alarms.hold_against(result.findings.to_pylist(), result.verdicts)
+    missed = watch.alarms.assign_findings(result.findings.to_pylist(), result.verdicts)
     for alarm in watch.alarms.alarms:
-        emit(messages.confirmed(alarm))
-    late, other = watch.settled.hold_against(result.verdicts)
+        emit(messages.alarm_outcome(alarm))
+    late, other = watch.settled.late_and_revised_rows(result.verdicts)
     for row in late:
-        emit(messages.verdict(row))
+        emit(messages.late_verdict(row))
     for row in other:
-        emit(messages.revised(row))
+        emit(messages.revised_verdict(row))
     status = exit_status(result)
     alarms = watch.alarms.alarms
     counts = {

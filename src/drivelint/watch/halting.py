@@ -21,7 +21,7 @@ GRACE_S: Final = 5.0
 """How long a program may take to end before it is killed."""
 
 
-class Child:
+class ChildProgram:
     """A program and all processes that it starts, in a process group of its own. Its output goes to stderr: stdout is for data.
 
     The program is ended if this process dies, for whatever reason.
@@ -40,11 +40,11 @@ class Child:
             raise UsageError(f"{command[0]}: cannot be started: {error.strerror or error}") from error
 
     @property
-    def code(self) -> int | None:
+    def exit_code(self) -> int | None:
         """The program's exit code; None: it still runs."""
         return self._process.poll()
 
-    def leave(self) -> int | None:
+    def wait_or_end(self) -> int | None:
         """Wait until the program ends, but end it after `GRACE_S`. Return its exit code; None: it did not end by itself."""
         with suppress(subprocess.TimeoutExpired):
             return self._process.wait(GRACE_S)
@@ -53,19 +53,19 @@ class Child:
 
     def end(self) -> None:
         """Send SIGTERM to the process group, and kill the processes that remain after `GRACE_S`."""
-        self._signal(signal.SIGTERM)
+        self._send_signal(signal.SIGTERM)
         until = time.monotonic() + GRACE_S
-        while self._is_there() and time.monotonic() < until:
+        while self._is_any_process_running() and time.monotonic() < until:
             time.sleep(0.02)
-        self._signal(signal.SIGKILL)
+        self._send_signal(signal.SIGKILL)
         self._process.wait()
 
-    def _is_there(self) -> bool:
+    def _is_any_process_running(self) -> bool:
         """Return whether any process of the group runs: a shell may end before the processes that it started."""
         self._process.poll()  # an ended process counts as running until it is polled
-        return self._signal(0)
+        return self._send_signal(0)
 
-    def _signal(self, number: int) -> bool:
+    def _send_signal(self, number: int) -> bool:
         try:
             os.killpg(self._process.pid, number)
         except (ProcessLookupError, PermissionError):

@@ -25,7 +25,7 @@ from drivelint.evaluate.sql_fragments import Binding
 from drivelint.result import collect
 from drivelint.sql import store
 from drivelint.watch import contact
-from drivelint.watch.contact import ContactLook
+from drivelint.watch.contact import ContactFinder
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -58,7 +58,7 @@ class JudgedWindow:
     verdicts: pa.Table
     courses: pa.Table
 
-    def errors(self) -> list[tuple[str, str]]:
+    def rule_errors(self) -> list[tuple[str, str]]:
         """Return the rules that could not be run, and why."""
         rows = self.verdicts.filter(pc.equal(self.verdicts["verdict"], "error")).select(["rule_id", "reason"])
         return sorted({(row["rule_id"], row["reason"]) for row in rows.to_pylist()})
@@ -103,20 +103,20 @@ class WindowJudge:
         store.insert(self._con, "profile", profile_table(profiles, sorted(asked)))
         self._memory = Memory(self._con, options.memory)
         # the session writes courses only if it has an observer
-        observers = [_look] if options.warn or options.serve else []
+        observers = [_observe_nothing] if options.warn or options.serve else []
         limits = RuleLimits(options.rule_timeout, task="windows")
         self._session = JudgingSession(
             self._con, rules, params, None, memory=self._memory, observers=observers, limits=limits
         )
         self._n_passes = 0
 
-    def contact_look(self) -> ContactLook | None:
+    def contact_finder(self) -> ContactFinder | None:
         """Return an object that finds contacts in frames that are not judged yet; None: no rule on contacts is selected."""
         asked = tuple(rule_id for rule_id in contact.CONTACT_RULES if rule_id in self.rules)
         if not asked:
             return None
         # a cursor of its own, which a rule's time limit does not interrupt
-        return ContactLook(self._stack.enter_context(self._con.cursor()), self._known, asked, self._params)
+        return ContactFinder(self._stack.enter_context(self._con.cursor()), self._known, asked, self._params)
 
     def judge(self, traces: Sequence[Trace], start_ns: int | None = None) -> list[JudgedWindow | DriveLintError]:
         """Judge windows together; return the result of each, or the error that prevents it. Raise only errors that concern all windows.
@@ -134,7 +134,7 @@ class WindowJudge:
             except DriveLintError as error:
                 found[name] = error
             else:
-                drives[name] = replace(drive, trace=_as_of(renamed(drive.trace, name), start_ns))
+                drives[name] = replace(drive, trace=_trace_with_start(renamed(drive.trace, name), start_ns))
         refusals: list[RefusedLog] = []
         if drives:
             judge_apart(self._session, list(drives.values()), refusals)
@@ -161,7 +161,7 @@ class WindowJudge:
         self._stack.close()
 
 
-def _as_of(trace: Trace, start_ns: int | None) -> Trace:
+def _trace_with_start(trace: Trace, start_ns: int | None) -> Trace:
     """Return a window whose seconds count from the log's first step."""
     if start_ns is None:
         return trace
@@ -169,5 +169,5 @@ def _as_of(trace: Trace, start_ns: int | None) -> Trace:
     return replace(trace, tables={**trace.tables, "data_log": log})
 
 
-def _look(con: duckdb.DuckDBPyConnection, _drives: object, /, **_part: bool) -> None:
+def _observe_nothing(con: duckdb.DuckDBPyConnection, _drives: object, /, **_part: bool) -> None:
     """Do nothing: the session writes courses if there is any observer."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.watch.settled import KEY, VALUE_COLUMNS
+from drivelint.watch.settled import KEY_COLUMNS, VALUE_COLUMNS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 
 Message = dict[str, Any]
 
-_OF_ROW: Final = (
+_FINDING_COLUMNS: Final = (
     "profile", "severity", "object_id", "ego_id", "t_start_ns", "t_end_ns", "t_worst_ns", "t_ref_ns", "observed", "required", "margin",
     "unit", "x_m", "y_m", "lon", "lat", "lanelet_id", "closing_mps", "reason",
 )  # fmt: skip
 
 
-def _plain(value: object) -> object:
+def _null_if_not_finite(value: object) -> object:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
@@ -37,12 +37,12 @@ def alarm(alarm: Alarm, rule: Rule, start_ns: int) -> Message:
         "alarm": alarm.number,
         "rule_id": rule.id,
         "title": rule.title,
-        "t_s": _seconds(row["t_start_ns"], start_ns),
-        "said_s": _seconds(alarm.said_ns, start_ns),
+        "t_s": _seconds_since_start(row["t_start_ns"], start_ns),
+        "said_s": _seconds_since_start(alarm.said_ns, start_ns),
         "latency_s": round(alarm.latency_s, 6),
         "is_early": alarm.is_early,
         "status": rule.status,
-        **{name: _plain(row[name]) for name in _OF_ROW},
+        **{name: _null_if_not_finite(row[name]) for name in _FINDING_COLUMNS},
     }
 
 
@@ -52,7 +52,7 @@ def over(alarm: Alarm, start_ns: int) -> Message:
         "type": "over",
         "alarm": alarm.number,
         "rule_id": alarm.row["rule_id"],
-        "t_end_s": _seconds(alarm.t_end_ns, start_ns),
+        "t_end_s": _seconds_since_start(alarm.t_end_ns, start_ns),
         "t_end_ns": alarm.t_end_ns,
     }
 
@@ -63,7 +63,7 @@ def withdrawn(alarm: Alarm, now_ns: int, start_ns: int) -> Message:
         "type": "withdrawn",
         "alarm": alarm.number,
         "rule_id": alarm.row["rule_id"],
-        "t_s": _seconds(now_ns, start_ns),
+        "t_s": _seconds_since_start(now_ns, start_ns),
         "t_ns": now_ns,
     }
 
@@ -74,7 +74,7 @@ def halt(alarm: Alarm, now_ns: int, start_ns: int) -> Message:
         "type": "halt",
         "alarm": alarm.number,
         "rule_id": alarm.row["rule_id"],
-        "t_s": _seconds(now_ns, start_ns),
+        "t_s": _seconds_since_start(now_ns, start_ns),
         "t_ns": now_ns,
         "after_s": round((now_ns - alarm.row["t_start_ns"]) / 1e9, 6),
     }
@@ -85,7 +85,7 @@ def note(text: str) -> Message:
     return {"type": "note", "text": text}
 
 
-def confirmed(alarm: Alarm) -> Message:
+def alarm_outcome(alarm: Alarm) -> Message:
     """Return the message that states which findings of the whole log confirm an alarm."""
     return {
         "type": "checked",
@@ -96,20 +96,20 @@ def confirmed(alarm: Alarm) -> Message:
     }
 
 
-def settled(row: Row, start_ns: int) -> Message:
+def settled_verdict(row: Row, start_ns: int) -> Message:
     """Return the message of a verdict that is reported before the log's end."""
-    said = {name: _plain(row[name]) for name in (*KEY, *VALUE_COLUMNS)}
-    return {"type": "verdict", "t_s": _seconds(row["t_start_ns"], start_ns), **said}
+    said = {name: _null_if_not_finite(row[name]) for name in (*KEY_COLUMNS, *VALUE_COLUMNS)}
+    return {"type": "verdict", "t_s": _seconds_since_start(row["t_start_ns"], start_ns), **said}
 
 
-def verdict(row: Row) -> Message:
+def late_verdict(row: Row) -> Message:
     """Return the message of a row of `verdicts.parquet` that was not reported before, with the names of its columns."""
-    return {"type": "verdict", **{name: _plain(value) for name, value in row.items()}}
+    return {"type": "verdict", **{name: _null_if_not_finite(value) for name, value in row.items()}}
 
 
-def revised(row: Row) -> Message:
+def revised_verdict(row: Row) -> Message:
     """Return the message of a verdict of the whole log that differs from the reported one; `verdict` None: the log has no such verdict."""
-    return {"type": "revised", **{name: _plain(value) for name, value in row.items()}}
+    return {"type": "revised", **{name: _null_if_not_finite(value) for name, value in row.items()}}
 
 
 def end(counts: Mapping[str, int], exit_code: int, why: str) -> Message:
@@ -117,5 +117,5 @@ def end(counts: Mapping[str, int], exit_code: int, why: str) -> Message:
     return {"type": "end", **counts, "exit_code": exit_code, "why": why}
 
 
-def _seconds(t_ns: int, start_ns: int) -> float:
+def _seconds_since_start(t_ns: int, start_ns: int) -> float:
     return round((t_ns - start_ns) / 1e9, 6)

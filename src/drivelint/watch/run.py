@@ -20,13 +20,13 @@ from drivelint.phrases import plural
 from drivelint.result.counts import SEVERITIES
 from drivelint.temporary import temporary_folder
 from drivelint.watch import contact, messages, triggers
-from drivelint.watch.advice import Advice
+from drivelint.watch.advice import ProfileAdvice
 from drivelint.watch.alarms import WARM_UP_NS, AlarmLog
-from drivelint.watch.halting import Child
+from drivelint.watch.halting import ChildProgram
 from drivelint.watch.judge import WindowJudge
 from drivelint.watch.settled import SettledVerdicts
 from drivelint.watch.shrinking import ShrinkingMargins
-from drivelint.watch.window import S, Window
+from drivelint.watch.window import NS_PER_S, Window
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -41,21 +41,21 @@ if TYPE_CHECKING:
     from drivelint.watch.server import LiveServer
     from drivelint.watch.source import Frame, Source
 
-READ_S: Final = 0.05
+READ_TIMEOUT_S: Final = 0.05
 """How long one read waits for new frames."""
-FIRST_NS: Final = S
+FIRST_WINDOW_NS: Final = NS_PER_S
 """The log time after which the first window is judged. It shows the ego, and problems of the log or the map."""
-LOOK_PAUSE_S: Final = 0.05
+CONTACT_SEARCH_PAUSE_S: Final = 0.05
 """The pause after each search for contacts: without it, the searches would take as much time as the windows."""
-GIVES_WAY: Final = 3
+JUDGE_NICENESS: Final = 3
 """The nice value of the thread that judges windows. It gets half as much processor time as the search for contacts; a greater value
 would let other programs stop it."""
-AFTER_CHILD_S: Final = 1.0
+QUIET_AFTER_CHILD_S: Final = 1.0
 """After the program that writes the log has ended, the source is read until no frames have come for this long."""
 
 
 @dataclass
-class Watched:
+class WatchOutcome:
     """The outcome of the live part of a watch."""
 
     n_unjudged: int = 0
@@ -75,7 +75,7 @@ class Watched:
         return f"{plural(len(took), 'window')} judged, each in {took[len(took) // 2]:.1f} s (median), {took[-1]:.1f} s at most"
 
 
-class _Pass(NamedTuple):
+class _WindowPass(NamedTuple):
     """The outcome of a window, and the seconds that it took."""
 
     trace: Trace | None
@@ -83,10 +83,10 @@ class _Pass(NamedTuple):
     took_s: float
 
 
-def _give_way() -> None:
+def _lower_thread_priority() -> None:
     """Lower the priority of this thread and of threads that it starts below that of the search for contacts; on Linux only."""
     if sys.platform == "linux":
-        os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), GIVES_WAY)
+        os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), JUDGE_NICENESS)
 
 
 def egos_of(trace: Trace) -> set[str]:
@@ -111,11 +111,11 @@ class Watch:
         *,
         judge: WindowJudge | None = None,
     ) -> None:
-        if options.window_s * S <= 2 * WARM_UP_NS:
-            raise UsageError(f"--window {options.window_s:g}: use more than {2 * WARM_UP_NS / S:g} s")
-        if options.every_s * S > options.window_s * S - WARM_UP_NS:
+        if options.window_s * NS_PER_S <= 2 * WARM_UP_NS:
+            raise UsageError(f"--window {options.window_s:g}: use more than {2 * WARM_UP_NS / NS_PER_S:g} s")
+        if options.every_s * NS_PER_S > options.window_s * NS_PER_S - WARM_UP_NS:
             raise UsageError(
-                f"--every {options.every_s:g}: use at most {options.window_s - WARM_UP_NS / S:g} s, or a longer --window"
+                f"--every {options.every_s:g}: use at most {options.window_s - WARM_UP_NS / NS_PER_S:g} s, or a longer --window"
             )
         self._options = options
         self._source = source
@@ -125,10 +125,10 @@ class Watch:
         self._stack = ExitStack()
         self._judge = self._stack.enter_context(judge or WindowJudge(options))
         self._worker = self._stack.enter_context(
-            ThreadPoolExecutor(1, initializer=None if source.in_step else _give_way)
+            ThreadPoolExecutor(1, initializer=None if source.is_advanced_by_reads else _lower_thread_priority)
         )
-        self._running: Future[_Pass] | None = None
-        self._contacts = self._judge.contact_look()
+        self._running: Future[_WindowPass] | None = None
+        self._contacts = self._judge.contact_finder()
         self._egos: set[str] = set()
         """The egos of the window that was judged last."""
         self._looked_until_ns: int | None = None
@@ -139,16 +139,16 @@ class Watch:
         self._triggers = triggers.parse(options.on, known, self._judge.rules)
         self._folder = self._stack.enter_context(temporary_folder())
         self._ingest = options.ingest_options()
-        self._window = Window(round(options.window_s * S))
+        self._window = Window(round(options.window_s * NS_PER_S))
         self.alarms = AlarmLog(self._judge.gaps_ns, self._judge.profiles)
         self.settled = SettledVerdicts()
         self._warnings = ShrinkingMargins() if options.warn else None
-        self._advice = Advice(self._judge.styles) if options.advise else None
+        self._advice = ProfileAdvice(self._judge.styles) if options.advise else None
         self._judged_until_ns: int | None = None
         self._start_ns: int | None = None
         self._doubt: str | None = None
         self._erred: set[str] = set()
-        self.watched = Watched()
+        self.watched = WatchOutcome()
 
     def __enter__(self) -> Self:
         return self
@@ -158,18 +158,18 @@ class Watch:
             each.close()
         self._stack.close()
 
-    def watch(self) -> Watched:
+    def watch(self) -> WatchOutcome:
         """Judge until the source has ended, an alarm halts it, or the run is interrupted; then close the windows' database.
 
         A source that fails counts as ended; its recording can still be checked. Errors: `UsageError`, errors of the machine.
         """
-        child = Child(self._options.command) if self._options.command else None
+        child = ChildProgram(self._options.command) if self._options.command else None
         try:
             self._loop(child)
-            for text in filter(None, [each.left_out() for each in self._triggers]):
+            for text in filter(None, [each.left_out_note() for each in self._triggers]):
                 self._emit(messages.note(text))
             if child is not None and self.watched.halted is None and not self._interruption.requested:
-                code = child.leave()
+                code = child.wait_or_end()
                 if code:
                     self._emit(messages.note(f"{self._options.command[0]} ended with exit code {code}"))
         finally:
@@ -178,50 +178,50 @@ class Watch:
             self._stack.close()
         return self.watched
 
-    def _loop(self, child: Child | None) -> None:
+    def _loop(self, child: ChildProgram | None) -> None:
         quiet_since = time.monotonic()
         is_over = False
         while not (is_over or self._is_stopped):
-            frames = self._read()
+            frames = self._read_frames()
             if frames:
                 self._window.add(frames)
                 self._unseen += frames
                 quiet_since = time.monotonic()
-            if self._unseen and (self._source.in_step or time.monotonic() >= self._look_at_s):
-                self._look(self._unseen)
+            if self._unseen and (self._source.is_advanced_by_reads or time.monotonic() >= self._look_at_s):
+                self._report_contacts(self._unseen)
                 self._unseen = []
-                self._look_at_s = time.monotonic() + LOOK_PAUSE_S
-            is_quiet = time.monotonic() - quiet_since > AFTER_CHILD_S
-            is_over = frames is None or (child is not None and child.code is not None and is_quiet)
-            self._judge_what_waits(is_over=is_over)
+                self._look_at_s = time.monotonic() + CONTACT_SEARCH_PAUSE_S
+            is_quiet = time.monotonic() - quiet_since > QUIET_AFTER_CHILD_S
+            is_over = frames is None or (child is not None and child.exit_code is not None and is_quiet)
+            self._judge_due_windows(is_over=is_over)
 
-    def _judge_what_waits(self, *, is_over: bool) -> None:
+    def _judge_due_windows(self, *, is_over: bool) -> None:
         """Judge the windows that are due, one after another; in the background, unless the source is in step or has ended."""
-        in_step, every_ns = self._source.in_step, round(self._options.every_s * S)
-        due_ns = every_ns if self._has_begun else min(every_ns, FIRST_NS)
+        is_advanced_by_reads, every_ns = self._source.is_advanced_by_reads, round(self._options.every_s * NS_PER_S)
+        due_ns = every_ns if self._has_begun else min(every_ns, FIRST_WINDOW_NS)
         # frames that came while a window was judged are judged in one pass, but each step with `WARM_UP_NS` of its past
-        most_ns = every_ns if in_step else self._window_ns - WARM_UP_NS
+        most_ns = every_ns if is_advanced_by_reads else self._window_length_ns - WARM_UP_NS
         while not self._is_stopped:
             if self._running is not None:
-                if not (in_step or is_over or self._running.done()):
+                if not (is_advanced_by_reads or is_over or self._running.done()):
                     return
                 running, self._running = self._running, None
-                self._conclude(running.result())
+                self._report_pass(running.result())
                 continue
-            is_due = self._source.is_due or is_over or self._window.behind_ns >= due_ns
+            is_due = self._source.is_window_due or is_over or self._window.unjudged_ns >= due_ns
             if not (is_due and self._window.advance(most_ns)):
                 return
             self._has_begun = True
-            self._running = self._worker.submit(self._window_to_judge())
+            self._running = self._worker.submit(self._deferred_judgement())
 
     @property
     def _is_stopped(self) -> bool:
         return self._interruption.requested or self.watched.halted is not None
 
-    def _read(self) -> Sequence[Frame] | None:
+    def _read_frames(self) -> Sequence[Frame] | None:
         """Return the next frames of the source, and report its notes; None: the source has ended or failed."""
         try:
-            frames = self._source.read(READ_S)
+            frames = self._source.read(READ_TIMEOUT_S)
         except TraceError as error:
             self.watched.broken = str(error)
             self._emit(messages.note(str(error)))
@@ -232,25 +232,25 @@ class Watch:
             since_ns, until_ns = self._window.jumps.pop(0)
             self._emit(
                 messages.note(
-                    f"the clock jumps from {since_ns / S:.3f} s to {until_ns / S:.3f} s: nothing is judged across the jump"
+                    f"the clock jumps from {since_ns / NS_PER_S:.3f} s to {until_ns / NS_PER_S:.3f} s: nothing is judged across the jump"
                 )
             )
         return frames
 
     @property
-    def _window_ns(self) -> int:
-        return round(self._options.window_s * S)
+    def _window_length_ns(self) -> int:
+        return round(self._options.window_s * NS_PER_S)
 
-    def _look(self, frames: Sequence[Frame]) -> None:
+    def _report_contacts(self, frames: Sequence[Frame]) -> None:
         """Report the contacts in new frames, once the ego is known."""
         if self._contacts is None or self._start_ns is None:
             return
-        latest = self._window.since(min(frame.t_ns for frame in frames) - contact.LOOK_NS)
+        latest = self._window.frames_since(min(frame.t_ns for frame in frames) - contact.LEAST_EXAMINED_NS)
         try:
-            trace = self._source.latest(latest, self._folder, self._ingest)
+            trace = self._source.latest_trace(latest, self._folder, self._ingest)
             if self._egos != egos_of(trace):
                 return
-            rows = self._contacts.look(trace, self._looked_until_ns)
+            rows = self._contacts.new_contacts(trace, self._looked_until_ns)
         except DriveLintError:
             return  # the log is too short or cannot be read: the window reports the problem
         except Exception as error:  # noqa: BLE001 - the windows are still judged
@@ -258,37 +258,37 @@ class Watch:
             self._emit(messages.note(f"contacts are only found in windows: {error}"))
             return
         now_ns = self._looked_until_ns = trace.tables["data_log"]["t_end_ns"][0].as_py()
-        self._say(self.alarms.look(rows, now_ns), now_ns, self._start_ns)
+        self._report_alarms(self.alarms.add_contacts(rows, now_ns), now_ns, self._start_ns)
 
-    def _window_to_judge(self) -> Callable[[], _Pass]:
+    def _deferred_judgement(self) -> Callable[[], _WindowPass]:
         """Return a function that judges the present window. It may be called in another thread, and raises nothing."""
         begun_s = time.perf_counter()
         frames, start_ns = self._window.frames, self._start_ns
 
-        def judge() -> _Pass:
+        def judge_window() -> _WindowPass:
             trace = None
             try:
                 trace = read()
                 outcome = self._judge.judge([trace], start_ns)[0]
             except Exception as error:  # noqa: BLE001 - whatever error a window causes, the recording must still be checked
                 outcome = refusal_of(Path(self._options.source), error).error
-            return _Pass(trace, outcome, time.perf_counter() - begun_s)
+            return _WindowPass(trace, outcome, time.perf_counter() - begun_s)
 
         try:
-            read = self._source.window(frames, self._folder, self._ingest)
+            read = self._source.window_reader(frames, self._folder, self._ingest)
         except Exception as error:  # noqa: BLE001 - as above
             judged = refusal_of(Path(self._options.source), error).error
-            return lambda: _Pass(None, judged, 0.0)
-        return judge
+            return lambda: _WindowPass(None, judged, 0.0)
+        return judge_window
 
-    def _conclude(self, window_pass: _Pass) -> None:
+    def _report_pass(self, window_pass: _WindowPass) -> None:
         """Report the new results of a window. If it cannot be read or judged, report this and continue."""
         if isinstance(window_pass.outcome, DriveLintError):
-            self._doubt_of(window_pass.outcome)
+            self._report_unjudged_window(window_pass.outcome)
             return
         self._doubt = None
         since_ns = self._judged_until_ns
-        self._take(window_pass.outcome)
+        self._report_judged_window(window_pass.outcome)
         self.watched.busy_s.append(window_pass.took_s)
         if window_pass.trace is not None:
             self._egos = egos_of(window_pass.trace)
@@ -296,7 +296,7 @@ class Watch:
             self._server.publish_scene(window_pass.trace)
             self._server.publish_margins(window_pass.outcome.margins_since(since_ns))
 
-    def _doubt_of(self, error: DriveLintError) -> None:
+    def _report_unjudged_window(self, error: DriveLintError) -> None:
         """Report why the log so far cannot be judged; not again for a text that differs only in its numbers."""
         self.watched.n_unjudged += 1
         text = str(error).replace(str(self._folder), "...")
@@ -304,38 +304,38 @@ class Watch:
             self._doubt = what
             self._emit(messages.note(f"not judged yet: {text}"))
 
-    def _take(self, judged_window: JudgedWindow) -> None:
+    def _report_judged_window(self, judged_window: JudgedWindow) -> None:
         """Report new results of a window."""
         if self._start_ns is None:
             self._start_ns = judged_window.t_start_ns
-        for rule_id, reason in judged_window.errors():
+        for rule_id, reason in judged_window.rule_errors():
             if rule_id not in self._erred:
                 self._erred.add(rule_id)
                 self._emit(messages.note(f"{rule_id} cannot be run on a window: {reason}"))
-        from_ns = None if self._window.is_whole else judged_window.t_end_ns - self._window_ns
-        for row in self.settled.take(
+        from_ns = None if self._window.is_whole else judged_window.t_end_ns - self._window_length_ns
+        for row in self.settled.new_settled_rows(
             judged_window, judged_window.t_start_ns if from_ns is None else from_ns + WARM_UP_NS
         ):
-            self._emit(messages.settled(row, self._start_ns))
-        change = self.alarms.take(judged_window, self._judged_until_ns, from_ns)
+            self._emit(messages.settled_verdict(row, self._start_ns))
+        change = self.alarms.add_window(judged_window, self._judged_until_ns, from_ns)
         self._judged_until_ns = judged_window.t_end_ns
         # frames that came while the window was judged are known, too
-        now_ns = judged_window.t_end_ns + self._window.behind_ns
+        now_ns = judged_window.t_end_ns + self._window.unjudged_ns
         for alarm in change.withdrawn:
             self._emit(messages.withdrawn(alarm, now_ns, self._start_ns))
         for alarm in change.new:
             alarm.said_ns = now_ns
-        self._say(change.new, now_ns, self._start_ns)
+        self._report_alarms(change.new, now_ns, self._start_ns)
         for alarm in change.over:
             self._emit(messages.over(alarm, self._start_ns))
         if self._warnings is not None:
-            for message in self._warnings.take(judged_window, self._judge.rules, self._start_ns):
+            for message in self._warnings.new_messages(judged_window, self._judge.rules, self._start_ns):
                 self._emit(message)
         if self._advice is not None:
-            for message in self._advice.take(judged_window, self._start_ns):
+            for message in self._advice.new_messages(judged_window, self._start_ns):
                 self._emit(message)
 
-    def _say(self, alarms: Sequence[Alarm], now_ns: int, start_ns: int) -> None:
+    def _report_alarms(self, alarms: Sequence[Alarm], now_ns: int, start_ns: int) -> None:
         """Report alarms, start the commands for them, and halt the source if one of the alarms requires it."""
         said = []
         for alarm in alarms:
@@ -344,15 +344,15 @@ class Watch:
             if self._server is not None:
                 self._server.publish_alarm(said[-1])
         for trigger in self._triggers:
-            if (trouble := trigger.pull(said)) is not None:
+            if (trouble := trigger.run_for_alarms(said)) is not None:
                 self._emit(messages.note(trouble))
-        halting = next((alarm for alarm in alarms if self._halts(alarm)), None)
+        halting = next((alarm for alarm in alarms if self._is_halting_alarm(alarm)), None)
         if halting is not None:
             self.watched.halted, self.watched.halted_ns = halting, now_ns
             self._emit(messages.halt(halting, now_ns, start_ns))
             self._source.halt()
 
-    def _halts(self, alarm: Alarm) -> bool:
+    def _is_halting_alarm(self, alarm: Alarm) -> bool:
         """Return whether an alarm halts the source: its severity is at least `halt_on`, and its rule is no draft."""
         least, severity = self._options.halt_on, alarm.row["severity"]
         if least is None or self._judge.rules[alarm.row["rule_id"]].status != "stable":

@@ -30,9 +30,9 @@ if TYPE_CHECKING:
     from drivelint.annotate.actor_boxes import RecordChunk
     from drivelint.drive.trace import Trace
 
-PREFIX: Final = "/drivelint"
-ALARMS: Final = f"{PREFIX}/alarms"
-_ALARM: Final = {
+TOPIC_PREFIX: Final = "/drivelint"
+ALARMS_TOPIC: Final = f"{TOPIC_PREFIX}/alarms"
+_ALARM_FIELDS: Final = {
     "type": ("string", "alarm"),
     "alarm": ("integer", "its number in this watch"),
     "title": ("string", "what the rule demands"),
@@ -89,11 +89,11 @@ class LiveServer:
         self._clock: LogClock | None = None
         scene, transform = foxglove_messages.schema("SceneUpdate"), foxglove_messages.schema("FrameTransform")
         # announced at once, so that a viewer can subscribe before the first message
-        self._scene = self._channel(f"{PREFIX}/scene", "protobuf", scene)
-        self._transform = self._channel(f"{PREFIX}/tf", "protobuf", transform)
-        self._alarms = self._channel(ALARMS, "json", alarm_schema())
+        self._scene = self._add_channel(f"{TOPIC_PREFIX}/scene", "protobuf", scene)
+        self._transform = self._add_channel(f"{TOPIC_PREFIX}/tf", "protobuf", transform)
+        self._alarms = self._add_channel(ALARMS_TOPIC, "json", alarm_schema())
         for rule_id in rule_ids:
-            self._margins(rule_id)
+            self._margin_channel(rule_id)
 
     @property
     def port(self) -> int:
@@ -113,41 +113,41 @@ class LiveServer:
         newest = pc.max(states["t_ns"])
         there = tracks({**trace_window.tables, "actor_state": states.filter(pc.equal(states["t_ns"], newest))})
         rows, _ = actor_boxes.select_box_rows(there)
-        clock = self._times(newest.as_py())
+        clock = self._clock_for(newest.as_py())
         at = clock.log_time_at(newest.as_py())
-        boxes = b"".join(_contents(actor_boxes.scene_update_chunks(there, rows, clock, 0)))
+        boxes = b"".join(_message_contents(actor_boxes.scene_update_chunks(there, rows, clock, 0)))
         self._server.publish(self._scene, draw.deletion_of_all(at) + boxes, at)
-        for content in _contents(actor_boxes.ego_transform_chunks(there, rows, clock, 0)):
+        for content in _message_contents(actor_boxes.ego_transform_chunks(there, rows, clock, 0)):
             self._server.publish(self._transform, content, at)
 
     def publish_alarm(self, message: Mapping[str, Any]) -> None:
         """Publish an alarm of `drivelint.watch.messages`, at the time at which its rule was broken."""
-        self._log(self._alarms, message, message["t_start_ns"])
+        self._publish_json(self._alarms, message, message["t_start_ns"])
 
     def publish_margins(self, rows: Sequence[Mapping[str, Any]]) -> None:
         """Publish judged steps, each on the topic of its rule; `rows` have columns of `margins.parquet`."""
         for row in rows:
             told = {name: value for name, value in row.items() if name != "drive_id"}
-            self._log(self._margins(row["rule_id"]), told, row["t_ns"])
+            self._publish_json(self._margin_channel(row["rule_id"]), told, row["t_ns"])
 
     def close(self) -> None:
         """Disconnect the viewers and end the server. May be called twice."""
         self._server.close()
 
-    def _margins(self, rule_id: str) -> int:
-        topic = f"{PREFIX}/{measures.margin_topic(rule_id)}"
-        return self._channels.get(topic) or self._channel(topic, "json", result_messages.message_schema("margin"))
+    def _margin_channel(self, rule_id: str) -> int:
+        topic = f"{TOPIC_PREFIX}/{measures.margin_topic(rule_id)}"
+        return self._channels.get(topic) or self._add_channel(topic, "json", result_messages.message_schema("margin"))
 
-    def _channel(self, topic: str, encoding: str, schema: Schema) -> int:
+    def _add_channel(self, topic: str, encoding: str, schema: Schema) -> int:
         self._channels[topic] = number = self._server.add_channel(topic, encoding, schema)
         return number
 
-    def _log(self, channel: int, message: Mapping[str, Any], t_ns: int) -> None:
+    def _publish_json(self, channel: int, message: Mapping[str, Any], t_ns: int) -> None:
         # viewers refuse a schema that allows null, so a message leaves out fields with unknown values
         known = {name: value for name, value in message.items() if replace_non_finite(value) is not None}
-        self._server.publish(channel, msgspec.json.encode(known), self._times(t_ns).log_time_at(t_ns))
+        self._server.publish(channel, msgspec.json.encode(known), self._clock_for(t_ns).log_time_at(t_ns))
 
-    def _times(self, t_ns: int) -> LogClock:
+    def _clock_for(self, t_ns: int) -> LogClock:
         """Return the clock of the log times. It is kept for the whole watch, unless a time would be negative with it."""
         if self._clock is None or t_ns + self._clock.shift_ns < 0:
             self._clock = of_trace(t_ns)
@@ -155,10 +155,10 @@ class LiveServer:
 
 
 def alarm_schema() -> Schema:
-    """Return the schema of alarms: the columns of a finding, and the fields of `_ALARM`."""
+    """Return the schema of alarms: the columns of a finding, and the fields of `_ALARM_FIELDS`."""
     finding = result_messages.message_schema("finding")
     content = json.loads(finding.data)
-    own = {name: {"type": kind, "description": told} for name, (kind, told) in _ALARM.items()}
+    own = {name: {"type": kind, "description": told} for name, (kind, told) in _ALARM_FIELDS.items()}
     content |= {
         "title": "drivelint.Alarm",
         "description": "A rule fails for the first time in a watched drive. Left out: what is not known.",
@@ -169,7 +169,7 @@ def alarm_schema() -> Schema:
     return type(finding)(id=0, name="drivelint.Alarm", encoding=finding.encoding, data=json.dumps(content).encode())
 
 
-def _contents(chunks: Iterable[RecordChunk]) -> Iterator[bytes]:
+def _message_contents(chunks: Iterable[RecordChunk]) -> Iterator[bytes]:
     """Yield the message of each chunk, which contains one record, without the record's header."""
     none = np.zeros(0, np.uint64)
     head = actor_boxes.message_headers(0, none, none.astype(np.int64), 0).shape[1]

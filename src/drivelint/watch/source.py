@@ -36,12 +36,12 @@ class Source(Protocol):
         ...
 
     @property
-    def in_step(self) -> bool:
+    def is_advanced_by_reads(self) -> bool:
         """Whether the source advances only when it is read, like a simulation that drivelint steps."""
         ...
 
     @property
-    def is_due(self) -> bool:
+    def is_window_due(self) -> bool:
         """Whether a source in step has provided all steps up to the next window; always False for other sources."""
         ...
 
@@ -56,7 +56,7 @@ class Source(Protocol):
         """Return notes on the source since the last call, such as lost frames."""
         ...
 
-    def window(self, frames: Sequence[Frame], folder: Path, options: IngestOptions) -> Callable[[], Trace]:
+    def window_reader(self, frames: Sequence[Frame], folder: Path, options: IngestOptions) -> Callable[[], Trace]:
         """Return a function that reads a log of these frames alone, as the recording is read. Another thread may call the function.
 
         `folder`: for temporary files. Each window starts no earlier than the previous one. While there is too little to judge, this
@@ -64,7 +64,7 @@ class Source(Protocol):
         """
         ...
 
-    def latest(self, frames: Sequence[Frame], folder: Path, options: IngestOptions) -> Trace:
+    def latest_trace(self, frames: Sequence[Frame], folder: Path, options: IngestOptions) -> Trace:
         """Return a log of the newest frames alone, read as the recording is read. Data that only earlier frames contain may be missing.
 
         Errors: as `window`.
@@ -80,28 +80,28 @@ class Source(Protocol):
         ...
 
 
-class WrittenWindows(ABC):
+class WindowFileSource(ABC):
     """Base class of sources that write windows as small logs of their format."""
 
-    is_due = False
+    is_window_due = False
     window_name: str
     """File name of a window; its suffix determines the format."""
 
     @abstractmethod
-    def write_window(self, frames: Sequence[Frame], path: Path, *, latest: bool = False) -> None:
+    def write_window(self, frames: Sequence[Frame], path: Path, *, may_omit_earlier_data: bool = False) -> None:
         """Write a log of these frames alone, which `read_trace` reads like the recording.
 
-        `latest`: data that only earlier frames contain may be left out.
+        `may_omit_earlier_data`: data that only earlier frames contain may be left out.
         """
 
-    def window(self, frames: Sequence[Frame], folder: Path, options: IngestOptions) -> Callable[[], Trace]:
+    def window_reader(self, frames: Sequence[Frame], folder: Path, options: IngestOptions) -> Callable[[], Trace]:
         """See `Source`."""
         path = folder / self.window_name
         self.write_window(frames, path)
         return partial(read_trace, path, options)
 
-    def latest(self, frames: Sequence[Frame], folder: Path, options: IngestOptions) -> Trace:
+    def latest_trace(self, frames: Sequence[Frame], folder: Path, options: IngestOptions) -> Trace:
         """See `Source`."""
         path = folder / f"latest-{self.window_name}"
-        self.write_window(frames, path, latest=True)
+        self.write_window(frames, path, may_omit_earlier_data=True)
         return read_trace(path, options)

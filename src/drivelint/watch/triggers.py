@@ -39,7 +39,7 @@ class Trigger:
     _last_s: float = -LEAST_PAUSE_S
     _running: list[subprocess.Popen[bytes]] = field(default_factory=list)
 
-    def pull(self, alarms: Sequence[Mapping[str, Any]]) -> str | None:
+    def run_for_alarms(self, alarms: Sequence[Mapping[str, Any]]) -> str | None:
         """Start the command once for the alarms of its rules, unless it is started too often.
 
         Return a note: an error, or the number of alarms that were left out before; None: there is nothing to report.
@@ -63,9 +63,9 @@ class Trigger:
             process.stdin.close()
         self._running.append(process)
         self.n_run += 1
-        return self.left_out()
+        return self.left_out_note()
 
-    def left_out(self) -> str | None:
+    def left_out_note(self) -> str | None:
         """Return in words how many alarms were left out since the last note; None if there are none."""
         n, self._n_told = self.n_left_out - self._n_told, self.n_left_out
         if not n:

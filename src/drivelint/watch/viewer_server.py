@@ -30,18 +30,18 @@ if TYPE_CHECKING:
     from websockets.http11 import Request, Response
 
 SUBPROTOCOLS: Final = (Subprotocol("foxglove.sdk.v1"), Subprotocol("foxglove.websocket.v1"))
-BACKLOG: Final = 1024
+MOST_WAITING_MESSAGES: Final = 1024
 """The most messages that wait for a slow viewer; beyond that, the oldest are dropped."""
-FLUSH_S: Final = 0.5
-CLOSE_S: Final = 0.5
-"""At the end, the server waits `FLUSH_S` for the delivery of all messages, and `CLOSE_S` for the closing handshake."""
+FLUSH_TIMEOUT_S: Final = 0.5
+CLOSE_TIMEOUT_S: Final = 0.5
+"""At the end, the server waits `FLUSH_TIMEOUT_S` for the delivery of all messages, and `CLOSE_TIMEOUT_S` for the closing handshake."""
 MOST_RECEIVED_MESSAGE_BYTES: Final = 1 << 16
 """The longest message that is accepted: viewers only send subscriptions, which are shorter."""
-_MESSAGE: Final = struct.Struct("<BIQ")
-_MESSAGE_DATA: Final = 1
+_MESSAGE_HEADER: Final = struct.Struct("<BIQ")
+_MESSAGE_DATA_OPCODE: Final = 1
 
 
-def _silent() -> logging.Logger:
+def _silent_logger() -> logging.Logger:
     """Return a disabled logger: connections are not reported, and stderr has only drivelint's messages."""
     logger = logging.getLogger("drivelint.viewers")
     logger.disabled = True
@@ -55,7 +55,7 @@ class _Viewer:
         self.connection = connection
         self.subscriptions: dict[int, int] = {}
         """The client's number of a subscription -> the channel."""
-        self.waiting: deque[bytes | str] = deque(maxlen=BACKLOG)
+        self.waiting: deque[bytes | str] = deque(maxlen=MOST_WAITING_MESSAGES)
         self.news = asyncio.Event()
 
     def put(self, message: bytes | str) -> None:
@@ -89,7 +89,7 @@ class ViewerServer:
         try:
             self._server = asyncio.run_coroutine_threadsafe(self._started(host, port), self._loop).result()
         except BaseException:
-            self._end()
+            self._stop_loop()
             raise
 
     @property
@@ -109,12 +109,12 @@ class ViewerServer:
             "schemaEncoding": schema.encoding,
             "schema": text.decode(),
         }
-        self._call(self._announce, channel)
+        self._call_in_thread(self._announce, channel)
         return self._n_channels
 
     def publish(self, channel: int, content: bytes, log_ns: int) -> None:
         """Send a message to the viewers that subscribe to its channel."""
-        self._call(self._put, channel, content, log_ns)
+        self._call_in_thread(self._send_to_subscribers, channel, content, log_ns)
 
     def n_subscriptions(self, channel: int) -> int:
         """Return how many viewers subscribe to a channel."""
@@ -130,14 +130,16 @@ class ViewerServer:
         """Disconnect the viewers and end the server, even if a viewer does not respond. May be called twice."""
         if self._thread.is_alive():
             with suppress(TimeoutError):
-                asyncio.run_coroutine_threadsafe(self._stopped(), self._loop).result(FLUSH_S + 2 * CLOSE_S)
-            self._end()
+                asyncio.run_coroutine_threadsafe(self._stopped(), self._loop).result(
+                    FLUSH_TIMEOUT_S + 2 * CLOSE_TIMEOUT_S
+                )
+            self._stop_loop()
 
-    def _end(self) -> None:
+    def _stop_loop(self) -> None:
         self._loop.call_soon_threadsafe(self._loop.stop)
-        self._thread.join(CLOSE_S)
+        self._thread.join(CLOSE_TIMEOUT_S)
 
-    def _call(self, function: Any, *arguments: object) -> None:
+    def _call_in_thread(self, function: Any, *arguments: object) -> None:
         if self._thread.is_alive():
             self._loop.call_soon_threadsafe(function, *arguments)
 
@@ -150,24 +152,24 @@ class ViewerServer:
             process_request=self._refusal,
             compression=None,
             max_size=MOST_RECEIVED_MESSAGE_BYTES,
-            close_timeout=CLOSE_S,
+            close_timeout=CLOSE_TIMEOUT_S,
             server_header=None,
-            logger=_silent(),
+            logger=_silent_logger(),
         )
 
     async def _stopped(self) -> None:
-        for _ in range(int(FLUSH_S / 0.01)):
+        for _ in range(int(FLUSH_TIMEOUT_S / 0.01)):
             if not any(viewer.waiting for viewer in self._viewers):
                 break
             await asyncio.sleep(0.01)
         self._server.close()
         with suppress(TimeoutError):
-            await asyncio.wait_for(self._server.wait_closed(), CLOSE_S)
+            await asyncio.wait_for(self._server.wait_closed(), CLOSE_TIMEOUT_S)
         left = asyncio.all_tasks() - {asyncio.current_task()}
         for task in left:
             task.cancel()
         if left:
-            await asyncio.wait(left, timeout=CLOSE_S)
+            await asyncio.wait(left, timeout=CLOSE_TIMEOUT_S)
 
     def _refusal(self, connection: ServerConnection, request: Request) -> Response | None:
         """Return the refusal of a web page of another site; None: the client may connect. Other programs send no origin."""
@@ -175,7 +177,7 @@ class ViewerServer:
         if all(origin.rstrip("/").casefold() in self._allowed for origin in origins):
             return None
         told = terminal_safe_line(" ".join(origins))[:200]
-        if told not in self._refused and len(self._refused) < BACKLOG:
+        if told not in self._refused and len(self._refused) < MOST_WAITING_MESSAGES:
             self._refused.add(told)
             self._notes.append(f"--serve: a page of {told} was refused: give --allow-origin {told} if it is to watch")
         return connection.respond(403, "pages of this origin may not connect\n")
@@ -189,7 +191,7 @@ class ViewerServer:
         sending = asyncio.ensure_future(viewer.send())
         try:
             async for said in connection:
-                self._understand(viewer, said)
+                self._handle_request(viewer, said)
         except WebSocketException:
             pass  # the client disconnected without a closing handshake
         finally:
@@ -198,13 +200,13 @@ class ViewerServer:
             with suppress(asyncio.CancelledError, WebSocketException):
                 await sending
 
-    def _understand(self, viewer: _Viewer, message: str | bytes) -> None:
+    def _handle_request(self, viewer: _Viewer, message: str | bytes) -> None:
         """Handle a request of a viewer; unknown requests are ignored."""
         with suppress(ValueError, KeyError, TypeError):
             request = json.loads(message)
             if request["op"] == "subscribe":
                 for each in request["subscriptions"]:
-                    if len(viewer.subscriptions) < BACKLOG and 0 <= each["id"] < 1 << 32:
+                    if len(viewer.subscriptions) < MOST_WAITING_MESSAGES and 0 <= each["id"] < 1 << 32:
                         viewer.subscriptions[each["id"]] = each["channelId"]
             elif request["op"] == "unsubscribe":
                 for number in request["subscriptionIds"]:
@@ -215,8 +217,8 @@ class ViewerServer:
         for viewer in self._viewers:
             viewer.put(json.dumps({"op": "advertise", "channels": [channel]}))
 
-    def _put(self, channel: int, content: bytes, log_ns: int) -> None:
+    def _send_to_subscribers(self, channel: int, content: bytes, log_ns: int) -> None:
         for viewer in self._viewers:
             for number, subscribed in viewer.subscriptions.items():
                 if subscribed == channel:
-                    viewer.put(_MESSAGE.pack(_MESSAGE_DATA, number, log_ns) + content)
+                    viewer.put(_MESSAGE_HEADER.pack(_MESSAGE_DATA_OPCODE, number, log_ns) + content)

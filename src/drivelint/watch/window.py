@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     from drivelint.watch.source import Frame
 
-S: Final = 1_000_000_000
+NS_PER_S: Final = 1_000_000_000
 """One second in nanoseconds."""
 
 
@@ -58,7 +58,7 @@ class Window:
             self._latest_ns = at_ns if last is None else max(at_ns, self._latest_ns)
 
     @property
-    def behind_ns(self) -> int:
+    def unjudged_ns(self) -> int:
         """The log time that is not judged yet."""
         if not self._waiting:
             return 0
@@ -89,7 +89,7 @@ class Window:
         """The frames of the window in the order of their arrival."""
         return [placed.frame for placed in self._frames]
 
-    def since(self, t_ns: int) -> list[Frame]:
+    def frames_since(self, t_ns: int) -> list[Frame]:
         """Return the frames after the last frame older than `t_ns`, including waiting frames, in the order of their arrival."""
         found: list[Frame] = []
         for placed in chain(reversed(self._waiting), reversed(self._frames)):

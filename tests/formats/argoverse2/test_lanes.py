@@ -224,7 +224,7 @@ PUBLISHED = {
 def test_a_city_s_origin_is_where_it_is_published(city: str) -> None:
     frame = frame_of_city(city)
     assert frame is not None
-    ((longitude, latitude),) = frame.degrees(np.zeros((1, 2))).tolist()
+    ((longitude, latitude),) = frame.longitude_latitude(np.zeros((1, 2))).tolist()
     assert (latitude, longitude) == pytest.approx(PUBLISHED[city], abs=2e-9)
     east, north = Transformer.from_crs("EPSG:4326", frame.reference, always_xy=True).transform(*PUBLISHED[city][::-1])
     assert (east, north) == pytest.approx(ORIGINS[city][1:], abs=1e-3)

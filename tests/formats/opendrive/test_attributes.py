@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from drivelint.road.signcodes import kind_of
+from drivelint.road.signcodes import signal_kind
 from tests.formats.opendrive.signal_text import WIDTH, signal
 from tests.formats.opendrive.xodr import LINE, checks, lane, lanelets, load, road, rows, section
 
@@ -190,7 +190,7 @@ def test_values_and_missing_values() -> None:
     ],
 )
 def test_kinds_by_code_then_by_name(country: str, code: str, name: str, kind: str | None) -> None:
-    assert kind_of(country, code, name) == kind
+    assert signal_kind(country, code, name) == kind
 
 
 def object_(kind: str, s: float, t: float, **attributes: str) -> str:

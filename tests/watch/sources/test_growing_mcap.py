@@ -18,7 +18,7 @@ from mcap.writer import CompressionType, Writer
 from drivelint.errors import TraceError
 from drivelint.formats.osi.schema import GROUND_TRUTH, descriptor_set
 from drivelint.watch.sources.growing_file import GrowingFile
-from drivelint.watch.sources.mcap_file import McapFile
+from drivelint.watch.sources.mcap_file import McapSource
 from drivelint.watch.sources.mcap_stream import McapStream
 from tests.formats.logs import quality, read, states
 from tests.formats.osi import osi_file
@@ -57,7 +57,7 @@ def content(kind: str) -> bytes:
 
 def log_times(pieces: list[bytes]) -> tuple[list[int], McapStream]:
     stream = McapStream("log.mcap")
-    found = [each for piece in pieces for each in stream.take(piece)]
+    found = [each for piece in pieces for each in stream.parse(piece)]
     return [each.log_ns for each in found], stream  # type: ignore[union-attr]
 
 
@@ -83,7 +83,7 @@ def test_byte_by_byte(kind: str) -> None:
 @pytest.mark.parametrize("kind", ["loose", "zstd"])
 def test_the_file_itself_grows(tmp_path: Path, kind: str) -> None:
     path, whole = tmp_path / "log.mcap", content(kind)
-    source = McapFile(path, idle_s=None)
+    source = McapSource(path, idle_s=None)
     assert source.read(0.0) == []  # it is awaited
     found: list[int] = []
     for start in range(0, len(whole), 997):
@@ -101,7 +101,7 @@ def test_a_writer_that_dies_within_a_chunk(tmp_path: Path) -> None:
     whole = content("zstd")
     path = tmp_path / "log.mcap"
     path.write_bytes(whole[: len(whole) // 3])
-    source = McapFile(path, idle_s=0.2)
+    source = McapSource(path, idle_s=0.2)
     begun = time.monotonic()
     frames = drained(source)
     assert time.monotonic() - begun >= 0.2
@@ -124,18 +124,18 @@ def test_a_writer_in_a_thread(tmp_path: Path) -> None:
 
     thread = threading.Thread(target=write)
     thread.start()
-    assert times(drained(McapFile(path, idle_s=5.0))) == [k * STEP_NS for k in range(N)]
+    assert times(drained(McapSource(path, idle_s=5.0))) == [k * STEP_NS for k in range(N)]
     thread.join()
 
 
 def test_a_file_that_never_comes_is_waited_for(tmp_path: Path) -> None:
-    assert drained(McapFile(tmp_path / "log.mcap", idle_s=0.1)) == []
+    assert drained(McapSource(tmp_path / "log.mcap", idle_s=0.1)) == []
 
 
 def test_a_truncated_file(tmp_path: Path) -> None:
     path = tmp_path / "log.mcap"
     path.write_bytes(content("zstd")[:-100])
-    source = McapFile(path, idle_s=None)
+    source = McapSource(path, idle_s=None)
     source.read(0.0)
     os.truncate(path, 1000)
     with pytest.raises(TraceError, match="truncated to 1000 of"):
@@ -147,7 +147,7 @@ def test_a_truncated_file(tmp_path: Path) -> None:
 def test_a_replaced_file(tmp_path: Path, again: bool, what: str) -> None:
     path = tmp_path / "log.mcap"
     path.write_bytes(content("zstd")[:-100])
-    source = McapFile(path, idle_s=None)
+    source = McapSource(path, idle_s=None)
     source.read(0.0)
     path.rename(tmp_path / "old.mcap")
     if again:
@@ -160,7 +160,7 @@ def test_a_replaced_file(tmp_path: Path, again: bool, what: str) -> None:
 def test_no_mcap(tmp_path: Path) -> None:
     path = tmp_path / "log.mcap"
     path.write_bytes(b"PK\x03\x04 and so on")
-    source = McapFile(path, idle_s=None)
+    source = McapSource(path, idle_s=None)
     with pytest.raises(TraceError, match="not an MCAP file: it begins with"):
         source.read(0.0)
     source.close()
@@ -172,7 +172,7 @@ def test_a_damaged_chunk_is_lost_in_the_window_too(tmp_path: Path) -> None:
     whole[place + 1] ^= 0x40
     path = tmp_path / "log.mcap"
     path.write_bytes(whole)
-    source = McapFile(path, idle_s=0.0)
+    source = McapSource(path, idle_s=0.0)
     frames = drained(source)
     assert [note for note in source.notes() if "wrong CRC" in note]
     assert not source.notes()
@@ -188,7 +188,7 @@ def test_what_is_no_record_ends_it(tmp_path: Path) -> None:
     whole = content("loose")
     path = tmp_path / "log.mcap"
     path.write_bytes(whole[: len(whole) // 2] + bytes(4000))
-    source = McapFile(path, idle_s=None)
+    source = McapSource(path, idle_s=None)
     assert drained(source)
     assert [note for note in source.notes() if "nothing after it is watched" in note]
 

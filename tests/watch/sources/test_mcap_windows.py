@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 import pytest
 from mcap.writer import CompressionType, Writer
 
-from drivelint.watch.sources.mcap_file import McapFile
+from drivelint.watch.sources.mcap_file import McapSource
 from drivelint.watch.sources.mcap_memory import MOST_FIRST_MESSAGES
 from tests.formats.foxglove import foxglove_log as scenes
 from tests.formats.logs import at, read
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from drivelint.watch.source import Frame
-    from drivelint.watch.sources.mcap_stream import Message, NumberedMessage
+    from drivelint.watch.sources.mcap_stream import MessageRecord, NumberedMessage
 
 EDGE_NS = 60_000_000
 """A little more than a step of the small logs."""
@@ -34,12 +34,12 @@ REFERENCES = ("MovingHostWithStopLineVariations", "osi_centerline_example", "sen
 @pytest.mark.parametrize("name", ["safe", "signal-late", "tunnel"])
 def test_fixtures(tmp_path: Path, name: str) -> None:
     path = ROOT / "fixtures" / "scenes" / f"{name}.mcap"
-    assert_windows_are_spans(McapFile(path, idle_s=0.0), tmp_path)
+    assert_windows_are_spans(McapSource(path, idle_s=0.0), tmp_path)
 
 
 @pytest.mark.parametrize("name", REFERENCES)
 def test_reference_logs(tmp_path: Path, name: str) -> None:
-    assert_windows_are_spans(McapFile(shared(f"osi/{name}.mcap"), idle_s=0.0), tmp_path)
+    assert_windows_are_spans(McapSource(shared(f"osi/{name}.mcap"), idle_s=0.0), tmp_path)
 
 
 def test_sensor_views_whose_lanes_stand_in_the_first(tmp_path: Path) -> None:
@@ -61,7 +61,7 @@ def test_sensor_views_whose_lanes_stand_in_the_first(tmp_path: Path) -> None:
         for k, frame in enumerate(frames):
             writer.add_message(channel, k * 50_000_000, frame.SerializeToString(), k * 50_000_000)
         writer.finish()  # type: ignore[no-untyped-call]
-    assert_windows_are_spans(McapFile(path, idle_s=0.0), tmp_path)
+    assert_windows_are_spans(McapSource(path, idle_s=0.0), tmp_path)
     assert read(path).embedded_map is not None
     assert read(path).geo_reference == "+proj=utm +zone=32"
 
@@ -87,7 +87,7 @@ def scene_messages() -> list[scenes.Message]:
 @pytest.mark.parametrize("encoding", ["protobuf", "json"])
 def test_scene(tmp_path: Path, encoding: str) -> None:
     path = scenes.write(tmp_path / "log.mcap", scene_messages(), encoding)
-    source = McapFile(path, idle_s=0.0)
+    source = McapSource(path, idle_s=0.0)
     frames = drained(source)
     for start in (5, 8, 25, 50):
         window = assert_window_is_span(source, frames, tmp_path, slice(start, start + 20), EDGE_NS, ego="ego")
@@ -97,7 +97,7 @@ def test_scene(tmp_path: Path, encoding: str) -> None:
 def test_scene_that_deletes_all(tmp_path: Path) -> None:
     messages = scene_messages()
     messages.insert(40, scenes.scene(1.9, gone=(scenes.deletion(1.9),)))
-    source = McapFile(scenes.write(tmp_path / "log.mcap", messages), idle_s=0.0)
+    source = McapSource(scenes.write(tmp_path / "log.mcap", messages), idle_s=0.0)
     frames = drained(source)
     window = assert_window_is_span(source, frames, tmp_path, slice(50, 70), EDGE_NS, ego="ego")
     there = [row["actor_id"] for row in window.tables["actor_state"].to_pylist() if row["t_ns"] >= frames[50].t_ns]
@@ -123,7 +123,7 @@ def ros_messages() -> list[ros.Message]:
 
 
 def test_ros(tmp_path: Path) -> None:
-    source = McapFile(ros.write(tmp_path / "log.mcap", ros_messages()), idle_s=0.0)
+    source = McapSource(ros.write(tmp_path / "log.mcap", ros_messages()), idle_s=0.0)
     frames = drained(source)
     whole = read(source.recording)
     assert whole.embedded_map is not None
@@ -140,11 +140,11 @@ def test_a_report_that_was_sent_often_is_carried_in_part(tmp_path: Path) -> None
         *ego(n=600, dt=0.01),
         *(ros.report("Engage", t_s, engage=k > 300) for k, t_s in enumerate(ticks(450, 0.01))),
     ]
-    source = McapFile(ros.write(tmp_path / "log.mcap", sorted(messages, key=lambda m: m[2])), idle_s=0.0)
+    source = McapSource(ros.write(tmp_path / "log.mcap", sorted(messages, key=lambda m: m[2])), idle_s=0.0)
     frames = drained(source)
     path = tmp_path / "window.mcap"
     source.write_window(frames[-100:], path)
-    carried = drained(McapFile(path, idle_s=0.0))
+    carried = drained(McapSource(path, idle_s=0.0))
     assert len(carried) < 100 + 200 + 210
     assert [row["value"] for row in read(path).tables["declared_event"].to_pylist()][-1] == "on"
 
@@ -167,7 +167,7 @@ def test_autoware(tmp_path: Path) -> None:
             autoware.lights(t_s, shown),
         ]
     path = autoware.write(tmp_path / "log.mcap", sorted(found, key=lambda message: message[2]))
-    source = McapFile(path, idle_s=0.0)
+    source = McapSource(path, idle_s=0.0)
     frames = drained(source)
     for start in (0, 100, 180):
         begin = len(frames) - 3 * 80 + start
@@ -178,15 +178,15 @@ def test_autoware(tmp_path: Path) -> None:
     assert {row["signal_id"] for row in late} == {"7"}
 
 
-def messages(frames: list[Frame]) -> list[Message]:
+def messages(frames: list[Frame]) -> list[MessageRecord]:
     return [cast("NumberedMessage", frame.data).message for frame in frames]
 
 
 def test_log_times_and_bytes_are_those_of_the_recording(tmp_path: Path) -> None:
-    source = McapFile(ROOT / "fixtures" / "scenes" / "safe.mcap", idle_s=0.0)
+    source = McapSource(ROOT / "fixtures" / "scenes" / "safe.mcap", idle_s=0.0)
     frames = drained(source)
     source.write_window(frames[40:80], tmp_path / "window.mcap")
-    again = drained(McapFile(tmp_path / "window.mcap", idle_s=0.0))
+    again = drained(McapSource(tmp_path / "window.mcap", idle_s=0.0))
     assert messages(again) == messages(frames[40:80])
     assert times(again) == times(frames[40:80])
 
@@ -204,5 +204,5 @@ def test_what_nobody_reads_is_no_frame(tmp_path: Path) -> None:
         channel = writer.register_channel("/camera", "json", schema)
         writer.add_message(channel, 1, b"{}", 1)
         writer.finish()  # type: ignore[no-untyped-call]
-    assert drained(McapFile(tmp_path / "camera.mcap", idle_s=0.0)) == []
-    assert len(drained(McapFile(path, idle_s=0.0))) == 5
+    assert drained(McapSource(tmp_path / "camera.mcap", idle_s=0.0)) == []
+    assert len(drained(McapSource(path, idle_s=0.0))) == 5

@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 import drivelint
 from drivelint.errors import TraceError
 from drivelint.watch.sources import open_source
-from drivelint.watch.sources.osi import with_length
-from drivelint.watch.sources.osi_datagrams import HEADER, Assembler, Datagram
+from drivelint.watch.sources.osi import with_length_prefix
+from drivelint.watch.sources.osi_datagrams import DATAGRAM_HEADER, Datagram, MessageAssembler
 from tests.faults import drives
 from tests.formats.logs import read, states
 from tests.watch.sources.windows import times
@@ -39,7 +39,7 @@ def split(message: bytes, n: int = PARTS) -> list[bytes]:
     most = -(-len(message) // n)
     parts = [message[at : at + most] for at in range(0, len(message), most)]
     counters = [*range(1, len(parts)), -len(parts)]
-    return [HEADER.pack(counter, len(part)) + part for counter, part in zip(counters, parts, strict=True)]
+    return [DATAGRAM_HEADER.pack(counter, len(part)) + part for counter, part in zip(counters, parts, strict=True)]
 
 
 def sent(messages: Iterable[bytes], n: int = PARTS) -> list[Datagram]:
@@ -51,9 +51,9 @@ def sent(messages: Iterable[bytes], n: int = PARTS) -> list[Datagram]:
     ]
 
 
-def assembled(datagrams: Iterable[Datagram]) -> tuple[list[bytes], Assembler]:
-    assembler = Assembler("udp://:1")
-    found = [message for each in datagrams if (message := assembler.take(each)) is not None]
+def assembled(datagrams: Iterable[Datagram]) -> tuple[list[bytes], MessageAssembler]:
+    assembler = MessageAssembler("udp://:1")
+    found = [message for each in datagrams if (message := assembler.add_datagram(each)) is not None]
     return found, assembler
 
 
@@ -151,7 +151,8 @@ def test_another_sender_is_another_drive() -> None:
 
 
 @pytest.mark.parametrize(
-    "data", [b"", b"GET / HTTP/1.0", HEADER.pack(-1, 3) + b"\xff\xff\xff", HEADER.pack(-1, 9) + b"abc"]
+    "data",
+    [b"", b"GET / HTTP/1.0", DATAGRAM_HEADER.pack(-1, 3) + b"\xff\xff\xff", DATAGRAM_HEADER.pack(-1, 9) + b"abc"],
 )
 def test_what_is_no_osi_is_left_out(data: bytes) -> None:
     found, assembler = assembled([Datagram(data, "esmini"), *sent(MESSAGES)])
@@ -161,7 +162,7 @@ def test_what_is_no_osi_is_left_out(data: bytes) -> None:
 
 def test_an_old_esmini_is_refused() -> None:
     with pytest.raises(TraceError, match="counted from 0"):
-        assembled([Datagram(HEADER.pack(0, 4) + b"\x0a\x00\x0a\x00", "esmini")])
+        assembled([Datagram(DATAGRAM_HEADER.pack(0, 4) + b"\x0a\x00\x0a\x00", "esmini")])
 
 
 def free_port() -> int:
@@ -195,7 +196,7 @@ def received(folder: Path, datagrams: Sequence[bytes]) -> tuple[list[int], list[
 def test_a_socket(tmp_path: Path) -> None:
     found, notes, recording = received(tmp_path, [part for message in MESSAGES for part in split(message)])
     assert (found, notes) == (TIMES, [])
-    assert recording.read_bytes() == b"".join(map(with_length, MESSAGES))
+    assert recording.read_bytes() == b"".join(map(with_length_prefix, MESSAGES))
 
 
 def test_lost_frames_become_unknown_and_never_pass(tmp_path: Path) -> None:
@@ -209,7 +210,7 @@ def test_lost_frames_become_unknown_and_never_pass(tmp_path: Path) -> None:
     assert "datagrams missing or out of order in 1 place" in notes[-1]
     assert {row["t_ns"] for row in states(read(recording))} == set(found)
     whole = tmp_path / "whole.osi"
-    whole.write_bytes(b"".join(map(with_length, MESSAGES)))
+    whole.write_bytes(b"".join(map(with_length_prefix, MESSAGES)))
     rows = drivelint.check([recording, whole], rules="ukhc.no-collision", annotate=False).verdicts.arrow().to_pylist()
     assert {row["verdict"] for row in rows if row["drive_id"].startswith("whole")} == {"pass"}
     rows = [row for row in rows if row["drive_id"].startswith("recording")]

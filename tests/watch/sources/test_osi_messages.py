@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from drivelint.formats.osi.schema import GROUND_TRUTH, SENSOR_VIEW, message_class
 from drivelint.formats.protobuf.scan import fields
-from drivelint.watch.sources.osi_messages import is_whole, message_kind, message_time
+from drivelint.watch.sources.osi_messages import is_complete_message, message_kind, message_time_ns
 from tests.formats.osi import osi_file
 
 SECONDS = st.integers(-(2**63), 2**63 - 1)
@@ -20,7 +20,7 @@ NANOS = st.integers(0, 2**32 - 1)
 def test_times(seconds: int, nanos: int) -> None:
     frame = osi_file.truth(0)
     frame.timestamp.seconds, frame.timestamp.nanos = seconds, nanos
-    assert message_time(frame.SerializeToString(), GROUND_TRUTH) == seconds * 10**9 + nanos
+    assert message_time_ns(frame.SerializeToString(), GROUND_TRUTH) == seconds * 10**9 + nanos
 
 
 @given(st.booleans(), st.booleans())
@@ -33,7 +33,7 @@ def test_times_of_views(inner: bool, outer: bool) -> None:
     if not outer:
         view.ClearField("timestamp")
     expected = 3_000_000_000 if inner else 5_000_000_000 if outer else None
-    assert message_time(view.SerializeToString(), SENSOR_VIEW) == expected
+    assert message_time_ns(view.SerializeToString(), SENSOR_VIEW) == expected
 
 
 def test_kinds() -> None:
@@ -58,7 +58,7 @@ def test_any_bytes(data: bytes) -> None:
     except ValueError as error:
         assert "of kind" in str(error)  # noqa: PT017 (most examples raise nothing)
         return
-    assert is_whole(data) == (2 in found)
+    assert is_complete_message(data) == (2 in found)
     assert not decoded.HasField("timestamp") or 2 in found
 
 
@@ -66,4 +66,4 @@ def test_any_bytes(data: bytes) -> None:
 def test_a_cut_message_is_not_whole_unless_it_ends_with_a_field(cut: int) -> None:
     data = osi_file.truth(10**9).SerializeToString()
     ends = {field.end for field in fields(data)}
-    assert is_whole(data[:-cut]) == (len(data) - cut in ends)
+    assert is_complete_message(data[:-cut]) == (len(data) - cut in ends)

@@ -20,7 +20,7 @@ from drivelint.errors import TraceError, UsageError
 from drivelint.watch.sources import open_source, osi
 from drivelint.watch.sources.background import BackgroundReader
 from drivelint.watch.sources.osi_messages import MessageCutter
-from drivelint.watch.sources.transports import from_descriptor
+from drivelint.watch.sources.transports import blocks_of_descriptor
 from tests.formats.logs import read, states
 from tests.formats.osi import osi_file
 from tests.shared_data import ROOT, shared
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 N: Final = 20
 MESSAGES: Final = [frame.SerializeToString() for frame in osi_file.drive(N)]
-WHOLE: Final = b"".join(map(osi.with_length, MESSAGES))
+WHOLE: Final = b"".join(map(osi.with_length_prefix, MESSAGES))
 TIMES: Final = [k * 50_000_000 for k in range(N)]
 
 
@@ -237,7 +237,7 @@ def test_a_pipe(tmp_path: Path) -> None:
     os.write(writing, WHOLE[:5000])
     recording = (tmp_path / "recording.osi").open("wb")
     source = osi.OsiSource(
-        tmp_path / "recording.osi", osi.StreamReceiver("a pipe", from_descriptor(reading, None), recording, [])
+        tmp_path / "recording.osi", osi.StreamReceiver("a pipe", blocks_of_descriptor(reading, None), recording, [])
     )
     first = source.read(5.0)
     assert first
@@ -336,7 +336,7 @@ def test_a_source_that_is_closed_twice(tmp_path: Path) -> None:
     ]
     for source in sources:
         assert source.read(0.0) == []
-        assert not source.in_step
+        assert not source.is_advanced_by_reads
         source.halt()
         source.close()
         source.close()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING, Any
 
-from drivelint.watch.source import WrittenWindows
+from drivelint.watch.source import WindowFileSource
 from tests.formats.logs import read
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ def assert_window_is_span(
     differ, where velocities are derived from the states on both sides, or poses need the transforms on both sides.
     """
     path = folder / f"window-{span.start}{source.recording.suffix}"
-    assert isinstance(source, WrittenWindows)
+    assert isinstance(source, WindowFileSource)
     source.write_window(frames[span], path)
     window, whole = read(path, **options), read(source.recording, **options)
     begin = min(row["t_ns"] for row in whole.tables["actor_state"].to_pylist())

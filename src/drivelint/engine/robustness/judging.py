@@ -147,7 +147,7 @@ class Robustness:
     def _try(self, chunk: Sequence[Window]) -> None:
         """Judge windows together; if that fails, judge them one by one, so that only the faulty window gets no result."""
         try:
-            with store.telling_short_memory():
+            with store.uniform_memory_errors():
                 found = self._stays(chunk)
         except (DriveLintError, duckdb.Error, MemoryError, pa.ArrowException) as error:
             if len(chunk) > 1:

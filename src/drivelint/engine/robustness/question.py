@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from drivelint.engine.robustness.window import span
-from drivelint.sql.derivations import with_sources
+from drivelint.sql.derivations import tables_with_sources
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
@@ -58,7 +58,7 @@ class Question:
     @cached_property
     def of_overtake(self) -> bool:
         """Whether the finding's rule is about overtakes."""
-        return "overtake" in with_sources(self.rule.reads)
+        return "overtake" in tables_with_sources(self.rule.reads)
 
     @property
     def is_near(self) -> bool:

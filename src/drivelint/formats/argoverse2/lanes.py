@@ -92,7 +92,15 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     furniture = {"traffic_signal": [], "stop_line": [], "crossing": crossings(walks, lanes, request.offset, quality)}
     geo = frame_by_file_name(source.name)
     return map_from_bounds(
-        source, request, lanes, furniture, quality, kind="argoverse2", side=side, geo=geo, nation=NATION
+        source,
+        request,
+        lanes,
+        furniture,
+        quality,
+        map_format="argoverse2",
+        side_and_source=side,
+        geo=geo,
+        nation=NATION,
     )
 
 

@@ -104,7 +104,15 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     }
     geo = _geo_frame(root, quality)
     return map_from_bounds(
-        source, request, lanes, furniture, quality, kind="commonroad", side=side, geo=geo, nation=nation
+        source,
+        request,
+        lanes,
+        furniture,
+        quality,
+        map_format="commonroad",
+        side_and_source=side,
+        geo=geo,
+        nation=nation,
     )
 
 
@@ -124,7 +132,7 @@ def _geo_frame(root: etree._Element, quality: MapQuality) -> GeoFrame | None:
     )
     if not (math.isfinite(x) and math.isfinite(y)) or (turn, scale) != (0.0, 1.0):
         why = "of additionalTransformation, only xTranslation and yTranslation are understood, with zRotation 0 and scaling 1"
-        quality.geo_unusable(reference, why)
+        quality.add_unusable_geo_reference(reference, why)
         return None
     return GeoFrame(reference, x, y)
 

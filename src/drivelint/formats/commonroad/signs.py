@@ -18,7 +18,7 @@ import shapely
 from drivelint.formats import safe_xml
 from drivelint.road.boundary_lanes import signal_row
 from drivelint.road.lane_geometry import FARTHEST_M
-from drivelint.road.signcodes import kind_of, turns_of_direction
+from drivelint.road.signcodes import signal_kind, turns_of_light_direction
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -137,7 +137,7 @@ def read_signs(root: etree._Element, country: str, quality: MapQuality) -> MapSi
         for part in sign.findall("trafficSignElement"):
             code = (part.findtext("trafficSignID") or "").strip()
             values = [_finite_number(v.text) for v in part.findall("additionalValue")]
-            kind = kind_of(signs.codes, code, "") or kind_of("de", code, "")
+            kind = signal_kind(signs.codes, code, "") or signal_kind("de", code, "")
             on_post.append(SignElement(code, kind, next((v for v in values if v is not None), None)))
         signs.elements[sign.get("id", "")] = on_post
     return signs
@@ -188,7 +188,7 @@ def signal_rows(
         elements = [SignElement(_LIGHT_CODE, "traffic_light", None)] if light else signs.elements[name]
         place = points(element.find("position"))
         stands = place[0] + offset if len(place) else None
-        turns = turns_of_direction((element.findtext("direction") or "").strip()) if light else None
+        turns = turns_of_light_direction((element.findtext("direction") or "").strip()) if light else None
         for lane, line_s_m in holds.get(name, ()):
             for part in elements:
                 s = _signal_station(lane, part.kind, stands, line_s_m)

@@ -76,7 +76,14 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     }
     report_missing_content(layers, about, quality)
     return map_from_bounds(
-        source, request, built, furniture, quality, kind="123d", side=side, nation=about.nation_of(layers.info.location)
+        source,
+        request,
+        built,
+        furniture,
+        quality,
+        map_format="123d",
+        side_and_source=side,
+        nation=about.nation_of(layers.info.location),
     )
 
 

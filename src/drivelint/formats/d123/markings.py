@@ -10,7 +10,7 @@ import shapely
 from drivelint.formats.d123 import facts
 from drivelint.road.boundary_lanes import Mark, both_marks
 from drivelint.road.lane_geometry import resampled, stations
-from drivelint.road.tree_parts import all_in_parts
+from drivelint.road.tree_parts import all_pairs
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -103,7 +103,7 @@ def _marking_codes_of_pieces(points: Floats, starts: Indices, tree: shapely.STRt
     `starts`: the index of the first point of each bound, and the number of all points.
     """
     n = len(codes)
-    at, line = all_in_parts(tree, shapely.points(points), "dwithin", _MAX_DISTANCE_M)
+    at, line = all_pairs(tree, shapely.points(points), "dwithin", _MAX_DISTANCE_M)
     keys = np.sort(at.astype(np.int64) * n + line)
     within = np.arange(len(points)) - np.repeat(starts[:-1], np.diff(starts))
     middles = np.flatnonzero(within % 2 == 1)

@@ -11,7 +11,7 @@ import shapely
 
 from drivelint.formats.lanelet2.file import attribute, line_points
 from drivelint.road.boundary_lanes import BoundedLane, crossings, signal_row
-from drivelint.road.signcodes import kind_of
+from drivelint.road.signcodes import signal_kind
 from drivelint.road.tables import Rows, stop_line_row
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ def _signal_kinds(element: Any, lanelet: Any) -> list[str]:
 def _sign_kind(word: str) -> str | None:
     """Return the kind of a sign by its subtype: a national code, as de206, or a word, as stop_sign (Autoware)."""
     code = _NATIONAL_SIGN_CODE.fullmatch(word.lower())
-    return kind_of(code[1], code[2], "") if code else kind_of("", "", word)
+    return signal_kind(code[1], code[2], "") if code else signal_kind("", "", word)
 
 
 def _parameter_members(element: Any, role: str) -> Any:

@@ -12,7 +12,7 @@ from drivelint.formats.lanelet2.furniture import furniture_rows
 from drivelint.formats.lanelet2.traffic_rules import TrafficRules, limit_text
 from drivelint.road.boundary_lanes import BoundedLane, both_marks, build_lanes, map_from_bounds, side_driven_on
 from drivelint.road.driving_side import choose_side
-from drivelint.road.geo_reference import tangent_plane
+from drivelint.road.geo_reference import tangent_plane_frame
 from drivelint.road.overlapping_lanes import mark_junctions
 from drivelint.road.quality import MapQuality
 
@@ -47,8 +47,10 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     said = by_region.pop() if len(by_region) == 1 else None
     side = choose_side([("option", request.side), ("lanes", side_driven_on(lanes)), ("attribute", said)], quality)
     beside = furniture_rows(layers, lanes, request.offset, quality)
-    geo = None if request.origin is None or local else tangent_plane(*request.origin)
-    return map_from_bounds(source, request, lanes, beside, quality, kind="lanelet2", side=side, geo=geo)
+    geo = None if request.origin is None or local else tangent_plane_frame(*request.origin)
+    return map_from_bounds(
+        source, request, lanes, beside, quality, map_format="lanelet2", side_and_source=side, geo=geo
+    )
 
 
 BoundKey = tuple[int, bool]

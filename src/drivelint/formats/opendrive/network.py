@@ -180,7 +180,7 @@ def _geo_frame(root: etree._Element, quality: MapQuality) -> GeoFrame | None:
     try:
         return GeoFrame(reference, *(number_attribute(offset, name, 0.0) for name in ("x", "y", "z", "hdg")))
     except MalformedError as error:
-        quality.geo_unusable(reference, error)
+        quality.add_unusable_geo_reference(reference, error)
         return None
 
 
@@ -231,7 +231,7 @@ def _lane_sections(element: etree._Element, length: float, quality: MapQuality) 
     ends = {side: _section_ends([s for _, s in sections], side, length) for side in ("left", "right")}
     for index, section in sections:
         if _has_numbers_of_other_side(section):
-            quality.side_by_number()
+            quality.count_side_by_number()
         sides = [side for side in ("left", "right") if section in ends[side]]
         start = number_attribute(section, "s")
         marks = tuple(m for centre in section.findall("center/lane") for m in _road_marks(centre, start, quality))

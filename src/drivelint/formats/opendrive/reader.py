@@ -14,7 +14,7 @@ from drivelint.formats.opendrive.lanes import build_lanelets
 from drivelint.formats.opendrive.links import lanelet_links
 from drivelint.formats.opendrive.network import road_network
 from drivelint.formats.opendrive.signlimits import speed_limit_rows
-from drivelint.road.boundary_lanes import lane_points
+from drivelint.road.boundary_lanes import lane_point_columns
 from drivelint.road.driving_side import opposite_side, side_driven_on
 from drivelint.road.quality import MapQuality
 from drivelint.road.tables import map_tables
@@ -46,8 +46,10 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     limits = speed_limit_rows(built, lane_links, beside["traffic_signal"], recorded, quality)
     content: dict[str, Rows | dict[str, Any]] = {
         "lanelet": [_lanelet_row(lane) for lane in built],
-        "lane_point": lane_points(built),
-        "lane_link": [{"from_id": a.lanelet_id, "to_id": b.lanelet_id, "turn_rad": b.line.turn} for a, b in lane_links],
+        "lane_point": lane_point_columns(built),
+        "lane_link": [
+            {"from_id": a.lanelet_id, "to_id": b.lanelet_id, "turn_rad": b.line.turn_rad} for a, b in lane_links
+        ],
         "lane_boundary": [row for lane in built for row in boundary_rows(lane)],
         "speed_limit": sorted(limits, key=lambda row: places[row["lanelet_id"]]),
         **beside,
@@ -57,8 +59,8 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
         request,
         content,
         quality,
-        kind="opendrive",
-        side=side,
+        map_format="opendrive",
+        side_and_source=side,
         geo=net.geo,
         lanes_reversed=turned,
         nation=net.nation,
@@ -73,7 +75,7 @@ def _direction_and_lanes(net: Network, request: MapOptions, quality: MapQuality)
     lanes = build_lanelets(net, first, request.offset, quality)
     side = side_driven_on(
         [
-            lane.line.driving_side_points(lane.z)
+            lane.line.points_with_half_widths(lane.z)
             for lane in sorted(lanes.built.values(), key=lambda lane: lane.key)
             if lane.drivable and not lane.bidirectional and lane.road.junction_id is None
         ]

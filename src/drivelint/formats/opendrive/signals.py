@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from drivelint.formats.opendrive.xml import MalformedError, integer_attribute, number_attribute
-from drivelint.road.signcodes import kind_of, turns_of
+from drivelint.road.signcodes import signal_kind, turns_of_light_code
 from drivelint.road.tables import Rows, stop_line_row
 
 if TYPE_CHECKING:
@@ -80,8 +80,10 @@ class _SignalReader:
             self.quality.add("signal_off_road", "warning", road.road_id, message)
         lanes = [lane for lane in self.lanes.get(road.road_id, []) if _contains_station(lane, s)]
         x, y = _position(home, signal, self.offset)
-        kind = kind_of(signal.get("country", ""), signal.get("type", ""), signal.get("name", ""))
-        turns = turns_of(signal.get("type", ""), signal.get("subtype", "")) if kind == "traffic_light" else None
+        kind = signal_kind(signal.get("country", ""), signal.get("type", ""), signal.get("name", ""))
+        turns = (
+            turns_of_light_code(signal.get("type", ""), signal.get("subtype", "")) if kind == "traffic_light" else None
+        )
         value = 0.0 if signal.get("value") in {None, "", "None"} else number_attribute(signal, "value")
         signal_columns = {
             "signal_id": listing.get("id", ""), "kind": kind, "country": (signal.get("country") or "").lower() or None,

@@ -11,7 +11,7 @@ import shapely
 from drivelint.formats.osi import map_kinds as kinds
 from drivelint.formats.osi.schema import LIGHT_REFERENCE, OPEN_DRIVE_REFERENCE
 from drivelint.road.boundary_lanes import signal_row
-from drivelint.road.signcodes import kind_of
+from drivelint.road.signcodes import signal_kind
 from drivelint.road.tables import crossing_row, stop_line_row
 
 if TYPE_CHECKING:
@@ -137,7 +137,7 @@ def rotation_matrix(base: Any) -> Floats:
 
 def _kind_of_country_code(classification: Any) -> str | None:
     return (
-        kind_of(classification.country, classification.code, "")
+        signal_kind(classification.country, classification.code, "")
         if classification.country and classification.code
         else None
     )

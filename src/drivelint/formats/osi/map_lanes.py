@@ -69,7 +69,7 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     said = ("option", request.side) if request.side else ("lanes", side_driven_on(lanes))
     side = choose_side([said], quality, "the lanes")
     beside = osi_furniture.read(truth, lanes, covers, request.offset, quality)
-    return map_from_bounds(source, request, lanes, beside, quality, kind="osi", side=side)
+    return map_from_bounds(source, request, lanes, beside, quality, map_format="osi", side_and_source=side)
 
 
 def _logical_by_physical(

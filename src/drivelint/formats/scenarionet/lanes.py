@@ -66,7 +66,9 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
     side = choose_side([("option", request.side), ("attribute", said), ("lanes", side_driven_on(lanes))], quality)
     beside = furniture_rows(scenario, lanes, request.offset, quality)
     nation = scenario.dataset.nation_of(scenario.place_name)
-    return map_from_bounds(source, request, lanes, beside, quality, kind="scenarionet", side=side, nation=nation)
+    return map_from_bounds(
+        source, request, lanes, beside, quality, map_format="scenarionet", side_and_source=side, nation=nation
+    )
 
 
 def _stations_on(lane: CentreLine, places: Floats) -> Floats:

@@ -102,7 +102,9 @@ def read(source: MapSource, request: MapOptions) -> MapTables:
         "crossing": crossings(net.crossings, lanes, request.offset, quality),
     }
     geo = _geo_frame(root, quality)
-    tables = map_from_bounds(source, request, lanes, furniture, quality, kind="sumo", side=side, geo=geo)
+    tables = map_from_bounds(
+        source, request, lanes, furniture, quality, map_format="sumo", side_and_source=side, geo=geo
+    )
     # the net states the direction of its lanes, whichever side is driven on: traffic against them is detected
     return replace(tables, lanes_source="attribute") if imported else tables
 
@@ -114,7 +116,7 @@ def _geo_frame(root: etree._Element, quality: MapQuality) -> GeoFrame | None:
     """
     location = location_of(root.find("location"))
     if location.reference != NO_PROJECTION and location.offset is None:
-        quality.geo_unusable(location.reference, f"its netOffset is {location.offset_text!r}")
+        quality.add_unusable_geo_reference(location.reference, f"its netOffset is {location.offset_text!r}")
     return location.geo_frame()
 
 

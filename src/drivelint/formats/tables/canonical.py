@@ -31,7 +31,7 @@ from drivelint.formats.folders import is_canonical_folder
 from drivelint.formats.osi.metadata import parse_conditions, validated_findings
 from drivelint.formats.tables import parquet
 from drivelint.sql.store import arrow_schemas
-from drivelint.sql.words import nearest
+from drivelint.sql.words import nearest_word_hint
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -219,7 +219,7 @@ def _word_codes(path: Path, column: pa.Array, name: str) -> Codes:
 
     def code_of(word: str) -> int:
         if word.casefold() not in words:
-            raise TraceError(f"{path}: {name} is {word!r}; {nearest(word, words)} (NULL: unknown)")
+            raise TraceError(f"{path}: {name} is {word!r}; {nearest_word_hint(word, words)} (NULL: unknown)")
         return words.index(word.casefold())
 
     return codes_of_texts(column, code_of)

@@ -20,7 +20,7 @@ from drivelint.drive.trace import ACTOR_CLASSES, BRAKE_LIGHTS, INDICATORS
 from drivelint.errors import UsageError
 from drivelint.formats.search import is_pipe_or_device
 from drivelint.phrases import hint
-from drivelint.sql.words import nearest
+from drivelint.sql.words import nearest_word_hint
 from drivelint.toml_text import parse_toml
 
 if TYPE_CHECKING:
@@ -312,7 +312,9 @@ def _contradictions(mapping: Mapping, names: AbstractSet[str]) -> list[tuple[boo
 def _validate_words(path: Path, name: str, spec: WordMapping, words: tuple[str, ...]) -> None:
     for word in (*spec.values.values(), *(p.word for p in spec.patterns), spec.default):
         if word is not None and word not in words:
-            raise UsageError(f"mapping {path}: {name}: {word!r} is not one of its words: {nearest(word, words)}")
+            raise UsageError(
+                f"mapping {path}: {name}: {word!r} is not one of its words: {nearest_word_hint(word, words)}"
+            )
     for pattern in spec.patterns:
         try:
             re.compile(pattern.match)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from drivelint.watch.source import Source
 
-UDP_PORT: Final = 48198
+DEFAULT_UDP_PORT: Final = 48198
 """The port to which esmini sends OSI messages."""
 
 
@@ -27,7 +27,7 @@ class SourceOptions(NamedTuple):
     every_s: float
 
 
-class Opener(NamedTuple):
+class SourceOpener(NamedTuple):
     """A kind of source: the pattern of its names in lower case, their description for users, and the function that opens a source."""
 
     pattern: str
@@ -53,53 +53,53 @@ def open_source(name: str, folder: Path, *, idle_s: float | None, every_s: float
     raise UsageError(f"{name}: no source of this kind is known: use {known}")
 
 
-def _mcap(name: str, options: SourceOptions) -> Source:
-    from drivelint.watch.sources.mcap_file import McapFile
+def _open_mcap(name: str, options: SourceOptions) -> Source:
+    from drivelint.watch.sources.mcap_file import McapSource
 
-    return McapFile(Path(name), idle_s=options.idle_s)
+    return McapSource(Path(name), idle_s=options.idle_s)
 
 
-def _osi_file(name: str, options: SourceOptions) -> Source:
+def _open_osi_file(name: str, options: SourceOptions) -> Source:
     from drivelint.watch.sources import osi
 
     return osi.open_file(Path(name), idle_s=options.idle_s)
 
 
-def _standard_input(_: str, options: SourceOptions) -> Source:
+def _open_standard_input(_: str, options: SourceOptions) -> Source:
     from drivelint.watch.sources import osi
 
     return osi.open_standard_input(options.folder, idle_s=options.idle_s)
 
 
-def _tcp(name: str, options: SourceOptions) -> Source:
+def _open_tcp(name: str, options: SourceOptions) -> Source:
     from drivelint.watch.sources import osi
 
-    host, port = _address(name, None)
+    host, port = _host_and_port(name, None)
     if not host or name.lower().startswith("tcp-listen://"):
         return osi.open_tcp_server(host or LOOPBACK, port, options.folder, idle_s=options.idle_s)
     return osi.open_tcp(host, port, options.folder, idle_s=options.idle_s)
 
 
-def _udp(name: str, options: SourceOptions) -> Source:
+def _open_udp(name: str, options: SourceOptions) -> Source:
     from drivelint.watch.sources import osi
 
-    host, port = _address(name, UDP_PORT)
+    host, port = _host_and_port(name, DEFAULT_UDP_PORT)
     return osi.open_udp(host or LOOPBACK, port, options.folder, idle_s=options.idle_s)
 
 
-def _foxglove(name: str, options: SourceOptions) -> Source:
+def _open_foxglove(name: str, options: SourceOptions) -> Source:
     from drivelint.watch.sources import foxglove_ws
 
     return foxglove_ws.open(name, options.folder, idle_s=options.idle_s)
 
 
-def _sumo(name: str, options: SourceOptions) -> Source:
+def _open_sumo(name: str, options: SourceOptions) -> Source:
     from drivelint.watch.sources import sumo
 
     return sumo.open(name, options.folder, span_s=options.every_s)
 
 
-def _address(name: str, usual_port: int | None) -> tuple[str, int]:
+def _host_and_port(name: str, usual_port: int | None) -> tuple[str, int]:
     """Return the host ("" if the name has none) and the port. Errors: `UsageError`."""
     try:
         parts = urlsplit(name)
@@ -113,15 +113,15 @@ def _address(name: str, usual_port: int | None) -> tuple[str, int]:
     return parts.hostname or "", port
 
 
-OPENERS: Final[tuple[Opener, ...]] = (
-    Opener("tcp://*", "tcp://HOST:PORT or tcp://:PORT (OSI over TCP)", _tcp),
-    Opener("tcp-listen://*", "tcp-listen://HOST:PORT", _tcp),
-    Opener("udp://*", "udp://HOST:PORT (OSI of esmini)", _udp),
-    Opener("ws://*", "ws://HOST:PORT", _foxglove),
-    Opener("wss://*", "wss://HOST:PORT (a Foxglove WebSocket server)", _foxglove),
-    Opener("*.mcap", "an .mcap file that grows", _mcap),
-    Opener("*.osi", "an .osi file that grows", _osi_file),
-    Opener("*.sumocfg", "a .sumocfg (SUMO is started and stepped)", _sumo),
-    Opener("-", "- (OSI on standard input)", _standard_input),
+OPENERS: Final[tuple[SourceOpener, ...]] = (
+    SourceOpener("tcp://*", "tcp://HOST:PORT or tcp://:PORT (OSI over TCP)", _open_tcp),
+    SourceOpener("tcp-listen://*", "tcp-listen://HOST:PORT", _open_tcp),
+    SourceOpener("udp://*", "udp://HOST:PORT (OSI of esmini)", _open_udp),
+    SourceOpener("ws://*", "ws://HOST:PORT", _open_foxglove),
+    SourceOpener("wss://*", "wss://HOST:PORT (a Foxglove WebSocket server)", _open_foxglove),
+    SourceOpener("*.mcap", "an .mcap file that grows", _open_mcap),
+    SourceOpener("*.osi", "an .osi file that grows", _open_osi_file),
+    SourceOpener("*.sumocfg", "a .sumocfg (SUMO is started and stepped)", _open_sumo),
+    SourceOpener("-", "- (OSI on standard input)", _open_standard_input),
 )
 """The first opener that accepts a name is used. Openers import their modules when they are called, so that `drivelint --help` is fast."""

@@ -14,14 +14,15 @@ T = TypeVar("T")
 
 MOST_WAITING_BYTES: Final = 256 << 20
 """If more bytes than this wait to be taken, the thread does not read. Then the writer waits, or drops its oldest data."""
-TICK_S: Final = 0.1
+STOP_CHECK_PERIOD_S: Final = 0.1
 """The interval at which a wait for a socket checks whether to stop."""
 
 
 class BackgroundReader(Generic[T]):
     """Runs a generator in a thread, and keeps its items until they are taken.
 
-    The generator yields an empty item at least every `TICK_S`, so that it can be stopped. `size` returns the number of bytes of an item.
+    The generator yields an empty item at least every `STOP_CHECK_PERIOD_S`, so that it can be stopped. `size` returns the number of bytes
+    of an item.
     """
 
     def __init__(
@@ -40,7 +41,7 @@ class BackgroundReader(Generic[T]):
         self._error: BaseException | None = None
         self._ended = self._stopped = False
         # a daemon: an interrupted watch must end even if a read never returns
-        self._thread = Thread(target=self._run, name="drivelint-source", daemon=True)
+        self._thread = Thread(target=self._read_items, name="drivelint-source", daemon=True)
         self._thread.start()
 
     def take(self, timeout_s: float) -> list[T] | None:
@@ -53,7 +54,7 @@ class BackgroundReader(Generic[T]):
                 raise self._error
             return None if self._ended else []
 
-    def rest(self) -> list[T]:
+    def take_remaining(self) -> list[T]:
         """Return the waiting items, even if the thread ended with an error."""
         with self._changed:
             return self._take_waiting()
@@ -63,7 +64,7 @@ class BackgroundReader(Generic[T]):
         with self._changed:
             self._stopped = True
             self._changed.notify_all()
-        self._thread.join(timeout=10 * TICK_S)
+        self._thread.join(timeout=10 * STOP_CHECK_PERIOD_S)
 
     def _take_waiting(self) -> list[T]:
         found = list(self._waiting)
@@ -72,11 +73,11 @@ class BackgroundReader(Generic[T]):
         self._changed.notify_all()
         return found
 
-    def _run(self) -> None:
+    def _read_items(self) -> None:
         try:
             with closing(self._items):
                 for item in self._items:
-                    if not self._put(item):
+                    if not self._keep_item(item):
                         break
         except BaseException as error:  # noqa: BLE001 (`take` raises it)
             self._error = error
@@ -85,7 +86,7 @@ class BackgroundReader(Generic[T]):
                 self._ended = True
                 self._changed.notify_all()
 
-    def _put(self, item: T) -> bool:
+    def _keep_item(self, item: T) -> bool:
         """Keep an item, wait while there are too many bytes, and return whether to continue."""
         with self._changed:
             if item:

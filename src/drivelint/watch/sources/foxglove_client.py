@@ -19,10 +19,10 @@ from mcap.records import Schema
 
 from drivelint.errors import TraceError, UsageError
 from drivelint.phrases import name_list, one_line
-from drivelint.watch.sources.background import TICK_S, BackgroundReader
+from drivelint.watch.sources.background import STOP_CHECK_PERIOD_S, BackgroundReader
 from drivelint.watch.sources.mcap_memory import is_watched
 from drivelint.watch.sources.recordings import LiveChannel, LiveMessage
-from drivelint.watch.sources.transports import RETRY_S, Patience
+from drivelint.watch.sources.transports import CONNECT_RETRY_S, IdleTimeout
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Sequence
@@ -30,13 +30,13 @@ if TYPE_CHECKING:
     from websockets.sync.client import ClientConnection
 
 SUBPROTOCOLS: Final = ("foxglove.sdk.v1", "foxglove.websocket.v1")
-CONNECT_S: Final = 10.0
+CONNECT_TIMEOUT_S: Final = 10.0
 _SCHEMA_ENCODINGS: Final = {"protobuf": "protobuf", "json": "jsonschema", "cdr": "ros2msg", "ros1": "ros1msg"}
 """Encoding of messages -> encoding of their schema, if the server does not name it."""
-_IN_BASE64: Final = frozenset({"protobuf", "flatbuffer"})
-_MESSAGE_DATA: Final = 1
-_MESSAGE: Final = struct.Struct("<BIQ")
-_WARNING: Final = 1
+_BASE64_SCHEMA_ENCODINGS: Final = frozenset({"protobuf", "flatbuffer"})
+_MESSAGE_DATA_OPCODE: Final = 1
+_MESSAGE_HEADER: Final = struct.Struct("<BIQ")
+_WARNING_LEVEL: Final = 1
 
 
 class FoxgloveClient:
@@ -47,14 +47,14 @@ class FoxgloveClient:
     """
 
     def __init__(self, uri: str, *, idle_s: float | None = None) -> None:
-        _refuse_what_is_no_address(uri)
+        _refuse_invalid_address(uri)
         self._uri = uri
         self._idle_s = idle_s
         self._notes: list[str] = []
         self._by_subscription: dict[int, LiveChannel] = {}
         self._by_channel: dict[int, int] = {}
         self._unread: set[str] = set()
-        self._reader = BackgroundReader(self._received(), size=_size)
+        self._reader = BackgroundReader(self._received_messages(), size=_content_bytes)
 
     def take(self, timeout_s: float) -> list[LiveMessage] | None:
         """Return the messages since the last call; empty after `timeout_s`; None: the server closed, or was idle for too long.
@@ -73,33 +73,33 @@ class FoxgloveClient:
     def close(self) -> list[LiveMessage]:
         """Close the connection, and return the messages that were not taken. May be called twice."""
         self._reader.stop()
-        return [message for messages in self._reader.rest() for message in messages]
+        return [message for messages in self._reader.take_remaining() for message in messages]
 
-    def _received(self) -> Generator[list[LiveMessage], None, None]:
+    def _received_messages(self) -> Generator[list[LiveMessage], None, None]:
         """Connect, waiting for the server to start, and yield its messages until it closes the connection."""
         from websockets.exceptions import WebSocketException
 
         with ExitStack() as stack:
-            ws = yield from self._connected(stack)
-            patience = Patience(self._idle_s)
+            ws = yield from self._open_connection(stack)
+            patience = IdleTimeout(self._idle_s)
             stack.enter_context(suppress(WebSocketException, OSError))
             while not patience.is_over:
                 try:
-                    found = self._understood(ws, ws.recv(timeout=TICK_S))
+                    found = self._handle_message(ws, ws.recv(timeout=STOP_CHECK_PERIOD_S))
                 except TimeoutError:
                     found = []
                 yield found
                 if found:
-                    patience.came()
+                    patience.restart()
 
-    def _connected(self, stack: ExitStack) -> Generator[list[LiveMessage], None, ClientConnection]:
+    def _open_connection(self, stack: ExitStack) -> Generator[list[LiveMessage], None, ClientConnection]:
         """Return a connection, which `stack` closes; yield empty lists until it is open. Errors: `TraceError`."""
         from websockets.exceptions import WebSocketException
         from websockets.sync.client import connect
         from websockets.typing import Subprotocol
 
         offered = [Subprotocol(each) for each in SUBPROTOCOLS]
-        patience, is_told = Patience(self._idle_s), False
+        patience, is_told = IdleTimeout(self._idle_s), False
         while True:
             try:
                 ws = stack.enter_context(
@@ -108,7 +108,7 @@ class FoxgloveClient:
                         subprotocols=offered,
                         compression=None,
                         max_size=None,
-                        open_timeout=CONNECT_S,
+                        open_timeout=CONNECT_TIMEOUT_S,
                         proxy=None,
                     )
                 )
@@ -121,29 +121,29 @@ class FoxgloveClient:
                     self._notes.append(f"{self._uri}: no server answers yet: waiting for it")
                     is_told = True
                 yield []
-                time.sleep(RETRY_S)
+                time.sleep(CONNECT_RETRY_S)
                 continue
             if ws.subprotocol not in SUBPROTOCOLS:
                 raise TraceError(f"{self._uri}: this WebSocket server speaks none of {' and '.join(SUBPROTOCOLS)}")
             return ws
 
-    def _understood(self, ws: ClientConnection, data: str | bytes) -> list[LiveMessage]:
+    def _handle_message(self, ws: ClientConnection, data: str | bytes) -> list[LiveMessage]:
         """Handle a WebSocket message; return the channel's message that it contains, if any."""
         if isinstance(data, bytes):
-            if len(data) < _MESSAGE.size or data[0] != _MESSAGE_DATA:
+            if len(data) < _MESSAGE_HEADER.size or data[0] != _MESSAGE_DATA_OPCODE:
                 return []
-            _, subscription, log_ns = _MESSAGE.unpack_from(data)
+            _, subscription, log_ns = _MESSAGE_HEADER.unpack_from(data)
             channel = self._by_subscription.get(subscription)
-            return [] if channel is None else [LiveMessage(channel, log_ns, data[_MESSAGE.size :])]
+            return [] if channel is None else [LiveMessage(channel, log_ns, data[_MESSAGE_HEADER.size :])]
         try:
             message = json.loads(data)
             kind = message["op"]
             if kind == "advertise":
-                self._advertised(ws, message["channels"])
+                self._subscribe_to_channels(ws, message["channels"])
             elif kind == "unadvertise":
                 for channel in message["channelIds"]:
                     self._by_channel.pop(channel, None)
-            elif kind == "status" and message["level"] >= _WARNING:
+            elif kind == "status" and message["level"] >= _WARNING_LEVEL:
                 self._notes.append(f"{self._uri} says: {one_line(str(message['message']))}")
         except (ValueError, KeyError, TypeError, binascii.Error) as error:
             self._notes.append(
@@ -151,7 +151,7 @@ class FoxgloveClient:
             )
         return []
 
-    def _advertised(self, ws: ClientConnection, channels: list[dict[str, Any]]) -> None:
+    def _subscribe_to_channels(self, ws: ClientConnection, channels: list[dict[str, Any]]) -> None:
         """Subscribe to the channels that drivelint reads. The id of a subscription is never reused."""
         new = []
         for each in channels:
@@ -161,7 +161,7 @@ class FoxgloveClient:
                 self._unread.add(each["topic"])
                 continue
             number = len(self._by_subscription)
-            self._by_subscription[number] = _advertised(each)
+            self._by_subscription[number] = _live_channel(each)
             self._by_channel[each["id"]] = number
             new.append({"id": number, "channelId": each["id"]})
         if new:
@@ -170,21 +170,21 @@ class FoxgloveClient:
             self._notes.append(f"{self._uri}: nothing on {name_list(sorted(self._unread))} is read")
 
 
-def _size(messages: Sequence[LiveMessage]) -> int:
+def _content_bytes(messages: Sequence[LiveMessage]) -> int:
     return sum(len(each.content) for each in messages)
 
 
-def _advertised(advertisement: dict[str, Any]) -> LiveChannel:
+def _live_channel(advertisement: dict[str, Any]) -> LiveChannel:
     encoding = str(advertisement["encoding"])
     of_schema = str(advertisement.get("schemaEncoding") or _SCHEMA_ENCODINGS.get(encoding, ""))
     text = str(advertisement["schema"])
-    data = base64.b64decode(text, validate=True) if of_schema in _IN_BASE64 else text.encode()
+    data = base64.b64decode(text, validate=True) if of_schema in _BASE64_SCHEMA_ENCODINGS else text.encode()
     return LiveChannel(
         advertisement["topic"], encoding, Schema(id=0, name=advertisement["schemaName"], encoding=of_schema, data=data)
     )
 
 
-def _refuse_what_is_no_address(uri: str) -> None:
+def _refuse_invalid_address(uri: str) -> None:
     """Raise `UsageError` for an invalid address, or if the extra `live` is missing."""
     try:
         from websockets.exceptions import InvalidURI

@@ -7,10 +7,10 @@ from itertools import count
 from typing import TYPE_CHECKING
 
 from drivelint.errors import TraceError
-from drivelint.watch.source import WrittenWindows
+from drivelint.watch.source import WindowFileSource
 from drivelint.watch.sources.foxglove_client import FoxgloveClient
-from drivelint.watch.sources.mcap_file import McapFile
-from drivelint.watch.sources.recordings import McapRecording, writing
+from drivelint.watch.sources.mcap_file import McapSource
+from drivelint.watch.sources.recordings import McapRecording, write_errors_as_trace_errors
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -20,15 +20,15 @@ if TYPE_CHECKING:
     from drivelint.watch.sources.recordings import LiveMessage
 
 
-def open(name: str, folder: Path, *, idle_s: float | None = None) -> FoxgloveWebSocket:  # noqa: A001
+def open(name: str, folder: Path, *, idle_s: float | None = None) -> FoxgloveSource:  # noqa: A001
     """Return a source for `ws://HOST:PORT` or `wss://...` with its recording in `folder`.
 
     Errors: `UsageError` for an invalid address, or if the extra `live` is missing.
     """
-    return FoxgloveWebSocket(name, folder, idle_s=idle_s)
+    return FoxgloveSource(name, folder, idle_s=idle_s)
 
 
-class FoxgloveWebSocket(WrittenWindows):
+class FoxgloveSource(WindowFileSource):
     """A source of the messages that drivelint's MCAP readers read. It ends with the server, or after `idle_s` without messages.
 
     Frames and windows are read from the recording, a growing MCAP file. `read` waits until the server starts.
@@ -36,7 +36,7 @@ class FoxgloveWebSocket(WrittenWindows):
     """
 
     window_name = "window.mcap"
-    in_step = False
+    is_advanced_by_reads = False
 
     def __init__(self, uri: str, folder: Path, *, idle_s: float | None) -> None:
         self._uri = uri
@@ -45,7 +45,7 @@ class FoxgloveWebSocket(WrittenWindows):
         names = (base if n == 1 else f"{base}_{n}" for n in count(1))
         self.recording = next(each for name in names if not (each := folder / f"{name}.mcap").exists())
         self._writer: McapRecording | None = None
-        self._reader = McapFile(self.recording, idle_s=None)
+        self._reader = McapSource(self.recording, idle_s=None)
         self._closed = False
 
     def read(self, timeout_s: float) -> Sequence[Frame] | None:
@@ -53,11 +53,11 @@ class FoxgloveWebSocket(WrittenWindows):
         found = self._client.take(timeout_s)
         if not found:
             return None if found is None else []
-        self._write(found)
+        self._write_to_recording(found)
         return self._reader.read(0.0)
 
-    def _write(self, messages: Sequence[LiveMessage]) -> None:
-        with writing(self.recording):
+    def _write_to_recording(self, messages: Sequence[LiveMessage]) -> None:
+        with write_errors_as_trace_errors(self.recording):
             if self._writer is None:
                 self._writer = McapRecording(self.recording)
             self._writer.add(messages)
@@ -66,11 +66,11 @@ class FoxgloveWebSocket(WrittenWindows):
         """Return the new notes on the server and on the recording."""
         return [*self._client.notes(), *self._reader.notes()]
 
-    def write_window(self, frames: Sequence[Frame], path: Path, *, latest: bool = False) -> None:
+    def write_window(self, frames: Sequence[Frame], path: Path, *, may_omit_earlier_data: bool = False) -> None:
         """See `Source`. Errors: `TraceError` before the first message."""
         if self._writer is None:
             raise TraceError(f"{self._uri}: no message came")
-        self._reader.write_window(frames, path, latest=latest)
+        self._reader.write_window(frames, path, may_omit_earlier_data=may_omit_earlier_data)
 
     def halt(self) -> None:
         """See `Source`. The sender of the messages cannot be ended from here."""
@@ -82,8 +82,8 @@ class FoxgloveWebSocket(WrittenWindows):
             return
         self._closed = True
         if rest:
-            self._write(rest)
+            self._write_to_recording(rest)
         self._reader.close()
         if self._writer is not None:
-            with writing(self.recording):
+            with write_errors_as_trace_errors(self.recording):
                 self._writer.finish()

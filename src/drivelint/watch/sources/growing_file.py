@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 POLL_S: Final = 0.05
 """The interval at which a file is checked for growth."""
-BLOCK: Final = 4 << 20
+MOST_BYTES_PER_READ: Final = 4 << 20
 """The most bytes that are read at a time."""
 
 
@@ -39,7 +39,7 @@ class GrowingFile:
         """
         until = time.monotonic() + timeout_s
         while True:
-            if data := self._appended():
+            if data := self._read_appended():
                 self._grew_at = time.monotonic()
                 return data
             now = time.monotonic()
@@ -54,7 +54,7 @@ class GrowingFile:
         if self._file is not None:
             self._file.close()
 
-    def _appended(self) -> bytes:
+    def _read_appended(self) -> bytes:
         try:
             if self._file is None:
                 try:
@@ -65,14 +65,14 @@ class GrowingFile:
                     self._file = self.path.open("rb", buffering=0)
                 except FileNotFoundError:
                     return b""
-            self._refuse_another_file(self._file)
-            data = self._file.read(BLOCK)
+            self._refuse_replaced_or_truncated(self._file)
+            data = self._file.read(MOST_BYTES_PER_READ)
         except OSError as error:
             raise TraceError(f"{self.path}: cannot be read: {error.strerror or error}") from error
         self.offset += len(data)
         return data
 
-    def _refuse_another_file(self, file: FileIO) -> None:
+    def _refuse_replaced_or_truncated(self, file: FileIO) -> None:
         opened = os.fstat(file.fileno())
         try:
             there = self.path.stat()

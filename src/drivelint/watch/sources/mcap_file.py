@@ -11,11 +11,11 @@ import numpy as np
 from drivelint.drive.lost_time import LATEST_NS
 from drivelint.formats.mcap.bag import OSI_SCHEMAS
 from drivelint.formats.mcap.writer import Sink
-from drivelint.watch.source import Frame, WrittenWindows
+from drivelint.watch.source import Frame, WindowFileSource
 from drivelint.watch.sources.growing_file import GrowingFile
-from drivelint.watch.sources.mcap_memory import Memory, is_watched, memory_for
+from drivelint.watch.sources.mcap_memory import ChannelMemory, is_watched, memory_for
 from drivelint.watch.sources.mcap_scene import SceneMemory
-from drivelint.watch.sources.mcap_stream import DamagedChunk, McapStream, Message, NumberedMessage
+from drivelint.watch.sources.mcap_stream import DamagedChunk, McapStream, MessageRecord, NumberedMessage
 from drivelint.watch.sources.osi_static import StaticContent
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ MOST_BYTES_PER_READ: Final = 32 << 20
 """One `read` returns about this many bytes of messages at most, if the file is long when the watch begins."""
 
 
-class McapFile(WrittenWindows):
+class McapSource(WindowFileSource):
     """A source of the messages of an MCAP file, see `drivelint.watch.source.Source`.
 
     A frame is a message that drivelint's readers read, at its log time, or a damaged chunk. Earlier messages that are still valid in a
@@ -37,7 +37,7 @@ class McapFile(WrittenWindows):
     """
 
     window_name = "window.mcap"
-    in_step = False
+    is_advanced_by_reads = False
 
     def __init__(self, path: Path, *, idle_s: float | None) -> None:
         self.recording = path
@@ -48,7 +48,7 @@ class McapFile(WrittenWindows):
         self._last_ns = 0
         self._pending: deque[NumberedMessage] = deque()  # messages after the start of the last window
         self._pending_bytes = 0
-        self._memories: dict[int, Memory] = {}
+        self._memories: dict[int, ChannelMemory] = {}
         self._first: dict[int, NumberedMessage] = {}  # OSI channel -> its first message
         self._static: dict[int, StaticContent] = {}
 
@@ -60,7 +60,7 @@ class McapFile(WrittenWindows):
         while not self._ended and size < MOST_BYTES_PER_READ:
             data = self._file.read(0.0 if found else max(until - time.monotonic(), 0.0))
             if data:
-                frames = self._frames(self._stream.take(data))
+                frames = self._frames_of_records(self._stream.parse(data))
                 found += frames
                 size += sum(frame.size for frame in frames)
             elif data is not None:
@@ -70,13 +70,13 @@ class McapFile(WrittenWindows):
                 break
         return None if self._ended and not found else found
 
-    def _frames(self, records: Iterable[Message | DamagedChunk]) -> list[Frame]:
+    def _frames_of_records(self, records: Iterable[MessageRecord | DamagedChunk]) -> list[Frame]:
         found = []
         for each in records:
             if isinstance(each, DamagedChunk):
                 found.append(Frame(self._last_ns, (self._count, each), len(each.record)))
                 continue
-            schema = self._schema(each.channel)
+            schema = self._schema_name(each.channel)
             if not is_watched(schema):
                 continue
             if each.log_ns <= LATEST_NS:  # a later time is malformed
@@ -88,11 +88,11 @@ class McapFile(WrittenWindows):
             self._pending.append(numbered)
             self._pending_bytes += len(each.record)
             while self._pending_bytes > MOST_PENDING_BYTES:
-                self._remember_next()
+                self._remember_oldest_pending()
             found.append(Frame(self._last_ns, numbered, len(each.record)))
         return found
 
-    def _schema(self, channel: int) -> str:
+    def _schema_name(self, channel: int) -> str:
         schema = self._stream.schemas.get(self._stream.channels[channel].schema_id)
         return "" if schema is None else schema.name
 
@@ -101,49 +101,53 @@ class McapFile(WrittenWindows):
         found, self._stream.notes = self._stream.notes, []
         return found
 
-    def write_window(self, frames: Sequence[Frame], path: Path, *, latest: bool = False) -> None:
+    def write_window(self, frames: Sequence[Frame], path: Path, *, may_omit_earlier_data: bool = False) -> None:
         """See `Source`."""
-        records = [cast("tuple[int, Message | DamagedChunk]", frame.data) for frame in frames]
+        records = [cast("tuple[int, MessageRecord | DamagedChunk]", frame.data) for frame in frames]
         begin = records[0][0] if records else 0
-        while not latest and self._pending and self._pending[0].number < begin:
-            self._remember_next()
+        while not may_omit_earlier_data and self._pending and self._pending[0].number < begin:
+            self._remember_oldest_pending()
         begun: set[int] = set()
         with path.open("wb") as file:
             writer = _WindowWriter(Sink(file))
             writer.begin(self._stream)
             # the memory of a scene may contain entities that were replaced since the start of the last window
-            kept = [each for each in self._memories.values() if not (latest and isinstance(each, SceneMemory))]
+            kept = [
+                each
+                for each in self._memories.values()
+                if not (may_omit_earlier_data and isinstance(each, SceneMemory))
+            ]
             held = [each for memory in kept for each in memory.current_messages()]
             for numbered in sorted(held, key=lambda each: each.number):
                 if numbered.number < begin:
                     writer.add(numbered.message)
             for number, each in records:
                 if isinstance(each, DamagedChunk):
-                    writer.add_damaged(each)
+                    writer.add_damaged_chunk(each)
                     continue
                 is_first = each.channel not in begun
                 begun.add(each.channel)
-                writer.add(self._with_static(number, each) if is_first else each)
+                writer.add(self._with_static_content(number, each) if is_first else each)
             writer.finish()
 
-    def _remember_next(self) -> None:
+    def _remember_oldest_pending(self) -> None:
         """Move the first pending message into the memory of its channel."""
         numbered = self._pending.popleft()
         self._pending_bytes -= len(numbered.message.record)
         channel = numbered.message.channel
         if channel not in self._memories:
-            self._memories[channel] = memory_for(self._stream.channels[channel], self._schema(channel))
+            self._memories[channel] = memory_for(self._stream.channels[channel], self._schema_name(channel))
         self._memories[channel].add(numbered)
 
-    def _with_static(self, number: int, message: Message) -> Message:
+    def _with_static_content(self, number: int, message: MessageRecord) -> MessageRecord:
         """Return a window's first message of an OSI channel, with the static content of the file's first message."""
         first = self._first.get(message.channel)
         if first is None or first.number == number:
             return message
         if message.channel not in self._static:
-            content = StaticContent(first.message.content, self._schema(message.channel))
+            content = StaticContent(first.message.content, self._schema_name(message.channel))
             self._static[message.channel] = content
-        return message.with_content(self._static[message.channel].added_to(message.content))
+        return message.with_content(self._static[message.channel].add_to_message(message.content))
 
     def halt(self) -> None:
         """See `Source`. The program that writes the file cannot be ended from here."""
@@ -174,7 +178,7 @@ class _WindowWriter:
         for name, content in stream.metadata.items():
             self._sink.add_metadata(name, content)
 
-    def add(self, message: Message) -> None:
+    def add(self, message: MessageRecord) -> None:
         """Write a message."""
         self._index.append((message.channel, message.log_ns, self._size))
         self._content.append(message.record)
@@ -182,7 +186,7 @@ class _WindowWriter:
         if self._size >= self._CHUNK:
             self._flush()
 
-    def add_damaged(self, chunk: DamagedChunk) -> None:
+    def add_damaged_chunk(self, chunk: DamagedChunk) -> None:
         """Write a chunk that cannot be read, so that its content is missing in the window, too."""
         self._flush()
         self._sink.write(chunk.record)

@@ -46,7 +46,7 @@ MOST_FIRST_BYTES: Final = 64 << 20
 _READABLE_KINDS: Final = {*OSI_SCHEMAS, OPEN_DRIVE, EVENT_MESSAGE, *ROS_ROLES, *FOXGLOVE_ROLES}
 
 
-class Memory(Protocol):
+class ChannelMemory(Protocol):
     """Keeps the messages of a channel that are still valid when a window begins."""
 
     def add(self, numbered: NumberedMessage) -> None:
@@ -63,24 +63,24 @@ def is_watched(schema: str) -> bool:
     return message_kind(schema) in _READABLE_KINDS
 
 
-def memory_for(channel: Channel, schema: str) -> Memory:
+def memory_for(channel: Channel, schema: str) -> ChannelMemory:
     """Return the memory for the messages of a channel whose schema has this name."""
     kind = message_kind(schema)
     if kind == SCENE:
         return SceneMemory(channel.message_encoding)
     if kind in OSI_SCHEMAS or ROS_ROLES.get(kind) in {ROAD_USERS, DETECTIONS, ODOMETRY_ROLE}:
-        return NoMemory()
+        return EmptyMemory()
     return LatchedMemory(_MOST_FIRST_MESSAGES_BY_KIND.get(kind, MOST_FIRST_MESSAGES))
 
 
-class NoMemory:
+class EmptyMemory:
     """Keeps nothing: each message is valid only at its own time."""
 
     def add(self, numbered: NumberedMessage) -> None:
-        """See `Memory`."""
+        """See `ChannelMemory`."""
 
     def current_messages(self) -> list[NumberedMessage]:
-        """See `Memory`."""
+        """See `ChannelMemory`."""
         return []
 
 
@@ -94,7 +94,7 @@ class LatchedMemory:
         self._recent: deque[NumberedMessage] = deque()
 
     def add(self, numbered: NumberedMessage) -> None:
-        """See `Memory`."""
+        """See `ChannelMemory`."""
         data = numbered.message
         if not self._recent and self._first and self._first[-1].message.content == data.content:
             return
@@ -107,5 +107,5 @@ class LatchedMemory:
             self._recent.popleft()
 
     def current_messages(self) -> list[NumberedMessage]:
-        """See `Memory`."""
+        """See `ChannelMemory`."""
         return [*self._first, *self._recent]

@@ -19,20 +19,20 @@ from drivelint.formats.mcap.resume import MAGIC
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-RECORD: Final = struct.Struct("<BQ")
-MESSAGE: Final = struct.Struct("<HIQQ")
+RECORD_HEADER: Final = struct.Struct("<BQ")
+MESSAGE_HEADER: Final = struct.Struct("<HIQQ")
 MOST_RECORD_BYTES: Final = MAX_CHUNK_BYTES + (1 << 20)
 """The longest record of the kinds that are read: a greater length is damage. Other records, such as attachments, may be longer."""
 _READABLE_OPCODES: Final = frozenset(
     {Opcode.SCHEMA, Opcode.CHANNEL, Opcode.MESSAGE, Opcode.CHUNK, Opcode.METADATA, Opcode.DATA_END}
 )
 _STANDARD_OPCODES: Final = frozenset(Opcode)
-_PRIVATE: Final = 0x80
+_FIRST_PRIVATE_OPCODE: Final = 0x80
 """The first of the opcodes that applications may define."""
 _FOOTER_BYTES: Final = 20
 
 
-class Message(NamedTuple):
+class MessageRecord(NamedTuple):
     """A message record: the id of its channel, its log time, and the unchanged bytes of the record, with its header."""
 
     channel: int
@@ -42,19 +42,21 @@ class Message(NamedTuple):
     @property
     def content(self) -> bytes:
         """The data of the message, without any header."""
-        return self.record[RECORD.size + MESSAGE.size :]
+        return self.record[RECORD_HEADER.size + MESSAGE_HEADER.size :]
 
-    def with_content(self, content: bytes) -> Message:
+    def with_content(self, content: bytes) -> MessageRecord:
         """Return a message of the same channel and times with other data."""
-        head = RECORD.pack(Opcode.MESSAGE, MESSAGE.size + len(content))
-        return self._replace(record=head + self.record[RECORD.size : RECORD.size + MESSAGE.size] + content)
+        head = RECORD_HEADER.pack(Opcode.MESSAGE, MESSAGE_HEADER.size + len(content))
+        return self._replace(
+            record=head + self.record[RECORD_HEADER.size : RECORD_HEADER.size + MESSAGE_HEADER.size] + content
+        )
 
 
 class NumberedMessage(NamedTuple):
     """A message and its number among all watched messages of the file."""
 
     number: int
-    message: Message
+    message: MessageRecord
 
 
 class DamagedChunk(NamedTuple):
@@ -84,26 +86,26 @@ class McapStream:
         self._magic_is_read = False
         self._in_data = True
 
-    def take(self, data: bytes) -> list[Message | DamagedChunk]:
+    def parse(self, data: bytes) -> list[MessageRecord | DamagedChunk]:
         """Add bytes, and return the messages that are complete, in the order of the file.
 
         Errors: `TraceError` if the file is no MCAP file, or has a chunk that no reader accepts.
         """
         self._buffer += data
-        found: list[Message | DamagedChunk] = []
-        if self._magic_is_read or self._has_read_magic():
+        found: list[MessageRecord | DamagedChunk] = []
+        if self._magic_is_read or self._try_to_read_magic():
             while (record := self._next_record()) is not None:
                 at = self._at + self._place - len(record)
                 try:
                     found += self._read_record(record, at)
                 except (struct.error, McapError, ValueError) as error:
-                    self._stop(at, f"a record that cannot be read ({error})")
+                    self._stop_reading(at, f"a record that cannot be read ({error})")
         del self._buffer[: self._place]
         self._at += self._place
         self._place = 0
         return found
 
-    def _has_read_magic(self) -> bool:
+    def _try_to_read_magic(self) -> bool:
         head = bytes(self._buffer[: len(MAGIC)])
         if not MAGIC.startswith(head):
             raise TraceError(f"{self._where}: not an MCAP file: it begins with {head!r}")
@@ -111,7 +113,7 @@ class McapStream:
             self._magic_is_read, self._place = True, len(MAGIC)
         return self._magic_is_read
 
-    def _stop(self, at: int, reason: str) -> None:
+    def _stop_reading(self, at: int, reason: str) -> None:
         self.ended = True
         self.notes.append(f"{self._where}: {reason} at byte {at}: nothing after it is watched")
 
@@ -121,21 +123,21 @@ class McapStream:
             skipped = min(self._skip, len(self._buffer) - self._place)
             self._skip -= skipped
             self._place += skipped
-            if self._skip or len(self._buffer) < self._place + RECORD.size:
+            if self._skip or len(self._buffer) < self._place + RECORD_HEADER.size:
                 return None
-            opcode, length = RECORD.unpack_from(self._buffer, self._place)
-            end = self._place + RECORD.size + length
+            opcode, length = RECORD_HEADER.unpack_from(self._buffer, self._place)
+            end = self._place + RECORD_HEADER.size + length
             is_read = self._in_data and opcode in _READABLE_OPCODES
-            unknown = opcode not in _STANDARD_OPCODES and opcode < _PRIVATE
+            unknown = opcode not in _STANDARD_OPCODES and opcode < _FIRST_PRIVATE_OPCODE
             if unknown or length > (MOST_RECORD_BYTES if is_read else reader.MOST_RECORD_BYTES):
-                self._stop(self._at + self._place, f"no record, but one of kind {opcode} and {length} bytes,")
+                self._stop_reading(self._at + self._place, f"no record, but one of kind {opcode} and {length} bytes,")
             elif opcode == Opcode.FOOTER:
                 tail = bytes(self._buffer[end : end + len(MAGIC)])
                 self.ended = tail == MAGIC or not MAGIC.startswith(tail) or length != _FOOTER_BYTES
                 if not self.ended:
                     return None
             elif not is_read:
-                self._skip = RECORD.size + length
+                self._skip = RECORD_HEADER.size + length
             elif len(self._buffer) < end:
                 return None
             else:
@@ -144,59 +146,59 @@ class McapStream:
                 return record
         return None
 
-    def _read_record(self, record: bytes, at: int) -> Iterator[Message | DamagedChunk]:
-        body = record[RECORD.size :]
+    def _read_record(self, record: bytes, at: int) -> Iterator[MessageRecord | DamagedChunk]:
+        body = record[RECORD_HEADER.size :]
         opcode = record[0]
         if opcode == Opcode.CHUNK:
-            yield from self._chunk(record, at)
+            yield from self._messages_of_chunk(record, at)
         elif opcode == Opcode.DATA_END:
             self._in_data = False
         elif opcode == Opcode.METADATA:
-            metadata = Metadata.read(_stream(body))
+            metadata = Metadata.read(_data_stream(body))
             self.metadata.setdefault(metadata.name, metadata.metadata)
         else:
-            yield from self._content(opcode, record, at)
+            yield from self._messages_of_record(opcode, record, at)
 
-    def _chunk(self, record: bytes, at: int) -> Iterator[Message | DamagedChunk]:
+    def _messages_of_chunk(self, record: bytes, at: int) -> Iterator[MessageRecord | DamagedChunk]:
         try:
-            head = chunk_head(memoryview(record)[RECORD.size :])
+            head = chunk_head(memoryview(record)[RECORD_HEADER.size :])
             records = chunk_records(head, f"{self._where}: byte {at}")
         except ChunkError as error:
             if not error.framed:
-                self._stop(at, str(error))
+                self._stop_reading(at, str(error))
                 return
             self.notes.append(f"{self._where}: {error} at byte {at}: its content is lost")
             yield DamagedChunk(record)
             return
         place = 0
-        while place + RECORD.size <= len(records):
-            opcode, length = RECORD.unpack_from(records, place)
-            end = place + RECORD.size + length
+        while place + RECORD_HEADER.size <= len(records):
+            opcode, length = RECORD_HEADER.unpack_from(records, place)
+            end = place + RECORD_HEADER.size + length
             if end > len(records):
                 break
-            yield from self._content(opcode, records[place:end], at)
+            yield from self._messages_of_record(opcode, records[place:end], at)
             place = end
         if place < len(records):
             self.notes.append(f"{self._where}: a chunk that ends within a record at byte {at}: its rest is lost")
             yield DamagedChunk(record)
 
-    def _content(self, opcode: int, record: bytes, at: int) -> Iterator[Message]:
+    def _messages_of_record(self, opcode: int, record: bytes, at: int) -> Iterator[MessageRecord]:
         """Store a schema or a channel, or yield a message."""
         if opcode == Opcode.MESSAGE:
-            number, _, log_ns, _ = MESSAGE.unpack_from(record, RECORD.size)
+            number, _, log_ns, _ = MESSAGE_HEADER.unpack_from(record, RECORD_HEADER.size)
             if number in self.channels:
-                yield Message(number, log_ns, record)
+                yield MessageRecord(number, log_ns, record)
             else:
                 self.notes.append(
                     f"{self._where}: a message on channel {number}, which was never declared, at byte {at}"
                 )
         elif opcode == Opcode.SCHEMA:
-            schema = Schema.read(_stream(record[RECORD.size :]))
+            schema = Schema.read(_data_stream(record[RECORD_HEADER.size :]))
             self.schemas[schema.id] = schema
         elif opcode == Opcode.CHANNEL:
-            channel = Channel.read(_stream(record[RECORD.size :]))
+            channel = Channel.read(_data_stream(record[RECORD_HEADER.size :]))
             self.channels[channel.id] = channel
 
 
-def _stream(body: bytes) -> ReadDataStream:
+def _data_stream(body: bytes) -> ReadDataStream:
     return ReadDataStream(io.BytesIO(body))

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Final, Protocol, cast
 
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats.osi.trace_file import LENGTH_FIELD_BYTES
-from drivelint.watch.source import Frame, WrittenWindows
+from drivelint.watch.source import Frame, WindowFileSource
 from drivelint.watch.sources import transports
 from drivelint.watch.sources.background import BackgroundReader
-from drivelint.watch.sources.datagram_socket import ask_for_losses, datagrams
+from drivelint.watch.sources.datagram_socket import datagrams, request_loss_data
 from drivelint.watch.sources.growing_file import GrowingFile
-from drivelint.watch.sources.osi_datagrams import Assembler
-from drivelint.watch.sources.osi_messages import MessageCutter, message_kind, message_time
+from drivelint.watch.sources.osi_datagrams import MessageAssembler
+from drivelint.watch.sources.osi_messages import MessageCutter, message_kind, message_time_ns
 from drivelint.watch.sources.osi_static import StaticContent
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from pathlib import Path
     from typing import BinaryIO
 
-RECORDING: Final = "recording"
+RECORDING_NAME: Final = "recording"
 
 
 class Receiver(Protocol):
@@ -43,7 +43,7 @@ class Receiver(Protocol):
         ...
 
 
-class OsiSource(WrittenWindows):
+class OsiSource(WindowFileSource):
     """A source of OSI messages, see `drivelint.watch.source.Source`.
 
     A frame is a message, at the message's own time. Content that only the drive's first message has, such as lanes, is copied into the
@@ -51,7 +51,7 @@ class OsiSource(WrittenWindows):
     """
 
     window_name = "window.osi"
-    in_step = False
+    is_advanced_by_reads = False
 
     def __init__(self, recording: Path, receiver: Receiver) -> None:
         self.recording = recording
@@ -72,7 +72,7 @@ class OsiSource(WrittenWindows):
             self._first = data
         if self._kind is None:
             self._kind = message_kind(data)
-        t_ns = message_time(data, self._kind)
+        t_ns = message_time_ns(data, self._kind)
         if t_ns is not None:
             self._last_ns = t_ns
         self._count += 1
@@ -82,17 +82,17 @@ class OsiSource(WrittenWindows):
         """See `Source`."""
         return self._receiver.notes()
 
-    def write_window(self, frames: Sequence[Frame], path: Path, *, latest: bool = False) -> None:  # noqa: ARG002 - as in all sources
+    def write_window(self, frames: Sequence[Frame], path: Path, *, may_omit_earlier_data: bool = False) -> None:  # noqa: ARG002 - as in all sources
         """See `Source`."""
         with path.open("wb") as file:
             for k, frame in enumerate(frames):
                 is_first, data = cast("tuple[bool, bytes]", frame.data)
-                file.write(with_length(self._with_static(data) if k == 0 and not is_first else data))
+                file.write(with_length_prefix(self._with_static_content(data) if k == 0 and not is_first else data))
 
-    def _with_static(self, data: bytes) -> bytes:
+    def _with_static_content(self, data: bytes) -> bytes:
         if self._static is None and self._kind is not None and self._first is not None:
             self._static = StaticContent(self._first, self._kind)
-        return data if self._static is None else self._static.added_to(data)
+        return data if self._static is None else self._static.add_to_message(data)
 
     def halt(self) -> None:
         """See `Source`. The sender of the messages cannot be ended from here."""
@@ -102,7 +102,7 @@ class OsiSource(WrittenWindows):
         self._receiver.close()
 
 
-def with_length(data: bytes) -> bytes:
+def with_length_prefix(data: bytes) -> bytes:
     """Return a message preceded by its length, as in a trace file."""
     return len(data).to_bytes(LENGTH_FIELD_BYTES, "little") + data
 
@@ -145,7 +145,7 @@ class StreamReceiver:
         self._where = where
         self._cutter = MessageCutter()
         self._recording = recording
-        self._reader = BackgroundReader(_written_through(blocks, recording))
+        self._reader = BackgroundReader(_recorded_blocks(blocks, recording))
         self._notes = notes
         self._ended = False
 
@@ -172,13 +172,13 @@ class StreamReceiver:
         self._recording.close()
 
 
-def _written_through(blocks: Generator[bytes, None, None], recording: BinaryIO) -> Generator[bytes, None, None]:
+def _recorded_blocks(blocks: Generator[bytes, None, None], recording: BinaryIO) -> Generator[bytes, None, None]:
     for data in blocks:
-        _write_down(recording, data)
+        _write_at_once(recording, data)
         yield data
 
 
-def _write_down(recording: BinaryIO, data: bytes) -> None:
+def _write_at_once(recording: BinaryIO, data: bytes) -> None:
     """Write and flush bytes, so that they are kept even if this process is killed."""
     try:
         recording.write(data)
@@ -196,21 +196,21 @@ class DatagramReceiver:
         self._where = where
         self._recording = recording
         self._notes = notes
-        self._assembler = Assembler(where)
+        self._assembler = MessageAssembler(where)
         self._told = 0
         self._ended = False
-        ask_for_losses(receiver)
+        request_loss_data(receiver)
         self._reader = BackgroundReader(self._messages(receiver, idle_s))
 
     def _messages(self, receiver: socket.socket, idle_s: float | None) -> Generator[bytes, None, None]:
-        patience = transports.Patience(idle_s)
+        patience = transports.IdleTimeout(idle_s)
         with receiver:
             for datagram in datagrams(receiver):
                 if datagram is not None:
-                    patience.came()
-                message = None if datagram is None else self._assembler.take(datagram)
+                    patience.restart()
+                message = None if datagram is None else self._assembler.add_datagram(datagram)
                 if message is not None:
-                    _write_down(self._recording, with_length(message))
+                    _write_at_once(self._recording, with_length_prefix(message))
                 yield message or b""
                 if patience.is_over:
                     return
@@ -244,14 +244,14 @@ def open_file(path: Path, *, idle_s: float | None) -> OsiSource:
 
 def open_standard_input(folder: Path, *, idle_s: float | None) -> OsiSource:
     """Return a source for standard input."""
-    blocks = transports.from_descriptor(sys.stdin.fileno(), idle_s)
-    return _stream("standard input", blocks, folder, [])
+    blocks = transports.blocks_of_descriptor(sys.stdin.fileno(), idle_s)
+    return _stream_source("standard input", blocks, folder, [])
 
 
 def open_tcp(host: str, port: int, folder: Path, *, idle_s: float | None) -> OsiSource:
     """Return a source for a writer that waits for a connection at an address."""
     notes: list[str] = []
-    return _stream(f"tcp://{host}:{port}", transports.connected(host, port, idle_s, notes), folder, notes)
+    return _stream_source(f"tcp://{host}:{port}", transports.connect_and_read(host, port, idle_s, notes), folder, notes)
 
 
 def open_tcp_server(host: str, port: int, folder: Path, *, idle_s: float | None) -> OsiSource:
@@ -259,9 +259,9 @@ def open_tcp_server(host: str, port: int, folder: Path, *, idle_s: float | None)
     where = f"tcp-listen://{host}:{port}"
     server = transports.bound_socket(socket.SOCK_STREAM, host, port, where)
     server.listen(1)
-    notes = transports.open_to_others(host)
+    notes = transports.notes_on_open_address(host)
     with _closed_on_error(server):
-        return _stream(where, transports.listening(server, idle_s, notes), folder, notes)
+        return _stream_source(where, transports.listen_and_read(server, idle_s, notes), folder, notes)
 
 
 def open_udp(host: str, port: int, folder: Path, *, idle_s: float | None) -> OsiSource:
@@ -269,8 +269,8 @@ def open_udp(host: str, port: int, folder: Path, *, idle_s: float | None) -> Osi
     where = f"udp://{host}:{port}"
     receiver = transports.bound_socket(socket.SOCK_DGRAM, host, port, where)
     with _closed_on_error(receiver):
-        recording, file = _new_recording(folder)
-        notes = transports.open_to_others(host)
+        recording, file = _open_new_recording(folder)
+        notes = transports.notes_on_open_address(host)
         return OsiSource(recording, DatagramReceiver(where, receiver, file, notes, idle_s=idle_s))
 
 
@@ -282,15 +282,15 @@ def _closed_on_error(bound_socket: socket.socket) -> Generator[None, None, None]
         undo.pop_all()
 
 
-def _stream(where: str, blocks: Generator[bytes, None, None], folder: Path, notes: list[str]) -> OsiSource:
-    recording, file = _new_recording(folder)
+def _stream_source(where: str, blocks: Generator[bytes, None, None], folder: Path, notes: list[str]) -> OsiSource:
+    recording, file = _open_new_recording(folder)
     return OsiSource(recording, StreamReceiver(where, blocks, file, notes))
 
 
-def _new_recording(folder: Path) -> tuple[Path, BinaryIO]:
+def _open_new_recording(folder: Path) -> tuple[Path, BinaryIO]:
     """Open a recording under a new name, since recordings are never replaced. Errors: `UsageError` if it cannot be written."""
     for number in count(1):
-        path = folder / (f"{RECORDING}.osi" if number == 1 else f"{RECORDING}-{number}.osi")
+        path = folder / (f"{RECORDING_NAME}.osi" if number == 1 else f"{RECORDING_NAME}-{number}.osi")
         try:
             folder.mkdir(parents=True, exist_ok=True)
             return path, path.open("xb")

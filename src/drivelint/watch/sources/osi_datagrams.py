@@ -20,14 +20,14 @@ from drivelint.drive.order import MAX_GAP_PERIODS
 from drivelint.errors import TraceError
 from drivelint.formats.osi.trace_file import MOST_MESSAGE_BYTES
 from drivelint.phrases import plural
-from drivelint.watch.sources.osi_messages import is_whole, message_time
+from drivelint.watch.sources.osi_messages import is_complete_message, message_time_ns
 
-HEADER: Final = struct.Struct("<iI")
+DATAGRAM_HEADER: Final = struct.Struct("<iI")
 MOST_PAUSE_NS: Final = 10_000_000
 """The longest pause between two datagrams of a message from another machine: they are sent at once, so in a longer pause some were lost."""
-HOLE_PERIODS: Final = MAX_GAP_PERIODS + 0.25
+LEAST_HOLE_PERIODS: Final = MAX_GAP_PERIODS + 0.25
 """The length, in time steps, of the hole that is left after a lost message: the checker joins states that are closer together."""
-_STEPS: Final = 101
+_MOST_KEPT_STEPS: Final = 101
 """The number of steps from which the usual time step is computed."""
 
 
@@ -72,7 +72,7 @@ class Losses:
         return ", ".join(what for what, n in counts.items() if n)
 
 
-class Assembler:
+class MessageAssembler:
     """Returns messages of which every datagram came in order; all other messages are left out and counted in `losses`.
 
     The next messages after a lost one are left out, too: they may contain its late datagrams. The resulting hole is so long that the
@@ -94,15 +94,17 @@ class Assembler:
         self._last = b""
         self._last_part = b""
         self._last_ns: int | None = None
-        self._steps_ns: deque[int] = deque(maxlen=_STEPS)
+        self._steps_ns: deque[int] = deque(maxlen=_MOST_KEPT_STEPS)
 
-    def take(self, datagram: Datagram) -> bytes | None:
+    def add_datagram(self, datagram: Datagram) -> bytes | None:
         """Return the message that this datagram completes, if any. Errors: `TraceError` for a stream that counts from 0."""
         if self._sender is not None and datagram.sender != self._sender:
             self.losses.foreign += 1
             return None
-        counter, size = HEADER.unpack_from(datagram.data) if len(datagram.data) > HEADER.size else (1, -1)
-        data = datagram.data[HEADER.size :]
+        counter, size = (
+            DATAGRAM_HEADER.unpack_from(datagram.data) if len(datagram.data) > DATAGRAM_HEADER.size else (1, -1)
+        )
+        data = datagram.data[DATAGRAM_HEADER.size :]
         if size != len(data):
             self.losses.strange += 1
             return None
@@ -111,16 +113,16 @@ class Assembler:
                 f"{self._where}: the datagrams are counted from 0, as an old esmini does: a lost one could not be detected: "
                 "use a newer one, or let it write a file (--osi_file) and watch that"
             )
-        if self._is_interrupted(datagram) and self._parts:
-            self._give_up()
-        if not self._is_next(counter, data):
+        if self._may_have_losses_before(datagram) and self._parts:
+            self._give_up_message()
+        if not self._is_expected_part(counter, data):
             return None
         self._parts.append(data)
         if sum(map(len, self._parts)) > MOST_MESSAGE_BYTES:
-            self._give_up()
-        return self._finished(datagram.sender) if counter < 0 and self._parts else None
+            self._give_up_message()
+        return self._finish_message(datagram.sender) if counter < 0 and self._parts else None
 
-    def _is_next(self, counter: int, data: bytes) -> bool:
+    def _is_expected_part(self, counter: int, data: bytes) -> bool:
         """Return whether a datagram is the expected one; if not, the parts of its message are left out."""
         # the first part of a message contains the message's time: an equal one is a duplicate
         if counter == 1 and [data] == self._parts:
@@ -129,16 +131,16 @@ class Assembler:
             return False
         if counter in {1, -1}:
             if self._parts:
-                self._give_up()
+                self._give_up_message()
             self._is_lost = False
         elif abs(counter) != len(self._parts) + 1:
             if not self._is_lost:
-                self._give_up()
+                self._give_up_message()
             self._is_lost = counter > 0
             return False
         return True
 
-    def _is_interrupted(self, datagram: Datagram) -> bool:
+    def _may_have_losses_before(self, datagram: Datagram) -> bool:
         """Return whether datagrams may have been lost just before this one."""
         previous, self._previous = self._previous, datagram
         if previous is None:
@@ -152,24 +154,24 @@ class Assembler:
             self._last_part = b""
         return paused or dropped > 0 or previous.sender != datagram.sender
 
-    def _give_up(self) -> None:
+    def _give_up_message(self) -> None:
         self.losses.gaps += 1
         self._is_lost = self._in_doubt = True
         self._parts.clear()
 
-    def _finished(self, sender: object) -> bytes | None:
+    def _finish_message(self, sender: object) -> bytes | None:
         message = b"".join(self._parts)
         self._last_part = self._parts[-1]
         self._parts.clear()
-        t_ns = message_time(message, None)
-        if t_ns is None or not is_whole(message):
+        t_ns = message_time_ns(message, None)
+        if t_ns is None or not is_complete_message(message):
             self.losses.strange += 1
             return None
         if message == self._last:
             return None
         if self._in_doubt:
             self._left_out += 1
-            self._in_doubt = self._is_in_hole(t_ns)
+            self._in_doubt = self._is_hole_too_short(t_ns)
             self.losses.distrusted += 1
             return None
         if self._last_ns is not None and t_ns > self._last_ns and not self._left_out:
@@ -178,11 +180,11 @@ class Assembler:
         self._left_out = 0
         return message
 
-    def _is_in_hole(self, t_ns: int) -> bool:
+    def _is_hole_too_short(self, t_ns: int) -> bool:
         """Return whether the hole is still too short if the message at `t_ns` is the last one that is left out."""
         if self._last_ns is None:
             return False
         if not self._steps_ns:
             return self._left_out < 2
         period = median(self._steps_ns)
-        return 0 <= t_ns + period - self._last_ns < HOLE_PERIODS * period
+        return 0 <= t_ns + period - self._last_ns < LEAST_HOLE_PERIODS * period

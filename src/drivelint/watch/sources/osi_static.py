@@ -8,7 +8,7 @@ from google.protobuf.message import DecodeError
 
 from drivelint.formats.osi.schema import SENSOR_VIEW, message_class
 
-_SAID_ONCE: Final = (
+_FIELDS_OF_FIRST_MESSAGE: Final = (
     "lane_boundary", "lane", "reference_line", "logical_lane_boundary", "logical_lane", "traffic_sign", "road_marking",
     "proj_string", "proj_frame_offset",
 )  # fmt: skip
@@ -24,19 +24,19 @@ class StaticContent:
         self._name = name
         self._first: Any = None
         try:
-            truth = _truth(_decoded(first, name), name)
+            truth = _ground_truth(_decoded_message(first, name), name)
         except DecodeError:
             return
         kept = message_class("GroundTruth")()
-        for field in _SAID_ONCE:
-            _copy(truth, kept, field)
+        for field in _FIELDS_OF_FIRST_MESSAGE:
+            _copy_field(truth, kept, field)
         kept.traffic_light.extend(truth.traffic_light)
         for bulb in kept.traffic_light:
             for field in _LIGHT_STATE_FIELDS:
                 bulb.classification.ClearField(field)
         self._first = kept
 
-    def added_to(self, data: bytes) -> bytes:
+    def add_to_message(self, data: bytes) -> bytes:
         """Return a later message with the static content of the first one, so that a log can start with it.
 
         The states of its traffic lights are kept. A traffic light that it does not contain is added with an unknown state.
@@ -44,32 +44,32 @@ class StaticContent:
         if self._first is None:
             return data
         try:
-            message = _decoded(data, self._name)
+            message = _decoded_message(data, self._name)
         except DecodeError:
             return data
-        truth = _truth(message, self._name)
-        for field in _SAID_ONCE:
+        truth = _ground_truth(message, self._name)
+        for field in _FIELDS_OF_FIRST_MESSAGE:
             truth.ClearField(field)
-            _copy(self._first, truth, field)
+            _copy_field(self._first, truth, field)
         named = {bulb.id.value: bulb for bulb in truth.traffic_light}
         for bulb in self._first.traffic_light:
             if bulb.id.value not in named:
                 truth.traffic_light.append(bulb)
             elif not named[bulb.id.value].HasField("base"):
-                _complete(named[bulb.id.value], bulb)
+                _add_place_and_lanes(named[bulb.id.value], bulb)
         whole: bytes = message.SerializeToString(deterministic=True)
         return whole
 
 
-def _decoded(data: bytes, name: str) -> Any:
+def _decoded_message(data: bytes, name: str) -> Any:
     return message_class(name.removeprefix("osi3.")).FromString(data)
 
 
-def _truth(message: Any, name: str) -> Any:
+def _ground_truth(message: Any, name: str) -> Any:
     return message.global_ground_truth if name == SENSOR_VIEW else message
 
 
-def _copy(source: Any, target: Any, field: str) -> None:
+def _copy_field(source: Any, target: Any, field: str) -> None:
     value = getattr(source, field)
     if isinstance(value, str):
         if source.HasField(field):
@@ -80,7 +80,7 @@ def _copy(source: Any, target: Any, field: str) -> None:
         getattr(target, field).CopyFrom(value)
 
 
-def _complete(bulb: Any, first: Any) -> None:
+def _add_place_and_lanes(bulb: Any, first: Any) -> None:
     """Add the place and lanes from the first message to a traffic-light bulb that has only a state."""
     shown = type(bulb).FromString(bulb.SerializeToString())
     bulb.CopyFrom(first)

@@ -20,14 +20,14 @@ if TYPE_CHECKING:
     from mcap.records import Schema
 
 LIBRARY: Final = "drivelint watch"
-_HEAD: Final = struct.Struct("<BQHIQQ")
-_FIELDS_BYTES: Final = 22
+_MESSAGE_HEADER: Final = struct.Struct("<BQHIQQ")
+_MESSAGE_FIELDS_BYTES: Final = 22
 _SEQUENCE_MODULUS: Final = 1 << 32
 """The sequence number of a message is a 32-bit number, which starts again at 0."""
 
 
 @contextmanager
-def writing(path: Path) -> Iterator[None]:
+def write_errors_as_trace_errors(path: Path) -> Iterator[None]:
     """Convert errors of the system within the block, such as a full disk, to `TraceError`."""
     try:
         yield
@@ -65,9 +65,9 @@ class McapRecording:
         """Write messages as a chunk, after their new schemas and channels."""
         records, entries, at = [], [], 0
         for each in messages:
-            channel = self._channel(each.channel)
-            size, number = _FIELDS_BYTES + len(each.content), self._count % _SEQUENCE_MODULUS
-            head = _HEAD.pack(Opcode.MESSAGE, size, channel, number, each.log_ns, each.log_ns)
+            channel = self._channel_id(each.channel)
+            size, number = _MESSAGE_FIELDS_BYTES + len(each.content), self._count % _SEQUENCE_MODULUS
+            head = _MESSAGE_HEADER.pack(Opcode.MESSAGE, size, channel, number, each.log_ns, each.log_ns)
             self._count += 1
             records += [head, each.content]
             entries.append((channel, number, each.log_ns, at))
@@ -82,7 +82,7 @@ class McapRecording:
             self._sink.finish()
             self._file.close()
 
-    def _channel(self, live_channel: LiveChannel) -> int:
+    def _channel_id(self, live_channel: LiveChannel) -> int:
         """Return the id of a channel; announce the channel if it is new."""
         for number, known in self._sink.channels.items():
             schema = replace(self._sink.schemas[known.schema_id], id=0)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import IngestOptions, Trace
 
 
-FIRST_NS: Final = 1_000_000_000
+FIRST_WINDOW_NS: Final = 1_000_000_000
 """The length of the first window, which is short so that the ego is known early."""
 
 
@@ -32,7 +32,7 @@ class Replay:
 
     def __init__(self, path: Path, options: IngestOptions, *, speed: float, every_ns: int) -> None:
         self.recording = path
-        self.in_step = self.is_due = speed == 0
+        self.is_advanced_by_reads = self.is_window_due = speed == 0
         self._speed = speed
         self._every_ns = every_ns
         self._trace = read_trace(path, options)
@@ -45,15 +45,15 @@ class Replay:
         """Return the next steps, each as a frame without content."""
         if self._halted or self._at >= len(self._times):
             return None
-        end = self._due(timeout_s)
+        end = self._number_of_due_steps(timeout_s)
         found = [Frame(int(t_ns), None, 0) for t_ns in self._times[self._at : end]]
         self._at = end
         return found
 
-    def _due(self, timeout_s: float) -> int:
+    def _number_of_due_steps(self, timeout_s: float) -> int:
         """Return how many steps are due, after a wait of at most `timeout_s`."""
-        if self.in_step:
-            span_ns = self._every_ns if self._at else min(self._every_ns, FIRST_NS)
+        if self.is_advanced_by_reads:
+            span_ns = self._every_ns if self._at else min(self._every_ns, FIRST_WINDOW_NS)
             return int(np.searchsorted(self._times, self._times[self._at] + span_ns, side="left"))
         now = time.monotonic()
         if self._begun_s is None:
@@ -69,14 +69,14 @@ class Replay:
         """Return no notes: nothing is lost from a finished log."""
         return ()
 
-    def window(self, frames: Sequence[Frame], folder: Path, options: IngestOptions) -> Callable[[], Trace]:  # noqa: ARG002 - see `Source`
+    def window_reader(self, frames: Sequence[Frame], folder: Path, options: IngestOptions) -> Callable[[], Trace]:  # noqa: ARG002 - see `Source`
         """See `Source`."""
         times = [frame.t_ns for frame in frames]
         return partial(cut_trace, self._trace, min(times), max(times))
 
-    def latest(self, frames: Sequence[Frame], folder: Path, options: IngestOptions) -> Trace:
+    def latest_trace(self, frames: Sequence[Frame], folder: Path, options: IngestOptions) -> Trace:
         """See `Source`."""
-        return self.window(frames, folder, options)()
+        return self.window_reader(frames, folder, options)()
 
     def halt(self) -> None:
         """Provide no more steps."""

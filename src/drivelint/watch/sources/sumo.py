@@ -15,9 +15,9 @@ from xml.sax.saxutils import quoteattr
 from drivelint.errors import TraceError
 from drivelint.formats import safe_xml
 from drivelint.phrases import name_list
-from drivelint.watch.source import Frame, WrittenWindows
-from drivelint.watch.sources.recordings import writing
-from drivelint.watch.sources.sumo_process import Step, SumoProcess
+from drivelint.watch.source import Frame, WindowFileSource
+from drivelint.watch.sources.recordings import write_errors_as_trace_errors
+from drivelint.watch.sources.sumo_process import SumoProcess, SumoStep
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -30,39 +30,39 @@ if TYPE_CHECKING:
 LEAST_DECIMALS: Final = 4
 """The number of decimals that are recorded, unless the configuration requires more."""
 DEFAULT_SPAN_S: Final = 0.5
-PART_S: Final = 0.5
+MOST_READ_SPAN_S: Final = 0.5
 """The most seconds that one `read` simulates, so that a contact halts the simulation soon."""
-_BEGIN: Final = b'<?xml version="1.0" encoding="UTF-8"?>\n<fcd-export>\n'
-_END: Final = b"</fcd-export>\n"
+_FCD_BEGIN: Final = b'<?xml version="1.0" encoding="UTF-8"?>\n<fcd-export>\n'
+_FCD_END: Final = b"</fcd-export>\n"
 _LIGHTS_BEGIN: Final = b"<tlsStates>\n"
 _LIGHTS_END: Final = b"</tlsStates>\n"
-_TYPE: Final = re.compile(rb'\stype="([^"]*)"')
-_LEAVES_OUT: Final = (
+_TYPE_ATTRIBUTE: Final = re.compile(rb'\stype="([^"]*)"')
+_ACTOR_OMITTING_OPTIONS: Final = (
     "person-fcd-output", "fcd-output.filter-edges.input-file", "fcd-output.filter-shapes", "device.fcd.probability",
     "device.fcd.explicit", "device.fcd.radius", "person-device.fcd.probability", "person-device.fcd.explicit",
 )  # fmt: skip
 """Options of a configuration with which SUMO does not write every actor."""
 
 
-def open(name: str, folder: Path, *, span_s: float = DEFAULT_SPAN_S, until_s: float | None = None) -> SumoSimulation:  # noqa: A001
+def open(name: str, folder: Path, *, span_s: float = DEFAULT_SPAN_S, until_s: float | None = None) -> SumoSource:  # noqa: A001
     """Start the simulation of a `*.sumocfg`, and return it as a source; it is recorded in a new folder within `folder`.
 
     Errors: `UsageError` without SUMO or traci, `TraceError` with SUMO's own message if it cannot start.
     """
     from pathlib import Path
 
-    return SumoSimulation(Path(name), folder, span_s=span_s, until_s=until_s)
+    return SumoSource(Path(name), folder, span_s=span_s, until_s=until_s)
 
 
-class SumoSimulation(WrittenWindows):
+class SumoSource(WindowFileSource):
     """Advances a simulation by `span_s` per window, until SUMO's clock reaches `until_s` or the simulation ends."""
 
     window_name = "window.fcd.xml"
-    in_step = True
+    is_advanced_by_reads = True
 
     def __init__(self, config: Path, folder: Path, *, span_s: float, until_s: float | None) -> None:
-        options = _options(config)
-        found = [name for name in _LEAVES_OUT if any(each.tag == name for each in options.iter())]
+        options = _configuration(config)
+        found = [name for name in _ACTOR_OMITTING_OPTIONS if any(each.tag == name for each in options.iter())]
         self._notes = (
             [f"{config.name}: {name_list(found)}: actors that SUMO does not write after that are not judged"]
             if found
@@ -73,15 +73,15 @@ class SumoSimulation(WrittenWindows):
         self.recording = own / f"{base}.fcd.xml"
         self._types: dict[bytes, VehicleType | None] = {}
         self._files: dict[Path, tuple[BinaryIO, bytes]] = {}
-        self._sumo = SumoProcess(config, precision=max(LEAST_DECIMALS, _precision(options)), until_s=until_s)
+        self._sumo = SumoProcess(config, precision=max(LEAST_DECIMALS, _precision_decimals(options)), until_s=until_s)
         self._is_over = False
         self._n_steps = max(1, round(span_s / self._sumo.step_s))
         # a window ends with a span: the first span includes the log's first step, each other starts after the last step of the previous one
         self._n_left = self._n_steps + 1
-        self._n_part = max(1, round(PART_S / self._sumo.step_s))
+        self._n_part = max(1, round(MOST_READ_SPAN_S / self._sumo.step_s))
 
     def read(self, timeout_s: float) -> Sequence[Frame] | None:
-        """Simulate the next part of the span, at most `PART_S` and about `timeout_s` of real time; return a frame per step."""
+        """Simulate the next part of the span, at most `MOST_READ_SPAN_S` and about `timeout_s` of real time; return a frame per step."""
         if self._is_over:
             return None
         until = time.monotonic() + timeout_s
@@ -91,13 +91,13 @@ class SumoSimulation(WrittenWindows):
                 self._is_over = True
                 break
             step = self._sumo.step()
-            with writing(self.recording):
+            with write_errors_as_trace_errors(self.recording):
                 self._record(step)
             frames.append(
                 Frame(round(float(step.time) * 1e9), step, len(step.xml) + sum(map(len, step.lights.values())))
             )
             self._n_left -= 1
-        self.is_due = not self._n_left
+        self.is_window_due = not self._n_left
         self._n_left = self._n_left or self._n_steps
         return frames or None
 
@@ -106,16 +106,16 @@ class SumoSimulation(WrittenWindows):
         found, self._notes = self._notes, []
         return found
 
-    def write_window(self, frames: Sequence[Frame], path: Path, *, latest: bool = False) -> None:  # noqa: ARG002 - as in all sources
+    def write_window(self, frames: Sequence[Frame], path: Path, *, may_omit_earlier_data: bool = False) -> None:  # noqa: ARG002 - as in all sources
         """Write these steps as floating car data, and the types and lights beside it."""
-        steps = [frame.data for frame in frames if isinstance(frame.data, Step)]
-        path.write_bytes(b"".join([_BEGIN, *(step.xml for step in steps), _END]))
-        lights = _beside(path, "tls")
+        steps = [frame.data for frame in frames if isinstance(frame.data, SumoStep)]
+        path.write_bytes(b"".join([_FCD_BEGIN, *(step.xml for step in steps), _FCD_END]))
+        lights = _companion_file(path, "tls")
         if any(step.lights for step in steps):
-            lights.write_bytes(b"".join([_LIGHTS_BEGIN, *map(_lights, steps), _LIGHTS_END]))
+            lights.write_bytes(b"".join([_LIGHTS_BEGIN, *map(_light_states_xml, steps), _LIGHTS_END]))
         else:
             lights.unlink(missing_ok=True)
-        _beside(path, "vtypes").write_bytes(self._vtypes(self._types))
+        _companion_file(path, "vtypes").write_bytes(self._vtypes_xml(self._types))
 
     def halt(self) -> None:
         """End the simulation."""
@@ -127,21 +127,23 @@ class SumoSimulation(WrittenWindows):
         self.halt()
         for file, end in self._files.values():
             if not file.closed:
-                with writing(self.recording), file:
+                with write_errors_as_trace_errors(self.recording), file:
                     file.write(end)
 
-    def _record(self, step: Step) -> None:
+    def _record(self, step: SumoStep) -> None:
         """Write a step to the recording at once, so that it is kept even if this process is killed."""
-        self._append(self.recording, self._sumo.head, step.xml, _END)
+        self._append_to_file(self.recording, self._sumo.output_head, step.xml, _FCD_END)
         if step.lights:
-            self._append(_beside(self.recording, "tls"), _LIGHTS_BEGIN, _lights(step), _LIGHTS_END)
-        new = set(_TYPE.findall(step.xml)) - self._types.keys()
+            self._append_to_file(
+                _companion_file(self.recording, "tls"), _LIGHTS_BEGIN, _light_states_xml(step), _LIGHTS_END
+            )
+        new = set(_TYPE_ATTRIBUTE.findall(step.xml)) - self._types.keys()
         if new:
             # requested while the vehicle exists: the type of a single vehicle ends with it
             self._types |= {name: self._sumo.vehicle_type(unescape(name.decode())) for name in sorted(new)}
-            _beside(self.recording, "vtypes").write_bytes(self._vtypes(self._types))
+            _companion_file(self.recording, "vtypes").write_bytes(self._vtypes_xml(self._types))
 
-    def _append(self, path: Path, begin: bytes, content: bytes, end: bytes) -> None:
+    def _append_to_file(self, path: Path, begin: bytes, content: bytes, end: bytes) -> None:
         if path not in self._files:
             path.parent.mkdir(parents=True, exist_ok=True)
             self._files[path] = path.open("xb"), end
@@ -151,7 +153,7 @@ class SumoSimulation(WrittenWindows):
         file.flush()
 
     @staticmethod
-    def _vtypes(types: dict[bytes, VehicleType | None]) -> bytes:
+    def _vtypes_xml(types: dict[bytes, VehicleType | None]) -> bytes:
         known = [
             f'<vType id="{name.decode()}" vClass="{kind.vehicle_class}" length="{kind.length_m!r}" width="{kind.width_m!r}"/>\n'
             for name, kind in sorted(types.items())
@@ -160,11 +162,11 @@ class SumoSimulation(WrittenWindows):
         return "".join(["<routes>\n", *known, "</routes>\n"]).encode()
 
 
-def _beside(log: Path, kind: str) -> Path:
+def _companion_file(log: Path, kind: str) -> Path:
     return log.with_name(f"{log.name.partition('.')[0]}.{kind}.xml")
 
 
-def _lights(step: Step) -> bytes:
+def _light_states_xml(step: SumoStep) -> bytes:
     """Return the states of all traffic lights at a step, in the format of SUMO's own output of states."""
     return "".join(
         f'<tlsState time="{step.time}" id={quoteattr(light)} state="{state}"/>\n'
@@ -172,7 +174,7 @@ def _lights(step: Step) -> bytes:
     ).encode()
 
 
-def _options(config: Path) -> etree._Element:
+def _configuration(config: Path) -> etree._Element:
     try:
         content = config.read_bytes()
     except OSError as error:
@@ -180,6 +182,6 @@ def _options(config: Path) -> etree._Element:
     return safe_xml.parse(content, f"{config}", TraceError)
 
 
-def _precision(options: etree._Element) -> int:
+def _precision_decimals(options: etree._Element) -> int:
     said: Iterable[str | None] = (each.get("value", each.get("v")) for each in options.iter("precision"))
     return max((int(text) for text in said if text is not None and text.strip().isdecimal()), default=0)

@@ -28,21 +28,21 @@ if TYPE_CHECKING:
 
 GRACE_S: Final = 5.0
 """How long SUMO may take to end by itself and to write its other outputs."""
-CONNECT_S: Final = 30.0
-_STEP_S: Final = 10.0
+CONNECT_TIMEOUT_S: Final = 30.0
+_STEP_TIMEOUT_S: Final = 10.0
 _RETRY_S: Final = 0.02
-_STARTS: Final = 3
-_IN_USE: Final = "bind"
+_MOST_STARTS: Final = 3
+_PORT_IN_USE_WORD: Final = "bind"
 """A word in SUMO's message if another program took the port in the meantime."""
-_NO_SUMO: Final = "SUMO is not installed: pip install 'drivelint[sumo]'"
-_OPTIONS: Final = (
+_NO_SUMO_MESSAGE: Final = "SUMO is not installed: pip install 'drivelint[sumo]'"
+_SUMO_OPTIONS: Final = (
     ("fcd-output.attributes", "id,x,y,z,angle,type,speed,pos,lane,edge,slope,signals,acceleration,vehicle"),
     ("fcd-output.geo", "false"), ("fcd-output.utm", "false"), ("fcd-output.skip-empty", "false"),
     ("device.fcd.period", "0"), ("device.fcd.begin", "-1"), ("human-readable-time", "false"), ("no-step-log", "true"),
 )  # fmt: skip
 
 
-class Step(NamedTuple):
+class SumoStep(NamedTuple):
     """One step of the simulation: its time as SUMO writes it, its `timestep` element, and the state of each traffic light."""
 
     time: str
@@ -58,7 +58,7 @@ class VehicleType(NamedTuple):
     width_m: float
 
 
-def program() -> tuple[str, str | None]:
+def find_sumo_program() -> tuple[str, str | None]:
     """Return the path of SUMO's program and, if it is known, SUMO_HOME. Errors: `UsageError` if SUMO is not installed.
 
     The program inside the package is used: the script of the same name starts it as a child, which would outlive the script.
@@ -73,7 +73,7 @@ def program() -> tuple[str, str | None]:
             return found, home
     if found := shutil.which("sumo"):
         return found, None
-    raise UsageError(f"{_NO_SUMO}, or set SUMO_HOME")
+    raise UsageError(f"{_NO_SUMO_MESSAGE}, or set SUMO_HOME")
 
 
 class SumoProcess:
@@ -86,7 +86,7 @@ class SumoProcess:
         try:
             from traci import constants, exceptions
         except ImportError as error:
-            raise UsageError(_NO_SUMO) from error
+            raise UsageError(_NO_SUMO_MESSAGE) from error
         self._config = config
         self._refusal = exceptions.TraCIException
         self._light_state = constants.TL_RED_YELLOW_GREEN_STATE
@@ -99,7 +99,7 @@ class SumoProcess:
         """Whether SUMO has not yet answered the last request."""
         with ExitStack() as undo:
             undo.callback(self.end)
-            self._begin(precision)
+            self._start_and_connect(precision)
             with self._guarded_connection() as con:
                 self.step_s = float(con.simulation.getDeltaT())
                 end_s = float(con.simulation.getEndTime())  # less than 0: until all vehicles have arrived
@@ -110,20 +110,20 @@ class SumoProcess:
         self._end_s = min(each for each in (end_s if end_s >= 0 else inf, until_s) if each is not None)
 
     @property
-    def head(self) -> bytes:
+    def output_head(self) -> bytes:
         """The output of SUMO before the first step."""
-        return self._steps.head
+        return self._steps.output_head
 
-    def step(self) -> Step:
+    def step(self) -> SumoStep:
         """Simulate one step."""
         with self._guarded_connection() as con:
             con.simulationStep()
             lights = con.trafficlight.getAllSubscriptionResults()
-        if (found := self._steps.take(_STEP_S)) is None:
+        if (found := self._steps.take_step(_STEP_TIMEOUT_S)) is None:
             raise TraceError(
                 f"{self._config}: SUMO wrote no floating car data of a step: leave that to SUMO's defaults"
             )
-        return Step(*found, {light: states[self._light_state] for light, states in sorted(lights.items())})
+        return SumoStep(*found, {light: states[self._light_state] for light, states in sorted(lights.items())})
 
     def is_over(self) -> bool:
         """Return whether the simulation is at its end."""
@@ -164,14 +164,14 @@ class SumoProcess:
                 os.killpg(process.pid, signal.SIGKILL)
         process.wait()
 
-    def _begin(self, precision: int) -> None:
+    def _start_and_connect(self, precision: int) -> None:
         """Start SUMO and connect to it; try another port if another program took the first."""
-        found, home = program()
+        found, home = find_sumo_program()
         environment = {**os.environ, **({"SUMO_HOME": home} if home else {})}
-        for start in range(_STARTS):
+        for start in range(_MOST_STARTS):
             with socket.create_server((HOST, 0)) as free:
                 port = free.getsockname()[1]
-            options = [*_OPTIONS, ("fcd-output", f"{HOST}:{self._steps.port}"), ("precision", str(precision))]
+            options = [*_SUMO_OPTIONS, ("fcd-output", f"{HOST}:{self._steps.port}"), ("precision", str(precision))]
             command = [found, "-c", str(self._config), "--remote-port", str(port)]
             command += [part for name, value in options for part in (f"--{name}", value)]
             # in a session of its own: only drivelint receives Ctrl-C, and then ends SUMO
@@ -181,14 +181,14 @@ class SumoProcess:
             )  # fmt: skip
             if self._connect(port, self._process):
                 return
-            if _IN_USE not in self._output_text() or start == _STARTS - 1:
-                raise self._failed()
+            if _PORT_IN_USE_WORD not in self._output_text() or start == _MOST_STARTS - 1:
+                raise self._failure()
 
     def _connect(self, port: int, process: subprocess.Popen[bytes]) -> bool:
         """Connect as soon as SUMO listens, and return whether it did. traci's own function would write to stdout meanwhile."""
         from traci.connection import Connection
 
-        until = time.monotonic() + CONNECT_S
+        until = time.monotonic() + CONNECT_TIMEOUT_S
         while time.monotonic() < until and process.poll() is None:
             try:
                 self._con = Connection(HOST, port, process, None, True)
@@ -206,10 +206,10 @@ class SumoProcess:
         try:
             yield self._con
         except self._broken as error:
-            raise self._failed() from error
+            raise self._failure() from error
         self._is_asked = False
 
-    def _failed(self) -> TraceError:
+    def _failure(self) -> TraceError:
         """Return an error with SUMO's own message on why it ended."""
         code: int | None = None
         if self._process is not None:

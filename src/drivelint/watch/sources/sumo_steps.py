@@ -13,10 +13,10 @@ from contextlib import suppress
 from typing import Final
 
 HOST: Final = "127.0.0.1"
-_ACCEPT_S: Final = 0.2
-_BLOCK: Final = 1 << 16
-_STEP: Final = re.compile(rb'[ \t]*<timestep time="([^"]*)" *(?:/>|>.*?</timestep>)[ \t]*\r?\n?', re.DOTALL)
-_BEGIN: Final = re.compile(rb"<fcd-export[^>]*>[ \t]*\r?\n?")
+_ACCEPT_TIMEOUT_S: Final = 0.2
+_BLOCK_BYTES: Final = 1 << 16
+_STEP_ELEMENT: Final = re.compile(rb'[ \t]*<timestep time="([^"]*)" *(?:/>|>.*?</timestep>)[ \t]*\r?\n?', re.DOTALL)
+_FCD_BEGIN: Final = re.compile(rb"<fcd-export[^>]*>[ \t]*\r?\n?")
 
 
 class StepReader:
@@ -27,9 +27,9 @@ class StepReader:
 
     def __init__(self) -> None:
         self._server = socket.create_server((HOST, 0))
-        self._server.settimeout(_ACCEPT_S)
+        self._server.settimeout(_ACCEPT_TIMEOUT_S)
         self.port: int = self._server.getsockname()[1]
-        self.head = b""
+        self.output_head = b""
         """The output of SUMO before the first step."""
         self._found: deque[tuple[str, bytes]] = deque()
         self._news = threading.Condition()
@@ -37,7 +37,7 @@ class StepReader:
         self._thread = threading.Thread(target=self._listen, name="drivelint-sumo", daemon=True)
         self._thread.start()
 
-    def take(self, timeout_s: float) -> tuple[str, bytes] | None:
+    def take_step(self, timeout_s: float) -> tuple[str, bytes] | None:
         """Return the next step: its time as SUMO writes it, and its element; None: no step came within `timeout_s`."""
         with self._news:
             self._news.wait_for(lambda: self._found or self._ended, timeout_s)
@@ -58,23 +58,23 @@ class StepReader:
                 return
         with connection, suppress(OSError):
             connection.settimeout(None)
-            self._read(connection)
+            self._read_steps(connection)
         with self._news:
             self._ended = True
             self._news.notify_all()
 
-    def _read(self, connection: socket.socket) -> None:
+    def _read_steps(self, connection: socket.socket) -> None:
         waiting = bytearray()
-        while block := connection.recv(_BLOCK):
+        while block := connection.recv(_BLOCK_BYTES):
             waiting += block
-            if not self.head:
-                begin = _BEGIN.search(waiting)
+            if not self.output_head:
+                begin = _FCD_BEGIN.search(waiting)
                 if begin is None:
                     continue
-                self.head = bytes(waiting[: begin.end()])
+                self.output_head = bytes(waiting[: begin.end()])
                 del waiting[: begin.end()]
             at = 0
-            while step := _STEP.match(waiting, at):
+            while step := _STEP_ELEMENT.match(waiting, at):
                 with self._news:
                     self._found.append((step[1].decode(), bytes(step[0])))
                     self._news.notify_all()

@@ -10,13 +10,13 @@ from ipaddress import ip_address
 from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import TraceError
-from drivelint.watch.sources.background import TICK_S
+from drivelint.watch.sources.background import STOP_CHECK_PERIOD_S
 
 if TYPE_CHECKING:
     from collections.abc import Generator
 
-BLOCK: Final = 1 << 18
-RETRY_S: Final = 0.5
+BLOCK_BYTES: Final = 1 << 18
+CONNECT_RETRY_S: Final = 0.5
 """The interval between attempts to connect to a writer that is not started yet."""
 
 
@@ -31,19 +31,19 @@ def is_loopback(host: str) -> bool:
         return host.casefold() == "localhost"
 
 
-def open_to_others(host: str) -> list[str]:
+def notes_on_open_address(host: str) -> list[str]:
     """Return the note that other machines can reach an address; empty if they cannot."""
     return [] if is_loopback(host) else ["whoever reaches this address can send what is judged"]
 
 
-class Patience:
+class IdleTimeout:
     """A timeout after `idle_s` seconds without data; None: there is no timeout."""
 
     def __init__(self, idle_s: float | None) -> None:
         self._idle_s = idle_s
         self._came_at = time.monotonic()
 
-    def came(self) -> None:
+    def restart(self) -> None:
         """Restart the timeout, because data came."""
         self._came_at = time.monotonic()
 
@@ -53,31 +53,33 @@ class Patience:
         return self._idle_s is not None and time.monotonic() - self._came_at >= self._idle_s
 
 
-def from_descriptor(number: int, idle_s: float | None) -> Generator[bytes, None, None]:
+def blocks_of_descriptor(number: int, idle_s: float | None) -> Generator[bytes, None, None]:
     """Yield the bytes of an open file descriptor, such as standard input, up to its end."""
-    patience = Patience(idle_s)
+    patience = IdleTimeout(idle_s)
     while not patience.is_over:
-        if not select.select([number], [], [], TICK_S)[0]:
+        if not select.select([number], [], [], STOP_CHECK_PERIOD_S)[0]:
             yield b""
             continue
         try:
-            data = os.read(number, BLOCK)
+            data = os.read(number, BLOCK_BYTES)
         except OSError as error:
             raise TraceError(f"standard input cannot be read: {error.strerror or error}") from error
         if not data:
             return
         yield data
-        patience.came()
+        patience.restart()
 
 
-def from_socket(connection: socket.socket, idle_s: float | None, notes: list[str]) -> Generator[bytes, None, None]:
+def blocks_of_connection(
+    connection: socket.socket, idle_s: float | None, notes: list[str]
+) -> Generator[bytes, None, None]:
     """Yield the bytes of a TCP connection until the writer closes it or the connection fails; a failure is added to `notes`."""
-    patience = Patience(idle_s)
+    patience = IdleTimeout(idle_s)
     with connection:
-        connection.settimeout(TICK_S)
+        connection.settimeout(STOP_CHECK_PERIOD_S)
         while not patience.is_over:
             try:
-                data = connection.recv(BLOCK)
+                data = connection.recv(BLOCK_BYTES)
             except TimeoutError:
                 yield b""
                 continue
@@ -87,34 +89,34 @@ def from_socket(connection: socket.socket, idle_s: float | None, notes: list[str
             if not data:
                 return
             yield data
-            patience.came()
+            patience.restart()
 
 
-def connected(host: str, port: int, idle_s: float | None, notes: list[str]) -> Generator[bytes, None, None]:
+def connect_and_read(host: str, port: int, idle_s: float | None, notes: list[str]) -> Generator[bytes, None, None]:
     """Connect to a writer, waiting for it to start, and yield the bytes that it sends.
 
     Errors: `TraceError` for an unknown host.
     """
     where = f"tcp://{host}:{port}"
-    patience = Patience(idle_s)
+    patience = IdleTimeout(idle_s)
     while not patience.is_over:
         try:
-            connection = socket.create_connection((host, port), timeout=RETRY_S)
+            connection = socket.create_connection((host, port), timeout=CONNECT_RETRY_S)
         except socket.gaierror as error:
             raise TraceError(f"{where}: the host is not known: {error.strerror or error}") from error
         except OSError:
             yield b""
-            time.sleep(RETRY_S)
+            time.sleep(CONNECT_RETRY_S)
         else:
-            yield from from_socket(connection, idle_s, notes)
+            yield from blocks_of_connection(connection, idle_s, notes)
             return
 
 
-def listening(server: socket.socket, idle_s: float | None, notes: list[str]) -> Generator[bytes, None, None]:
+def listen_and_read(server: socket.socket, idle_s: float | None, notes: list[str]) -> Generator[bytes, None, None]:
     """Wait for one writer to connect, and yield the bytes that it sends."""
-    patience = Patience(idle_s)
+    patience = IdleTimeout(idle_s)
     with server:
-        server.settimeout(TICK_S)
+        server.settimeout(STOP_CHECK_PERIOD_S)
         while not patience.is_over:
             try:
                 connection, _ = server.accept()
@@ -122,7 +124,7 @@ def listening(server: socket.socket, idle_s: float | None, notes: list[str]) -> 
                 yield b""
                 continue
             server.close()  # a second writer would be another drive
-            yield from from_socket(connection, idle_s, notes)
+            yield from blocks_of_connection(connection, idle_s, notes)
             return
 
 
