@@ -176,9 +176,9 @@ def _with_log(trace: Trace, **values: str | float) -> Trace:
 def _road(request: ConvertRequest, trace: Trace) -> tuple[MapSource | None, Trace, list[str]]:
     """Return the map to write (the user's, else the log's own), the trace in the map's frame, and notes. Errors: as `convert`."""
     library, own = MapLibrary(request), trace.embedded_map
-    if library.uses_embedded(trace) or (road := library.find_source(trace)) is None:
+    if library.uses_map_in_log(trace) or (road := library.find_source(trace)) is None:
         if own is None:
-            return None, trace, list(library.doubts(trace, None).values())
+            return None, trace, list(library.doubts_on_map(trace, None).values())
         return _own_road(request, trace, MapSource(MAP_FILE, own))
     if request.to == "mcap" and (why := _why_unfit_for_mcap(road)):
         raise UsageError(why)
@@ -195,7 +195,7 @@ def _own_road(request: ConvertRequest, trace: Trace, road: MapSource) -> tuple[M
     library = MapLibrary(DriveInput())
     try:
         environment, trace = library.find(trace)
-        library.doubts(trace, environment)
+        library.doubts_on_map(trace, environment)
     except MapError as error:
         notes.append(f"the log's own map cannot be used: {error}")
     if request.to == "mcap" and (why := _why_unfit_for_mcap(road)):

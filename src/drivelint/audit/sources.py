@@ -49,7 +49,7 @@ def drives(sources: Sequence[str], options: DriveInput) -> Iterator[AuditDrive]:
     sources are the same as for `check`.
     Errors: `UsageError` for an invalid manifest, `TraceError` for a missing source.
     """
-    conditions.parse(options.env)
+    conditions.parse_env_settings(options.env)
     logs: list[str] = []
     for source in sources:
         if is_url(source):
@@ -235,7 +235,7 @@ def _of_manifest(path: Path, manifest_name: str, options: DriveInput) -> Iterato
 def _require_values(row: Mapping[str, str], options: DriveInput) -> None:
     """Raise `UsageError` for option values of a row that are invalid, before any drive is judged."""
     try:
-        conditions.parse((*options.env, *_parts(row.get("environment", ""))))
+        conditions.parse_env_settings((*options.env, *_parts(row.get("environment", ""))))
     except UsageError as error:
         raise UsageError(str(error).replace("--env", "environment", 1)) from error
     side = row.get("handedness", "")
