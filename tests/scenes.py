@@ -351,8 +351,8 @@ def derived(
             bench._maps = frozenset()  # all of the map once more, with these
         bench._tables |= wanted  # or they would keep the rows of the scene before
         bench._also = ALWAYS_NEEDED
-        bench._load(drives)
-        derive(con, wanted, of_the_map=False)
+        bench._load_drives(drives)
+        derive(con, wanted, are_map_tables=False)
     return con
 
 

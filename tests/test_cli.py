@@ -19,7 +19,7 @@ import typer
 
 from drivelint import __version__, cli
 from drivelint.catalogue import load_rules
-from drivelint.cli.app import _part_of
+from drivelint.cli.app import _app_with_command
 from drivelint.drive.trace import DriveInput
 from drivelint.result.request import RunRequest
 from tests.evaluate.packs import invariant
@@ -498,7 +498,7 @@ def test_a_command_is_built_alone() -> None:
     """With the options that it has among the others; who names none has all of them."""
     whole = typer.main.get_command(cli.app).commands  # type: ignore[attr-defined]
     for name, command in whole.items():
-        part = typer.main.get_command(_part_of(name)).commands  # type: ignore[attr-defined]
+        part = typer.main.get_command(_app_with_command(name)).commands  # type: ignore[attr-defined]
         assert list(part) == (list(whole) if name == "docs" else [name])  # which tells of all
         assert [param.name for param in part[name].params] == [param.name for param in command.params]
-    assert _part_of("nonsense") is _part_of("") is cli.app
+    assert _app_with_command("nonsense") is _app_with_command("") is cli.app

@@ -41,20 +41,20 @@ OVERTAKE = ROOT / "fixtures" / "overtake"
 )
 def test_what_is_not_understood_is_refused_with_the_nearest(settings: list[str], says: str) -> None:
     with pytest.raises(UsageError, match=f"--env .*{says}"):
-        conditions.parse(settings)
+        conditions.parse_env_settings(settings)
 
 
 def test_conditions_come_in_one_order_and_once() -> None:
     given = ["weather=wet", " nation = gb-sct ", "weather=wet", "engaged=no"]
-    assert conditions.parse(given) == (("engaged", "no"), ("nation", "gb-sct"), ("weather", "wet"))
+    assert conditions.parse_env_settings(given) == (("engaged", "no"), ("nation", "gb-sct"), ("weather", "wet"))
 
 
 def test_words_are_taken_in_any_case() -> None:
     given = ["Nation=GB", "WEATHER=Wet", "road_type=TOWNLOCAL", "vehicle_class=Goods_7t5", "engaged=Yes"]
-    assert conditions.parse(given) == (
+    assert conditions.parse_env_settings(given) == (
         ("engaged", "yes"), ("nation", "gb"), ("road_type", "townLocal"), ("vehicle_class", "goods_7t5"), ("weather", "wet"),
     )  # fmt: skip
-    assert conditions.parse(["nation=FR"]) == (("nation", "fr"),)
+    assert conditions.parse_env_settings(["nation=FR"]) == (("nation", "fr"),)
 
 
 def checked(tmp_path: Path, *env: str) -> Result:

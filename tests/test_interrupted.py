@@ -340,6 +340,6 @@ def test_the_first_batches_of_a_run_are_small(n: int, sizes: list[int]) -> None:
 
 
 def test_the_first_batches_have_few_states(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(batch.Drive, "size", 40_000)
+    monkeypatch.setattr(batch.Drive, "states_or_pairs", 40_000)
     drives = [batch.Drive(None, None) for _ in range(30)]  # type: ignore[arg-type]
     assert [len(each) for each in batch.cut_batches(drives)] == [2, 10, 10, 8]

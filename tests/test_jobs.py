@@ -13,7 +13,7 @@ import pyarrow.compute as pc
 import pytest
 
 from drivelint import demo, errors, parallel, run
-from drivelint.cli.receipts import Outputs
+from drivelint.cli.receipts import OutputPathTest
 from drivelint.engine.interruption import Interruption, NothingJudgedError
 from drivelint.errors import DriveLintError, MemoryShortError, TraceError
 from drivelint.receipts.recorder import record_inputs
@@ -92,7 +92,7 @@ def test_several_processes_write_the_bytes_of_one(asked: CheckOptions, alone: Al
     expected, out, by_one, one = alone
     two = Counter()
     shutil.rmtree(out)  # paths in the result are relative to its folder
-    with record_inputs(Outputs(out), []) as recorder:
+    with record_inputs(OutputPathTest(out), []) as recorder:
         found = written(asked, out, 2, two)
     assert files(out) == by_one
     assert sum(name.endswith(".mcap") for name in by_one) == 4

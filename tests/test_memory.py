@@ -15,7 +15,7 @@ import pytest
 from drivelint import option_values
 from drivelint.engine import batch, margins, set_aside
 from drivelint.engine.derive import derive as derived
-from drivelint.engine.memory import DEFAULT_MEMORY, LEAST_MEMORY_BYTES, Memory
+from drivelint.engine.memory import DEFAULT_MEMORY, LEAST_MEMORY_BYTES, MemoryLimit
 from drivelint.errors import UsageError
 from drivelint.evaluate import evaluate as evaluated
 from drivelint.evaluate.evaluation import Evaluation
@@ -50,13 +50,13 @@ class Notes(Silent):
 def halved(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """Return the meetings of the parts that did not fit."""
     found: list[int] = []
-    halve = Memory.halve_parts
+    halve = MemoryLimit.halve_parts
 
-    def told(self: Memory, meetings: int) -> None:
+    def told(self: MemoryLimit, meetings: int) -> None:
         found.append(meetings)
         halve(self, meetings)
 
-    monkeypatch.setattr(Memory, "halve_parts", told)
+    monkeypatch.setattr(MemoryLimit, "halve_parts", told)
     return found
 
 
@@ -298,7 +298,7 @@ def test_tables_that_are_set_aside_on_disk_give_the_same_files(
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(set_aside, "LEAST_SPILLED_TABLE_BYTES", -1)
-    monkeypatch.setattr(batch, "LARGE_STATES", 0)
+    monkeypatch.setattr(batch, "LARGE_BATCH_STATES", 0)
     monkeypatch.setattr(pa, "memory_map", noted)
     if full:
         monkeypatch.setattr(pa, "OSFile", no_room)
@@ -311,7 +311,7 @@ def test_tables_that_are_set_aside_on_disk_give_the_same_files(
 def test_memory_that_is_given_back_changes_no_table_and_no_limit(*, lifted: bool) -> None:
     held = "SELECT sum(memory_usage_bytes) FROM duckdb_memory()"
     with store.workspace(200_000_000) as con:
-        memory = Memory(con, 200_000_000)
+        memory = MemoryLimit(con, 200_000_000)
         if lifted:
             memory.lift_limit()
         limit = con.execute("SELECT current_setting('memory_limit')").fetchall()
@@ -372,9 +372,9 @@ def test_margins_go_on_where_memory_ran_out() -> None:
             return Rows(values[0]) if values else store_.execute(sql)
 
     with store.connect(memory_limit="200MB") as store_:
-        blocks = margins._blocks(Connection(), Memory(store_, 200_000_000))  # type: ignore[arg-type]
+        blocks = margins._sorted_margin_batches(Connection(), MemoryLimit(store_, 200_000_000))  # type: ignore[arg-type]
         assert [t for block in blocks for t in block["t_ns"].to_pylist()] == [0, 1, 2, 3]
-        blocks = margins._blocks(Connection(), Memory(store_, None))  # type: ignore[arg-type]
+        blocks = margins._sorted_margin_batches(Connection(), MemoryLimit(store_, None))  # type: ignore[arg-type]
         with pytest.raises(OSError, match="Out of Memory"):
             list(blocks)
 

@@ -124,13 +124,13 @@ def test_parts_of_a_drive_hold_its_egos_once(ragged: Path, monkeypatch: pytest.M
     assert drive.pairs_by_ego.keys() == set(EGOS)
     assert drive.pairs_by_ego["once"] == 4  # its only step, and the four that are there then
     assert drive.pairs_by_ego["ego"] == 3 * steps["ego"] + 1
-    assert drive.size == sum(drive.pairs_by_ego.values())
+    assert drive.states_or_pairs == sum(drive.pairs_by_ego.values())
     for room in (1, 1100, 10**9):
         monkeypatch.setattr(batch, "PAIRS_PER_PART", room)
-        judged = [sorted(set(EGOS) - set(resting)) for resting in batch.skipped_egos_by_part([drive])]
+        judged = [sorted(set(EGOS) - set(resting)) for resting in batch.egos_to_skip_by_part([drive])]
         assert [ego for part in judged for ego in part] == sorted(EGOS)
         assert all(len(part) == 1 or sum(drive.pairs_by_ego[e] for e in part) <= room for part in judged)
-    assert batch.skipped_egos_by_part([drive, drive]) == [[]]
+    assert batch.egos_to_skip_by_part([drive, drive]) == [[]]
 
 
 @pytest.mark.slow

@@ -177,9 +177,9 @@ def _with_log_values(trace: Trace, **values: str | float) -> Trace:
 def _map_to_write(request: ConvertRequest, trace: Trace) -> tuple[MapSource | None, Trace, list[str]]:
     """Return the map to write (the user's, else the log's own), the trace in the map's frame, and notes. Errors: as `convert`."""
     library, own = MapLibrary(request), trace.embedded_map
-    if library.uses_embedded(trace) or (road := library.find_source(trace)) is None:
+    if library.uses_map_in_log(trace) or (road := library.find_source(trace)) is None:
         if own is None:
-            return None, trace, list(library.doubts(trace, None).values())
+            return None, trace, list(library.doubts_on_map(trace, None).values())
         return _embedded_map_to_write(request, trace, MapSource(MAP_FILE, own))
     if request.to == "mcap" and (why := _why_unfit_for_mcap(road)):
         raise UsageError(why)
@@ -198,7 +198,7 @@ def _embedded_map_to_write(
     library = MapLibrary(DriveInput())
     try:
         environment, trace = library.find(trace)
-        library.doubts(trace, environment)
+        library.doubts_on_map(trace, environment)
     except MapError as error:
         notes.append(f"the log's own map cannot be used: {error}")
     if request.to == "mcap" and (why := _why_unfit_for_mcap(road)):

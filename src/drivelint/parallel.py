@@ -21,7 +21,7 @@ import pyarrow.compute as pc
 
 from drivelint import run, temporary
 from drivelint.audit.executors.local import block_ctrl_c, core_count, prepare_worker_process
-from drivelint.engine.default_rules import with_chosen_rules
+from drivelint.engine.default_rules import with_selectors_of_run
 from drivelint.engine.interruption import Interruption
 from drivelint.engine.memory import LEAST_MEMORY_BYTES
 from drivelint.errors import DriveLintError, ExitCode, InternalError
@@ -103,7 +103,7 @@ def check(
     Errors: as `run.check`; `WorkerLostError`.
     """
     if jobs > 1 and not settings.margins and not settings.keep_db:
-        settings = with_chosen_rules(settings)
+        settings = with_selectors_of_run(settings)
         run.RunRules.from_options(settings)  # wrong rules or parameters are refused here, once
         paths, _ = run.named_logs(settings)
         if len(parts := _cut_into_parts(paths, jobs)) > 1:

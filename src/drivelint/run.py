@@ -12,15 +12,15 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint import catalogue
-from drivelint.drive.trace import NOT_IN_FOLDER
-from drivelint.engine.apart import judge_apart
+from drivelint.drive.trace import NOT_IN_FOLDER_CHECK
+from drivelint.engine.apart import judge_and_refuse_faulty
 from drivelint.engine.barrier import RefusedLog
 from drivelint.engine.batch import Drive, cut_batches, read_drives, sorted_logs
-from drivelint.engine.default_rules import with_chosen_rules
+from drivelint.engine.default_rules import with_selectors_of_run
 from drivelint.engine.interruption import InterruptedRunError, Interruption, NothingJudgedError
 from drivelint.engine.judging_options import JudgingOptions
 from drivelint.engine.map_library import MapLibrary
-from drivelint.engine.memory import Memory
+from drivelint.engine.memory import MemoryLimit
 from drivelint.engine.profiles import DEFAULT_PROFILES, load_profiles, profile_table
 from drivelint.engine.robustness.copies import MeasurementErrors
 from drivelint.engine.session import JudgingSession
@@ -131,7 +131,7 @@ def check(
     cannot be judged, they are rows of the table `drive`, and no error is raised.
     """
     library = MapLibrary(settings)
-    settings = with_chosen_rules(settings, library)
+    settings = with_selectors_of_run(settings, library)
     run_rules = RunRules.from_options(settings)
     paths, refused_logs = named_logs(settings)
     progress.stage(CHECKING_STAGE, len(paths))
@@ -168,7 +168,7 @@ def judge_logs(
     interruption = interruption or Interruption()
     rules, required, params, profiles = run_rules
     with store.workspace(settings.memory, threads=settings.threads) as con:
-        memory = Memory(con, settings.memory, progress.note)
+        memory = MemoryLimit(con, settings.memory, progress.note)
         store.insert(con, "profile", profiles)
         table = collect.rule_table(rules, params, settings.profiles or DEFAULT_PROFILES)
         # the report and the annotated logs read each batch before its tables are cleared
@@ -325,17 +325,17 @@ def _with_reading_progress(
 def _missing_map_messages(drive: Drive) -> list[str]:
     """Return the message that the folder of maps has no map of the drive's place; empty if it has one."""
     quality = drive.trace.tables["quality"]
-    texts: list[str] = quality.filter(pc.equal(quality["check_id"], NOT_IN_FOLDER))["message"].to_pylist()
+    texts: list[str] = quality.filter(pc.equal(quality["check_id"], NOT_IN_FOLDER_CHECK))["message"].to_pylist()
     return texts
 
 
-def _judge_copies(session: JudgingSession, progress: Progress, memory: Memory) -> None:
+def _judge_copies(session: JudgingSession, progress: Progress, memory: MemoryLimit) -> None:
     """Judge the copies that are not judged yet, even after an interruption."""
     if session.n_waiting:
         findings = one_finding_per_event(memory.run_job(collect.findings).to_pylist())
         # the number of findings is shown before the copies are judged
         word = "finding" if len(findings) == 1 else "findings"
-        progress.stage(f"{severity_counts_text(findings)} {word}; judging copies", session.n_to_copy())
+        progress.stage(f"{severity_counts_text(findings)} {word}; judging copies", session.n_findings_to_copy())
         session.judge_copies(progress.advance)
 
 
@@ -365,7 +365,7 @@ def _judge_batch(
     limits.begin_batch(len(drives))
     n_unread = len(refused_logs) - n_before
     try:
-        judge_apart(session, drives, refused_logs)
+        judge_and_refuse_faulty(session, drives, refused_logs)
     finally:
         notes.add_refused_logs(refused_logs[n_before:])
     progress.advance(len(drives) + n_unread)

@@ -22,7 +22,7 @@ from drivelint.audit.model import AuditDrive
 from drivelint.audit.store import LocalFolder
 from drivelint.audit.text import summary_text
 from drivelint.drive.trace import DriveInput
-from drivelint.engine.memory import Memory
+from drivelint.engine.memory import MemoryLimit
 from drivelint.errors import ExitCode, UsageError
 from drivelint.fleet_report import gated
 from drivelint.fleet_report.audit_views import open_audits
@@ -136,15 +136,15 @@ def test_processes_give_the_same_tables(
 def test_a_worker_that_gives_memory_back_after_each_task_gives_the_same_tables(
     drives: fleet.Fleet, undisturbed: tuple[Path, AuditSummary], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    released: list[Memory] = []
-    release = Memory.release
+    released: list[MemoryLimit] = []
+    release = MemoryLimit.release
     monkeypatch.setattr(worker, "TASKS_PER_RELEASE", 1)
 
-    def noted(memory: Memory) -> None:
+    def noted(memory: MemoryLimit) -> None:
         released.append(memory)
         release(memory)
 
-    monkeypatch.setattr(Memory, "release", noted)
+    monkeypatch.setattr(MemoryLimit, "release", noted)
     assert judged(drives, tmp_path / "out", InThisProcess()).digest == undisturbed[1].digest
     assert len(released) > 1
 

@@ -36,7 +36,7 @@ def test_the_example_of_the_guide_and_of_the_help_holds() -> None:
     text = Path(guide).with_name("fleets.md").read_text(encoding="utf-8")
     for said in (text, audit_command.__doc__ or ""):
         (example,) = re.findall(r"environment\W+(\w+=\w+(?:;\w+=\w+)+)", said)
-        assert conditions.parse(example.split(";"))
+        assert conditions.parse_env_settings(example.split(";"))
 
 
 @pytest.mark.parametrize(

@@ -34,7 +34,7 @@ def profile(place: Place) -> list[Row]:
     with store.connect() as con:
         store.insert(con, "profile", profile_table(load_profiles(()), ()))
         bench = JudgingSession(con, rules, catalogue.parse_params(rules, ()), None)
-        bench._load([Drive(trace, road)])
+        bench._load_drives([Drive(trace, road)])
         for step in needed_derivations(tables):
             if not step.of_the_map:
                 begin = time.perf_counter()

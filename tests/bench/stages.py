@@ -30,14 +30,14 @@ if TYPE_CHECKING:
 WATCHED = (
     (store, "connect", "database opened"),
     (catalogue, "load_rules", "catalogue read"),
-    (batch, "_wait_for", "ingest"),  # waiting for the threads that read
+    (batch, "_drive_when_read", "ingest"),  # waiting for the threads that read
     (MapLibrary, "find", "map"),
-    (judge.JudgingSession, "_load", "tables filled"),
+    (judge.JudgingSession, "_load_drives", "tables filled"),
     (judge, "derive", "derive"),
     (judge, "evaluate", "rules"),
     (copies, "derive", "copies"),  # but for their tables, which are filled as those of drives
     (copies, "evaluate", "copies"),
-    (copies.Robustness, "judge", "copies"),
+    (copies.RobustnessJudge, "judge", "copies"),
     (evidence, "gather", "report"),
     (html, "render", "report"),
     (junit, "render", "report"),

@@ -28,7 +28,12 @@ WRITE: Names = (("drivelint.report.outputs", "write"),)
 WATCHED: tuple[tuple[str, Names], ...] = (
     (
         "ingest",  # waiting for the threads that read
-        (("drivelint.engine.batch", "_wait_for"), ("drivelint.engine.batch", "_drive"), ("drivelint.batch", "_drive")),
+        (
+            ("drivelint.engine.batch", "_drive_when_read"),
+            ("drivelint.engine.batch", "_wait_for"),
+            ("drivelint.engine.batch", "_drive"),
+            ("drivelint.batch", "_drive"),
+        ),
     ),
     ("map", (("drivelint.engine.map_library", "MapLibrary.find"), ("drivelint.maps.library", "MapLibrary.find"))),
     ("derive", (("drivelint.engine.session", "derive"), ("drivelint.judge", "derive"))),

@@ -40,7 +40,7 @@ FROM step JOIN visited_cell USING (drive_id) GROUP BY ALL"""
 CELL = "SELECT drive_id, max(t_ns) AS cell FROM step GROUP BY drive_id"
 
 
-@pytest.mark.parametrize(("most", "n"), [(derive.ASKED_STATES, 0), (-1, 5)])
+@pytest.mark.parametrize(("most", "n"), [(derive.MOST_STATES_TO_ASK_FIRST, 0), (-1, 5)])
 def test_without_an_occasion_a_table_of_few_states_stays_empty(
     con: duckdb.DuckDBPyConnection, monkeypatch: pytest.MonkeyPatch, most: int, n: int
 ) -> None:
@@ -48,8 +48,8 @@ def test_without_an_occasion_a_table_of_few_states_stays_empty(
     made = {"step": derivations.Derivation("step", STEP, frozenset(), occasion="SELECT 1 WHERE false")}
     monkeypatch.setattr(derivations, "_file_by_table", lambda: made)
     monkeypatch.setattr(derivations, "_derivation", made.__getitem__)
-    monkeypatch.setattr(derive, "ASKED_STATES", most)
-    derive.derive(con, ["step"], of_the_map=False, also=())
+    monkeypatch.setattr(derive, "MOST_STATES_TO_ASK_FIRST", most)
+    derive.derive(con, ["step"], are_map_tables=False, always_needed_tables=())
     assert con.execute("SELECT count(*) FROM step").fetchone() == (n,)
 
 
@@ -61,16 +61,16 @@ def test_each_runs_after_what_it_reads(
         monkeypatch,
         {"step": (STEP, set()), "visited_cell": (CELL, {"step"}), "clock": (CLOCK, {"step", "visited_cell"})},
     )
-    monkeypatch.setattr(derive, "ONE_WORKER_STATES", large)  # on one connection, or on two
+    monkeypatch.setattr(derive, "LEAST_STATES_FOR_ONE_WORKER", large)  # on one connection, or on two
     told: list[str] = []
-    fill = derive._fill
+    fill = derive._fill_table
 
     def telling(con: duckdb.DuckDBPyConnection, step: derivations.Derivation) -> int:
         told.append(step.table)
         return fill(con, step)
 
-    monkeypatch.setattr(derive, "_fill", telling)
-    derive.derive(con, ["clock"], of_the_map=False, also=())
+    monkeypatch.setattr(derive, "_fill_table", telling)
+    derive.derive(con, ["clock"], are_map_tables=False, always_needed_tables=())
     assert told == ["step", "visited_cell", "clock"]
     assert con.execute("SELECT * FROM clock").fetchall() == [("d", "e", 4, 5, 0, 4)]
 
@@ -80,16 +80,16 @@ def test_what_fails_is_named_and_what_runs_beside_it_is_stopped(
     con: duckdb.DuckDBPyConnection, monkeypatch: pytest.MonkeyPatch, begins_late: bool
 ) -> None:
     only(monkeypatch, {"visited_cell": (SLOW, set()), "step": (STEP.replace("0 AS seg", "'x'::INTEGER AS seg"), set())})
-    fill = derive._fill
+    fill = derive._fill_table
 
     def late(con: duckdb.DuckDBPyConnection, step: derivations.Derivation) -> int:
         if begins_late and step.table == "visited_cell":
             time.sleep(0.3)
         return fill(con, step)
 
-    monkeypatch.setattr(derive, "_fill", late)
+    monkeypatch.setattr(derive, "_fill_table", late)
     with pytest.raises(DriveLintError, match=r"^queries/derive/step\.sql: .*'x'"):
-        derive.derive(con, ["step", "visited_cell"], of_the_map=False, also=())
+        derive.derive(con, ["step", "visited_cell"], are_map_tables=False, always_needed_tables=())
     assert con.execute("SELECT (SELECT count(*) FROM visited_cell), (SELECT count(*) FROM step)").fetchall() == [(0, 0)]
 
 
@@ -101,7 +101,7 @@ def test_short_memory_is_no_fault_of_the_query(con: duckdb.DuckDBPyConnection, m
         {"visited_cell": ("SELECT 'd' AS drive_id, range AS cell FROM range(20000000) ORDER BY hash(range)", set())},
     )
     with pytest.raises(duckdb.OutOfMemoryException):
-        derive.derive(con, ["visited_cell"], of_the_map=False, also=())
+        derive.derive(con, ["visited_cell"], are_map_tables=False, always_needed_tables=())
 
 
 SAMPLES = (91, 91, 16, 91, 91, 34, 29, 23, 18, 17, 91)
@@ -118,7 +118,7 @@ def way(egos: Sequence[int]) -> dict[int, list[float]]:
             "INSERT INTO actor_state BY NAME SELECT 'd' AS drive_id, e::VARCHAR AS actor_id, range * 50_000_000 AS t_ns, "
             "sqrt(range * 1.7) * (31 + e) AS x_m, sin(range / 7) AS y_m FROM e, range(100) WHERE range < n"
         )
-        derive.derive(con, ["step"], of_the_map=False)
+        derive.derive(con, ["step"], are_map_tables=False)
         found = con.execute("SELECT ego_id::INTEGER, list(travel_m ORDER BY k) FROM step GROUP BY ego_id").fetchall()
         return dict(found)
 

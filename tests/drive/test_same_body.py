@@ -9,7 +9,7 @@ import pytest
 
 from drivelint.drive.actors import Actors
 from drivelint.drive.implausible import bodies
-from drivelint.drive.implausible.bodies import held_tracks, same_bodies
+from drivelint.drive.implausible.bodies import repeated_end_findings, same_body_findings
 from drivelint.drive.trace import States
 from tests.drive.tracks import doubts, drive, track
 
@@ -196,13 +196,13 @@ def test_a_pair_of_tracks_takes_no_walk_over_all_actors() -> None:
     """As it did: a log of 100,000 actors in two frames did not end."""
     ids = Walked(f"{i:03}" for i in range(300))
     states, actors = queue(ids, 4.0)
-    assert same_bodies(states, actors, {"000"}) == []
-    assert held_tracks(states, actors) == []
+    assert same_body_findings(states, actors, {"000"}) == []
+    assert repeated_end_findings(states, actors) == []
     assert ids.n_walks < 20
 
 
 def test_of_tracks_too_short_to_be_coupled_no_pair_is_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
     pairs: list[object] = []
-    monkeypatch.setattr(bodies, "_common", lambda *told: pairs.append(told))
-    assert same_bodies(*queue([f"{i:03}" for i in range(300)], 6.0), {"000"}) == []
+    monkeypatch.setattr(bodies, "_rows_at_common_times", lambda *told: pairs.append(told))
+    assert same_body_findings(*queue([f"{i:03}" for i in range(300)], 6.0), {"000"}) == []
     assert pairs == []

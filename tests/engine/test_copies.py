@@ -11,7 +11,7 @@ import pytest
 
 from drivelint.drive.trace import IngestOptions
 from drivelint.engine.batch import Drive
-from drivelint.engine.robustness.copies import BLOCK, MeasurementErrors, copies, crop
+from drivelint.engine.robustness.copies import COPIES_PER_BLOCK, MeasurementErrors, copies, crop
 from drivelint.formats import read_trace
 
 OVERTAKE = Path(__file__).parents[2] / "fixtures" / "overtake"
@@ -99,11 +99,11 @@ def test_another_seed_draws_others(drive: Drive) -> None:
 def test_the_errors_of_a_block_are_one_from_each_range(drive: Drive) -> None:
     """As many equally probable ranges as there are copies in a block have one error each."""
     for block in range(2):
-        numbers = range(1 + block * BLOCK, 1 + (block + 1) * BLOCK)
+        numbers = range(1 + block * COPIES_PER_BLOCK, 1 + (block + 1) * COPIES_PER_BLOCK)
         for moved in offsets(drive, MeasurementErrors(1.0, 0.0, 0.0), numbers).values():
             for axis in range(2):
                 probability = sorted(NormalDist().cdf(value) for value in moved[:, axis])
-                assert [int(each * BLOCK) for each in probability] == list(range(BLOCK))
+                assert [int(each * COPIES_PER_BLOCK) for each in probability] == list(range(COPIES_PER_BLOCK))
 
 
 def test_errors_are_those_of_the_actor_whatever_the_file(drive: Drive, tmp_path: Path) -> None:

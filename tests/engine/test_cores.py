@@ -29,7 +29,7 @@ def cores(con: duckdb.DuckDBPyConnection) -> int:
 def test_few_states_are_judged_on_one_core(monkeypatch: pytest.MonkeyPatch) -> None:
     drive = Drive(read_trace(OVERTAKE / "safe.csv", IngestOptions(mapping=str(OVERTAKE / "mapping.toml"))), None)
     for most, expected in ((drive.n_states, 1), (drive.n_states - 1, CORES)):
-        monkeypatch.setattr(batch, "ONE_CORE_STATES", most)
+        monkeypatch.setattr(batch, "MOST_STATES_ON_ONE_CORE", most)
         seen: list[int] = []
         with store.workspace(None, threads=CORES) as con:
             look = [lambda con, _drives, seen=seen, **_part: seen.append(cores(con))]

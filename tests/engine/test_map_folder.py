@@ -60,10 +60,10 @@ def test_without_a_map_of_the_place_a_drive_has_none_and_says_so(tmp_path: Path)
     library, log = MapLibrary(DriveInput(map_dir=tmp_path)), log_of(states(5000.0))
     environment, _ = library.find(log)
     assert environment is None
-    assert library.doubts(log, environment) == {
+    assert library.doubts_on_map(log, environment) == {
         "map_not_in_folder": f"no map in {tmp_path.name} is of the place of drive.mcap: it is judged without one: name its map in maps.csv"
     }
-    assert not library.doubts(log_of(states(5.0), Path("logs/other.mcap")), None)
+    assert not library.doubts_on_map(log_of(states(5.0), Path("logs/other.mcap")), None)
 
 
 def test_two_of_the_place_is_an_error_that_says_what_to_do(tmp_path: Path) -> None:
@@ -91,13 +91,13 @@ def test_a_map_that_cannot_be_read_is_passed_over_where_another_is_of_the_place(
     environment, _ = library.find(log)
     assert environment is not None
     assert environment.environment_id.startswith("a-")
-    assert "1 cannot, the first: " in library.doubts(log, environment)["map_unread"]
+    assert "1 cannot, the first: " in library.doubts_on_map(log, environment)["map_unread"]
     (tmp_path / "broken.xodr").unlink()
-    assert not MapLibrary(DriveInput(map_dir=tmp_path)).doubts(log, environment)
+    assert not MapLibrary(DriveInput(map_dir=tmp_path)).doubts_on_map(log, environment)
     (tmp_path / "broken.xodr").write_text("<OpenDRIVE/>")
     library, log = MapLibrary(DriveInput(map_dir=tmp_path)), log_of(states(5000.0))
     assert library.find(log)[0] is None
-    assert "(1 could not be read, the first: " in library.doubts(log, None)["map_not_in_folder"]
+    assert "(1 could not be read, the first: " in library.doubts_on_map(log, None)["map_not_in_folder"]
 
 
 @pytest.mark.parametrize(

@@ -140,21 +140,21 @@ def question(margin: float | None, rule_id: str = "ukhc.no-collision") -> Questi
 def test_few_copies_come_first_and_more_where_one_of_them_loses_the_finding() -> None:
     fewest, few, most = N_COPIES
     for margin in (-SMALL_MARGIN["m"], -2.0, None):
-        assert question(margin).numbers == range(1, few + 1)
+        assert question(margin).next_copy_numbers == range(1, few + 1)
     for margin, n in ((-5.0, fewest), (None, few)):
         asked = question(margin)
-        assert asked.numbers == range(1, n + 1)
-        asked.add_copies((0, *asked.numbers), dict.fromkeys(range(n + 1), margin))
+        assert asked.next_copy_numbers == range(1, n + 1)
+        asked.add_copies((0, *asked.next_copy_numbers), dict.fromkeys(range(n + 1), margin))
         assert asked.is_settled
         assert (asked.n_stays, asked.n_copies) == (n, n)
     asked = question(-5.0)
     # far from 0 in all copies but one, where it does not apply
-    asked.add_copies((0, *asked.numbers), dict.fromkeys(range(fewest), -5.0))
+    asked.add_copies((0, *asked.next_copy_numbers), dict.fromkeys(range(fewest), -5.0))
     assert not asked.is_settled
-    assert asked.numbers == range(fewest + 1, few + 1)
-    asked.add_copies((0, *asked.numbers), dict.fromkeys((0, *asked.numbers), -5.0))
-    assert asked.numbers == range(few + 1, most + 1)
-    asked.add_copies((0, *asked.numbers), {0: -5.0})
+    assert asked.next_copy_numbers == range(fewest + 1, few + 1)
+    asked.add_copies((0, *asked.next_copy_numbers), dict.fromkeys((0, *asked.next_copy_numbers), -5.0))
+    assert asked.next_copy_numbers == range(few + 1, most + 1)
+    asked.add_copies((0, *asked.next_copy_numbers), {0: -5.0})
     assert asked.is_settled
     assert (asked.n_stays, asked.n_copies) == (few - 1, most)
 
@@ -163,7 +163,8 @@ def test_few_copies_come_first_and_more_where_one_of_them_loses_the_finding() ->
 def test_the_first_copies_suffice_where_their_margins_are_far_from_the_threshold(spread: float, suffice: bool) -> None:
     asked = question(-5.0)
     asked.add_copies(
-        (0, *asked.numbers), {n: -5.0 + (spread if n % 2 else -spread) * (n > 0) for n in range(N_COPIES[0] + 1)}
+        (0, *asked.next_copy_numbers),
+        {n: -5.0 + (spread if n % 2 else -spread) * (n > 0) for n in range(N_COPIES[0] + 1)},
     )
     assert asked.is_settled is suffice
 
@@ -172,7 +173,7 @@ def test_the_first_copies_suffice_where_their_margins_are_far_from_the_threshold
 def test_copies_that_show_that_it_is_only_possible_suffice(lost: int, suffice: bool) -> None:
     """Of 100 copies, 95 must keep a finding that is sure."""
     asked = question(-2.0)
-    asked.add_copies((0, *asked.numbers), dict.fromkeys(range(len(asked.numbers) + 1 - lost), -2.0))
+    asked.add_copies((0, *asked.next_copy_numbers), dict.fromkeys(range(len(asked.next_copy_numbers) + 1 - lost), -2.0))
     assert asked.is_settled is suffice
     assert not asked.is_sure
 
@@ -182,9 +183,9 @@ def test_a_share_of_ones_own_is_that_of_all_copies() -> None:
     most = N_COPIES[-1]
     asked = question(-2.0)
     asked.ends_early = False
-    asked.add_copies((0, *asked.numbers), dict.fromkeys(range(len(asked.numbers) - 9), -2.0))
+    asked.add_copies((0, *asked.next_copy_numbers), dict.fromkeys(range(len(asked.next_copy_numbers) - 9), -2.0))
     assert not asked.is_settled
-    assert asked.numbers.stop == most + 1
+    assert asked.next_copy_numbers.stop == most + 1
 
 
 def test_of_one_rule_the_gravest_finding_is_judged_and_those_near_the_threshold() -> None:
@@ -220,16 +221,16 @@ def test_a_copy_that_does_not_tell_in_a_part_of_a_stretch_is_judged_in_the_whole
     few, most = N_COPIES[1:]
     kept = dict.fromkeys(range(few), -2.0)  # all but the last
     asked = long_question()
-    asked.add_copies((0, *asked.numbers), kept)
+    asked.add_copies((0, *asked.next_copy_numbers), kept)
     assert (asked.size, asked.n_copies) == (1, 0)
-    assert asked.numbers == range(1, few + 1)
-    asked.add_copies((0, *asked.numbers), dict.fromkeys(range(few + 1), -2.0))
-    assert asked.numbers == range(few + 1, most + 1)  # some copies lost it before
+    assert asked.next_copy_numbers == range(1, few + 1)
+    asked.add_copies((0, *asked.next_copy_numbers), dict.fromkeys(range(few + 1), -2.0))
+    assert asked.next_copy_numbers == range(few + 1, most + 1)  # some copies lost it before
     passed = long_question()
     passed.add_copies((0, *range(1, few + 1)), kept, {few})
     assert (passed.size, passed.n_copies, passed.n_stays) == (0, few, few - 1)
     short = question(-2.0)
-    short.add_copies((0, *short.numbers), kept)
+    short.add_copies((0, *short.next_copy_numbers), kept)
     assert (short.size, short.n_copies, short.n_stays) == (0, few, few - 1)
 
 
@@ -237,7 +238,7 @@ def test_a_finding_that_is_only_possible_anyway_needs_no_wider_window() -> None:
     assert LEAST_KEEPING_SHARE == certainties.LEAST_KEEPING_SHARE
     few, _ = N_COPIES[1:]
     asked = long_question()
-    asked.add_copies((0, *asked.numbers), dict.fromkeys(range(few - 6), -2.0), set(range(few - 6, few)))
+    asked.add_copies((0, *asked.next_copy_numbers), dict.fromkeys(range(few - 6), -2.0), set(range(few - 6, few)))
     assert (asked.size, asked.n_copies, asked.n_stays) == (0, few, few - 7)
 
 
@@ -245,7 +246,7 @@ def test_copies_judged_at_once_give_what_they_give_one_after_the_other() -> None
     few, most = N_COPIES[1:]
     asked = question(-2.0)
     asked.is_hasty = True
-    assert asked.numbers == range(1, most + 1)
+    assert asked.next_copy_numbers == range(1, most + 1)
     asked.add_copies((0, *range(1, few + 1)), dict.fromkeys(range(few + 1), -2.0))
     asked.add_copies((0, *range(few + 1, most + 1)), {0: -2.0})
     assert (asked.n_copies, asked.n_stays) == (few, few)

@@ -162,11 +162,11 @@ def test_a_rule_that_takes_much_more_after_its_interrupt_is_not_waited_for(
 
     monkeypatch.setattr(computing.ProcessorClock, "seconds", lambda _work: now)
     monkeypatch.setattr(limits, "resident_bytes", lambda: next(bytes_now))
-    monkeypatch.setattr(limits, "_LOOK_INTERVAL_S", 0.001)
+    monkeypatch.setattr(limits, "_WATCH_PERIOD_S", 0.001)
     monkeypatch.setattr(limits, "_MEMORY_GRACE_S", 60.0)
     held_to = limits.RuleLimits(60.0, deaf_rules=cast("limits.DeafRules", Deaf))
     held_to.memory = lambda: 1_000
-    with duckdb.connect() as con, held_to.hold(con, "mine.grows", alone=True) as held:
+    with duckdb.connect() as con, held_to.limit_statements(con, "mine.grows", alone=True) as held:
         assert ended.wait(30.0)
     assert held.excess == excess
     assert found[0] == (excess, 1_400)
@@ -229,16 +229,16 @@ class Deaf:
     exceeded_limits = staticmethod(lambda task: {})
     restart_without = staticmethod(lambda task, rule, excess: told("deaf " + excess))
 
-rule = limits.RuleLimits.hold
-def hold(self, con, rule_id, *, alone):
+rule = limits.RuleLimits.limit_statements
+def limit_statements(self, con, rule_id, *, alone):
     global began, before
     if rule_id == "bomb." + sys.argv[1]:
         began, before = time.monotonic(), limits.resident_bytes()
     return rule(self, con, rule_id, alone=alone)
-limits.RuleLimits.hold = hold
+limits.RuleLimits.limit_statements = limit_statements
 from drivelint.evaluate.evaluation import Evaluation
-blame = Evaluation._blame
-Evaluation._blame = lambda self, binding, error, excess: told(excess or str(error).splitlines()[0])
+blame = Evaluation._record_error
+Evaluation._record_error = lambda self, binding, error, excess: told(excess or str(error).splitlines()[0])
 check(options(Path(sys.argv[2]), "safe", seconds=2.0), Silent(), None, Deaf)
 """
 

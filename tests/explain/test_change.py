@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from drivelint.explain.change import _search, _VariedNumber
+from drivelint.explain.change import _search_changes, _VariedNumber
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -21,7 +21,9 @@ def nearest(now: float, turns_at: float) -> tuple[float, int]:
         judged.extend(value for _, value in asked)
         return ["not_applicable" if value <= turns_at else "fail" for _, value in asked]
 
-    (change,) = _search([_VariedNumber("near_m", "nearer than this", "m", now, math.inf, None, 2)], "fail", judge)
+    (change,) = _search_changes(
+        [_VariedNumber("near_m", "nearer than this", "m", now, math.inf, None, 2)], "fail", judge
+    )
     assert change.beyond
     assert change.nearest_value is not None
     return change.nearest_value, len(judged)
@@ -45,7 +47,7 @@ def test_the_first_of_two_other_verdicts_is_named() -> None:
     def judge(asked: Sequence[tuple[_VariedNumber, float]]) -> list[str]:
         return ["not_applicable" if value <= 0.14 else "pass" if value < 0.21 else "fail" for _, value in asked]
 
-    (change,) = _search([_VariedNumber("within_m", "within reach", "m", 0.5, math.inf, None, 2)], "fail", judge)
+    (change,) = _search_changes([_VariedNumber("within_m", "within reach", "m", 0.5, math.inf, None, 2)], "fail", judge)
     assert (change.becomes, change.beyond) == ("pass", False)
     assert change.nearest_value == pytest.approx(0.21, abs=0.003)
     assert change.nearest_value is not None

@@ -464,7 +464,7 @@ def test_a_long_drive_is_judged_in_part_where_the_verdict_is_the_same(
 ) -> None:
     from drivelint.explain import verdict_context
 
-    monkeypatch.setattr(verdict_context, "CROP_MARGINS_NS", (1_000_000, 3_000_000_000))
+    monkeypatch.setattr(verdict_context, "TRIED_CROP_MARGINS_NS", (1_000_000, 3_000_000_000))
     errors = MeasurementErrors(0.0, 0.0, 0.0, 2)
     found = of(folder, "contact-signature@collision", errors=errors)
     told = found.sensitivity

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from drivelint.explain.model import Step
-from drivelint.explain.plot import plot
+from drivelint.explain.plot import plot_lines
 
 
 def steps(*margins: float | None) -> list[Step]:
@@ -15,7 +15,8 @@ def steps(*margins: float | None) -> list[Step]:
 
 def bars(*margins: float | None, width: int = 4, height: int = 2) -> list[str]:
     return [
-        line.partition("┤")[2] or line.partition("┼")[2] for line in plot(steps(*margins), width, height, 0, "m")[:-1]
+        line.partition("┤")[2] or line.partition("┼")[2]
+        for line in plot_lines(steps(*margins), width, height, 0, "m")[:-1]
     ]
 
 
@@ -36,7 +37,7 @@ def test_few_steps_are_drawn_broad() -> None:
 
 
 def test_a_margin_is_marked_with_its_extremes_and_times() -> None:
-    lines = plot(steps(2.0, -1.0), 40, 3, 0, "m/s")
+    lines = plot_lines(steps(2.0, -1.0), 40, 3, 0, "m/s")
     assert "+2 m/s" in lines[0]
     assert any("-1 m/s" in line for line in lines)
     assert lines[-1].split() == ["0.00", "s", "0.10", "s"]
@@ -44,8 +45,8 @@ def test_a_margin_is_marked_with_its_extremes_and_times() -> None:
 
 def test_a_rule_that_measures_nothing_is_a_strip() -> None:
     told = [Step(n * 100_000_000, None, None, None, holds) for n, holds in enumerate((True, False, None, True))]
-    assert plot(told, 4, 8, 0, "")[0].strip() == "·█?·"
+    assert plot_lines(told, 4, 8, 0, "")[0].strip() == "·█?·"
 
 
 def test_one_step_is_no_plot() -> None:
-    assert plot(steps(1.0), 40, 8, 0, "m") == []
+    assert plot_lines(steps(1.0), 40, 8, 0, "m") == []

@@ -82,7 +82,7 @@ def test_a_fault_of_drivelint_is_no_broken_rule(
         raise OSError("a fault")
 
     monkeypatch.setattr(sys, "argv", ["drivelint", "--version"])
-    monkeypatch.setattr(import_module("drivelint.cli.app"), "_settings", fail)
+    monkeypatch.setattr(import_module("drivelint.cli.app"), "_default_options_of_settings_file", fail)
     with pytest.raises(SystemExit) as left:
         cli.main()
     assert left.value.code == 4

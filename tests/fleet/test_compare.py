@@ -293,8 +293,8 @@ def test_a_log_that_is_there_twice_is_matched_once_each() -> None:
 
 
 def test_holm_is_the_textbooks() -> None:
-    assert intervals.holm([0.01, 0.04, 0.03, 0.005]) == pytest.approx([0.03, 0.06, 0.06, 0.02])
-    assert intervals.holm([]) == []
+    assert intervals.holm_corrected([0.01, 0.04, 0.03, 0.005]) == pytest.approx([0.03, 0.06, 0.06, 0.02])
+    assert intervals.holm_corrected([]) == []
 
 
 RULES, FLEETS, DRIVES = 10, 1000, 8

@@ -148,13 +148,13 @@ def test_intervals_are_the_exact_ones(n: int) -> None:
     """Against scipy's own distributions: at each end of the interval what was seen has a chance of 2.5 %."""
     from scipy.stats import binomtest, poisson
 
-    rate, low, high = intervals.poisson(n, 2.0)
+    rate, low, high = intervals.poisson_rate(n, 2.0)
     assert rate == n / 2
     assert poisson.cdf(n, 2 * high) == pytest.approx(0.025)
     assert (poisson.sf(n - 1, 2 * low) == pytest.approx(0.025)) if n else (low == 0)
     exact = binomtest(n, 412).proportion_ci(0.95, method="exact")
-    assert intervals.binomial(n, 412)[1:] == pytest.approx((exact.low, exact.high))
-    assert intervals.binomial(0, 0) == (None, 0.0, 1.0)
+    assert intervals.binomial_rate(n, 412)[1:] == pytest.approx((exact.low, exact.high))
+    assert intervals.binomial_rate(0, 0) == (None, 0.0, 1.0)
 
 
 FLEETS, DRIVES = 1000, 12

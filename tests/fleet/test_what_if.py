@@ -11,7 +11,7 @@ import pytest
 
 from drivelint import catalogue
 from drivelint.errors import UsageError
-from drivelint.fleet.what_if import Flip, WhatIf, needs_check, what_if
+from drivelint.fleet.what_if import FlipCount, WhatIf, reason_for_new_check, what_if
 from tests.evaluate.packs import invariant
 from tests.fleet import audits
 from tests.fleet.conftest import Checked
@@ -89,7 +89,7 @@ def test_only_a_plain_comparison_needs_no_new_check() -> None:
         f"{name}.{param}"
         for name, each in CATALOGUE.items()
         for param in each.params
-        if needs_check(each, param) is None
+        if reason_for_new_check(each, param) is None
     }
     assert {f"{ZONE}.margin_s", f"{CHANGE}.most_s", "ukhc.r180.corner-cut.tolerance_m"} <= able
     for name, param in (
@@ -99,7 +99,7 @@ def test_only_a_plain_comparison_needs_no_new_check() -> None:
     ):
         assert f"{name}.{param}" not in able, "it has a part in what is observed, or in where the rule applies"
     with pytest.raises(UsageError, match="margin_s"):
-        needs_check(CATALOGUE[ZONE], "margin")
+        reason_for_new_check(CATALOGUE[ZONE], "margin")
     with duckdb.connect() as con:
         assert "when the rule applies" in str(what_if(con, CATALOGUE["criticality.thw"], "least_s", 1.0).needs_check)
 
@@ -132,7 +132,7 @@ def judged(value: float, *words: dict[str, Any], rule_id: str = CHANGE) -> WhatI
     ],
 )  # fmt: skip
 def test_what_becomes_of_a_verdict(said: dict[str, Any], value: float, becomes: str | None) -> None:
-    assert judged(value, said).verdicts == (Flip(None, None, said["said"], becomes, 1),)
+    assert judged(value, said).verdicts == (FlipCount(None, None, said["said"], becomes, 1),)
 
 
 @pytest.mark.parametrize(
@@ -142,4 +142,4 @@ def test_what_becomes_of_a_verdict(said: dict[str, Any], value: float, becomes: 
 def test_a_lower_bound_proves_one_verdict_only(said: str, value: float, becomes: str | None) -> None:
     """The time that an overtake has to spare may be a lower bound: it is enough for a pass."""
     row = {"said": said, "observed": 2.0, "n_judged": 0 if said == "unknown" else 1}
-    assert judged(value, row, rule_id=ZONE).verdicts == (Flip(None, None, said, becomes, 1),)
+    assert judged(value, row, rule_id=ZONE).verdicts == (FlipCount(None, None, said, becomes, 1),)

@@ -14,8 +14,8 @@ import pyarrow.parquet as pq
 import pytest
 
 from drivelint.catalogue.load import read_rule
-from drivelint.drive.contradiction import _around
-from drivelint.drive.lost_time import LATEST_NS
+from drivelint.drive.contradiction import _rows_half_second_around
+from drivelint.drive.lost_time import LATEST_CREDIBLE_NS
 from drivelint.engine import profiles
 from drivelint.errors import RuleError, TraceError, UsageError
 from drivelint.formats.film import mapping as film_mapping
@@ -104,10 +104,22 @@ def test_the_neighbours_in_time_are_found_whatever_the_clock_spans() -> None:
     """A piece's number times the log's span was beyond 64 bits: the neighbours were of other pieces, or beyond the end."""
 
     class Some:
-        t_ns = np.array([-LATEST_NS, 0, 400_000_000, 800_000_000, 1_500_000_000, LATEST_NS, 0, 100, LATEST_NS])
+        t_ns = np.array(
+            [
+                -LATEST_CREDIBLE_NS,
+                0,
+                400_000_000,
+                800_000_000,
+                1_500_000_000,
+                LATEST_CREDIBLE_NS,
+                0,
+                100,
+                LATEST_CREDIBLE_NS,
+            ]
+        )
 
     pieces = np.array([0, 0, 0, 0, 0, 0, 7, 7, 7])
-    first, last = _around(Some(), pieces, np.arange(9))  # type: ignore[arg-type]
+    first, last = _rows_half_second_around(Some(), pieces, np.arange(9))  # type: ignore[arg-type]
     assert first.tolist() == [0, 1, 1, 2, 4, 5, 6, 6, 8]
     assert last.tolist() == [0, 2, 3, 3, 4, 5, 7, 7, 8]
 

@@ -16,7 +16,7 @@ import pytest
 from drivelint import cli, demo
 from drivelint.convert import ConvertRequest, summary_text
 from drivelint.drive.time_span import cut_trace
-from drivelint.drive.trace import ASSUMED_SIZE, IngestOptions
+from drivelint.drive.trace import ASSUMED_SIZE_CHECK, IngestOptions
 from drivelint.errors import UsageError
 from drivelint.formats import read_trace
 from drivelint.incident import IncidentRequest, clip, open_case
@@ -178,7 +178,7 @@ def test_a_clip_names_the_log_that_it_was_cut_from(
         rf"cut from collision\.csv, SHA-256 {digest}: [\d.]+ s to [\d.]+ s(, all)? of it", said["message"]
     )
     assert "--profile relaxed --profile nominal --out results" in summary_text(written)  # as that check had them
-    (sizes,) = [row for row in rows if row["check_id"] == ASSUMED_SIZE]
+    (sizes,) = [row for row in rows if row["check_id"] == ASSUMED_SIZE_CHECK]
     assert sizes["message"] == "size from the mapping 'mapping', not recorded"
 
 

@@ -12,7 +12,7 @@ import pyarrow.compute as pc
 import pytest
 
 from drivelint.drive.finish import with_quality_finding
-from drivelint.drive.trace import ASSUMED_SIZE, QualityFinding
+from drivelint.drive.trace import ASSUMED_SIZE_CHECK, QualityFinding
 from drivelint.incident import IncidentRequest, open_case, pdf, render
 from drivelint.incident.sheet import content
 from drivelint.report.outputs import write
@@ -147,7 +147,7 @@ def crowded_first_page(case: Case) -> Case:
         touched = touched.set_column(touched.column_names.index(name), touched.schema.field(name), n)
     result = replace(case.result, findings=pa.concat_tables([rows, touched, touched, touched]))
     again = replace(case.again, steps=steps)
-    said = QualityFinding(ASSUMED_SIZE, "info", f"size by the option {'of the user ' * 5}, not recorded")
+    said = QualityFinding(ASSUMED_SIZE_CHECK, "info", f"size by the option {'of the user ' * 5}, not recorded")
     trace = with_quality_finding(case.drive.trace, said)
     again_drive = replace(case.drive, trace=trace, geo=tangent_plane_frame(52.946849, 2.907433))
     return replace(case, result=result, again=again, drive=again_drive, finding=replace(finding, row=row, drive=drive))

@@ -19,7 +19,7 @@ from markupsafe import escape
 
 from drivelint import catalogue, cli
 from drivelint.drive.finish import with_quality_finding
-from drivelint.drive.trace import ASSUMED_SIZE, QualityFinding
+from drivelint.drive.trace import ASSUMED_SIZE_CHECK, QualityFinding
 from drivelint.errors import UsageError
 from drivelint.incident import IncidentRequest, open_case, other_drives, render, write_incident
 from drivelint.incident.command import commands
@@ -217,8 +217,10 @@ def test_sizes_that_the_log_does_not_have(case_of: CaseOf) -> None:
     assert [size_source(trace, who) for who in case.finding.parties] == [said] * 2
     assert render(case).decode().count(str(escape(said))) == 2
     tables = trace.tables["quality"]
-    recorded = replace(trace, tables={**trace.tables, "quality": tables.filter(pc.field("check_id") != ASSUMED_SIZE)})
-    by_user = with_quality_finding(recorded, QualityFinding(ASSUMED_SIZE, "info", "said", actor_id="ego"))
+    recorded = replace(
+        trace, tables={**trace.tables, "quality": tables.filter(pc.field("check_id") != ASSUMED_SIZE_CHECK)}
+    )
+    by_user = with_quality_finding(recorded, QualityFinding(ASSUMED_SIZE_CHECK, "info", "said", actor_id="ego"))
     assert [size_source(by_user, who) for who in ("ego", "other")] == ["said", ""]
 
 

@@ -11,7 +11,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pytest
 
-from drivelint.drive.trace import TURNED_FRAME
+from drivelint.drive.trace import TURNED_FRAME_CHECK
 from drivelint.incident import render
 from drivelint.incident.conduct import name_party
 from drivelint.incident.fitting import Reason, fit
@@ -157,7 +157,7 @@ def test_coordinates_are_the_logs_unless_its_frame_was_turned(case_of: CaseOf) -
     case = case_of("no-collision@collision")
     assert coordinates(case).startswith("the recording's coordinates")
     assert "turned" not in coordinates(case)
-    check = {"check_id": TURNED_FRAME, "severity": "info", "message": "turned"}
+    check = {"check_id": TURNED_FRAME_CHECK, "severity": "info", "message": "turned"}
     drive = {**case.finding.drive, "quality": [*case.finding.drive["quality"], check]}
     turned = replace(case, finding=replace(case.finding, drive=drive))
     assert coordinates(turned) == "the recording's coordinates with the sign of y changed, as its frame is left-handed"

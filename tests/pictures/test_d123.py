@@ -10,7 +10,7 @@ import pyarrow as pa
 import pytest
 
 import drivelint
-from drivelint.cli.receipts import Outputs
+from drivelint.cli.receipts import OutputPathTest
 from drivelint.pictures.d123_log import camera_names
 from drivelint.receipts.recorder import record_inputs
 from drivelint.result.load import load_result
@@ -102,7 +102,7 @@ def test_a_changed_camera_file_is_a_changed_input(tmp_path: Path) -> None:
     taken = FIRST_US + EVERY_US * np.arange(N_FRAMES)
     camera(log, FRONT, taken, pa.array([jpeg(bars(n)) for n in range(N_FRAMES)], pa.binary()))
     out = tmp_path / "out"
-    with record_inputs(Outputs(out), [log]) as recorder:
+    with record_inputs(OutputPathTest(out), [log]) as recorder:
         judged(log, out)
     inputs = recorder.inputs()
     assert inputs is not None, recorder.trouble

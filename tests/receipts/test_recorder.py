@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from drivelint.cli.receipts import Outputs
+from drivelint.cli.receipts import OutputPathTest
 from drivelint.drive.trace import IngestOptions
 from drivelint.formats import expand_traces, read_trace
 from drivelint.receipts.events import report_not_repeatable, report_searched_path
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from drivelint.receipts.inputs import Inputs
 
-NO_OUTPUTS = Outputs(None)
+NO_OUTPUTS = OutputPathTest(None)
 
 
 def read_by(job: Callable[[], object], *named: Path) -> Inputs:
@@ -166,7 +166,7 @@ def test_outputs_are_those_that_check_writes_into_its_folder(tmp_path: Path) -> 
     for name in ("annotated/x.mcap", "earlier/verdicts.parquet", "earlier/annotated/x.mcap", "mixed/x"):
         (tmp_path / name).parent.mkdir(exist_ok=True, parents=True)
         (tmp_path / name).write_text("")
-    is_output = Outputs(tmp_path)
+    is_output = OutputPathTest(tmp_path)
     names = (
         "summary.json",
         "report.html",

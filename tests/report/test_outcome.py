@@ -13,7 +13,7 @@ import pytest
 from lxml import etree
 from rich.console import Console
 
-from drivelint.drive.trace import OWN_MAP_UNUSABLE
+from drivelint.drive.trace import OWN_MAP_UNUSABLE_CHECK
 from drivelint.errors import ExitCode
 from drivelint.gate import GateInputs, Waiver
 from drivelint.report import junit, markdown, terminal
@@ -147,7 +147,7 @@ def test_a_run_that_could_decide_little_is_no_pass() -> None:
     even = result([verdict("pass"), missing[0]], drives=[drive(map_name=None)], rules=rules)
     assert headline(even).label == "PASS"
     assert "1 rule needs one (--map)" in headline(even).sentence
-    unusable = [{"check_id": OWN_MAP_UNUSABLE, "severity": "warning", "message": "broken", "n": 1}]
+    unusable = [{"check_id": OWN_MAP_UNUSABLE_CHECK, "severity": "warning", "message": "broken", "n": 1}]
     own = result([verdict("pass"), *missing], drives=[drive(map_name=None, quality=unusable)], rules=rules)
     assert "the log's own map cannot be used: 3 rules need one (--map)" in headline(own).sentence
     on_map = result([verdict("pass"), missing[0]], rules=rules)

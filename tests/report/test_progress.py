@@ -53,7 +53,7 @@ def test_the_bar_moves_within_a_batch() -> None:
     limits.begin_batch(2)
     moved = []
     for rule_id in ("a", "b", "b", "c"):
-        with limits.hold(None, rule_id, alone=True):  # type: ignore[arg-type]
+        with limits.limit_statements(None, rule_id, alone=True):  # type: ignore[arg-type]
             moved.append(drawn.tasks[0].completed)
     bar.advance(2)
     assert [*moved, drawn.tasks[0].completed] == [0.5, 1.0, 1.0, 1.5, 2]

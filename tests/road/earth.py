@@ -7,7 +7,7 @@ from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 from drivelint.engine.batch import drive_with_map
-from drivelint.engine.earth import place_rows
+from drivelint.engine.earth import set_longitude_and_latitude
 from drivelint.sql import store
 from tests.engine.few_states import log_of, states
 
@@ -31,8 +31,8 @@ def placed(geo: GeoFrame, *places: tuple[float, float]) -> list[tuple[float | No
             add(con, "finding", {"finding_id": f"{i:06}", "drive_id": "d", "x_m": x, "y_m": y})
             add(con, "actor_state", {"drive_id": "d", "actor_id": "e", "t_ns": i, "x_m": x, "y_m": y})
             add(con, "actor_state", {"drive_id": "d", "actor_id": "a", "t_ns": i - 9, "x_m": 7.0, "y_m": 7.0})
-        place_rows(con, ["d"], "finding")
-        place_rows(con, ["d"], "data_log")
+        set_longitude_and_latitude(con, ["d"], "finding")
+        set_longitude_and_latitude(con, ["d"], "data_log")
         found = con.execute("SELECT lon, lat FROM finding ORDER BY finding_id").fetchall()
         assert con.execute("SELECT lon, lat FROM data_log").fetchall() == found[:1]
         return found

@@ -70,12 +70,12 @@ def test_the_map_of_the_logs_reference(tmp_path: Path) -> None:
     found, _ = library.find(log_of(states(5.0), reference=KARLSRUHE + " +no_defs"))
     assert found is not None
     assert found.environment_id.startswith("here")
-    assert library.doubts(log_of(states(5.0), reference=KARLSRUHE), found) == {}
-    assert library.doubts(log_of(states(5.0), reference=None), found) == {}
-    doubt = library.doubts(log_of(states(5.0), reference=UTM), found)
+    assert library.doubts_on_map(log_of(states(5.0), reference=KARLSRUHE), found) == {}
+    assert library.doubts_on_map(log_of(states(5.0), reference=None), found) == {}
+    doubt = library.doubts_on_map(log_of(states(5.0), reference=UTM), found)
     assert doubt.keys() == {"geo_reference_differs"}
     assert "+lat_0=49" in doubt["geo_reference_differs"]
-    assert library.doubts(log_of(states(5.0), reference="EPSG:32632"), found) == {}
+    assert library.doubts_on_map(log_of(states(5.0), reference="EPSG:32632"), found) == {}
 
 
 def test_the_reference_of_an_osi_log(tmp_path: Path) -> None:

@@ -163,11 +163,11 @@ def test_the_traffic_of_a_log_settles_it_and_contradicts_a_wrong_option(hand: st
     found, _ = library.find(log)
     assert found is not None
     assert (found.handedness, found.handedness_source) == (hand, "traces")
-    assert not library.doubts(log, found)
+    assert not library.doubts_on_map(log, found)
 
     wrong = MapLibrary(DriveInput(map=path, handedness="rht" if hand == "lht" else "lht"))
     with pytest.raises(MapError, match="runs against its lanes, on road 1 both ways"):
-        wrong.doubts(log, wrong.find(log)[0])
+        wrong.doubts_on_map(log, wrong.find(log)[0])
 
     alone = MapSource("small.xodr", xodr(one("1", (LANE if hand == "lht" else -LANE) / 2)).encode())
     path.write_bytes(alone.content)
@@ -178,4 +178,4 @@ def test_the_traffic_of_a_log_settles_it_and_contradicts_a_wrong_option(hand: st
             found, _ = library.find(log)
             assert found is not None
             assert (found.handedness_source, along(found)) == (source, {way})
-            assert not library.doubts(log, found)
+            assert not library.doubts_on_map(log, found)

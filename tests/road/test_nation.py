@@ -10,7 +10,7 @@ import pytest
 
 from drivelint.audit import AuditRequest, audit
 from drivelint.drive.trace import DriveInput
-from drivelint.engine.default_rules import chosen_selectors
+from drivelint.engine.default_rules import selectors_of_run
 from drivelint.engine.map_library import MapLibrary
 from drivelint.formats import load_map, read_trace
 from drivelint.inspect import InspectRequest, inspect
@@ -130,14 +130,14 @@ def test_rules_are_by_default_those_of_the_nation(
     if benchmark:
         road_file = tmp_path / "road.xml"
         road_file.write_text(scenario(lanelet(1, 0.0), benchmark=benchmark))
-    assert chosen_selectors(rules, (), DriveInput(map=road_file, env=env)) == selectors
+    assert selectors_of_run(rules, (), DriveInput(map=road_file, env=env)) == selectors
 
 
 def test_a_map_that_cannot_be_read_says_no_nation(tmp_path: Path) -> None:
     """The error is that of the drive, which the result has."""
     broken = tmp_path / "road.xodr"
     broken.write_text("no map")
-    assert chosen_selectors((), (), DriveInput(map=broken)) == ()
+    assert selectors_of_run((), (), DriveInput(map=broken)) == ()
 
 
 @pytest.mark.ci

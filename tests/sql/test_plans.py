@@ -114,9 +114,9 @@ def test_no_statement_compares_all_rows_with_all(
     def with_all_alternatives(run: Evaluation) -> None:
         prepare(run)
         run._has_holes = run._check_engagement = run._has_sensors = True
-        run._outside = set()
+        run._rules_outside_conditions = set()
 
-    monkeypatch.setattr(Evaluation, "_may_stop", lambda _self, _n_rows: False)
+    monkeypatch.setattr(Evaluation, "_may_skip_rest", lambda _self, _n_rows: False)
     monkeypatch.setattr(Evaluation, "_has_no_occasion", lambda _self, _binding: False)
     monkeypatch.setattr(Evaluation, "prepare", with_all_alternatives)
     rules = catalogue.load_rules(())

@@ -15,7 +15,7 @@ from drivelint.annotate.measures import margin_series
 from drivelint.annotate.road import Road
 from drivelint.annotate.write import AnnotatedDrive, write_log
 from drivelint.engine.barrier import refusal_of
-from drivelint.engine.batch import are_large
+from drivelint.engine.batch import have_many_states
 from drivelint.errors import ChangedLogError, DriveLintError
 from drivelint.result import collect
 from drivelint.result.model import Result
@@ -84,7 +84,7 @@ class Annotator:
         tables.append(con.execute(statement("evidence/least_margin"), {"ids": ids}).to_arrow_table())
         self._series |= margin_series(tables[-1], self._rules.to_pylist())
         self._parts.clear()
-        if are_large(drives):
+        if have_many_states(drives):
             self._release_memory()
         for drive in drives:
             name = drive.trace.drive_id

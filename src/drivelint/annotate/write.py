@@ -12,7 +12,7 @@ import numpy as np
 from drivelint import __version__
 from drivelint.annotate import actor_boxes, clock, danger_spaces, finding_markers, measures, places, result_messages
 from drivelint.annotate.tracks import tracks as tracks_of
-from drivelint.drive.lost_time import LOST_TIME
+from drivelint.drive.lost_time import LOST_TIME_CHECK
 from drivelint.errors import ChangedLogError
 from drivelint.formats.files import identify
 from drivelint.formats.foxglove import messages as foxglove
@@ -77,7 +77,7 @@ def write_log(file: BinaryIO, drive: AnnotatedDrive) -> None:
 
 def _is_damaged(trace: Trace) -> bool:
     """Return whether the log lacks an end or has unreadable records, so that it cannot be copied."""
-    return not {LOST_TIME, "no_footer"}.isdisjoint(trace.tables["quality"]["check_id"].to_pylist())
+    return not {LOST_TIME_CHECK, "no_footer"}.isdisjoint(trace.tables["quality"]["check_id"].to_pylist())
 
 
 class _ChannelWriter:

@@ -33,7 +33,7 @@ from drivelint.audit.store import LocalFolder, open_store
 from drivelint.audit.summary import AuditSummary, summary_of_all_drives, sums_of_receipts
 from drivelint.audit.unpacked import SUMMARY_FILE
 from drivelint.drive.trace import DriveInput
-from drivelint.engine.default_rules import chosen_selectors
+from drivelint.engine.default_rules import selectors_of_run
 from drivelint.engine.memory import DEFAULT_MEMORY, LEAST_MEMORY_BYTES
 from drivelint.errors import UsageError
 from drivelint.phrases import plural
@@ -97,7 +97,7 @@ def audit(request: AuditRequest, progress: Progress, executor: Executor | None =
     Errors: `UsageError`, `RuleError`, `TraceError` for a wrong request; `OutputError` if results cannot be written. After any error, the
     results so far stay, and the same command continues with the other drives.
     """
-    rules = chosen_selectors(request.settings.rules, request.settings.rules_dirs, request)
+    rules = selectors_of_run(request.settings.rules, request.settings.rules_dirs, request)
     request = replace(request, settings=replace(request.settings, rules=rules))
     run_hash = run_id(request.settings)
     results = open_store(request.out)

@@ -49,7 +49,7 @@ def drives(sources: Sequence[str], options: DriveInput) -> Iterator[AuditDrive]:
     sources are the same as for `check`.
     Errors: `UsageError` for an invalid manifest, `TraceError` for a missing source.
     """
-    conditions.parse(options.env)
+    conditions.parse_env_settings(options.env)
     logs: list[str] = []
     for source in sources:
         if is_url(source):
@@ -237,7 +237,7 @@ def _drives_of_manifest(path: Path, manifest_name: str, options: DriveInput) -> 
 def _require_valid_options(row: Mapping[str, str], options: DriveInput) -> None:
     """Raise `UsageError` for option values of a row that are invalid, before any drive is judged."""
     try:
-        conditions.parse((*options.env, *_split_conditions(row.get("environment", ""))))
+        conditions.parse_env_settings((*options.env, *_split_conditions(row.get("environment", ""))))
     except UsageError as error:
         raise UsageError(str(error).replace("--env", "environment", 1)) from error
     side = row.get("handedness", "")

@@ -19,11 +19,11 @@ from drivelint import catalogue
 from drivelint.audit import bucket
 from drivelint.audit.model import AuditDrive, JudgeSettings, Receipt, Task, digest
 from drivelint.audit.store import open_store
-from drivelint.engine.apart import judge_apart
+from drivelint.engine.apart import judge_and_refuse_faulty
 from drivelint.engine.barrier import RefusedLog, refusal_of
 from drivelint.engine.batch import drive_with_map
 from drivelint.engine.map_library import MapLibrary
-from drivelint.engine.memory import DEFAULT_MEMORY, Memory
+from drivelint.engine.memory import DEFAULT_MEMORY, MemoryLimit
 from drivelint.engine.profiles import load_profiles, profile_table
 from drivelint.engine.robustness.copies import MeasurementErrors
 from drivelint.engine.session import JudgingSession
@@ -62,7 +62,7 @@ class Judge:
         store.insert(self._con, "profile", profiles)
         self._stable_rule_ids = pa.array([rule.id for rule in rules if rule.status == "stable"], pa.string())
         errors = MeasurementErrors() if settings.robustness else None
-        self._memory = Memory(self._con, memory)
+        self._memory = MemoryLimit(self._con, memory)
         self._session = JudgingSession(
             self._con, rules, params, None, memory=self._memory, errors=errors, copies_of_all=True
         )
@@ -152,7 +152,7 @@ class Judge:
         drives = [found for _, found in part.values() if not isinstance(found, RefusedLog)]
         refusals: list[RefusedLog] = []
         if drives:
-            judge_apart(self._session, drives, refusals)
+            judge_and_refuse_faulty(self._session, drives, refusals)
             self._session.judge_copies()
         failed = {each.path: each for each in refusals}
         told = {"verdicts": collect.verdicts(self._con), "findings": collect.findings(self._con)}

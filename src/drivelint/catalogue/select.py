@@ -70,7 +70,7 @@ def default_packs(rules: Mapping[str, Rule], nation: str | None) -> tuple[str, .
     of_its_law = {
         rule.pack
         for rule in rules.values()
-        if rule.status == "stable" and rule.law and nation in conditions.all_values(rule.law)
+        if rule.status == "stable" and rule.law and nation in conditions.related_values(rule.law)
     }
     return (DEFAULT_PACK, *sorted(of_its_law - {DEFAULT_PACK}))
 

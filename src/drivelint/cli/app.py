@@ -22,7 +22,7 @@ from drivelint.cli import docs as docs_
 from drivelint.cli.console import print_rich, run_interruptible
 from drivelint.cli.grouped_help import GroupedCommand
 from drivelint.cli.options import Texts, argument, option
-from drivelint.cli.setting_options import known_settings, path_settings
+from drivelint.cli.setting_options import names_of_path_settings, params_by_setting
 from drivelint.errors import (
     LEAST_ADDRESS_SPACE_BYTES,
     DriveLintError,
@@ -50,8 +50,8 @@ app = typer.Typer(
 app.add_typer(rules.app, name="rules")
 
 
-def _version(value: bool) -> None:
-    if value:
+def _print_version(is_requested: bool) -> None:
+    if is_requested:
         typer.echo(f"drivelint {__version__}")
         raise typer.Exit
 
@@ -61,7 +61,7 @@ def _root(
     ctx: typer.Context,
     *,
     version: Annotated[  # noqa: ARG001 - the callback handles it
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and exit.")
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and exit.")
     ] = False,
 ) -> None:
     """Checks recorded drives against the rules of the road."""
@@ -92,7 +92,7 @@ def demo(
 
 
 @app.command()
-@options.takes_drive_input
+@options.add_drive_options
 def inspect(
     *,
     trace: Annotated[str, argument("TRACE", "One recorded drive.")],
@@ -126,7 +126,7 @@ def inspect(
 
 
 @app.command()
-@options.takes_drive_input
+@options.add_drive_options
 def convert(
     *,
     trace: Annotated[str, argument("TRACE", "One recorded drive.")],
@@ -184,7 +184,7 @@ app.command("what-if")(fleets.what_if)
 app.command("docs")(docs_.docs)
 
 
-GARBAGE_AFTER: Final = 50_000
+OBJECTS_BEFORE_COLLECTION: Final = 50_000
 """Number of new objects before a garbage collection: with Python's default of 700, short commands spend 4 % of their time on it."""
 
 
@@ -192,54 +192,58 @@ def main() -> NoReturn:
     """Run the command line; for every mistake of a user, print one line on stderr and exit with its code."""
     from typer.exceptions import TyperException
 
-    streams.prepare()
+    streams.make_writable()
     if (limit := least_memory_limit_bytes()) is not None and limit < LEAST_ADDRESS_SPACE_BYTES:
-        _fail(f"a limit of {limit / 1e6:.0f} MB of memory (ulimit -v) is too low: raise it", ExitCode.TEMPFAIL)
+        _exit_with_error(
+            f"a limit of {limit / 1e6:.0f} MB of memory (ulimit -v) is too low: raise it", ExitCode.TEMPFAIL
+        )
     block_pandas_import()
-    ending_signals.install()
-    gc.set_threshold(GARBAGE_AFTER)
+    ending_signals.install_handlers()
+    gc.set_threshold(OBJECTS_BEFORE_COLLECTION)
     try:
-        code = _part_of("".join(sys.argv[1:2]))(standalone_mode=False, default_map=_settings())
+        code = _app_with_command("".join(sys.argv[1:2]))(
+            standalone_mode=False, default_map=_default_options_of_settings_file()
+        )
         sys.stdout.flush()
     except DriveLintError as error:
-        _fail(str(error), error.exit_code)
+        _exit_with_error(str(error), error.exit_code)
     except TyperException as error:
         found = find_settings()
         also = "" if found is None else f" and {found}{' in this folder' if found.parent == Path() else ''}"
         words = error.format_message().replace("Value error, ", "")  # a prefix from the library
-        _fail(f"{words} (see drivelint {_command_words(error)}--help{also})", ExitCode.USAGE)
+        _exit_with_error(f"{words} (see drivelint {_command_words(error)}--help{also})", ExitCode.USAGE)
     except (KeyboardInterrupt, typer.Abort):
         code = ExitCode.INTERRUPTED
     except streams.ReaderLeftError:
-        code = streams.READER_LEFT
+        code = streams.READER_LEFT_EXIT_CODE
     except Exception as error:  # noqa: BLE001 - Python's exit code for it would be 1, which means a failed rule
         import traceback
 
         if (told := describe_machine_error(error)) is not None:
-            _fail(*told)
-        streams.say(terminal_safe(traceback.format_exc().rstrip()))
-        _fail(f"internal error: {type(error).__name__}: {error}: please report it", ExitCode.NOT_JUDGED)
+            _exit_with_error(*told)
+        streams.print_on_stderr(terminal_safe(traceback.format_exc().rstrip()))
+        _exit_with_error(f"internal error: {type(error).__name__}: {error}: please report it", ExitCode.NOT_JUDGED)
     if code == ExitCode.INTERRUPTED:
-        streams.say("drivelint: error: interrupted")
+        streams.print_on_stderr("drivelint: error: interrupted")
         temporary.remove_all()
         os._exit(code)  # without waiting for the database, which may still compute in its thread
     sys.exit(code or 0)
 
 
-def _part_of(word: str) -> typer.Typer:
+def _app_with_command(name: str) -> typer.Typer:
     """Return the command line with only the command or group of this name: building all takes longer than some commands run.
 
     Return all commands if none has this name, and for `docs`, which describes all commands.
     """
-    if word == "docs":
+    if name == "docs":
         return app
     part = copy(app)
-    part.registered_commands = [each for each in app.registered_commands if _name_of(each) == word]
-    part.registered_groups = [each for each in app.registered_groups if each.name == word]
+    part.registered_commands = [each for each in app.registered_commands if _command_name(each) == name]
+    part.registered_groups = [each for each in app.registered_groups if each.name == name]
     return part if part.registered_commands or part.registered_groups else app
 
 
-def _name_of(command: CommandInfo) -> str:
+def _command_name(command: CommandInfo) -> str:
     return command.name or get_command_name(command.callback.__name__ if command.callback else "")
 
 
@@ -251,11 +255,11 @@ def _command_words(error: Exception) -> str:
     return words
 
 
-_WITHOUT_SETTING_OF_MAP: Final = frozenset({"--map", "--map-dir", "--help", "-h"})
+_OPTIONS_REPLACING_MAP_SETTING: Final = frozenset({"--map", "--map-dir", "--help", "-h"})
 """If one of these options is given, the map in the settings file is not used."""
 
 
-def _settings() -> dict[str, Any]:
+def _default_options_of_settings_file() -> dict[str, Any]:
     """Return the options of the settings file for `check`, `inspect` or `convert`.
 
     `inspect` and `convert` do not use the options about the output of `check`.
@@ -265,18 +269,20 @@ def _settings() -> dict[str, Any]:
         return {}
     commands = typer.main.get_command(app).commands  # type: ignore[attr-defined]
     params = commands["check"].params
-    known = {key: (p.name, p.multiple) for key, p in known_settings(params).items()}
-    paths = path_settings(params)
+    known = {key: (p.name, p.multiple) for key, p in params_by_setting(params).items()}
+    paths = names_of_path_settings(params)
     taken = {p.name for p in commands[name].params}
     if name != "check":
         taken -= {"out", "format_"}
     values = {param: value for param, value in read_settings(known, file, paths).items() if param in taken}
-    map_file = None if _WITHOUT_SETTING_OF_MAP & {word.partition("=")[0] for word in sys.argv} else values.get("map")
+    map_file = (
+        None if _OPTIONS_REPLACING_MAP_SETTING & {word.partition("=")[0] for word in sys.argv} else values.get("map")
+    )
     if map_file is not None and not Path(map_file).exists():
         raise UsageError(f"{file}: map = {map_file!r}: does not exist: correct it, or give --map")
     return {name: values}
 
 
-def _fail(message: str, code: ExitCode) -> NoReturn:
-    streams.say(f"drivelint: error: {terminal_safe_line(message)}")
+def _exit_with_error(message: str, code: ExitCode) -> NoReturn:
+    streams.print_on_stderr(f"drivelint: error: {terminal_safe_line(message)}")
     sys.exit(int(code))

@@ -16,7 +16,7 @@ from drivelint.errors import DriveLintError, UsageError
 from drivelint.phrases import plural, terminal_safe, terminal_safe_line
 from drivelint.settings import find_settings
 
-Delta = Annotated[
+DeltaFolder = Annotated[
     str | None,
     option(
         "--delta",
@@ -26,7 +26,7 @@ Delta = Annotated[
 ]
 
 
-@options.takes_drive_input
+@options.add_drive_options
 def audit(
     *,
     sources: Annotated[
@@ -43,7 +43,7 @@ def audit(
     rules_dir: options.RulesDirs = None,
     robustness: Annotated[
         bool,
-        options.robustness(
+        options.robustness_option(
             "Also judge copies with recording errors, as check does, to find how sure each finding is. Takes half as long again."
         ),
     ] = False,
@@ -107,7 +107,7 @@ def audit(
         str | None,
         option("--cluster", "ADDRESS", "Judge on a cluster: Dask (tcp://..., tls://...) or Ray (ray://..., auto)."),
     ] = None,
-    delta: Delta = None,
+    delta: DeltaFolder = None,
     evidence: options.Evidence = None,
     sign: options.Sign = None,
     quiet: options.Quiet = False,
@@ -176,7 +176,7 @@ def audit(
         why = gated.exit_reason(result, code)
     typer.echo(terminal_safe(summary_text(counted, out, code, told, fail_on=fail_on, gate_reason=why)))
     if pack is not None:
-        packs.write_and_tell(pack, err=True)
+        packs.write_and_print_summary(pack, on_stderr=True)
     raise typer.Exit(int(code))
 
 
@@ -199,7 +199,9 @@ def _stored_results_sentence(out: str) -> str:
 
 
 def merge(
-    dest: Annotated[str, argument("DEST", "The folder of the audits with --shard or --claim.")], *, delta: Delta = None
+    dest: Annotated[str, argument("DEST", "The folder of the audits with --shard or --claim.")],
+    *,
+    delta: DeltaFolder = None,
 ) -> None:
     """Pack the results of audits with --shard or --claim, when all of them have ended.
 
@@ -231,7 +233,7 @@ def sql(
     """Query the tables of an audit or a check with SQL. Nothing is changed."""
     from drivelint.audit.ask import run_query
 
-    def warn(warning: str) -> None:
+    def warn_on_stderr(warning: str) -> None:
         typer.echo(f"drivelint: {terminal_safe_line(warning)}", err=True)
 
-    typer.echo(run_query(dest, query, format_, warn), nl=False)
+    typer.echo(run_query(dest, query, format_, warn_on_stderr), nl=False)

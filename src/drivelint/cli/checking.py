@@ -10,8 +10,14 @@ import typer
 
 from drivelint import option_values
 from drivelint.cli import completion, options, packs, streams
+from drivelint.cli.console import (
+    name_earlier_result_on_failure,
+    rich_text,
+    run_interruptible,
+    say_kept_drives,
+    say_nothing_kept,
+)
 from drivelint.cli.console import progress as bar
-from drivelint.cli.console import rich_text, run_interruptible, say_kept, say_nothing_kept, tells_of_earlier
 from drivelint.cli.options import Texts, argument, option
 from drivelint.cli.restart import Restart
 from drivelint.errors import UsageError
@@ -27,7 +33,7 @@ if TYPE_CHECKING:
     from drivelint.run import CheckOptions
 
 
-@options.takes_drive_input
+@options.add_drive_options
 def check(
     *,
     traces: Annotated[
@@ -40,14 +46,14 @@ def check(
     overwrite: options.Overwrite = False,
     rules: Annotated[
         Texts,
-        options.rules(
+        options.rules_option(
             "Rules to judge by, see above. Repeatable. Default: stable rules of ukhc, in Germany (--env, --map) of stvo too."
         ),
     ] = None,
     ignore: options.Ignore = None,
     profile: Annotated[
         Texts,
-        options.profile(
+        options.profile_option(
             "relaxed, nominal, aggressive, observed, or your own. Repeatable. Default: nominal and observed."
         ),
     ] = None,
@@ -86,7 +92,7 @@ def check(
     ] = True,
     robustness: Annotated[
         bool | None,
-        options.robustness(
+        options.robustness_option(
             "Count in how many copies of the drive with recording errors a critical or major finding stays. "
             "Default: only for the gravest finding of each rule, and for findings that small errors may remove."
         ),
@@ -153,14 +159,14 @@ def check(
     """
     arguments = dict(locals())
 
-    from drivelint.cli.receipts import CheckReceipts
+    from drivelint.cli.receipts import StoredRunOfCheck
 
     settings_file = _settings_file(quiet=quiet)
     robustness = option_values.robustness_for(confidence, robustness)
     day = option_values.parse_today(today)
-    receipts = CheckReceipts(arguments, day, settings_file)
-    with tells_of_earlier(out):
-        earlier = receipts.earlier()
+    receipts = StoredRunOfCheck(arguments, day, settings_file)
+    with name_earlier_result_on_failure(out):
+        earlier = receipts.repeat_earlier_run()
     if earlier is not None:
         typer.echo(earlier.stdout, nl=False)
         raise typer.Exit(earlier.exit_code)
@@ -195,7 +201,7 @@ def check(
         rule_timeout=rule_timeout,
     )
     interruption = Interruption()
-    with tells_of_earlier(out), working_folder(out, overwrite=overwrite) as work, bar(quiet) as progress:
+    with name_earlier_result_on_failure(out), working_folder(out, overwrite=overwrite) as work, bar(quiet) as progress:
         deaf_rules = Restart.if_possible(progress, work)
         grown: tuple[str, ...] = ()
 
@@ -208,8 +214,8 @@ def check(
             return result
 
         try:
-            with receipts.recording():
-                settings = _with_manifests(replace(settings, out=work), packed=pack is not None)
+            with receipts.record_inputs():
+                settings = _with_logs_of_manifests(replace(settings, out=work), are_results_packed=pack is not None)
                 gate_inputs = GateInputs.from_files(baseline, waivers, settings_file, day, out, confidence=confidence)
                 judged = run_interruptible(
                     lambda: _judge(
@@ -221,17 +227,17 @@ def check(
             say_nothing_kept(out, judged_none=isinstance(stop, NothingJudgedError))
             raise
         result = gate_and_write(judged)
-        stdout, code = _stdout(result, format_, out, verbose=verbose), int(exit_status(result).code)
-        receipts.keep(result, stdout, code, grown_files=grown, gate=gate_inputs, interruption=interruption)
+        stdout, code = _stdout_text(result, format_, out, verbose=verbose), int(exit_status(result).code)
+        receipts.store_receipt(result, stdout, code, grown_files=grown, gate=gate_inputs, interruption=interruption)
         if memory is not None and jobs == 1 and (most := peak_bytes()) is not None:  # the peak of this process only
             progress.note(
                 f"the process took at most {format_bytes(most)} of memory, including memory outside the database"
             )
     typer.echo(stdout, nl=False)
     if result.interrupted:
-        say_kept(result.drives["status"].to_pylist(), out)
+        say_kept_drives(result.drives["status"].to_pylist(), out)
     elif pack is not None:
-        packs.write_and_tell(pack, err=True)
+        packs.write_and_print_summary(pack, on_stderr=True)
     raise typer.Exit(code)
 
 
@@ -239,20 +245,20 @@ def _settings_file(*, quiet: bool) -> Path | None:
     """Return the settings file that applies, and print its name unless the run is quiet."""
     file = find_settings()
     if file is not None and not quiet:
-        streams.say(f"drivelint: settings: {terminal_safe_line(str(file))}")
+        streams.print_on_stderr(f"drivelint: settings: {terminal_safe_line(str(file))}")
     return file
 
 
-def _with_manifests(settings: CheckOptions, *, packed: bool) -> CheckOptions:
+def _with_logs_of_manifests(settings: CheckOptions, *, are_results_packed: bool) -> CheckOptions:
     """Return the settings with manifests replaced by the logs that they name. Errors: `UsageError`."""
     if not any(trace.lower().endswith((".csv", ".parquet")) for trace in settings.traces):
         return settings
     from drivelint.audit.sources import expand_manifests
 
     logs, manifest_options = expand_manifests(
-        settings.traces, settings, lambda text: streams.say(f"drivelint: {terminal_safe_line(text)}")
+        settings.traces, settings, lambda text: streams.print_on_stderr(f"drivelint: {terminal_safe_line(text)}")
     )
-    if manifest_options and packed:
+    if manifest_options and are_results_packed:
         raise UsageError(
             "--evidence: a pack needs the same options for all logs, but this manifest has options per log: "
             "audit the manifest, and pack the audit"
@@ -281,7 +287,7 @@ def _judge(
     return run.check(settings, progress, interruption, deaf_rules, keep)
 
 
-def _stdout(result: Result, format_: options.Format, out: Path | None, *, verbose: bool) -> str:
+def _stdout_text(result: Result, format_: options.Format, out: Path | None, *, verbose: bool) -> str:
     """Return the text of a result for stdout."""
     from drivelint.report import summary, terminal
     from drivelint.result.one_line import result_on_one_line

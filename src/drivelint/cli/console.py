@@ -34,7 +34,7 @@ def run_interruptible(job: Callable[[], T], interrupt: Callable[[], None] | None
     With `interrupt`, the first Ctrl-C calls `interrupt` repeatedly until the job ends; a second Ctrl-C raises `KeyboardInterrupt`.
     """
     running = ThreadPoolExecutor(max_workers=1).submit(job)
-    with ending_signals.noted_only() as asked:
+    with ending_signals.record_signals_only() as asked:
         is_told = False
         while not running.done():
             if asked() > (interrupt is not None):
@@ -60,7 +60,7 @@ def say_nothing_kept(out: Path | None, *, judged_none: bool) -> None:
 
 
 @contextmanager
-def tells_of_earlier(out: Path | None) -> Iterator[None]:
+def name_earlier_result_on_failure(out: Path | None) -> Iterator[None]:
     """Print where the earlier result is, if the run inside the block ends without a result."""
     from drivelint.result.folder import EARLIER_FOLDER
 
@@ -79,10 +79,10 @@ def tells_of_earlier(out: Path | None) -> Iterator[None]:
         raise
 
 
-def say_kept(statuses: Sequence[str], out: Path | None) -> None:
+def say_kept_drives(drive_statuses: Sequence[str], out: Path | None) -> None:
     """Print how many drives an interrupted check has judged and kept."""
     where = "" if out is None else f" in {terminal_safe_line(str(out))}"
-    kept = f"kept {statuses.count('judged')} of {plural(len(statuses), 'drive')}{where}"
+    kept = f"kept {drive_statuses.count('judged')} of {plural(len(drive_statuses), 'drive')}{where}"
     typer.echo(f"drivelint: {kept}", err=True)
 
 
@@ -95,7 +95,7 @@ def progress(quiet: bool) -> AbstractContextManager[Progress]:
     return progress_bar() if sys.stderr.isatty() else note_printer()
 
 
-def _inert_console() -> type[Console]:
+def _inert_console_class() -> type[Console]:
     """Return a console class that removes terminal control sequences from text, so that only rich's styles control the terminal."""
     from rich.console import Console
 
@@ -118,7 +118,7 @@ def rich_text(content: RenderableType | Callable[[int], RenderableType], *, soft
     `content`: a renderable, or a function from the width to a renderable.
     """
     terminal = sys.stdout.isatty()
-    console = _inert_console()(width=None if terminal or "COLUMNS" in os.environ else 120, highlight=False)
+    console = _inert_console_class()(width=None if terminal or "COLUMNS" in os.environ else 120, highlight=False)
     with console.capture() as captured:
         console.print(content(console.width) if callable(content) else content, soft_wrap=soft_wrap)
     if terminal:

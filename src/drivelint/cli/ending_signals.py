@@ -15,24 +15,24 @@ from typing import TYPE_CHECKING, Final
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-_NAMES: Final = ("SIGINT", "SIGTERM", "SIGHUP")  # Windows has no SIGHUP
-_noted: Final[list[int]] = []
+_SIGNAL_NAMES: Final = ("SIGINT", "SIGTERM", "SIGHUP")  # Windows has no SIGHUP
+_recorded_signals: Final[list[int]] = []
 
 
-def install() -> None:
+def install_handlers() -> None:
     """Make SIGTERM, and SIGHUP from a closed terminal, end a command like Ctrl-C: results so far are kept.
 
     Ignored signals stay ignored, as with `nohup`, except SIGTERM.
     """
-    _noted.clear()
-    for name in _NAMES:
+    _recorded_signals.clear()
+    for name in _SIGNAL_NAMES:
         number = getattr(signal, name, None)
         if number is not None and (name == "SIGTERM" or signal.getsignal(number) is not signal.SIG_IGN):
-            signal.signal(number, _raise)
+            signal.signal(number, _raise_interrupt)
 
 
 @contextmanager
-def noted_only() -> Iterator[Callable[[], int]]:
+def record_signals_only() -> Iterator[Callable[[], int]]:
     """Only record signals inside the block, without an exception; yield a function that returns the number of recorded signals.
 
     The number includes signals before the block whose exception was lost.
@@ -40,22 +40,22 @@ def noted_only() -> Iterator[Callable[[], int]]:
     if threading.current_thread() is not threading.main_thread():  # Python handles signals only in the main thread
         yield lambda: 0
         return
-    numbers = [getattr(signal, name) for name in _NAMES if hasattr(signal, name)]
+    numbers = [getattr(signal, name) for name in _SIGNAL_NAMES if hasattr(signal, name)]
     before = {number: handler for number in numbers if callable(handler := signal.getsignal(number))}
     for number in before:
-        signal.signal(number, _note)
+        signal.signal(number, _record_signal)
     try:
-        yield lambda: len(_noted)
+        yield lambda: len(_recorded_signals)
     finally:
-        _noted.clear()
+        _recorded_signals.clear()
         for number, handler in before.items():
             signal.signal(number, handler)
 
 
-def _note(number: int, _frame: object) -> None:
-    _noted.append(number)
+def _record_signal(number: int, _frame: object) -> None:
+    _recorded_signals.append(number)
 
 
-def _raise(number: int, _frame: object) -> None:
-    _noted.append(number)
+def _raise_interrupt(number: int, _frame: object) -> None:
+    _recorded_signals.append(number)
     raise KeyboardInterrupt

@@ -45,7 +45,7 @@ def report_audit(
                 "the gate of the last drivelint audit"
             )
         name, audit = run_interruptible(lambda: gated.write_report(dest, to))
-        _warn(audit)
+        _print_warning_of_audit(audit)
         typer.echo(terminal_safe_line(f"{dest.rstrip('/')}/{name}"))
         return
     if (drive_pages is not None or moments is not None) and to != "html":
@@ -58,7 +58,7 @@ def report_audit(
                 dest, to, tuple(by), base, most_drives=most, most_moments=moments, progress=listener
             )
         )
-    _warn(audit)
+    _print_warning_of_audit(audit)
     typer.echo(terminal_safe_line(f"{dest.rstrip('/')}/{name}"))
 
 
@@ -71,10 +71,10 @@ def diff_audits(base: str, new: str, format_: str, fail_on: str | None, rows: Pa
 
     most = difference_text.MAX_JSON_FINDINGS if format_ == "json" else MAX_LINES
 
-    def compared() -> None:
+    def print_difference() -> None:
         with open_two_audits(base, new) as (con, earlier, later):
             for audit in (earlier, later):
-                _warn(audit)
+                _print_warning_of_audit(audit)
             found = difference(con, later, earlier, most)
             if rows is not None:
                 write_finding_rows(con, rows)
@@ -87,7 +87,7 @@ def diff_audits(base: str, new: str, format_: str, fail_on: str | None, rows: Pa
             typer.echo(terminal_safe(difference_text.to_text(found, least)))
         raise typer.Exit(int(difference_text.exit_code(found, least)))
 
-    run_interruptible(compared)
+    run_interruptible(print_difference)
 
 
 def what_if(
@@ -126,10 +126,10 @@ def trend(
     from drivelint.fleet_report.audit_views import path_or_url
     from drivelint.fleet_report.trend import audit_trend, to_json, to_text
 
-    def warn(warning: str) -> None:
+    def warn_on_stderr(warning: str) -> None:
         typer.echo(f"drivelint: {terminal_safe_line(warning)}", err=True)
 
-    found = run_interruptible(lambda: audit_trend([path_or_url(Path(dest)) for dest in dests], warn))
+    found = run_interruptible(lambda: audit_trend([path_or_url(Path(dest)) for dest in dests], warn_on_stderr))
     if format_ == "json":
         typer.echo(terminal_safe_json(to_json(found)))
     elif format_ == "markdown":
@@ -139,7 +139,7 @@ def trend(
     raise typer.Exit(int(found.exit_code))
 
 
-def _warn(audit: Audit) -> None:
+def _print_warning_of_audit(audit: Audit) -> None:
     """Print an audit's warning on stderr, such as that it has not ended."""
     if audit.warning:
         typer.echo(f"drivelint: {terminal_safe_line(audit.warning)}", err=True)

@@ -8,7 +8,7 @@ from typer.core import TyperCommand
 
 from drivelint.cli import options
 
-_GROUPS: Final = {
+_OPTIONS_BY_HEADING: Final = {
     "Watching": ("halt_on", "warn", "advise", "on", "serve", "replay", "window", "every", "idle"),
     "Input": tuple(options.DRIVE_OPTIONS),
     "Rules": ("rules", "ignore", "profile", "param", "rules_dir"),
@@ -37,8 +37,10 @@ class GroupedCommand(TyperCommand):
 
     def format_options(self, ctx: Any, formatter: Any) -> None:
         """Write the arguments and one section of options per group."""
-        groups: dict[str, list[tuple[str, str]]] = {name: [] for name in ("Arguments", *_GROUPS, "Other options")}
-        heading = {param: name for name, params in _GROUPS.items() for param in params}
+        groups: dict[str, list[tuple[str, str]]] = {
+            name: [] for name in ("Arguments", *_OPTIONS_BY_HEADING, "Other options")
+        }
+        heading = {param: name for name, params in _OPTIONS_BY_HEADING.items() for param in params}
         for param in self.get_params(ctx):
             if (record := param.get_help_record(ctx)) is not None:
                 is_option = param.param_type_name == "option"

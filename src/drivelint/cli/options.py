@@ -28,29 +28,29 @@ Texts = list[str] | None
 """The value of an option that may be repeated."""
 
 
-def argument(metavar: str, words: str, **more: Any) -> Any:
+def argument(metavar: str, help_text: str, **settings: Any) -> Any:
     """Return an argument of a command with its help."""
-    return typer.Argument(metavar=metavar, help=words, **more)
+    return typer.Argument(metavar=metavar, help=help_text, **settings)
 
 
-def option(flag: str, metavar: str | None, words: str, **more: Any) -> Any:
+def option(flag: str, metavar: str | None, help_text: str, **settings: Any) -> Any:
     """Return an option of a command with its help."""
-    return typer.Option(flag, metavar=metavar, help=words, **more)
+    return typer.Option(flag, metavar=metavar, help=help_text, **settings)
 
 
-def rules(words: str) -> Any:
+def rules_option(help_text: str) -> Any:
     """Return the option `--rules`, which selects the rules to judge by."""
-    return option("--rules", "SEL", words, autocompletion=completion.rule_ids)
+    return option("--rules", "SEL", help_text, autocompletion=completion.rule_ids)
 
 
-def profile(words: str) -> Any:
+def profile_option(help_text: str) -> Any:
     """Return the option `--profile`, which selects the profiles to judge by."""
-    return option("--profile", "NAME", words)
+    return option("--profile", "NAME", help_text)
 
 
-def robustness(words: str) -> Any:
+def robustness_option(help_text: str) -> Any:
     """Return the option `--robustness`: whether to judge copies of a drive with recording errors."""
-    return option("--robustness/--no-robustness", None, words)
+    return option("--robustness/--no-robustness", None, help_text)
 
 
 Baseline = Annotated[
@@ -104,8 +104,8 @@ Ignore = Annotated[
     Texts, option("--ignore", "SEL", "Leave these rules out. Repeatable.", autocompletion=completion.rule_ids)
 ]
 Param = Annotated[Texts, option("--param", "RULE.PARAM=V", "Set a rule's parameter. Repeatable.")]
-RulesAsInCheck = Annotated[Texts, rules("Rules to judge by, as in check. Repeatable. Default: those of check.")]
-ProfileAsInCheck = Annotated[Texts, profile("As in check. Repeatable.")]
+RulesAsInCheck = Annotated[Texts, rules_option("Rules to judge by, as in check. Repeatable. Default: those of check.")]
+ProfileAsInCheck = Annotated[Texts, profile_option("As in check. Repeatable.")]
 Strict = Annotated[bool, option("--strict", None, "Exit code 4 if a rule is unknown.")]
 FailOnOption = Annotated[FailOn, option("--fail-on", None, "Lowest severity that causes exit code 1.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")]
@@ -198,12 +198,12 @@ DRIVE_OPTIONS = {
 }
 
 
-def takes_drive_input(command: Callable[..., None]) -> Callable[..., None]:
+def add_drive_options(command: Callable[..., None]) -> Callable[..., None]:
     """Replace the parameter `drive` of a command by the command line options of `DriveInput`."""
     signature = inspect.signature(command, eval_str=True)
 
     @wraps(command)
-    def wrapped(**values: Any) -> None:
+    def command_with_drive(**values: Any) -> None:
         drive = {name: each.parse(values.pop(name)) for name, each in DRIVE_OPTIONS.items()}
         command(**values, drive=drive)
 
@@ -215,6 +215,6 @@ def takes_drive_input(command: Callable[..., None]) -> Callable[..., None]:
         for name, each in DRIVE_OPTIONS.items():
             kind, type_ = inspect.Parameter.KEYWORD_ONLY, Annotated[each.type, each.annotation]
             parameters.append(inspect.Parameter(name, kind, default=each.default, annotation=type_))
-    wrapped.__signature__ = signature.replace(parameters=parameters)  # type: ignore[attr-defined]
-    wrapped.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
-    return wrapped
+    command_with_drive.__signature__ = signature.replace(parameters=parameters)  # type: ignore[attr-defined]
+    command_with_drive.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
+    return command_with_drive

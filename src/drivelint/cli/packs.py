@@ -17,7 +17,7 @@ from drivelint.phrases import plural, terminal_safe, terminal_safe_line
 if TYPE_CHECKING:
     from drivelint.pack import PackRequest
 
-Traces = Annotated[
+NewTracePaths = Annotated[
     list[Path] | None,
     option(
         "--trace",
@@ -25,7 +25,7 @@ Traces = Annotated[
         "New path of a log that was moved; for an audit, also a folder of logs. Repeatable. Logs are recognised by their hash.",
     ),
 ]
-Map = Annotated[Path | None, option("--map", "MAP", "The new path of the map, if it was moved.")]
+NewMapPath = Annotated[Path | None, option("--map", "MAP", "The new path of the map, if it was moved.")]
 
 
 def pack(
@@ -36,8 +36,8 @@ def pack(
     with_inputs: Annotated[
         bool, option("--with-inputs", None, "Also copy the logs, the map and the mapping into it.")
     ] = False,
-    traces: Traces = None,
-    map_: Map = None,
+    traces: NewTracePaths = None,
+    map_: NewMapPath = None,
     date: Annotated[
         str | None,
         option(
@@ -83,11 +83,11 @@ def pack(
         overwrite,
         most,
     )
-    write_and_tell(request)
+    write_and_print_summary(request)
 
 
-def write_and_tell(request: PackRequest, *, err: bool = False) -> None:
-    """Write a pack and print a summary of its content; with `err` on stderr."""
+def write_and_print_summary(request: PackRequest, *, on_stderr: bool = False) -> None:
+    """Write a pack and print a summary of its content; with `on_stderr` on stderr."""
     from drivelint.pack import write_pack
 
     told = run_interruptible(lambda: write_pack(request))
@@ -99,14 +99,14 @@ def write_and_tell(request: PackRequest, *, err: bool = False) -> None:
     pages = sum(name.endswith(".html") for name in told.get("incidents", ()))
     sheets = f"; {plural(pages, 'incident sheet')}" if pages else ""
     said = f"{signed}; {n} of {len(findings)} findings have SQL that computes their margin{less}{sheets}"
-    typer.echo(f"{terminal_safe_line(str(request.out))}: {said}", err=err)
+    typer.echo(f"{terminal_safe_line(str(request.out))}: {said}", err=on_stderr)
     for finding in findings:
         if finding["without_sql_because"]:
             why = f"  {finding['finding_id']} {finding['rule_id']}: no SQL, because {finding['without_sql_because']}"
-            typer.echo(terminal_safe_line(why), err=err)
+            typer.echo(terminal_safe_line(why), err=on_stderr)
     if left_out := [name for name in told["left_out"] if name.startswith("incidents/")]:
         why = "sheets of findings that the result does not contain, and PDFs without an HTML page"
-        typer.echo(terminal_safe_line(f"  left out of the pack ({why}): {', '.join(left_out)}"), err=err)
+        typer.echo(terminal_safe_line(f"  left out of the pack ({why}): {', '.join(left_out)}"), err=on_stderr)
 
 
 def verify(
@@ -124,8 +124,8 @@ def verify(
         str | None,
         option("--not-before", "YYYY-MM-DD", "Refuse a pack with an earlier Bagging-Date, or without one."),
     ] = None,
-    traces: Traces = None,
-    map_: Map = None,
+    traces: NewTracePaths = None,
+    map_: NewMapPath = None,
     timestamp_root: Annotated[
         Path | None,
         option(

@@ -31,15 +31,17 @@ if TYPE_CHECKING:
     from drivelint.gate import GateInputs
     from drivelint.result.model import Result
 
-_WITHOUT_EFFECT: Final = frozenset({"cache", "jobs", "quiet", "today"})
+_OPTIONS_WITHOUT_EFFECT: Final = frozenset({"cache", "jobs", "quiet", "today"})
 """Options that do not affect a stored result. With waivers, the receipt stores the day separately."""
-_UNNAMED: Final = (SETTINGS_FILE, "proj.ini")
+_FILES_WITHOUT_OPTION: Final = (SETTINGS_FILE, "proj.ini")
 """Files of the working folder that are read although no option names them: settings, and PROJ's configuration, if it exists."""
-_SUBFOLDERS: Final = frozenset({"annotated", folder.EARLIER_FOLDER, f"{folder.EARLIER_FOLDER}/annotated"})
-_AGAIN: Final = "nothing has changed since an earlier run: these are its verdicts (--no-cache judges again)"
+_SUBFOLDERS_OF_OUTPUTS: Final = frozenset({"annotated", folder.EARLIER_FOLDER, f"{folder.EARLIER_FOLDER}/annotated"})
+_REPEATED_RESULT_NOTE: Final = (
+    "nothing has changed since an earlier run: these are its verdicts (--no-cache judges again)"
+)
 
 
-class Outputs:
+class OutputPathTest:
     """The files that `check` writes into the folder `out`; None: it writes no files."""
 
     def __init__(self, out: Path | None) -> None:
@@ -50,14 +52,14 @@ class Outputs:
         if self._root is None or not path.startswith(self._root + os.sep):
             return False
         name = path[len(self._root) + 1 :].replace(os.sep, "/")
-        if name in _SUBFOLDERS:
+        if name in _SUBFOLDERS_OF_OUTPUTS:
             with suppress(OSError):
                 return all(self(os.path.join(path, each)) for each in os.listdir(path))  # noqa: PTH118, PTH208
         name = name.removeprefix(f"{folder.EARLIER_FOLDER}/")
         return name.startswith(".drivelint.") or any(fnmatchcase(name, pattern) for pattern in RESULT_FILE_GLOBS)
 
 
-class CheckReceipts:
+class StoredRunOfCheck:
     """The receipt of an earlier run of a check, and the receipt that this run stores.
 
     `options`: the options of `check`; `settings`: the settings file that sets some of them; `day`: the date for waivers.
@@ -76,19 +78,24 @@ class CheckReceipts:
             settings,
         ]
         self._named = [*options["traces"], *(options["rules_dir"] or ()), *(path for path in paths if path is not None)]
-        self._is_output = Outputs(self._out)
+        self._is_output = OutputPathTest(self._out)
         self._recorder: InputRecorder | None = None
         self._key: str | None = None
         elsewhere = options["keep_db"] or options["evidence"] is not None or DEAF_RULES_VARIABLE in os.environ
-        if options["cache"] and not elsewhere and cache_folder() is not None and not self._has_outputs(self._named):
-            counted = {name: value for name, value in options.items() if name not in _WITHOUT_EFFECT}
+        if (
+            options["cache"]
+            and not elsewhere
+            and cache_folder() is not None
+            and not self._contains_outputs(self._named)
+        ):
+            counted = {name: value for name, value in options.items() if name not in _OPTIONS_WITHOUT_EFFECT}
             places = {
                 name: os.path.realpath(options[name]) for name in ("out", "baseline") if options[name] is not None
             }
             places |= {} if settings is None else {"settings": os.path.realpath(settings)}
             self._key = receipt_key({**counted, "places": places})
 
-    def earlier(self) -> store.Receipt | None:
+    def repeat_earlier_run(self) -> store.Receipt | None:
         """Write the files of an earlier run with the same inputs, and return its receipt; None without such a run.
 
         Errors: `UsageError` or `OutputError` if the folder cannot be written, as for any run.
@@ -101,29 +108,29 @@ class CheckReceipts:
             if not found.receipt.inputs.are_unchanged(self._is_output):
                 return None
             if self._out is not None:
-                self._write(found, self._out)
+                self._write_files_of_receipt(found, self._out)
             if not self._quiet:
                 notes = NotePrinter()
-                for text in (*found.receipt.notes, _AGAIN):
+                for text in (*found.receipt.notes, _REPEATED_RESULT_NOTE):
                     notes.note(text)
             return found.receipt
 
-    def _write(self, receipt: store.OpenedReceipt, out: Path) -> None:
+    def _write_files_of_receipt(self, receipt: store.OpenedReceipt, out: Path) -> None:
         overwrite, reports = self._overwrite, list(REPORT_FILES.values())
         with folder.working_folder(out, RESULT_FILE_GLOBS, reports, MARK_FILE, overwrite=overwrite) as work:
             contents, finished_files = receipt.unpack(work)
             folder.replace_result(out, contents, finished_files, MARK_FILE, RESULT_FILE_GLOBS, overwrite=overwrite)
 
     @contextmanager
-    def recording(self) -> Iterator[None]:
+    def record_inputs(self) -> Iterator[None]:
         """Record the files that are read inside the block, if a receipt of the run may be stored."""
         if self._key is None:
             yield
             return
-        with record_inputs(self._is_output, [*_UNNAMED, *self._named]) as self._recorder:
+        with record_inputs(self._is_output, [*_FILES_WITHOUT_OPTION, *self._named]) as self._recorder:
             yield
 
-    def keep(
+    def store_receipt(
         self,
         result: Result,
         stdout: str,
@@ -134,9 +141,9 @@ class CheckReceipts:
         interruption: Interruption,
     ) -> None:
         """Store a receipt of a finished run, if possible. `grown_files`: the result files that were written during judging."""
-        if self._key is None or self._recorder is None or interruption.requested or not _is_of_inputs(result):
+        if self._key is None or self._recorder is None or interruption.requested or not _depends_on_inputs_only(result):
             return
-        if result.run_options is None or self._has_outputs(result.run_options.traces.values()):
+        if result.run_options is None or self._contains_outputs(result.run_options.traces.values()):
             return
         inputs = self._recorder.inputs()
         if inputs is None:
@@ -152,11 +159,11 @@ class CheckReceipts:
             receipt = store.Receipt(inputs, stdout, result.notes, exit_code, day, sizes, grown_files)
             store.store_receipt(self._key, receipt, self._out)
 
-    def _has_outputs(self, paths: Iterator[str] | Any) -> bool:
+    def _contains_outputs(self, paths: Iterator[str] | Any) -> bool:
         return any(self._is_output(os.path.realpath(path)) for path in paths)
 
 
-def _is_of_inputs(result: Result) -> bool:
+def _depends_on_inputs_only(result: Result) -> bool:
     """Return whether a result is complete and depends only on its inputs: a drive or rule in error may succeed next time."""
     judged = set(result.drives["status"].to_pylist()) <= {"judged"}
     return judged and not result.interrupted and "error" not in result.verdicts["verdict"].unique().to_pylist()

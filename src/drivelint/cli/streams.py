@@ -10,7 +10,7 @@ from typing import Final
 
 from drivelint.errors import DriveLintError, ExitCode
 
-READER_LEFT: Final = 141
+READER_LEFT_EXIT_CODE: Final = 141
 """The exit code if the reader of stdout closes it early, as `head` does: the code that a shell returns for SIGPIPE."""
 
 
@@ -31,23 +31,23 @@ class _Stdout(io.TextIOWrapper):
         try:
             return super().write(text)
         except OSError as error:
-            raise _stdout_error(error) from error
+            raise _error_of_stdout(error) from error
 
     def flush(self) -> None:
         try:
             super().flush()
         except OSError as error:
-            raise _stdout_error(error) from error
+            raise _error_of_stdout(error) from error
 
 
-def _stdout_error(error: OSError) -> Exception:
-    _to_nowhere(1)  # at exit, Python tries to write the remaining buffer
+def _error_of_stdout(error: OSError) -> Exception:
+    _redirect_to_null(1)  # at exit, Python tries to write the remaining buffer
     if isinstance(error, BrokenPipeError):
         return ReaderLeftError()
     return StdoutError(f"stdout cannot be written: {error.strerror}")
 
 
-def prepare() -> None:
+def make_writable() -> None:
     """Make stdout and stderr writable even if the caller closed them: output to a closed stream is discarded.
 
     Also removes a variable COLUMNS of 0, which some programs set: the width is then unknown.
@@ -56,7 +56,7 @@ def prepare() -> None:
         os.environ.pop("COLUMNS", None)
     for no, name in ((1, "stdout"), (2, "stderr")):
         if getattr(sys, name) is None:
-            setattr(sys, name, os.fdopen(_to_nowhere(no), "w", encoding="utf-8"))
+            setattr(sys, name, os.fdopen(_redirect_to_null(no), "w", encoding="utf-8"))
         stream = getattr(sys, name)
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")  # text from a log may have characters outside the terminal's encoding
@@ -65,15 +65,15 @@ def prepare() -> None:
         sys.stdout = _Stdout(sys.stdout.detach(), encoding, errors="replace", line_buffering=buffered)
 
 
-def say(line: str) -> None:
+def print_on_stderr(line: str) -> None:
     """Print a line on stderr if possible; ignore errors, so that the exit code stays correct."""
     with suppress(OSError):
         print(line, file=sys.stderr, flush=True)
 
 
-def _to_nowhere(no: int) -> int:
+def _redirect_to_null(descriptor: int) -> int:
     sink = os.open(os.devnull, os.O_WRONLY)
-    if sink != no:
-        os.dup2(sink, no)
+    if sink != descriptor:
+        os.dup2(sink, descriptor)
         os.close(sink)
-    return no
+    return descriptor

@@ -10,8 +10,8 @@ import typer
 
 from drivelint import option_values
 from drivelint.cli import options
+from drivelint.cli.console import name_earlier_result_on_failure, run_interruptible, say_nothing_kept
 from drivelint.cli.console import progress as bar
-from drivelint.cli.console import run_interruptible, say_nothing_kept, tells_of_earlier
 from drivelint.cli.options import Texts, argument, option
 from drivelint.cli.streams import ReaderLeftError
 from drivelint.phrases import terminal_safe_json
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 Severity = Literal["critical", "major", "minor"]
 
 
-@options.takes_drive_input
+@options.add_drive_options
 def watch(
     *,
     source: Annotated[
@@ -119,7 +119,7 @@ def watch(
     strict: options.Strict = False,
     robustness: Annotated[
         bool | None,
-        options.robustness("At the end, count how robust critical and major findings are, as check does."),
+        options.robustness_option("At the end, count how robust critical and major findings are, as check does."),
     ] = None,
     memory: options.MemorySize = None,
     quiet: options.Quiet = False,
@@ -167,7 +167,7 @@ def watch(
         allow_origin=tuple(allow_origin or ()),
     )
     emit, interruption = _Printer(), WatchInterruption()
-    with tells_of_earlier(out), working_folder(out, overwrite=overwrite) as work, bar(quiet) as progress:
+    with name_earlier_result_on_failure(out), working_folder(out, overwrite=overwrite) as work, bar(quiet) as progress:
         try:
             code = run_interruptible(
                 lambda: _watch_and_check(settings, work, emit, interruption, progress, overwrite=overwrite),
@@ -180,7 +180,7 @@ def watch(
         except DriveLintError as error:
             emit(messages.end({}, int(error.exit_code), str(error)))
             raise
-    if emit.has_left:
+    if emit.has_reader_left:
         raise ReaderLeftError
     raise typer.Exit(code)
 
@@ -188,15 +188,15 @@ def watch(
 class _Printer:
     """Prints messages. If the reader closes stdout, the watch continues, to write its result and to halt at alarms."""
 
-    has_left = False
+    has_reader_left = False
 
     def __call__(self, message: Message) -> None:
         """Print a message as one line of JSON."""
         try:
-            if not self.has_left:
+            if not self.has_reader_left:
                 typer.echo(terminal_safe_json(json.dumps(message, ensure_ascii=False, allow_nan=False)))
         except ReaderLeftError:
-            self.has_left = True
+            self.has_reader_left = True
 
 
 def _watch_and_check(

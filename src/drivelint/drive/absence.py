@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from drivelint.drive.ego import ALL_EGOS, asks_for_all
-from drivelint.drive.lost_time import LATEST_NS
+from drivelint.drive.lost_time import LATEST_CREDIBLE_NS
 from drivelint.drive.order import MAX_GAP_PERIODS, UNKNOWN_CODE, sorted_states
-from drivelint.drive.trace import EGO_ABSENT, QualityFinding, States
+from drivelint.drive.trace import EGO_ABSENT_CHECK, QualityFinding, States
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,16 +25,16 @@ if TYPE_CHECKING:
     from drivelint.arrays import Indices, Times
     from drivelint.drive.trace import Recording
 
-EGO_CHOSEN: Final = "ego_chosen"
+EGO_CHOSEN_CHECK: Final = "ego_chosen"
 """The id of the check (information only) for an ego that the user chose. A converted log keeps the finding, to distinguish this ego from
 the recorder's own."""
-EGOS_CHOSEN: Final = "egos_chosen"
+EGOS_CHOSEN_CHECK: Final = "egos_chosen"
 """The id of the check (information only) for `--ego all`; the finding's actor is the recorder's own ego, if the log has one."""
 LEAST_ABSENCE_NS: Final = 250_000_000
 """Shorter holes are clock jitter, as odometry at 100 Hz has; this is 2.5 periods of 10 Hz, the usual sampling rate in this field."""
-FRAMES_APART_NS: Final = 1_000_000_000
+LONGEST_FRAME_STEP_NS: Final = 1_000_000_000
 """Frames further apart than this are not successive frames of one recording."""
-LEAST_STEP_NS: Final = 2_000_000
+LEAST_ADDED_STEP_NS: Final = 2_000_000
 """The least time between states that are added between frames."""
 ASSUMED_PERIOD_NS: Final = 100_000_000
 """The sampling period that is assumed for an ego with fewer than two states."""
@@ -55,27 +55,27 @@ class Absence(NamedTuple):
     of_track: bool
 
     @property
-    def ends_ns(self) -> tuple[Times, Times]:
+    def limited_stretches_ns(self) -> tuple[Times, Times]:
         """Return the starts and ends of the stretches (n), limited to the log or the track."""
         return np.maximum(self.since_ns, self.first_ns), np.minimum(self.until_ns, self.last_ns)
 
-    def stretch_of(self, t_ns: Times) -> Indices:
+    def stretch_indices(self, t_ns: Times) -> Indices:
         """Return for each time (n) the index of the stretch that contains it; -1: no stretch does."""
         of = np.searchsorted(self.since_ns, t_ns, side="left") - 1
         return np.where((of >= 0) & (t_ns < self.until_ns[of]), of, -1)
 
 
-def asked_ego(recording: Recording, ego_option: str | None) -> str | None:
+def effective_ego_option(recording: Recording, ego_option: str | None) -> str | None:
     """Return the `--ego` of this run, or `all` if the log was converted with `--ego all`; None: use the ego that the log names."""
-    if ego_option is None and any(finding.check_id == EGOS_CHOSEN for finding in recording.findings):
+    if ego_option is None and any(finding.check_id == EGOS_CHOSEN_CHECK for finding in recording.findings):
         return ALL_EGOS
     return ego_option
 
 
-def own_egos(recording: Recording) -> list[str]:
+def recorder_egos(recording: Recording) -> list[str]:
     """Return the egos that carry the recorder: those that the log or its mapping names, without those that a user had chosen."""
-    picked = {finding.actor_id for finding in recording.findings if finding.check_id == EGO_CHOSEN}
-    among_all = [finding.actor_id for finding in recording.findings if finding.check_id == EGOS_CHOSEN]
+    picked = {finding.actor_id for finding in recording.findings if finding.check_id == EGO_CHOSEN_CHECK}
+    among_all = [finding.actor_id for finding in recording.findings if finding.check_id == EGOS_CHOSEN_CHECK]
     if among_all:
         return [name for name in among_all if name is not None]
     return [name for name in dict.fromkeys(recording.ego_ids) if name not in picked]
@@ -83,20 +83,20 @@ def own_egos(recording: Recording) -> list[str]:
 
 def absences(recording: Recording, ego_option: str | None) -> list[Absence]:
     """Return the absences of the recorder's own egos, or of the ego that the user chooses (states not yet cleaned)."""
-    states, own = recording.states, own_egos(recording)
+    states, own = recording.states, recorder_egos(recording)
     expected = own if ego_option is None or asks_for_all(ego_option, states.ids) else [ego_option]
     absences_of_egos = []
     for name in expected:
-        t_ns = _placed_times(states, name)
+        t_ns = _times_with_position(states, name)
         of_track = name not in own and len(t_ns) > 0
-        span = (int(t_ns[0]), int(t_ns[-1])) if of_track else _span(recording)
-        absence = _absence(name, t_ns, span, recording.ends_apart_ns, of_track=of_track)
+        span = (int(t_ns[0]), int(t_ns[-1])) if of_track else _log_span_ns(recording)
+        absence = _absence_of_actor(name, t_ns, span, recording.ends_apart_ns, of_track=of_track)
         if len(absence.since_ns):
             absences_of_egos.append(absence)
     return absences_of_egos
 
 
-def _span(recording: Recording) -> tuple[int, int]:
+def _log_span_ns(recording: Recording) -> tuple[int, int]:
     """Return the first and the last time of a log: of its states, and of the frames before and after them.
 
     Isolated frames do not count: the first message of a log may contain only the road, with any time.
@@ -104,27 +104,29 @@ def _span(recording: Recording) -> tuple[int, int]:
     t_ns = recording.states.t_ns
     first, last = int(t_ns.min()), int(t_ns.max())
     frames = np.zeros(0, np.int64) if recording.frames_ns is None else recording.frames_ns
-    frames = np.unique(frames[(np.abs(frames) < LATEST_NS) & ((frames < first) | (frames > last))])
+    frames = np.unique(frames[(np.abs(frames) < LATEST_CREDIBLE_NS) & ((frames < first) | (frames > last))])
     if not len(frames):
         return first, last
     edges = np.unique(np.r_[frames, first, last])
     steps = np.r_[np.iinfo(np.int64).max, np.diff(edges), np.iinfo(np.int64).max]
-    near = edges[(steps[:-1] <= FRAMES_APART_NS) | (steps[1:] <= FRAMES_APART_NS)]
+    near = edges[(steps[:-1] <= LONGEST_FRAME_STEP_NS) | (steps[1:] <= LONGEST_FRAME_STEP_NS)]
     return min([first, *near[:1].tolist()]), max([last, *near[-1:].tolist()])
 
 
-def _placed_times(states: States, name: str) -> Times:
+def _times_with_position(states: States, actor_id: str) -> Times:
     """Return the times, ascending, at which an actor has a position."""
-    if name not in states.ids or not {"x_m", "y_m"} <= states.numbers.keys():
+    if actor_id not in states.ids or not {"x_m", "y_m"} <= states.numbers.keys():
         return np.zeros(0, np.int64)
-    mine = states.actor == states.ids.index(name)
+    mine = states.actor == states.ids.index(actor_id)
     mine &= np.isfinite(states.numbers["x_m"]) & np.isfinite(states.numbers["y_m"])
     return np.unique(states.t_ns[mine])
 
 
-def _absence(name: str, t_ns: Times, span: tuple[int, int], ends_apart_ns: int, *, of_track: bool) -> Absence:
+def _absence_of_actor(
+    actor_id: str, t_ns: Times, span_ns: tuple[int, int], ends_apart_ns: int, *, of_track: bool
+) -> Absence:
     """Return the absence of an actor with positions at these times within a span; holes that are clock jitter do not count."""
-    first, last = span
+    first, last = span_ns
     steps = np.diff(t_ns)
     period = max(int(np.median(steps)), 1) if len(steps) else ASSUMED_PERIOD_NS
     # 1 ns outside the span, so that a stretch at either end includes the end itself
@@ -132,28 +134,28 @@ def _absence(name: str, t_ns: Times, span: tuple[int, int], ends_apart_ns: int, 
     least = np.full(len(edges) - 1, max(MAX_GAP_PERIODS * period, LEAST_ABSENCE_NS))
     least[[0, -1]] = max(least[0], ends_apart_ns) + 1
     wide = np.diff(edges) > (least if len(t_ns) else 0)
-    return Absence(name, edges[:-1][wide], edges[1:][wide], period, first, last, of_track)
+    return Absence(actor_id, edges[:-1][wide], edges[1:][wide], period, first, last, of_track)
 
 
-def frames_without_states(recording: Recording, missed: Sequence[Absence]) -> Times:
+def frame_times_without_states(recording: Recording, ego_absences: Sequence[Absence]) -> Times:
     """Return the times of frames without any actor during the absence of an ego (states not yet cleaned)."""
-    if recording.frames_ns is None or not missed:
+    if recording.frames_ns is None or not ego_absences:
         return np.zeros(0, np.int64)
-    within = np.any([each.stretch_of(recording.frames_ns) >= 0 for each in missed], axis=0)
+    within = np.any([each.stretch_indices(recording.frames_ns) >= 0 for each in ego_absences], axis=0)
     return np.setdiff1d(recording.frames_ns[within], recording.states.t_ns)
 
 
-def with_absent_states(states: States, missed: Sequence[Absence], frames_ns: Times | None) -> States:
+def with_unknown_ego_states(states: States, ego_absences: Sequence[Absence], frames_ns: Times | None) -> States:
     """Add states without values for each ego, at the frames during its absence. The states are sorted, and so is the result."""
-    ids = list(dict.fromkeys([*states.ids, *(each.ego_id for each in missed)]))
-    more = [_absent_states(states, ids, each, frames_ns) for each in missed]
+    ids = list(dict.fromkeys([*states.ids, *(each.ego_id for each in ego_absences)]))
+    more = [_unknown_ego_states(states, ids, each, frames_ns) for each in ego_absences]
     if not any(map(len, more)):
         return states
     states.ids = ids
     return sorted_states(States.concatenate([states, *more]))
 
 
-def _absent_states(states: States, ids: list[str], absence: Absence, frames_ns: Times | None) -> States:
+def _unknown_ego_states(states: States, ids: list[str], absence: Absence, frames_ns: Times | None) -> States:
     number = ids.index(absence.ego_id)
     t_ns = _times_to_fill(absence, states, states.t_ns[states.actor == number], frames_ns)
     n = len(t_ns)
@@ -167,37 +169,37 @@ def _absent_states(states: States, ids: list[str], absence: Absence, frames_ns: 
     )
 
 
-def _times_to_fill(absence: Absence, states: States, own_ns: Times, frames_ns: Times | None) -> Times:
-    """Return the times of frames within an absence, at most one per period, without those near a state of the ego (`own_ns`).
+def _times_to_fill(absence: Absence, states: States, ego_times_ns: Times, frames_ns: Times | None) -> Times:
+    """Return the times of frames within an absence, at most one per period, without those near a state of the ego (`ego_times_ns`).
 
     If frames are rarer than the ego's states, times between the frames are added, because rules would otherwise have a hole there.
     """
     period, half = absence.period_ns, absence.period_ns // 2
     times = np.concatenate([states.t_ns, np.zeros(0, np.int64) if frames_ns is None else frames_ns])
-    times = np.unique(times[absence.stretch_of(times) >= 0])
+    times = np.unique(times[absence.stretch_indices(times) >= 0])
     if not len(times):
         return times
-    of = absence.stretch_of(times)
+    of = absence.stretch_indices(times)
     slot = (times - absence.since_ns[of] + half) // period
     _, one = np.unique(np.stack([of, slot]), axis=1, return_index=True)
     times, of = times[one], of[one]
     apart = np.diff(times)
-    wide = np.flatnonzero((apart > MAX_GAP_PERIODS * period) & (apart <= FRAMES_APART_NS) & (np.diff(of) == 0))
+    wide = np.flatnonzero((apart > MAX_GAP_PERIODS * period) & (apart <= LONGEST_FRAME_STEP_NS) & (np.diff(of) == 0))
     if len(wide) > len(times) / 2:
-        step = max(period, LEAST_STEP_NS)
+        step = max(period, LEAST_ADDED_STEP_NS)
         between = [np.arange(times[k] + step, times[k + 1] - step // 2, step) for k in wide]
         times = np.sort(np.concatenate([times, *between]))
-    beside = np.searchsorted(own_ns, times - half)
-    taken = np.append(own_ns, np.iinfo(np.int64).max)[beside] <= times + half
+    beside = np.searchsorted(ego_times_ns, times - half)
+    taken = np.append(ego_times_ns, np.iinfo(np.int64).max)[beside] <= times + half
     return times[~taken]
 
 
-def absence_findings(missed: Sequence[Absence], states: States) -> list[QualityFinding]:
+def absence_findings(ego_absences: Sequence[Absence], states: States) -> list[QualityFinding]:
     """Return a finding of severity error for each absence (states in order, including those without values)."""
     start = int(states.t_ns.min())
     findings = []
-    for absence in missed:
-        begins, ends = absence.ends_ns
+    for absence in ego_absences:
+        begins, ends = absence.limited_stretches_ns
         lost_ns, of_ns = int((ends - begins).sum()), absence.last_ns - absence.first_ns
         until = "the end" if ends[0] == absence.last_ns else f"{(ends[0] - start) / 1e9:.3f} s"
         when = f"from {(begins[0] - start) / 1e9:.3f} s to {until}"
@@ -214,26 +216,26 @@ def absence_findings(missed: Sequence[Absence], states: States) -> list[QualityF
             if absence.ego_id in states.ids
             else begins[:0]
         )
-        n = int((absence.stretch_of(mine) >= 0).sum())
-        findings.append(QualityFinding(EGO_ABSENT, "error", message, max(n, 1), int(begins[0]), absence.ego_id))
+        n = int((absence.stretch_indices(mine) >= 0).sum())
+        findings.append(QualityFinding(EGO_ABSENT_CHECK, "error", message, max(n, 1), int(begins[0]), absence.ego_id))
     return findings
 
 
-def without_choices(findings: Sequence[QualityFinding]) -> list[QualityFinding]:
+def without_ego_choices(findings: Sequence[QualityFinding]) -> list[QualityFinding]:
     """Return the findings without those about the user's choice of the ego when the log was converted."""
-    return [finding for finding in findings if finding.check_id not in {EGO_CHOSEN, EGOS_CHOSEN}]
+    return [finding for finding in findings if finding.check_id not in {EGO_CHOSEN_CHECK, EGOS_CHOSEN_CHECK}]
 
 
-def chosen_findings(recording: Recording, ego_option: str | None) -> list[QualityFinding]:
+def ego_choice_findings(recording: Recording, ego_option: str | None) -> list[QualityFinding]:
     """Return a finding, with the length of the track, if the user chooses another ego than the recorder's (states not yet cleaned)."""
-    own, states = own_egos(recording), recording.states
+    own, states = recorder_egos(recording), recording.states
     if ego_option is None or ego_option in own:
         return []
     if asks_for_all(ego_option, states.ids):
         message = "every motor vehicle is an ego in turn (--ego all): each is judged for the time of its track"
         names: list[str | None] = [*own] if own else [None]
-        return [QualityFinding(EGOS_CHOSEN, "info", message, actor_id=name) for name in names]
-    t_ns, (first, last) = _placed_times(states, ego_option), _span(recording)
+        return [QualityFinding(EGOS_CHOSEN_CHECK, "info", message, actor_id=name) for name in names]
+    t_ns, (first, last) = _times_with_position(states, ego_option), _log_span_ns(recording)
     there = f"{(t_ns[-1] - t_ns[0]) / 1e9 if len(t_ns) else 0.0:.1f} of {(last - first) / 1e9:.1f} s of the log"
     message = f"the ego {ego_option} is chosen with --ego: it is judged for the time of its track, {there}"
-    return [QualityFinding(EGO_CHOSEN, "info", message, actor_id=ego_option)]
+    return [QualityFinding(EGO_CHOSEN_CHECK, "info", message, actor_id=ego_option)]

@@ -20,14 +20,14 @@ if TYPE_CHECKING:
     from drivelint.arrays import Floats, Mask
     from drivelint.drive.trace import States
 
-LONG_CLASSES: Final = frozenset({"car", "van", "truck", "bus", "vehicle", "trailer"})
+ELONGATED_CLASSES: Final = frozenset({"car", "van", "truck", "bus", "vehicle", "trailer"})
 """Classes whose boxes are longer than wide. Two-wheelers are not among them: the box may be that of the rider's body alone."""
-WIDER_SHARE: Final = 1.1
+MOST_WIDTH_PER_LENGTH: Final = 1.1
 """A detector may make the box of a small car a little wider than long; a box wider by more than a tenth is turned or wrong."""
-DIRECTION_LEAST_MPS: Final = 2.0
+LEAST_DIRECTED_MPS: Final = 2.0
 """Above this speed, the velocity of a box shows its direction of motion."""
 LEAST_MOVING_SAMPLES: Final = 5
-ALONG_RAD: Final = np.deg2rad(30.0)
+ALONG_HEADING_RAD: Final = np.deg2rad(30.0)
 """A box moves along its heading if, in most of its moving samples, the angle between the two is smaller than this."""
 LEAST_SIZES_M: Final = {
     "car": (1.5, 0.8),
@@ -89,13 +89,13 @@ def from_states(states: States) -> tuple[Actors, list[QualityFinding]]:
     return Actors(states.ids, classes, sizes), findings
 
 
-def from_table(table: pa.Table, states: States, alias: Mapping[str, str]) -> Actors:
+def from_table(table: pa.Table, states: States, old_id_by_id: Mapping[str, str]) -> Actors:
     """Return the actors of the log's own table (first row of each id), and those that only have states, with unknown class and size.
 
-    `alias`: new id of a split track -> the id whose row in the table describes it (see `jumps`).
+    `old_id_by_id`: new id of a split track -> the id whose row in the table describes it (see `jumps`).
     """
     rows = {str(row["actor_id"]): row for row in reversed(table.to_pylist()) if row["actor_id"] not in {None, ""}}
-    rows |= {new: rows[old] for new, old in alias.items() if old in rows}
+    rows |= {new: rows[old] for new, old in old_id_by_id.items() if old in rows}
     ids = sorted({*rows, *states.ids})
     nothing: dict[str, object] = {}
     classes = [str(value) if (value := rows.get(i, nothing).get("actor_class")) else None for i in ids]
@@ -108,15 +108,15 @@ def from_table(table: pa.Table, states: States, alias: Mapping[str, str]) -> Act
     return Actors(ids, classes, sizes)
 
 
-def resolve_sizes(states: States, actors: Actors) -> list[QualityFinding]:
+def correct_sizes(states: States, actors: Actors) -> list[QualityFinding]:
     """Swap or drop the sizes of boxes that are wider than long, in place; return findings on these and on impossible sizes.
 
     `states` in order.
     """
     length, width = actors.sizes["length_m"], actors.sizes["width_m"]
-    long_kind = np.array([kind in LONG_CLASSES for kind in actors.classes], np.bool_)
-    wide = long_kind & (width > WIDER_SHARE * length)
-    along = np.isin(actors.ids, _moving_along(states)) if wide.any() else wide
+    long_kind = np.array([kind in ELONGATED_CLASSES for kind in actors.classes], np.bool_)
+    wide = long_kind & (width > MOST_WIDTH_PER_LENGTH * length)
+    along = np.isin(actors.ids, _actors_moving_along_heading(states)) if wide.any() else wide
     turned, dropped_sizes = wide & along, wide & ~along
     actors.sizes["length_m"] = np.where(turned, width, np.where(dropped_sizes, np.nan, length))
     actors.sizes["width_m"] = np.where(turned, length, np.where(dropped_sizes, np.nan, width))
@@ -129,29 +129,30 @@ def resolve_sizes(states: States, actors: Actors) -> list[QualityFinding]:
             "wider than long, and it is not known which side is the front: {}: length and width are unknown",
         ),
     ):
-        if ids := _names(actors, rows):
+        if ids := _actor_ids(actors, rows):
             findings.append(QualityFinding.of_actors(check, "warning", text.format(name_list(ids)), ids))
-    return findings + _implausible(states, actors)
+    return findings + _implausible_size_findings(states, actors)
 
 
-def _moving_along(states: States) -> list[str]:
+def _actors_moving_along_heading(states: States) -> list[str]:
     """Return the ids of the actors that move along their heading, forwards or backwards."""
     vx, vy = states.velocity
-    moving = np.isfinite(states.numbers["yaw_rad"]) & (np.hypot(vx, vy) > DIRECTION_LEAST_MPS)
+    moving = np.isfinite(states.numbers["yaw_rad"]) & (np.hypot(vx, vy) > LEAST_DIRECTED_MPS)
     off = np.abs(wrap_angles(2.0 * (states.numbers["yaw_rad"] - np.arctan2(vy, vx)))) / 2.0
     n, n_along = (
-        np.bincount(states.actor[rows], minlength=len(states.ids)) for rows in (moving, moving & (off < ALONG_RAD))
+        np.bincount(states.actor[rows], minlength=len(states.ids))
+        for rows in (moving, moving & (off < ALONG_HEADING_RAD))
     )
     return [states.ids[i] for i in np.flatnonzero((n >= LEAST_MOVING_SAMPLES) & (2 * n_along > n))]
 
 
-def _implausible(states: States, actors: Actors) -> list[QualityFinding]:
+def _implausible_size_findings(states: States, actors: Actors) -> list[QualityFinding]:
     bad = np.zeros(len(actors.ids), np.bool_)
     least = np.array([LEAST_SIZES_M.get(kind or "", (0.0, 0.0)) for kind in actors.classes])
     known = np.array([kind in LEAST_SIZES_M for kind in actors.classes], np.bool_)
     for axis, name in enumerate(("length_m", "width_m")):
         bad |= known & ((actors.sizes[name] < least[:, axis]) | (actors.sizes[name] > MOST_SIZES_M[axis]))
-    ids = _names(actors, bad)
+    ids = _actor_ids(actors, bad)
     if not ids:
         return []
     starts = track_starts(states.actor)
@@ -168,5 +169,5 @@ def _implausible(states: States, actors: Actors) -> list[QualityFinding]:
     return [QualityFinding("size_implausible", "warning", message, len(ids), actor_id=only, doubts=doubts)]
 
 
-def _names(actors: Actors, rows: Mask) -> list[str]:
+def _actor_ids(actors: Actors, rows: Mask) -> list[str]:
     return [actors.ids[i] for i in np.flatnonzero(rows)]

@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
 DIFFERENT_RATE_FACTOR: Final = 1.5
 """Above this ratio of a track's sampling period to the ego's, the track has another rate; below it, only single samples are missing."""
-COVERED_SHARE: Final = 0.75
+LEAST_SHARE_AT_EGO_STEPS: Final = 0.75
 """A track with samples at this share of the ego's steps between its first and its last sample is not interpolated."""
-_PLACE_AND_VELOCITY: Final = (("x_m", "vx_mps"), ("y_m", "vy_mps"))
+_POSITION_AND_VELOCITY_COLUMNS: Final = (("x_m", "vx_mps"), ("y_m", "vy_mps"))
 
 
 def align_to_ego(states: States, egos: list[str]) -> tuple[States, list[QualityFinding]]:
@@ -40,12 +40,12 @@ def align_to_ego(states: States, egos: list[str]) -> tuple[States, list[QualityF
     kept_rows, aligned_tracks, names, longest = np.ones(len(states), np.bool_), [], [], 0
     for i, name in enumerate(states.ids):
         span = slice(int(starts[i]), int(starts[i + 1]))
-        track_period = _own_period(states.t_ns[span], grid, period)
+        track_period = _period_to_align_ns(states.t_ns[span], grid, period)
         if track_period is None:
             continue
         # a track with a shorter period also keeps its own samples; every track keeps its samples before and after the ego's steps
         kept_rows[span] = (track_period < period) | (states.t_ns[span] < grid[0]) | (states.t_ns[span] > grid[-1])
-        track = _at_steps(states, span, grid, track_period, log_ns)
+        track = _track_at_ego_steps(states, span, grid, track_period, log_ns)
         aligned_tracks.append(track.take(~np.isin(track.t_ns, states.t_ns[span])) if track_period < period else track)
         names.append(name)
         longest = max(longest, track_period)
@@ -59,7 +59,7 @@ def align_to_ego(states: States, egos: list[str]) -> tuple[States, list[QualityF
     return sorted_states(States.concatenate([states.take(kept_rows), *aligned_tracks])), [finding]
 
 
-def _own_period(t_ns: Times, grid: Times, period_ns: float) -> int | None:
+def _period_to_align_ns(t_ns: Times, ego_steps_ns: Times, ego_period_ns: float) -> int | None:
     """Return the sampling period of a track that has to be aligned.
 
     None: its samples are at the ego's steps (but for a few), fewer than two, or too far apart.
@@ -67,33 +67,35 @@ def _own_period(t_ns: Times, grid: Times, period_ns: float) -> int | None:
     n = len(t_ns)
     if n < 2:
         return None
-    first = int(np.searchsorted(grid, t_ns[0]))
-    if first + n <= len(grid) and np.array_equal(t_ns, grid[first : first + n]):
+    first = int(np.searchsorted(ego_steps_ns, t_ns[0]))
+    if first + n <= len(ego_steps_ns) and np.array_equal(t_ns, ego_steps_ns[first : first + n]):
         return None
     own_period = int(np.median(np.diff(t_ns)))
     if own_period > LONGEST_PERIOD_NS:
         return None
-    steps = grid[first : np.searchsorted(grid, t_ns[-1], side="right")]
+    steps = ego_steps_ns[first : np.searchsorted(ego_steps_ns, t_ns[-1], side="right")]
     shared = len(np.intersect1d(steps, t_ns, assume_unique=True))
-    if shared >= COVERED_SHARE * len(steps):  # also true if the ego has no step during the track
+    if shared >= LEAST_SHARE_AT_EGO_STEPS * len(steps):  # also true if the ego has no step during the track
         return None
-    return own_period if own_period > DIFFERENT_RATE_FACTOR * period_ns or shared < 0.5 * n else None
+    return own_period if own_period > DIFFERENT_RATE_FACTOR * ego_period_ns or shared < 0.5 * n else None
 
 
-def _at_steps(states: States, span: slice, grid: Times, own_ns: int, log_ns: tuple[int, int]) -> States:
-    """Return the states of one track at those steps of the ego (`grid`) where they are known.
+def _track_at_ego_steps(
+    states: States, span: slice, ego_steps_ns: Times, period_ns: int, log_span_ns: tuple[int, int]
+) -> States:
+    """Return the states of one track at those steps of the ego (`ego_steps_ns`) where they are known.
 
-    `own_ns`: the track's sampling period. `log_ns`: the first and the last time of the log.
+    `period_ns`: the track's sampling period. `log_span_ns`: the first and the last time of the log.
     """
     t_ns = states.t_ns[span]
-    first = log_ns[0] if t_ns[0] - log_ns[0] <= own_ns else t_ns[0]
-    last = log_ns[1] if log_ns[1] - t_ns[-1] <= own_ns else t_ns[-1]
-    steps = grid[np.searchsorted(grid, first) : np.searchsorted(grid, last, side="right")]
+    first = log_span_ns[0] if t_ns[0] - log_span_ns[0] <= period_ns else t_ns[0]
+    last = log_span_ns[1] if log_span_ns[1] - t_ns[-1] <= period_ns else t_ns[-1]
+    steps = ego_steps_ns[np.searchsorted(ego_steps_ns, first) : np.searchsorted(ego_steps_ns, last, side="right")]
     before = np.searchsorted(t_ns, steps, side="right") - 1
     inside = (before >= 0) & (steps <= t_ns[-1])
     before = np.clip(before, 0, len(t_ns) - 1)
     after = np.minimum(before + (inside & (t_ns[before] < steps)), len(t_ns) - 1)
-    known = t_ns[after] - t_ns[before] <= MAX_GAP_PERIODS * own_ns
+    known = t_ns[after] - t_ns[before] <= MAX_GAP_PERIODS * period_ns
     steps, before, after, inside = steps[known], before[known], after[known], inside[known]
     rows, later = span.start + before, span.start + after
     apart = np.maximum(t_ns[after] - t_ns[before], 1)
@@ -105,7 +107,7 @@ def _at_steps(states: States, span: slice, grid: Times, own_ns: int, log_ns: tup
         numbers[name] = np.where(share > 0.0, values[rows] + share * rise, values[rows])
     numbers["yaw_rad"] = wrap_angles(numbers["yaw_rad"])
     age_s = np.where(inside, 0.0, (steps - t_ns[before]) / 1e9)
-    for place, velocity in _PLACE_AND_VELOCITY:
+    for place, velocity in _POSITION_AND_VELOCITY_COLUMNS:
         numbers[place] = np.where(inside, numbers[place], numbers[place] + age_s * numbers[velocity])
     codes = {name: values[rows] for name, values in states.codes.items()}
     return States(states.ids, states.actor[rows], steps, numbers, codes, states.not_finite[rows])

@@ -10,7 +10,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from drivelint.arrays import wrap_angles
-from drivelint.drive.order import MAX_GAP_PERIODS, displacements, integral_per_step, known_motion, sums_over
+from drivelint.drive.order import (
+    MAX_GAP_PERIODS,
+    integral_per_step,
+    motion_over_steps,
+    sliding_sums,
+    steps_with_known_motion,
+)
 from drivelint.drive.trace import MOTOR_VEHICLES, QualityFinding
 from drivelint.phrases import name_list
 
@@ -28,8 +34,8 @@ YAW_MISMATCH_RAD = np.deg2rad(30.0)
 YAW_CHECK_LEAST_MPS = 3.0
 """Above 3 m/s, the heading may differ from the direction of motion by 30 degrees; slip angles of a car are below about 10 degrees. Below
 3 m/s, the direction is not certain enough."""
-REVERSING_MPS = 8.0
-REVERSING_RAD = np.deg2rad(150.0)
+FASTEST_REVERSING_MPS = 8.0
+REVERSING_LEAST_RAD = np.deg2rad(150.0)
 """A vehicle reverses if it is slower than this (29 km/h), its heading is off the motion by more than 150 degrees, and it drives forwards
 elsewhere in the log."""
 TELEPORT_M = 3.0
@@ -45,8 +51,8 @@ LONGER_THAN_WIDE_CLASSES = frozenset((*MOTOR_VEHICLES, "trailer", "bicycle"))
 """Classes of actors whose box is longer than wide."""
 
 
-def run(states: States, step: Steps, actors: Actors, *, derived: bool) -> list[QualityFinding]:
-    """Run every check on states in order. `derived`: velocities are derived from the positions, and not compared with them."""
+def quality_findings(states: States, step: Steps, actors: Actors, *, derived_velocities: bool) -> list[QualityFinding]:
+    """Run every check on states in order. `derived_velocities`: velocities are derived from the positions, and not compared with them."""
     unplaced = np.isnan(states.numbers["x_m"]) | np.isnan(states.numbers["y_m"])
     findings = []
     for rows, check, text in (
@@ -59,21 +65,21 @@ def run(states: States, step: Steps, actors: Actors, *, derived: bool) -> list[Q
         ),
     ):
         findings += states.findings(rows, check, "warning", text)
-    findings += [*_sizes(actors), *_gaps(states, step)]
+    findings += [*_size_findings(actors), *_gap_findings(states, step)]
     if len(states) > 1:
-        jump = _jumps(states, step)
+        jump = _states_after_jumps(states, step)
         text = "position jumps farther than any vehicle can drive in {n} of {of} states ({ids})"
         is_unit = jump.sum() > max(WRONG_UNITS_SHARE * step.continuous.sum(), LEAST_MOVING_SAMPLES)
         why = ": the unit of position, speed or time is wrong" if is_unit else ""
         findings += states.findings(jump, "teleport", "error" if is_unit else "warning", text + why)
-        findings += _too_fast(states)
-        if not derived:
-            findings += _velocity(states, step, jump)
-        findings += _yaw(states, actors)
+        findings += _excessive_speed_findings(states)
+        if not derived_velocities:
+            findings += _velocity_findings(states, step, jump)
+        findings += _heading_findings(states, actors)
     return findings
 
 
-def _sizes(actors: Actors) -> list[QualityFinding]:
+def _size_findings(actors: Actors) -> list[QualityFinding]:
     length, width = actors.sizes["length_m"], actors.sizes["width_m"]
     long_kind = np.array([kind in LONGER_THAN_WIDE_CLASSES for kind in actors.classes], np.bool_)
     findings = []
@@ -90,7 +96,7 @@ def _sizes(actors: Actors) -> list[QualityFinding]:
     return findings
 
 
-def _gaps(states: States, step: Steps) -> list[QualityFinding]:
+def _gap_findings(states: States, step: Steps) -> list[QualityFinding]:
     """Return findings on gaps of the whole log, and on holes of single tracks during which the log continues."""
     if step.period_ns <= 0:
         return []
@@ -106,7 +112,7 @@ def _gaps(states: States, step: Steps) -> list[QualityFinding]:
         )
         findings.append(QualityFinding("gap", "warning", message, n, first))
     hole = np.zeros(len(states), np.bool_)
-    hole[:-1] = step.same & ~step.continuous
+    hole[:-1] = step.same_actor & ~step.continuous
     if findings:  # a hole that is a gap of the whole log is reported once
         inside = np.searchsorted(times, states.t_ns[:-1][hole[:-1]])
         hole[np.flatnonzero(hole)[wide[inside]]] = False
@@ -114,7 +120,7 @@ def _gaps(states: States, step: Steps) -> list[QualityFinding]:
     return findings + states.findings(hole, "track_gap", "info", text)
 
 
-def _jumps(states: States, step: Steps) -> Mask:
+def _states_after_jumps(states: States, step: Steps) -> Mask:
     speed = np.hypot(*states.velocity)
     # if both speeds are unknown, `reach` is NaN, and the step is no jump
     reach = TELEPORT_M + TELEPORT_FACTOR * np.fmax(speed[1:], speed[:-1]) * step.dt_s
@@ -123,7 +129,7 @@ def _jumps(states: States, step: Steps) -> Mask:
     return jump
 
 
-def _too_fast(states: States) -> list[QualityFinding]:
+def _excessive_speed_findings(states: States) -> list[QualityFinding]:
     """Return a finding if most moving samples are faster than any road user: then the units are wrong."""
     speed = np.hypot(*states.velocity)
     rows = speed > FASTEST_MPS
@@ -137,18 +143,18 @@ def _too_fast(states: States) -> list[QualityFinding]:
     return states.findings(rows, "too_fast", "error", text)
 
 
-def _velocity(states: States, step: Steps, jump: Mask) -> list[QualityFinding]:
+def _velocity_findings(states: States, step: Steps, jump: Mask) -> list[QualityFinding]:
     """Return a finding if steps in position disagree with the mean of the velocities at their ends.
 
     Whether units or frame are wrong is decided over one second, where position noise is small against the distance.
     """
     wrong = np.zeros(len(states), np.bool_)
-    wrong[1:] = _disagree(*_against_positions(states, step, jump, 1))
+    wrong[1:] = _exceeds_tolerance(*_speeds_vs_positions(states, step, jump, 1))
     second = max(1, round(1e9 / step.period_ns)) if step.period_ns else 1
     for n_steps in {second: None, 1: None}:
-        error, speed, step_speed, usable = _against_positions(states, step, jump, n_steps)
+        error, speed, step_speed, usable = _speeds_vs_positions(states, step, jump, n_steps)
         moving = usable & (np.maximum(step_speed, speed) > YAW_CHECK_LEAST_MPS)
-        off = moving & _disagree(error, speed, step_speed, usable)
+        off = moving & _exceeds_tolerance(error, speed, step_speed, usable)
         n, n_moving = int(off.sum()), int(moving.sum())
         if n_moving < LEAST_MOVING_SAMPLES:
             continue  # tracks shorter than a second
@@ -156,7 +162,7 @@ def _velocity(states: States, step: Steps, jump: Mask) -> list[QualityFinding]:
             ratio = float(np.nanmedian((speed / step_speed)[moving]))
             text = (
                 f"velocity does not match the changes of position in {100.0 * n / n_moving:.0f} % "
-                f"of the moving samples (the speed is {ratio:.3g} times the change): {_cause(ratio)}"
+                f"of the moving samples (the speed is {ratio:.3g} times the change): {_cause_of_speed_ratio(ratio)}"
             )
             return states.findings(wrong, "velocity_mismatch", "error", text)
         break
@@ -164,27 +170,27 @@ def _velocity(states: States, step: Steps, jump: Mask) -> list[QualityFinding]:
     return states.findings(wrong, "velocity_mismatch", "warning", text)
 
 
-def _disagree(error: Floats, speed: Floats, step_speed: Floats, usable: Mask) -> Mask:
-    """Return the mask of the steps, as returned by `_against_positions`, whose error exceeds the tolerance."""
+def _exceeds_tolerance(error: Floats, speed: Floats, step_speed: Floats, usable: Mask) -> Mask:
+    """Return the mask of the steps, as returned by `_speeds_vs_positions`, whose error exceeds the tolerance."""
     return usable & (error > VELOCITY_MISMATCH_MPS + VELOCITY_MISMATCH_SHARE * np.maximum(step_speed, speed))
 
 
-def _against_positions(states: States, step: Steps, jump: Mask, n_steps: int) -> tuple[Floats, Floats, Floats, Mask]:
+def _speeds_vs_positions(states: States, step: Steps, jump: Mask, n_steps: int) -> tuple[Floats, Floats, Floats, Mask]:
     """Compare the mean velocity from positions over every `n_steps` steps with the mean of the recorded velocities, in m/s.
 
     Returns, indexed by first row (n - n_steps): the difference, the mean speed, the speed from positions, and the mask of the intervals
     without a jump or hole.
     """
-    known = known_motion(states, step) & ~jump[1:]
-    went, led, usable, span_s = displacements(states, step, known, n_steps)
+    known = steps_with_known_motion(states, step) & ~jump[1:]
+    went, led, usable, span_s = motion_over_steps(states, step, known, n_steps)
     span_s = np.where(span_s > 0.0, span_s, np.nan)
-    speed = sums_over(integral_per_step(np.hypot(*states.velocity), step, known), n_steps) / span_s
+    speed = sliding_sums(integral_per_step(np.hypot(*states.velocity), step, known), n_steps) / span_s
     went /= span_s
     led /= span_s
     return np.hypot(*(went - led)), speed, np.hypot(*went), usable
 
 
-def _cause(ratio: float) -> str:
+def _cause_of_speed_ratio(ratio: float) -> str:
     """Return the most likely cause of a wrong ratio of recorded speed to the speed from positions."""
     for factor, cause in (
         (3.6, "speeds in km/h read as m/s"),
@@ -201,7 +207,7 @@ def _cause(ratio: float) -> str:
     )
 
 
-def _yaw(states: States, actors: Actors) -> list[QualityFinding]:
+def _heading_findings(states: States, actors: Actors) -> list[QualityFinding]:
     """Return a finding if headings of vehicles disagree with their direction of motion."""
     (vx, vy), yaw = states.velocity, states.numbers["yaw_rad"]
     place = {name: i for i, name in enumerate(actors.ids)}
@@ -212,7 +218,7 @@ def _yaw(states: States, actors: Actors) -> list[QualityFinding]:
     moving = (speed > YAW_CHECK_LEAST_MPS) & long_kind[states.actor] & ~np.isnan(yaw)
     off = np.abs(wrap_angles(yaw - np.arctan2(vy, vx)))
     wrong = moving & (off > YAW_MISMATCH_RAD)
-    backwards = wrong & (off > REVERSING_RAD) & (speed < REVERSING_MPS)
+    backwards = wrong & (off > REVERSING_LEAST_RAD) & (speed < FASTEST_REVERSING_MPS)
     forwards = np.bincount(states.actor[moving & ~wrong], minlength=len(states.ids)) > 0
     # an actor that only drives backwards is accepted if others drive forwards, or if no other actor only drives backwards
     fast = np.bincount(states.actor[wrong & ~backwards], minlength=len(states.ids)) > 0

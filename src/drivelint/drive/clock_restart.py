@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.drive.order import UNKNOWN_CODE, changed_columns, repetitions
+from drivelint.drive.order import UNKNOWN_CODE, repetition_mask_and_rows, value_changes_by_column
 from drivelint.drive.trace import QualityFinding, States
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ HOLE_FACTOR: Final = 1.5
 """A step longer than the median step by this factor is a hole, which late messages may fill."""
 
 
-def backward_steps(t_ns: Times, topic: str | None = None) -> list[QualityFinding]:
+def backward_step_findings(t_ns: Times, topic: str | None = None) -> list[QualityFinding]:
     """Return a finding if the times of messages, in the order of the file, go back; `topic`: the topic of the messages."""
     back = np.diff(t_ns) < 0
     if not back.any():
@@ -35,7 +35,7 @@ def backward_steps(t_ns: Times, topic: str | None = None) -> list[QualityFinding
     return [QualityFinding("clock_jump", "warning", message, n, first)]
 
 
-def unknown_at_restarts(states: States) -> tuple[States, list[QualityFinding]]:
+def without_values_at_restarts(states: States) -> tuple[States, list[QualityFinding]]:
     """Make the states of all actors unknown where the clock covers the same time twice (states in the log's own order).
 
     Late messages are not a restart: sorted by time, they belong to one recording. If two recordings cover the same time, it is unknown
@@ -46,11 +46,11 @@ def unknown_at_restarts(states: States) -> tuple[States, list[QualityFinding]]:
         return states, []
     run = np.concatenate([[0], np.cumsum(back)])
     twice = np.zeros(len(states), np.bool_)
-    for pair, (since, until) in _spans(states, run).items():
+    for pair, (since, until) in _spans_covered_twice(states, run).items():
         for k in pair:
             rows = slice(*np.searchsorted(run, [k, k + 1]))
             twice[rows] |= (states.t_ns[rows] >= since) & (states.t_ns[rows] <= until)
-    twice &= ~_agreed(states, twice)
+    twice &= ~_equal_repetitions(states, twice)
     if not twice.any():
         return states, []
     numbers = {name: np.where(twice, np.nan, values) for name, values in states.numbers.items()}
@@ -63,7 +63,7 @@ def unknown_at_restarts(states: States) -> tuple[States, list[QualityFinding]]:
     return replace(states, numbers=numbers, codes=codes), [QualityFinding("clock_restart", "error", message, n, first)]
 
 
-def _spans(states: States, run: Times) -> dict[tuple[int, int], tuple[int, int]]:
+def _spans_covered_twice(states: States, run: Times) -> dict[tuple[int, int], tuple[int, int]]:
     """Return, for each pair of runs of the clock that cover the same time of an actor, the first and last time covered twice."""
     by = np.lexsort((run, states.actor))
     begin = np.flatnonzero(np.r_[True, (np.diff(states.actor[by]) != 0) | (np.diff(run[by]) != 0)])
@@ -93,15 +93,15 @@ def _interleaved_count(run_ns: Times, other_run_ns: Times) -> int:
     return int(inside.sum())
 
 
-def _agreed(states: States, rows: Mask) -> Mask:
+def _equal_repetitions(states: States, rows: Mask) -> Mask:
     """Return the mask of given rows whose actor and time occur more than once among them, with equal values each time."""
     agreed = np.zeros(len(rows), np.bool_)
     chosen_rows = np.flatnonzero(rows)
     chosen_rows = chosen_rows[np.lexsort((states.t_ns[chosen_rows], states.actor[chosen_rows]))]
     ordered = states.take(chosen_rows)
-    again, of = repetitions(ordered)
+    again, of = repetition_mask_and_rows(ordered)
     several = np.bincount(of) > 1
-    other = again & np.any(list(changed_columns(ordered).values()), axis=0)
+    other = again & np.any(list(value_changes_by_column(ordered).values()), axis=0)
     contradicted = np.bincount(of[other], minlength=len(several)) > 0
     agreed[chosen_rows] = (several & ~contradicted)[of]
     return agreed

@@ -23,9 +23,9 @@ CONDITION_VALUES: Final = {name: known for name, known in DRIVE_CONDITION_VALUES
 """Condition that may restrict a rule -> its words; for `nation`, `value_problem` also accepts other country codes."""
 CONDITION_TEXTS: Final = {name: vocabularies()[name].says for name in DRIVE_CONDITION_VALUES}
 """Condition -> a text on what its words mean."""
-_NARROWER: Final[dict[str, list[str]]] = toml_beside(__file__, "conditions.toml")["narrower"]
-_COUNTRY = re.compile(r"[a-z]{2}")
-_SPELLED = {name.casefold(): name for name in DRIVE_CONDITION_VALUES}
+_NARROWER_VALUES: Final[dict[str, list[str]]] = toml_beside(__file__, "conditions.toml")["narrower"]
+_COUNTRY_CODE = re.compile(r"[a-z]{2}")
+_NAME_BY_CASEFOLD = {name.casefold(): name for name in DRIVE_CONDITION_VALUES}
 
 
 def value_problem(condition: str, word: str) -> str | None:
@@ -37,29 +37,29 @@ def value_problem(condition: str, word: str) -> str | None:
 
 def canonical_spelling(condition: str, word: str) -> tuple[str, str]:
     """Return a condition and its word in drivelint's spelling, whatever their case; unknown words stay as they are."""
-    condition = _SPELLED.get(condition.casefold(), condition)
+    condition = _NAME_BY_CASEFOLD.get(condition.casefold(), condition)
     spelled = {known.casefold(): known for known in DRIVE_CONDITION_VALUES.get(condition, ())}
-    country = condition == "nation" and _COUNTRY.fullmatch(word.casefold())
+    country = condition == "nation" and _COUNTRY_CODE.fullmatch(word.casefold())
     return condition, spelled.get(word.casefold(), word.casefold() if country else word)
 
 
 def with_narrower_values(values: tuple[str, ...]) -> list[str]:
     """Return these words and the words that they include: `gb` includes `gb-sct`, `town` includes `townLocal`."""
-    return sorted({part for word in values for part in (word, *_NARROWER.get(word, ()))})
+    return sorted({part for word in values for part in (word, *_NARROWER_VALUES.get(word, ()))})
 
 
 def broader_values(values: tuple[str, ...]) -> list[str]:
     """Return the more general words, which leave open whether one of these words applies: `gb` for `gb-sct`."""
     inside = with_narrower_values(values)
-    return sorted(wide for wide, parts in _NARROWER.items() if wide not in inside and set(parts) & set(inside))
+    return sorted(wide for wide, parts in _NARROWER_VALUES.items() if wide not in inside and set(parts) & set(inside))
 
 
-def all_values(values: tuple[str, ...]) -> set[str]:
+def related_values(values: tuple[str, ...]) -> set[str]:
     """Return these words, the words that they include, and the more general words (see `broader_values`)."""
     return {*with_narrower_values(values), *broader_values(values)}
 
 
-def parse(settings: Iterable[str]) -> tuple[tuple[str, str], ...]:
+def parse_env_settings(settings: Iterable[str]) -> tuple[tuple[str, str], ...]:
     """Return the `KEY=VALUE` settings of `--env`, in upper or lower case, as (condition, word), sorted by condition.
 
     Errors: `UsageError` for a setting without '=', an unknown key or word (with the nearest valid one), or two words for one key.

@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from drivelint.arrays import wrap_angles
-from drivelint.drive.jumps import COUNT_PREFIX, MOTION_COLUMNS, MOVING_MPS, NO_SPLIT, SplitTracks, set_unknown
-from drivelint.drive.order import displacements, integral_per_step, known_motion, sums_until
+from drivelint.drive.jumps import COUNT_OF_STATES_PREFIX, MOTION_COLUMNS, MOVING_MPS, NO_SPLIT, SplitTracks, set_unknown
+from drivelint.drive.order import integral_per_step, motion_over_steps, prefix_sums, steps_with_known_motion
 from drivelint.drive.trace import MOTOR_VEHICLES, QualityFinding
-from drivelint.drive.velocity import Tracklets, sample_noise
+from drivelint.drive.velocity import Tracklets, noise_of_samples_m
 from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
@@ -37,16 +37,16 @@ MISMATCH_M: Final = 1.0
 MISMATCH_SHARE: Final = 0.15
 """Positions contradict velocities if, over one second, their displacements differ by more than 1 m + 15 % of the larger one. Noise of
 0.3 m and a velocity error of 10 % stay below that."""
-STEP_MISMATCH_M: Final = 2.0
+SINGLE_STEP_MISMATCH_M: Final = 2.0
 """A single step contradicts the velocities, whatever the next step does, if it differs by more than this: six times a noise of 0.3 m."""
-WINDOW_S: Final = 0.5
+HALF_WINDOW_S: Final = 0.5
 DIRECTION_LEAST_M: Final = 0.4
 DIRECTION_LEAST_SHARE: Final = 0.5
 """A motion has a direction if, within one second around it, the actor moves more than 0.4 m and half the distance at its speed."""
-REVERSING_MPS: Final = 8.0
-"""The highest speed of reversing (29 km/h), except in the case of `REVERSE_START_MPS`."""
-FAST_REVERSING_MPS: Final = 20.0
-REVERSE_START_MPS: Final = 3.0
+FASTEST_REVERSING_MPS: Final = 8.0
+"""The highest speed of reversing (29 km/h), except in the case of `FASTEST_REVERSE_START_MPS`."""
+FASTEST_CONTINUED_REVERSING_MPS: Final = 20.0
+FASTEST_REVERSE_START_MPS: Final = 3.0
 """Reversing may reach 20 m/s (72 km/h) if the log also shows forward motion, and the stretch of reversing starts or ends slower than
 3 m/s."""
 BACKWARDS_RAD: Final = np.deg2rad(150.0)
@@ -54,7 +54,7 @@ SIDEWAYS_RAD: Final = np.deg2rad(30.0)
 SIDEWAYS_MPS: Final = 3.0
 """Above this speed, a heading more than 30 degrees off the motion is wrong or a slide; slip angles of a car are below 10 degrees."""
 HEADING_FLIP_RAD: Final = np.deg2rad(90.0)
-SPIN_RAD: Final = np.deg2rad(45.0)
+MOST_TURN_IN_SLIDE_RAD: Final = np.deg2rad(45.0)
 """No heading changes by more than 90 degrees between two samples. In a slide, the limit is 45 degrees: 450 degrees/s at 10 Hz."""
 DIRECTED_CLASSES: Final = frozenset((*MOTOR_VEHICLES, "trailer", "bicycle", None))
 """Classes of actors whose heading is the direction of their motion (None: unknown class). Pedestrians and animals can face any direction;
@@ -65,58 +65,59 @@ STRETCH_MISMATCH_MPS: Final = 0.8
 STRETCH_MISMATCH_SHARE: Final = 0.05
 """The tolerated difference: the velocity of a rear axle is up to 0.7 m/s off (1.4 m from the centre, 0.5 rad/s), a speedometer 5 %, a
 delayed filter 0.8 m/s."""
-SIGMAS: Final = 4.0
+TOLERANCE_SIGMAS: Final = 4.0
 """The tolerance for a stretch includes this many standard deviations of the position noise."""
 SINGLE_STEP_SHARE: Final = 0.75
 """If one step causes at least this share of the difference, the positions are wrong, not the velocity."""
 WHOLE_TRACK_SHARE: Final = 0.5
 """If more than this share of a track contradicts its velocities, the velocity is wrong as a whole, which `checks` reports."""
-LARGEST_HALF_BOX_M: Final = 6.0
+ASSUMED_HALF_DIAGONAL_M: Final = 6.0
 """The half diagonal that is assumed for a box of unknown size."""
 
 
-def resolve(
-    states: States, step: Steps, actors: Actors, *, derived: bool, split_tracks: SplitTracks = NO_SPLIT
+def remove_contradictions(
+    states: States, step: Steps, actors: Actors, *, derived_velocities: bool, split_tracks: SplitTracks = NO_SPLIT
 ) -> list[QualityFinding]:
     """Make values unknown that contradict the motion, in place, and return findings (states in order, velocities complete).
 
-    `derived`: velocities are derived from the positions, and not compared with them. `split_tracks`: the states that `jumps` rejected.
+    `derived_velocities`: velocities are derived from the positions, and not compared with them. `split_tracks`: the states that `jumps`
+    rejected.
     """
     if len(states) < 3:
         return []
     findings: list[QualityFinding] = []
     places = [split_tracks.rejected_states] if split_tracks.rejected_states else []
-    if not derived:
-        frozen = _frozen(states, step)
+    if not derived_velocities:
+        frozen = _contradictory_positions(states, step)
         if frozen.any():
             places.append(states.take(frozen))
-        text = COUNT_PREFIX + "position and velocity contradict each other: both are unknown"
+        text = COUNT_OF_STATES_PREFIX + "position and velocity contradict each other: both are unknown"
         findings += states.findings(frozen, "motion_unknown", "warning", text)
         set_unknown(states, frozen)
-        astray = _mismatched(states, step)
+        astray = _contradictory_velocities(states, step)
         text = "for half a second or longer, the velocity does not match the positions: the velocity is unknown"
-        findings += states.findings(astray, "velocity_unknown", "warning", COUNT_PREFIX + text)
+        findings += states.findings(astray, "velocity_unknown", "warning", COUNT_OF_STATES_PREFIX + text)
         set_unknown(states, astray, MOTION_COLUMNS)
     for each in places:
-        findings += _upon_others(states, step, actors, each, split_tracks.alias)
-    turned, sideways = _headings(states, step, actors)
+        findings += _overlap_findings(states, step, actors, each, split_tracks.old_id_by_id)
+    turned, sideways = _contradictory_headings(states, step, actors)
     yaw = states.numbers["yaw_rad"]
-    text = COUNT_PREFIX + "the heading is opposite to the motion: the direction of motion is used"
+    text = COUNT_OF_STATES_PREFIX + "the heading is opposite to the motion: the direction of motion is used"
     findings += states.findings(turned, "heading_turned", "warning", text)
-    text = COUNT_PREFIX + "the heading is at an angle to the motion: the heading is unknown"
+    text = COUNT_OF_STATES_PREFIX + "the heading is at an angle to the motion: the heading is unknown"
     findings += states.findings(sideways, "heading_unknown", "warning", text)
     yaw = np.where(turned, wrap_angles(yaw + np.pi), yaw)
     states.numbers["yaw_rad"] = np.where(sideways, np.nan, yaw)
     return findings
 
 
-def _upon_others(
-    states: States, step: Steps, actors: Actors, rejected_states: States, alias: Mapping[str, str]
+def _overlap_findings(
+    states: States, step: Steps, actors: Actors, rejected_states: States, old_id_by_id: Mapping[str, str]
 ) -> list[QualityFinding]:
     """Return a finding for each actor with a rejected position at which its box may overlap the box of another actor."""
     index = {name: i for i, name in enumerate(actors.ids)}
     half = np.hypot(actors.sizes["length_m"], actors.sizes["width_m"]) / 2
-    half = np.where(np.isfinite(half), half, LARGEST_HALF_BOX_M)
+    half = np.where(np.isfinite(half), half, ASSUMED_HALF_DIAGONAL_M)
     half_of = half[[index[name] for name in states.ids]][states.actor]
     placed_rows = np.flatnonzero(np.isfinite(states.place).all(axis=0))
     placed_rows = placed_rows[np.argsort(states.t_ns[placed_rows], kind="stable")]
@@ -129,8 +130,8 @@ def _upon_others(
     own_names = [rejected_states.ids[i] for i in rejected_states.actor]
     own = half[[index[name] for name in own_names]][place] if len(n) else np.zeros(0)
     # in the log, the track after a jump belongs to the same actor
-    in_log = np.array([alias.get(name, name) for name in states.ids], dtype=np.str_)
-    own_in_log = np.array([alias.get(name, name) for name in own_names], dtype=np.str_)
+    in_log = np.array([old_id_by_id.get(name, name) for name in states.ids], dtype=np.str_)
+    own_in_log = np.array([old_id_by_id.get(name, name) for name in own_names], dtype=np.str_)
     upon = (away <= own + half_of[other_row]) & (in_log[states.actor[other_row]] != own_in_log[place])
     findings = []
     for number in np.unique(rejected_states.actor[place[upon]]):
@@ -145,43 +146,43 @@ def _upon_others(
     return findings
 
 
-def _frozen(states: States, step: Steps) -> Mask:
+def _contradictory_positions(states: States, step: Steps) -> Mask:
     """Return the mask of the samples at which positions and velocities contradict each other.
 
     They do so if they differ in both steps beside the sample, or in one step by far, or (apart from such steps) over half a second before
     and after it.
     """
     n = len(states)
-    usable = known_motion(states, step)
-    went, led, slack = _step_by_step(states, step, usable)
+    usable = steps_with_known_motion(states, step)
+    went, led, slack = _displacements_and_tolerance(states, step, usable)
 
-    def contradict(displacement: Floats, velocity_displacement: Floats, slack_m: Floats) -> Mask:
+    def is_contradiction(displacement: Floats, velocity_displacement: Floats, slack_m: Floats) -> Mask:
         fastest = np.maximum(np.hypot(*displacement), np.hypot(*velocity_displacement))
         wrong: Mask = (
             np.hypot(*(displacement - velocity_displacement)) > MISMATCH_M + MISMATCH_SHARE * fastest + slack_m
         )
         return wrong
 
-    alone = contradict(went, led, slack)
-    if not alone.any() and not _drifts(went - led, step):
+    alone = is_contradiction(went, led, slack)
+    if not alone.any() and not _may_drift(went - led, step):
         return np.zeros(n, np.bool_)
     ends = np.ones(n + 1, np.bool_)  # at the end of a track, the one step beside the sample decides
     ends[1:-1] = alone | ~usable
     both = ends[:-1] & ends[1:] & (np.r_[alone, False] | np.r_[False, alone])
-    moved = contradict(went, led, slack + STEP_MISMATCH_M - MISMATCH_M)
+    moved = is_contradiction(went, led, slack + SINGLE_STEP_MISMATCH_M - MISMATCH_M)
     beside = both | np.r_[moved, False] | np.r_[False, moved]
     went, led, slack = (np.where(alone, 0.0, values) for values in (went, led, slack))
-    first, last = _around(states, np.cumsum(np.r_[False, ~usable]), np.arange(n))
+    first, last = _rows_half_second_around(states, np.cumsum(np.r_[False, ~usable]), np.arange(n))
 
-    def between(values: Floats) -> Floats:
-        sums = sums_until(values)
+    def sum_around(values: Floats) -> Floats:
+        sums = prefix_sums(values)
         return sums[..., last] - sums[..., first]
 
-    frozen: Mask = beside | contradict(between(went), between(led), between(slack))
+    frozen: Mask = beside | is_contradiction(sum_around(went), sum_around(led), sum_around(slack))
     return frozen
 
 
-def _step_by_step(states: States, step: Steps, usable: Mask) -> tuple[Floats, Floats, Floats]:
+def _displacements_and_tolerance(states: States, step: Steps, usable: Mask) -> tuple[Floats, Floats, Floats]:
     """Return the displacements of positions and of velocities in each step (2, n - 1), and the tolerance for their difference (n - 1)."""
     went = np.where(usable, np.diff(states.place), 0.0)
     led = integral_per_step(states.velocity, step, usable)
@@ -190,34 +191,34 @@ def _step_by_step(states: States, step: Steps, usable: Mask) -> tuple[Floats, Fl
     return went, led, np.hypot(*slack)
 
 
-def _apart(states: States, step: Steps, usable: Mask) -> tuple[Floats, Floats]:
+def _differences_per_step_m(states: States, step: Steps, usable: Mask) -> tuple[Floats, Floats]:
     """Return by how much the displacements of positions and velocities differ in each step (n - 1), and the tolerance."""
-    went, led, slack = _step_by_step(states, step, usable)
+    went, led, slack = _displacements_and_tolerance(states, step, usable)
     went -= led
     return np.hypot(*went), slack
 
 
-def _drifts(rest: Floats, step: Steps) -> bool:
+def _may_drift(difference: Floats, step: Steps) -> bool:
     """Return whether the velocities of any actor may deviate from its positions: a fast test of one sample per half second.
 
-    `rest` (2, n - 1): the displacement of the positions minus that of the velocities, per step.
+    `difference` (2, n - 1): the displacement of the positions minus that of the velocities, per step.
     """
-    stride = max(1, round(WINDOW_S * 1e9 / step.period_ns)) if step.period_ns else 1
-    way = np.cumsum(rest, axis=1)[:, ::stride]
+    stride = max(1, round(HALF_WINDOW_S * 1e9 / step.period_ns)) if step.period_ns else 1
+    way = np.cumsum(difference, axis=1)[:, ::stride]
     # a one-second window spans at most three strides, so one of them has at least a third of its difference
     return bool((np.hypot(*np.diff(way, axis=1)) > MISMATCH_M / 3).any())
 
 
-def _mismatched(states: States, step: Steps) -> Mask:
+def _contradictory_velocities(states: States, step: Steps) -> Mask:
     """Return the mask of the samples (n, in order, velocities complete) in stretches whose velocities contradict the positions."""
     n = len(states)
     mismatched = np.zeros(n, np.bool_)
     k = max(2, round(STRETCH_S * 1e9 / step.period_ns)) if step.period_ns else n
     if n <= k:
         return mismatched
-    usable = known_motion(states, step)
-    alone, slack = _apart(states, step, usable)
-    went, led, whole, span = displacements(states, step, usable, k)
+    usable = steps_with_known_motion(states, step)
+    alone, slack = _differences_per_step_m(states, step, usable)
+    went, led, whole, span = motion_over_steps(states, step, usable, k)
     span = np.where(whole, span, np.nan)
     went /= span
     led /= span
@@ -230,8 +231,8 @@ def _mismatched(states: States, step: Steps) -> Mask:
     wrong = whole & (off > allowed) & (_sliding_max(alone, k) < SINGLE_STEP_SHARE * off * span)
     if not wrong.any():
         return mismatched
-    sigma = sample_noise(states.place, Tracklets.from_samples(states.t_ns, states.place, step), states.actor)
-    wrong &= off > allowed + SIGMAS * np.sqrt(2.0) * sigma[:-k] / span
+    sigma = noise_of_samples_m(states.place, Tracklets.from_samples(states.t_ns, states.place, step), states.actor)
+    wrong &= off > allowed + TOLERANCE_SIGMAS * np.sqrt(2.0) * sigma[:-k] / span
     rows = np.flatnonzero(wrong)
     edges = np.zeros(n + 1, np.int64)
     np.add.at(edges, rows, 1)
@@ -244,15 +245,15 @@ def _mismatched(states: States, step: Steps) -> Mask:
     return mismatched & ~many[states.actor]
 
 
-def _sliding_max(values: Floats, k: int) -> Floats:
+def _sliding_max(values: Floats, width: int) -> Floats:
     """Return the largest of every k neighbouring values: m - k + 1 of m values."""
-    most: Floats = np.lib.stride_tricks.sliding_window_view(values, k).max(axis=1)
+    most: Floats = np.lib.stride_tricks.sliding_window_view(values, width).max(axis=1)
     return most
 
 
-def _around(states: States, pieces: NDArray[np.integer], rows: Indices) -> tuple[Indices, Indices]:
+def _rows_half_second_around(states: States, pieces: NDArray[np.integer], rows: Indices) -> tuple[Indices, Indices]:
     """Return for each of these rows the first and the last row of the same piece (`pieces`, n) within half a second of it."""
-    half = int(WINDOW_S * 1e9)
+    half = int(HALF_WINDOW_S * 1e9)
     apart = np.diff(states.t_ns)
     # steps to another piece, backward steps and long steps are set to just over half a second, so that the sum does not overflow
     near = (np.diff(pieces) == 0) & (apart >= 0) & (apart <= half)
@@ -260,10 +261,10 @@ def _around(states: States, pieces: NDArray[np.integer], rows: Indices) -> tuple
     return np.searchsorted(key, key[rows] - half), np.searchsorted(key, key[rows] + half, side="right") - 1
 
 
-def _leads(states: States, rows: Mask) -> Mask:
+def _rows_with_direction(states: States, rows: Mask) -> Mask:
     """Return the mask of marked rows where the motion has a direction: the positions advance about as far as the speed states."""
     marked_rows = np.flatnonzero(rows)
-    first, last = _around(states, states.actor, marked_rows)
+    first, last = _rows_half_second_around(states, states.actor, marked_rows)
     place, speed = states.place, np.hypot(*states.velocity[:, marked_rows])
     way = np.hypot(*(place[:, last] - place[:, first]))
     span = (states.t_ns[last] - states.t_ns[first]) * 1e-9
@@ -272,15 +273,15 @@ def _leads(states: States, rows: Mask) -> Mask:
     return kept
 
 
-def _headings(states: States, step: Steps, actors: Actors) -> tuple[Mask, Mask]:
+def _contradictory_headings(states: States, step: Steps, actors: Actors) -> tuple[Mask, Mask]:
     """Return the mask of samples with a heading opposite to the motion, and the mask of samples with a heading across it.
 
     A stretch of backward motion is real reversing if no forward motion adjoins it, the heading does not flip at its ends, and it is slower
-    than `REVERSING_MPS`. The limit is `FAST_REVERSING_MPS` if the vehicle drives forwards with that heading before or after, and the
-    stretch starts or ends slowly on that side.
+    than `FASTEST_REVERSING_MPS`. The limit is `FASTEST_CONTINUED_REVERSING_MPS` if the vehicle drives forwards with that heading before or
+    after, and the stretch starts or ends slowly on that side.
 
     A stretch with the heading across the motion is a real slide if forward motion adjoins it, and the heading changes by at most
-    `SPIN_RAD` per sample.
+    `MOST_TURN_IN_SLIDE_RAD` per sample.
     """
     n, yaw, (vx, vy) = len(states), states.numbers["yaw_rad"], states.velocity
     kinds = dict(zip(actors.ids, actors.classes, strict=True))
@@ -290,11 +291,11 @@ def _headings(states: States, step: Steps, actors: Actors) -> tuple[Mask, Mask]:
     moving = long_kind & (speed > MOVING_MPS) & np.isfinite(yaw)
     backwards = moving & (off > BACKWARDS_RAD)
     across = moving & (speed > SIDEWAYS_MPS) & (off > SIDEWAYS_RAD) & ~backwards
-    turn = np.where(step.same, np.abs(wrap_angles(np.diff(yaw))), 0.0)
+    turn = np.where(step.same_actor, np.abs(wrap_angles(np.diff(yaw))), 0.0)
     nothing = np.zeros(n, np.bool_)
     if not (backwards.any() or across.any()):
         return nothing, nothing
-    backwards, across = _leads(states, backwards), _leads(states, across)
+    backwards, across = _rows_with_direction(states, backwards), _rows_with_direction(states, across)
     forwards = moving & ~backwards & ~across
     turned, sideways = nothing, nothing.copy()
     row = np.arange(n)
@@ -303,25 +304,25 @@ def _headings(states: States, step: Steps, actors: Actors) -> tuple[Mask, Mask]:
     goes = np.minimum.accumulate(np.where(forwards, row, n)[::-1])[::-1]
     turns_until = np.r_[0, np.cumsum(turn > HEADING_FLIP_RAD)]
 
-    def is_reversing_start(end: int, forth: int) -> bool:
+    def is_reversing_start(end: int, forward_row: int) -> bool:
         return bool(
-            0 <= forth < n
-            and states.actor[forth] == states.actor[end]
-            and turns_until[forth] == turns_until[end]
-            and speed[end] < REVERSE_START_MPS
+            0 <= forward_row < n
+            and states.actor[forward_row] == states.actor[end]
+            and turns_until[forward_row] == turns_until[end]
+            and speed[end] < FASTEST_REVERSE_START_MPS
         )
 
-    for rows, out, most in ((backwards, turned, HEADING_FLIP_RAD), (across, sideways, SPIN_RAD)):
+    for rows, out, most in ((backwards, turned, HEADING_FLIP_RAD), (across, sideways, MOST_TURN_IN_SLIDE_RAD)):
         turns = turn > most
-        for first, last in _runs(states, rows):
-            seam = (first > 0 and step.same[first - 1]), (last < n - 1 and step.same[last])
+        for first, last in _row_runs(states, rows):
+            seam = (first > 0 and step.same_actor[first - 1]), (last < n - 1 and step.same_actor[last])
             broken = (seam[0] and turns[first - 1]) or (seam[1] and turns[last])
             beside = (seam[0] and forwards[first - 1]) or (seam[1] and forwards[last + 1])
             if out is turned:
                 fastest = (
-                    FAST_REVERSING_MPS
+                    FASTEST_CONTINUED_REVERSING_MPS
                     if is_reversing_start(first, went[first]) or is_reversing_start(last, goes[last])
-                    else REVERSING_MPS
+                    else FASTEST_REVERSING_MPS
                 )
                 real = speed[first : last + 1].max() < fastest and not broken and not beside
             else:
@@ -331,7 +332,7 @@ def _headings(states: States, step: Steps, actors: Actors) -> tuple[Mask, Mask]:
     return turned, sideways
 
 
-def _runs(states: States, rows: Mask) -> list[tuple[int, int]]:
+def _row_runs(states: States, rows: Mask) -> list[tuple[int, int]]:
     """Return the first and the last row of each stretch of successive marked rows of one actor."""
     same = np.r_[False, (states.actor[1:] == states.actor[:-1]) & rows[:-1] & rows[1:]]
     first = np.flatnonzero(rows & ~same)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import isnan
 from typing import TYPE_CHECKING, Final
 
-from drivelint.drive.trace import ASSUMED_SIZE, MOTOR_VEHICLES, SIZE_COLUMNS, QualityFinding
+from drivelint.drive.trace import ASSUMED_SIZE_CHECK, MOTOR_VEHICLES, SIZE_COLUMNS, QualityFinding
 from drivelint.errors import TraceError
 from drivelint.phrases import name_list
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import EgoSize
 
 ALL_EGOS = "all"
-SIZE_DIFFERENCE_M: Final = 0.05
+MOST_SIZE_DIFFERENCE_M: Final = 0.05
 """A larger difference between the user's and the log's size is reported."""
 
 
@@ -26,7 +26,7 @@ def asks_for_all(ego_option: str | None, ids: Collection[str]) -> bool:
     return ego_option == ALL_EGOS and ALL_EGOS not in ids
 
 
-def choose(
+def choose_egos(
     path: Path, actors: Actors, ego_option: str | None, named_egos: list[str], *, ego_required: bool = True
 ) -> tuple[list[str], list[QualityFinding]]:
     """Return the ids of the egos and the findings about the choice.
@@ -37,7 +37,7 @@ def choose(
     """
     ids = set(actors.ids)
     if asks_for_all(ego_option, ids):
-        return _every(path, actors)
+        return _every_motor_vehicle(path, actors)
     if ego_option is not None:
         if ego_option not in ids:
             raise TraceError(
@@ -68,11 +68,11 @@ def fill_sizes(actors: Actors, egos: list[str], size: EgoSize | None) -> list[Qu
         known = actors.sizes["length_m"][i], actors.sizes["width_m"][i]
         if any(map(isnan, known)):
             message = "size from --ego-size, not recorded"
-            findings.append(QualityFinding(ASSUMED_SIZE, "info", message, actor_id=actors.ids[i]))
+            findings.append(QualityFinding(ASSUMED_SIZE_CHECK, "info", message, actor_id=actors.ids[i]))
         for name, has, given in zip(SIZE_COLUMNS, known, size[:2], strict=False):
             if isnan(has):
                 actors.sizes[name][i] = given
-            elif abs(has - given) > SIZE_DIFFERENCE_M:
+            elif abs(has - given) > MOST_SIZE_DIFFERENCE_M:
                 message = (
                     f"--ego-size gives {actors.ids[i]} a {name.removesuffix('_m')} of {given:g} m, but the log "
                     f"states {has:g} m: the value of the log is used"
@@ -81,7 +81,7 @@ def fill_sizes(actors: Actors, egos: list[str], size: EgoSize | None) -> list[Qu
     return findings
 
 
-def _every(path: Path, actors: Actors) -> tuple[list[str], list[QualityFinding]]:
+def _every_motor_vehicle(path: Path, actors: Actors) -> tuple[list[str], list[QualityFinding]]:
     egos = [i for i, kind in zip(actors.ids, actors.classes, strict=True) if kind in MOTOR_VEHICLES]
     unknown = [i for i, kind in zip(actors.ids, actors.classes, strict=True) if kind is None]
     if not egos:

@@ -12,18 +12,18 @@ from drivelint.arrays import words_of_codes, wrap_angles
 from drivelint.drive import absence, checks, contradiction, ego, jumps
 from drivelint.drive import actors as actor_rows
 from drivelint.drive.align import align_to_ego
-from drivelint.drive.clock_restart import unknown_at_restarts
+from drivelint.drive.clock_restart import without_values_at_restarts
 from drivelint.drive.declared_events import with_headlight_events
-from drivelint.drive.implausible.bodies import false_entries, held_tracks, same_bodies
-from drivelint.drive.implausible.motion import implausible_motion
-from drivelint.drive.lost_time import LATEST_NS, lost_time_findings
+from drivelint.drive.implausible.bodies import false_entry_findings, repeated_end_findings, same_body_findings
+from drivelint.drive.implausible.motion import implausible_motion_findings
+from drivelint.drive.lost_time import LATEST_CREDIBLE_NS, lost_time_findings
 from drivelint.drive.motion import complete_velocities
 from drivelint.drive.order import UNKNOWN_CODE, sorted_states, steps, without_duplicates
 from drivelint.drive.trace import (
-    ASSUMED_MOTION,
+    ASSUMED_MOTION_CHECK,
     BRAKE_LIGHTS,
+    EARLIEST_UTC_NS,
     INDICATORS,
-    LEAST_UTC_NS,
     SIZE_COLUMNS,
     STATE_COLUMNS,
     Doubt,
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from drivelint.drive.order import Steps
     from drivelint.drive.trace import Identity, IngestOptions, Recording, States
 
-LONGEST_ID = 1000
+LONGEST_ID_CHARACTERS = 1000
 """The most characters of an actor's id: every finding about the actor repeats it."""
 TRACE_TABLES = (
     "data_log", "actor", "actor_state", "signal_state", "declared_event", "drive_condition", "quality", "doubt",
@@ -53,24 +53,24 @@ TRACE_TABLES = (
 @np.errstate(invalid="ignore", divide="ignore", over="ignore")
 def finish_trace(path: Path, identity: Identity, recording: Recording, options: IngestOptions) -> Trace:
     """Sort, complete and check a recording, and return it as a trace. Errors: `TraceError` if nothing can be judged."""
-    _refuse_no_drive(path, recording.states)
+    _refuse_log_without_drive(path, recording.states)
     pa.default_memory_pool().release_unused()  # Arrow would keep the memory of the reader's tables
     lost_findings = lost_time_findings(recording.lost_times, recording.frame_times, recording.states.t_ns)
-    ego_option = absence.asked_ego(recording, options.ego)
-    missed, picked = absence.absences(recording, ego_option), absence.chosen_findings(recording, ego_option)
-    nobody_ns = absence.frames_without_states(recording, missed)
+    ego_option = absence.effective_ego_option(recording, options.ego)
+    missed, picked = absence.absences(recording, ego_option), absence.ego_choice_findings(recording, ego_option)
+    nobody_ns = absence.frame_times_without_states(recording, missed)
     as_read = recording.hand_over_states()
-    states, restarts = unknown_at_restarts(as_read)
+    states, restarts = without_values_at_restarts(as_read)
     states = sorted_states(states)
     # nothing below changes an array in place; only the log's own order shows where its clock restarts
     recorded = None if not options.as_recorded else as_read if restarts else states.copy()
     del as_read
     states, repeated = without_duplicates(states)
-    recorded_findings = recording.findings if ego_option is None else absence.without_choices(recording.findings)
+    recorded_findings = recording.findings if ego_option is None else absence.without_ego_choices(recording.findings)
     findings = [*recorded_findings, *picked, *lost_findings, *restarts, *repeated]
-    assumed = any(f.check_id == ASSUMED_MOTION for f in recording.findings)
-    states, step, split, jumped = _tracks(
-        states, recording.ego_ids if ego_option is None else [ego_option], assumed=assumed
+    assumed = any(f.check_id == ASSUMED_MOTION_CHECK for f in recording.findings)
+    states, step, split, jumped = _split_at_jumps(
+        states, recording.ego_ids if ego_option is None else [ego_option], is_motion_assumed=assumed
     )
     findings += jumped
     # assumed velocities are kept; if most velocities of a mapped table are wrong, the user must correct its mapping
@@ -81,26 +81,32 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
         actors, varying = actor_rows.from_states(states)
         findings += varying
     else:
-        actors = actor_rows.from_table(recording.actors, states, split.alias)
-    egos, chosen = ego.choose(path, actors, ego_option, recording.ego_ids, ego_required=options.need_ego)
+        actors = actor_rows.from_table(recording.actors, states, split.old_id_by_id)
+    egos, chosen = ego.choose_egos(path, actors, ego_option, recording.ego_ids, ego_required=options.need_ego)
     findings += [*chosen, *ego.fill_sizes(actors, egos, options.ego_size)]
-    findings += actor_rows.resolve_sizes(states, actors)
-    checked = checks.run(states, step, actors, derived=derived)
+    findings += actor_rows.correct_sizes(states, actors)
+    checked = checks.quality_findings(states, step, actors, derived_velocities=derived)
     _refuse_wrong_units(path, recording, checked)
     findings += checked
     if not assumed:
-        findings += contradiction.resolve(states, step, actors, derived=derived, split_tracks=split)
-        findings += implausible_motion(states, step, actors, derived=derived)
-        findings += [*same_bodies(states, actors, egos), *false_entries(states, step), *held_tracks(states, actors)]
-    findings += _lights(states, egos)
+        findings += contradiction.remove_contradictions(
+            states, step, actors, derived_velocities=derived, split_tracks=split
+        )
+        findings += implausible_motion_findings(states, step, actors, derived_velocities=derived)
+        findings += [
+            *same_body_findings(states, actors, egos),
+            *false_entry_findings(states, step),
+            *repeated_end_findings(states, actors),
+        ]
+    findings += _light_findings(states, egos)
     missed = [each for each in missed if each.ego_id in egos]
-    states = absence.with_absent_states(states, missed, recording.frames_ns)
+    states = absence.with_unknown_ego_states(states, missed, recording.frames_ns)
     findings += absence.absence_findings(missed, states)
     states, moved = align_to_ego(states, egos)
-    states = states if recorded is None else recorded.completed()
-    tables = _tables(identity, recording, options, states=states, actors=actors, egos=egos)
-    tables["quality"] = _quality(identity.drive_id, [*findings, *moved], recording.format)
-    tables["doubt"] = _doubts(identity.drive_id, findings, recording.format)
+    states = states if recorded is None else recorded.with_all_columns()
+    tables = _trace_tables(identity, recording, options, states=states, actors=actors, egos=egos)
+    tables["quality"] = _quality_table(identity.drive_id, [*findings, *moved], recording.format)
+    tables["doubt"] = _doubt_table(identity.drive_id, findings, recording.format)
     return Trace(
         identity.drive_id,
         path,
@@ -116,17 +122,17 @@ def finish_trace(path: Path, identity: Identity, recording: Recording, options: 
     )
 
 
-def _tracks(
-    states: States, named_egos: list[str], *, assumed: bool
+def _split_at_jumps(
+    states: States, named_egos: list[str], *, is_motion_assumed: bool
 ) -> tuple[States, Steps, jumps.SplitTracks, list[QualityFinding]]:
     """Split the tracks at jumps, except those of named egos; return the states, their steps, the split and findings."""
     step, split, findings = steps(states), jumps.NO_SPLIT, []
-    if not assumed:
+    if not is_motion_assumed:
         states, gone = jumps.without_removed_actors(states, step, kept_ids=named_egos)
         step = steps(states) if gone else step
         split = jumps.split_tracks(states, step, kept_ids=named_egos)
         findings = [*gone, *split.findings]
-    if split.alias:
+    if split.old_id_by_id:
         states = sorted_states(states)
         step = steps(states)
     if "yaw_rad" in states.numbers:
@@ -134,7 +140,7 @@ def _tracks(
     return states, step, split, findings
 
 
-def _tables(
+def _trace_tables(
     identity: Identity,
     recording: Recording,
     options: IngestOptions,
@@ -144,7 +150,7 @@ def _tables(
     egos: list[str],
 ) -> dict[str, pa.Table]:
     """Return the tables of a trace except `quality` and `doubt`."""
-    is_ego = _is_ego(states, egos)
+    is_ego = _rows_of_egos(states, egos)
     unknown = np.full(len(states), UNKNOWN_CODE)
     user_conditions = dict(options.conditions)  # conditions of the user override those of the log
     content: dict[str, list[dict[str, Any]] | dict[str, Any]] = {
@@ -152,18 +158,18 @@ def _tables(
         "actor": {
             "actor_id": actors.ids,
             "actor_class": actors.classes,
-            **{name: _nullable(actors.sizes[name]) for name in SIZE_COLUMNS},
+            **{name: _array_with_nulls(actors.sizes[name]) for name in SIZE_COLUMNS},
             "is_ego": [name in egos for name in actors.ids],
         },
         "actor_state": {
             "actor_id": words_of_codes(states.actor, states.ids),
             "t_ns": states.t_ns,
-            **{name: _nullable(states.numbers[name]) for name in STATE_COLUMNS},
+            **{name: _array_with_nulls(states.numbers[name]) for name in STATE_COLUMNS},
             "indicator": words_of_codes(states.codes.get("indicator", unknown), INDICATORS),
             "brake_light": words_of_codes(states.codes.get("brake_light", unknown), BRAKE_LIGHTS),
         },
-        "signal_state": _distinct(recording.signals, "signal_id", "t_ns", "state"),
-        "declared_event": _distinct(
+        "signal_state": _distinct_columns(recording.signals, "signal_id", "t_ns", "state"),
+        "declared_event": _distinct_columns(
             with_headlight_events(recording.events, states), "t_ns", "actor_id", "event", "value"
         ),
         "drive_condition": [
@@ -177,7 +183,7 @@ def _tables(
 def with_quality_finding(trace: Trace, finding: QualityFinding) -> Trace:
     """Return the trace with one more row in `quality`."""
     reader = trace.tables["data_log"]["format"][0].as_py()
-    rows = pa.concat_tables([trace.tables["quality"], _quality(trace.drive_id, [finding], reader)])
+    rows = pa.concat_tables([trace.tables["quality"], _quality_table(trace.drive_id, [finding], reader)])
     ordered = rows.sort_by([(name, "ascending") for name in ("check_id", "actor_id", "t_first_ns", "message")])
     return replace(trace, tables={**trace.tables, "quality": ordered})
 
@@ -194,18 +200,18 @@ def with_condition_of_map(trace: Trace, condition: str, word: str | None) -> Tra
     return replace(trace, tables={**trace.tables, "drive_condition": rows})
 
 
-def _refuse_no_drive(path: Path, states: States) -> None:
+def _refuse_log_without_drive(path: Path, states: States) -> None:
     """Raise `TraceError` if the log has no states, or if an id or a time shows that it is not a drive."""
     if not len(states):
         raise TraceError(f"{path}: no actor states in this log: nothing can be judged")
     longest = max(states.ids, key=len)
-    if len(longest) > LONGEST_ID:
+    if len(longest) > LONGEST_ID_CHARACTERS:
         raise TraceError(
             f"{path}: an actor's id of {len(longest)} characters, which begins {longest[:40]!r}: the log is damaged, or the ids are "
             "in another column"
         )
     first, last = int(states.t_ns.min()), int(states.t_ns.max())
-    if max(-first, last) > LATEST_NS:
+    if max(-first, last) > LATEST_CREDIBLE_NS:
         raise TraceError(
             f"{path}: states from {first / 1e9:.6g} s to {last / 1e9:.6g} s: the clock or its unit is wrong"
         )
@@ -222,12 +228,12 @@ def _refuse_wrong_units(path: Path, recording: Recording, findings: list[Quality
         raise TraceError(f"{path}: {errors[0].message}: {remedy}")
 
 
-def _is_ego(states: States, egos: list[str]) -> Mask:
+def _rows_of_egos(states: States, egos: list[str]) -> Mask:
     return np.isin(np.arange(len(states.ids)), [i for i, name in enumerate(states.ids) if name in egos])[states.actor]
 
 
-def _lights(states: States, egos: list[str]) -> list[QualityFinding]:
-    is_ego = _is_ego(states, egos)
+def _light_findings(states: States, egos: list[str]) -> list[QualityFinding]:
+    is_ego = _rows_of_egos(states, egos)
     findings = []
     for column, light_name in (("indicator", "indicator"), ("brake_light", "brake light")):
         codes = states.codes.get(column)
@@ -253,7 +259,7 @@ def _log_row(
         **dict.fromkeys(arrow_schemas()["data_log"].names),
         "file_name": identity.file_name, "sha256": identity.sha256, "format": recording.format, "n_states": len(states),
         "t_start_ns": start, "t_end_ns": int(states.t_ns.max()),
-        "utc_start_ns": start if start >= LEAST_UTC_NS else recording.utc_start_ns,
+        "utc_start_ns": start if start >= EARLIEST_UTC_NS else recording.utc_start_ns,
         "sensor_range_m": recording.sensor_range_m if options.sensor_range_m is None else options.sensor_range_m,
         "map_offset_x_m": offset[0], "map_offset_y_m": offset[1],
         "has_indicator": has_lights["indicator"], "names_indicator": recording.names_indicator,
@@ -263,7 +269,7 @@ def _log_row(
     }  # fmt: skip
 
 
-def _distinct(rows: pa.Table | None, *keys: str) -> dict[str, Any]:
+def _distinct_columns(rows: pa.Table | None, *keys: str) -> dict[str, Any]:
     """Return these columns of a reader's table, without repeated rows, sorted by the columns in the given order."""
     if rows is None:
         return dict.fromkeys(keys, ())
@@ -271,18 +277,18 @@ def _distinct(rows: pa.Table | None, *keys: str) -> dict[str, Any]:
     return dict(zip(keys, distinct.sort_by([(key, "ascending") for key in keys]).select(keys).columns, strict=True))
 
 
-def _quality(drive: str, findings: list[QualityFinding], reader: str) -> pa.Table:
+def _quality_table(drive_id: str, findings: list[QualityFinding], reader: str) -> pa.Table:
     # a converted log contains findings of the first reading, which the checks may find again
     rows = sorted(dict.fromkeys(findings), key=lambda f: (f.check_id, f.actor_id or "", f.t_first_ns or 0, f.message))
     names = [name for name in arrow_schemas()["quality"].names if name != "drive_id"]
-    return owned_table("quality", drive, [{name: getattr(row, name) for name in names} for row in rows], reader)
+    return owned_table("quality", drive_id, [{name: getattr(row, name) for name in names} for row in rows], reader)
 
 
-def _doubts(drive: str, findings: list[QualityFinding], reader: str) -> pa.Table:
+def _doubt_table(drive_id: str, findings: list[QualityFinding], reader: str) -> pa.Table:
     rows = sorted({(*doubt, finding.check_id) for finding in findings for doubt in finding.doubts})
     names = (*Doubt._fields, "code")
-    return owned_table("doubt", drive, [dict(zip(names, row, strict=True)) for row in rows], reader)
+    return owned_table("doubt", drive_id, [dict(zip(names, row, strict=True)) for row in rows], reader)
 
 
-def _nullable(values: Floats) -> pa.Array:
+def _array_with_nulls(values: Floats) -> pa.Array:
     return pa.array(values, from_pandas=True)

@@ -27,34 +27,34 @@ if TYPE_CHECKING:
 
 
 JUMP_M: Final = 3.0
-JUMP_MPS2: Final = 10.0
+JUMP_ACCELERATION_MPS2: Final = 10.0
 """A step is a jump if it differs by more than 3 m + 10 m/s2 dt2 from what the step before and the step after it predict. No tyre does
 that; a simulated full stop within one sample of 0.1 s does it only from more than 30 m/s."""
-OUTLIER_S: Final = 2.0
+LONGEST_OUTLIER_PIECE_S: Final = 2.0
 """Pieces of a track between two jumps are outliers if they are shorter than this; longer pieces are tracks of actors."""
 LARGEST_CORRECTION_M: Final = 10.0
 LARGEST_SIDE_CORRECTION_M: Final = 1.5
 CORRECTION_SPEED_CHANGE_MPS: Final = 3.0
 """A jump corrects the track if it is at most 10 m along the motion and 1.5 m to the side (not to another lane), and the velocity changes
-by at most 3 m/s + `JUMP_MPS2` times the gap."""
+by at most 3 m/s + `JUMP_ACCELERATION_MPS2` times the gap."""
 MOVING_MPS: Final = 1.0
 """Below this speed the direction of motion is noise, and the heading is used."""
 MOTION_COLUMNS: Final = ("vx_mps", "vy_mps", "ax_mps2", "ay_mps2")
 SAME_PLACE_M: Final = 0.01
 """Centres no further apart than this are at the same position."""
-COUNT_PREFIX: Final = "{n} of {of} states ({ids}): "
+COUNT_OF_STATES_PREFIX: Final = "{n} of {of} states ({ids}): "
 
 
 @dataclass(frozen=True)
 class SplitTracks:
     """The result of `split_tracks`.
 
-    `alias`: new actor id -> id in the log, for tracks that continue elsewhere after a jump. `rejected_states`: the states that were made
-    unknown, with their recorded values and the new actor ids.
+    `old_id_by_id`: new actor id -> id in the log, for tracks that continue elsewhere after a jump. `rejected_states`: the states that were
+    made unknown, with their recorded values and the new actor ids.
     """
 
     findings: list[QualityFinding]
-    alias: dict[str, str]
+    old_id_by_id: dict[str, str]
     rejected_states: States | None = None
 
 
@@ -68,17 +68,17 @@ def split_tracks(states: States, step: Steps, *, kept_ids: Collection[str]) -> S
     """
     if len(states) < 3 or not {"x_m", "y_m"} <= states.numbers.keys():
         return NO_SPLIT
-    unknown, pieces = _around_jumps(states, jumps(states, step))
-    text = COUNT_PREFIX + "the position jumps: the states around the jump are unknown"
+    unknown, pieces = _unknown_samples_and_pieces(states, jump_steps(states, step))
+    text = COUNT_OF_STATES_PREFIX + "the position jumps: the states around the jump are unknown"
     findings = states.findings(unknown, "teleport", "warning", text)
-    alias = _renamed(states, pieces, kept_ids, findings)
+    alias = _split_ids_by_piece(states, pieces, kept_ids, findings)
     recorded = replace(states, numbers=dict(states.numbers))
     set_unknown(states, unknown)
     beside = outlier_samples(states, step)
     text = (
         "the position is off the track, for one sample or by a step that no vehicle can drive: these states are unknown"
     )
-    findings += states.findings(beside, "teleport", "warning", COUNT_PREFIX + text)
+    findings += states.findings(beside, "teleport", "warning", COUNT_OF_STATES_PREFIX + text)
     set_unknown(states, beside)
     return SplitTracks(findings, alias, recorded.take(unknown | beside)) if findings else NO_SPLIT
 
@@ -90,14 +90,14 @@ def set_unknown(states: States, rows: Mask, columns: tuple[str, ...] = STATE_COL
             states.numbers[name] = np.where(rows, np.nan, states.numbers[name])
 
 
-def jumps(states: States, step: Steps) -> Mask:
+def jump_steps(states: States, step: Steps) -> Mask:
     """Return for each step (n - 1) whether it is a jump: it differs from what the steps before and after it predict.
 
     At the end of a track or beside a hole, the only neighbour decides.
     """
     way = np.diff(states.place)
     dt = np.where(step.dt_s > 0.0, step.dt_s, np.nan)
-    limit = JUMP_M + JUMP_MPS2 * dt**2
+    limit = JUMP_M + JUMP_ACCELERATION_MPS2 * dt**2
     far: Mask = step.continuous & (np.hypot(*way) > limit)
     rows = np.flatnonzero(far)
     if not len(rows):
@@ -114,7 +114,7 @@ def jumps(states: States, step: Steps) -> Mask:
     return far
 
 
-def _around_jumps(states: States, jump: Mask) -> tuple[Mask, NDArray[np.int32]]:
+def _unknown_samples_and_pieces(states: States, jump: Mask) -> tuple[Mask, NDArray[np.int32]]:
     """Return the mask of samples that are unknown because of jumps, and for each sample the number of its piece of the track."""
     n = len(states)
     unknown, pieces = np.zeros(n, np.bool_), np.zeros(n, np.int32)
@@ -126,18 +126,18 @@ def _around_jumps(states: States, jump: Mask) -> tuple[Mask, NDArray[np.int32]]:
         bounds = [span.start, *cuts.tolist(), span.stop]
         number, last = 0, None
         for first, end in pairwise(bounds):
-            if (states.t_ns[end - 1] - states.t_ns[first]) * 1e-9 < OUTLIER_S and len(bounds) > 2:
+            if (states.t_ns[end - 1] - states.t_ns[first]) * 1e-9 < LONGEST_OUTLIER_PIECE_S and len(bounds) > 2:
                 unknown[first:end] = True
                 pieces[first:end] = number
                 continue
-            if last is not None and not _goes_on(states, last, first):
+            if last is not None and not _can_be_one_track(states, last, first):
                 number += 1
             pieces[first:end] = number
             last = end - 1
     return unknown, pieces
 
 
-def _goes_on(states: States, last: int, first: int) -> bool:
+def _can_be_one_track(states: States, last: int, first: int) -> bool:
     """Return whether the piece that ends at row `last` and the piece that starts at row `first` can be one track.
 
     They can if an actor at these velocities can cover the distance, or if the position was only corrected, as map matching and filters
@@ -145,21 +145,24 @@ def _goes_on(states: States, last: int, first: int) -> bool:
     """
     place, t_s = states.place, states.t_ns * 1e-9
     gap = t_s[first] - t_s[last]
-    if gap > 2 * OUTLIER_S:
+    if gap > 2 * LONGEST_OUTLIER_PIECE_S:
         return False
     before, after = ((place[:, i] - place[:, i - 1]) / (t_s[i] - t_s[i - 1]) for i in (last, first + 1))
     way = place[:, first] - place[:, last]
     fastest = np.nan_to_num(np.hypot(*np.transpose([before, after]))).max()
-    if np.hypot(*way) <= JUMP_M + fastest * gap + JUMP_MPS2 * gap**2 / 2:
+    if np.hypot(*way) <= JUMP_M + fastest * gap + JUMP_ACCELERATION_MPS2 * gap**2 / 2:
         return True
     speed = float(np.hypot(*before))
-    if not speed > MOVING_MPS or not np.hypot(*(after - before)) <= JUMP_MPS2 * gap + CORRECTION_SPEED_CHANGE_MPS:
+    if (
+        not speed > MOVING_MPS
+        or not np.hypot(*(after - before)) <= JUMP_ACCELERATION_MPS2 * gap + CORRECTION_SPEED_CHANGE_MPS
+    ):
         return False
     ahead, left = before / speed @ way - speed * gap, (before[0] * way[1] - before[1] * way[0]) / speed
     return bool(abs(ahead) <= LARGEST_CORRECTION_M and abs(left) <= LARGEST_SIDE_CORRECTION_M)
 
 
-def _renamed(
+def _split_ids_by_piece(
     states: States, pieces: NDArray[np.int32], kept_ids: Collection[str], findings: list[QualityFinding]
 ) -> dict[str, str]:
     """Give each piece of a track but the first an id of its own, in place; return new id -> old id."""
@@ -196,7 +199,7 @@ def without_removed_actors(
     """
     if len(states) < 3 or not {"x_m", "y_m"} <= states.numbers.keys():
         return states, []
-    jump = np.flatnonzero(jumps(states, step))
+    jump = np.flatnonzero(jump_steps(states, step))
     place = states.place
     # actor -> the row after its last jump
     last = {int(states.actor[row]): int(row) + 1 for row in jump if states.ids[states.actor[row]] not in kept_ids}
@@ -206,17 +209,19 @@ def without_removed_actors(
         spread = np.ptp(place[:, first:end], axis=1).max()
         if spread <= SAME_PLACE_M and end - first > 1:
             parked.append((first, end))
-    gone = [a for a in parked if any(b != a and _together(states, place, a, b) for b in parked)]
+    gone = [a for a in parked if any(b != a and _stand_together(states, place, a, b) for b in parked)]
     if not gone:
         return states, []
     out = np.zeros(len(states), np.bool_)
     for first, end in gone:
         out[first:end] = True
     text = "after a jump, several actors stand at the same position: they count as removed from the scene, and their tracks end at the jump"
-    return states.take(~out), states.findings(out, "removed", "warning", COUNT_PREFIX + text)
+    return states.take(~out), states.findings(out, "removed", "warning", COUNT_OF_STATES_PREFIX + text)
 
 
-def _together(states: States, place: Floats, first_stretch: tuple[int, int], second_stretch: tuple[int, int]) -> bool:
+def _stand_together(
+    states: States, place: Floats, first_stretch: tuple[int, int], second_stretch: tuple[int, int]
+) -> bool:
     """Return whether two stretches at a standstill (first row, end row) are at the same position and overlap in time."""
     (a, a_end), (b, b_end) = first_stretch, second_stretch
     apart = np.hypot(*(place[:, a] - place[:, b]))

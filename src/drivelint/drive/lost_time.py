@@ -14,13 +14,13 @@ if TYPE_CHECKING:
     from drivelint.arrays import Mask, Times
     from drivelint.drive.trace import FrameTimes
 
-LOST_TIME: Final = "lost_time"
+LOST_TIME_CHECK: Final = "lost_time"
 """The id of the check whose rows in `quality` are the stretches; the table `lost_time` is derived from these rows."""
 MOST_STRETCHES: Final = 200
 """If there are more stretches than this, they are reported and judged as a single one, from the first to the last."""
-LATEST_NS: Final = 1 << 62
+LATEST_CREDIBLE_NS: Final = 1 << 62
 """The year 2116: a later time means a broken clock, and is not used as a bound."""
-_BESIDE: Final = 50
+_FRAMES_FOR_CLOCK_OFFSET: Final = 50
 """How many frames before and after a stretch are used to estimate the offset between the two clocks of the log."""
 
 
@@ -70,27 +70,25 @@ def lost_time_findings(lost_times: Sequence[LostTime], frames: FrameTimes | None
     start = int(t_ns.min())
     findings = []
     for each in lost_times:
-        since, until = _in_clock_of_states(each, frames)
-        message = (
-            f"{each.cause}: the recording {_words(since, until, start)} is lost: no rule is judged across this time"
-        )
-        findings.append(QualityFinding(LOST_TIME, "error", message, 1, since, None, until))
+        since, until = _span_in_clock_of_states(each, frames)
+        message = f"{each.cause}: the recording {_stretch_text(since, until, start)} is lost: no rule is judged across this time"
+        findings.append(QualityFinding(LOST_TIME_CHECK, "error", message, 1, since, None, until))
     return findings
 
 
-def _words(since: int | None, until: int | None, start: int) -> str:
+def _stretch_text(since_ns: int | None, until_ns: int | None, log_start_ns: int) -> str:
     """Return the start and end of a stretch as text, in seconds since the start of the log."""
-    if since is not None and until is not None and until - since <= 2:
-        return f"at {(since + 1 - start) / 1e9:.3f} s"
-    begin = "from the beginning" if since is None else f"from {_seconds(since - start)}"
-    return begin + (" to the end" if until is None else f" to {_seconds(until - start)}")
+    if since_ns is not None and until_ns is not None and until_ns - since_ns <= 2:
+        return f"at {(since_ns + 1 - log_start_ns) / 1e9:.3f} s"
+    begin = "from the beginning" if since_ns is None else f"from {_seconds_text(since_ns - log_start_ns)}"
+    return begin + (" to the end" if until_ns is None else f" to {_seconds_text(until_ns - log_start_ns)}")
 
 
-def _seconds(ns: int) -> str:
+def _seconds_text(ns: int) -> str:
     return f"{round(ns / 1e9, 3) + 0.0:.3f} s"  # + 0.0 turns -0.0 into 0.0
 
 
-def _in_clock_of_states(lost_time: LostTime, frames: FrameTimes | None) -> tuple[int | None, int | None]:
+def _span_in_clock_of_states(lost_time: LostTime, frames: FrameTimes | None) -> tuple[int | None, int | None]:
     """Convert a stretch from the container's clock to the states' clock.
 
     The delay between them varies: its extremes in nearby frames give the widest possible stretch.
@@ -99,14 +97,14 @@ def _in_clock_of_states(lost_time: LostTime, frames: FrameTimes | None) -> tuple
     times = [ns for ns in (since, until) if ns is not None]
     if frames is not None and len(frames.t_ns):
         times += [int(frames.log_ns.max()), int(frames.t_ns.max()), -int(frames.t_ns.min())]
-    if max(times, default=0) > LATEST_NS:
+    if max(times, default=0) > LATEST_CREDIBLE_NS:
         return None, None
     if frames is None or not len(frames.t_ns):
         return since, until
     order = np.argsort(frames.log_ns, kind="stable")
     log_ns, t_ns = frames.log_ns[order].astype(np.int64), frames.t_ns[order]
     at = np.searchsorted(log_ns, [0 if since is None else since, np.iinfo(np.int64).max if until is None else until])
-    beside = slice(max(0, int(at[0]) - _BESIDE), int(at[1]) + _BESIDE)
+    beside = slice(max(0, int(at[0]) - _FRAMES_FOR_CLOCK_OFFSET), int(at[1]) + _FRAMES_FOR_CLOCK_OFFSET)
     late = (log_ns - t_ns)[beside]
     return (
         None if since is None else since - int(late.max()),

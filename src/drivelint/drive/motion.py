@@ -6,9 +6,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from drivelint.drive.order import displacements, extent, known_motion, steps_between, track_starts
+from drivelint.drive.order import (
+    extent_by_track,
+    motion_over_steps,
+    steps_between,
+    steps_with_known_motion,
+    track_starts,
+)
 from drivelint.drive.trace import STATE_COLUMNS, QualityFinding
-from drivelint.drive.velocity import LARGEST_ERROR_MPS, MOVED_M, derive_velocities
+from drivelint.drive.velocity import LARGEST_ERROR_MPS, LEAST_MOVEMENT_M, derive_velocities
 
 if TYPE_CHECKING:
     from drivelint.arrays import Indices, Mask
@@ -41,15 +47,15 @@ def complete_velocities(states: States, step: Steps, *, most_replaced_share: flo
     n = len(states)
     for name in STATE_COLUMNS:
         states.numbers.setdefault(name, np.full(n, np.nan))
-    starts = np.flatnonzero(np.r_[True, ~step.same])
+    starts = np.flatnonzero(np.r_[True, ~step.same_actor])
     return [
-        *_end_zeros(states, step, starts),
-        *_velocity(states, step, starts, most_replaced_share),
-        *_acceleration(states, starts),
+        *_replace_end_zeros(states, step, starts),
+        *_replace_velocities(states, step, starts, most_replaced_share),
+        *_drop_zero_accelerations(states, starts),
     ]
 
 
-def _end_zeros(states: States, step: Steps, starts: Indices) -> list[QualityFinding]:
+def _replace_end_zeros(states: States, step: Steps, starts: Indices) -> list[QualityFinding]:
     """Replace a velocity of exactly 0 in the first or last sample of a track that moves there: 0 stands for an unknown value."""
     n = len(states)
     if n < 3:
@@ -75,15 +81,17 @@ def _end_zeros(states: States, step: Steps, starts: Indices) -> list[QualityFind
     return states.findings(rows, "velocity_end_derived", "warning", text)
 
 
-def _velocity(states: States, step: Steps, starts: Indices, most_replaced_share: float) -> list[QualityFinding]:
+def _replace_velocities(
+    states: States, step: Steps, starts: Indices, most_replaced_share: float
+) -> list[QualityFinding]:
     numbers, v = states.numbers, states.velocity
     absent = np.logical_and.reduceat(np.isnan(v).all(axis=0), starts)
     still = ~absent & np.logical_and.reduceat((v == 0.0).all(axis=0), starts)
-    astray = ~absent & _astray(states, step, most_replaced_share)[states.actor[starts]]
-    biased = ~absent & _biased(states, step, most_replaced_share)[states.actor[starts]]
+    astray = ~absent & _actors_with_mismatch(states, step, most_replaced_share)[states.actor[starts]]
+    biased = ~absent & _actors_with_biased_speed(states, step, most_replaced_share)[states.actor[starts]]
     if not (absent.any() or still.any() or astray.any() or biased.any()):
         return []
-    false_zero = still & (np.nan_to_num(extent(states.place, starts)).max(axis=0) > MOVED_M)
+    false_zero = still & (np.nan_to_num(extent_by_track(states.place, starts)).max(axis=0) > LEAST_MOVEMENT_M)
     findings = []
     for tracks, why in (
         (absent, "no velocity in the log"),
@@ -98,18 +106,18 @@ def _velocity(states: States, step: Steps, starts: Indices, most_replaced_share:
             continue
         rows = np.repeat(tracks, np.diff(np.r_[starts, len(states)]))
         lacking = states.take(rows)
-        of_lacking = steps_between(lacking.t_ns, lacking.actor, step.period_ns, step.own_ns[rows])
+        of_lacking = steps_between(lacking.t_ns, lacking.actor, step.period_ns, step.track_period_ns[rows])
         motion = derive_velocities(lacking.t_ns, lacking.actor, lacking.place, of_lacking)
         velocity, filtered = states.velocity, rows.copy()
         velocity[:, rows], filtered[rows] = motion
         numbers["vx_mps"], numbers["vy_mps"] = velocity
-        findings += _filtered(states, filtered)
+        findings += _filter_findings(states, filtered)
         text = why + " ({ids}): velocity is derived from positions"
         findings += states.findings(rows, "velocity_derived", "warning", text)
     return findings
 
 
-def _filtered(states: States, rows: Mask) -> list[QualityFinding]:
+def _filter_findings(states: States, rows: Mask) -> list[QualityFinding]:
     """Return a finding for each actor whose velocities were filtered because its positions are noisy, with their accuracy."""
     text = (
         f"the positions of {{ids}} are noisy: the velocity is a mean over up to two seconds, known to "
@@ -121,13 +129,13 @@ def _filtered(states: States, rows: Mask) -> list[QualityFinding]:
     return found
 
 
-def _astray(states: States, step: Steps, most_replaced_share: float) -> Mask:
+def _actors_with_mismatch(states: States, step: Steps, most_replaced_share: float) -> Mask:
     """Return the mask of actors whose velocities contradict their positions in most one-second windows with motion."""
     wrong, n = np.zeros(len(states.ids), np.bool_), len(states)
     k = max(1, round(MISMATCH_WINDOW_NS / step.period_ns)) if step.period_ns else n
-    if n <= k or most_replaced_share == 0.0 or not _suspicious(states, k):
+    if n <= k or most_replaced_share == 0.0 or not _may_mismatch(states, k):
         return wrong
-    went, led, whole, span = displacements(states, step, known_motion(states, step), k)
+    went, led, whole, span = motion_over_steps(states, step, steps_with_known_motion(states, step), k)
     off, moved, told = np.hypot(*(went - led)), np.hypot(*went), np.hypot(*led)
     fastest = np.maximum(moved, told)
     moving = whole & (fastest > MISMATCH_MPS * span)
@@ -138,7 +146,7 @@ def _astray(states: States, step: Steps, most_replaced_share: float) -> Mask:
     return wrong & bool(seconds[wrong].sum() <= most_replaced_share * seconds.sum())
 
 
-def _biased(states: States, step: Steps, most_replaced_share: float) -> Mask:
+def _actors_with_biased_speed(states: States, step: Steps, most_replaced_share: float) -> Mask:
     """Return the mask of actors whose velocities differ from the motion of their positions by a constant factor.
 
     The factor must show in both halves of the track: a single displacement of a track is a different error.
@@ -146,7 +154,7 @@ def _biased(states: States, step: Steps, most_replaced_share: float) -> Mask:
     biased, n = np.zeros(len(states.ids), np.bool_), len(states)
     if n < 3 or most_replaced_share == 0.0:
         return biased
-    known = known_motion(states, step)
+    known = steps_with_known_motion(states, step)
     v = (states.velocity[:, 1:] + states.velocity[:, :-1]) / 2.0
     speed = np.hypot(*v)
     moving = known & (speed > BIAS_LEAST_MPS)
@@ -169,10 +177,10 @@ def _biased(states: States, step: Steps, most_replaced_share: float) -> Mask:
     return biased & bool(ways[biased].sum() <= most_replaced_share * ways.sum())
 
 
-def _suspicious(states: States, k: int) -> bool:
+def _may_mismatch(states: States, stride: int) -> bool:
     """Return whether the velocities of any actor may mismatch its positions: a fast test of every k-th state (Simpson's rule)."""
-    first = np.arange(0, len(states) - k, k)
-    middle, last = first + k // 2, first + k
+    first = np.arange(0, len(states) - stride, stride)
+    middle, last = first + stride // 2, first + stride
     here = (states.actor[first] == states.actor[last]) & (states.t_ns[last] > states.t_ns[first])
     first, middle, last = first[here], middle[here], last[here]
     span, place, v = (states.t_ns[last] - states.t_ns[first]) * 1e-9, states.place, states.velocity
@@ -184,13 +192,13 @@ def _suspicious(states: States, k: int) -> bool:
     return bool((3 * bad > n).any())
 
 
-def _acceleration(states: States, starts: Indices) -> list[QualityFinding]:
+def _drop_zero_accelerations(states: States, starts: Indices) -> list[QualityFinding]:
     """Make accelerations unknown if they are zero in all states although velocities change, and return a finding about it."""
     ax, ay = states.numbers["ax_mps2"], states.numbers["ay_mps2"]
     has_acceleration = ~(np.isnan(ax) & np.isnan(ay))
     if not has_acceleration.any() or (ax[has_acceleration] != 0.0).any() or (ay[has_acceleration] != 0.0).any():
         return []
-    if not any((extent(states.numbers[name], starts) > 0.5).any() for name in ("vx_mps", "vy_mps")):
+    if not any((extent_by_track(states.numbers[name], starts) > 0.5).any() for name in ("vx_mps", "vy_mps")):
         return []
     states.numbers["ax_mps2"] = np.full(len(states), np.nan)
     states.numbers["ay_mps2"] = np.full(len(states), np.nan)

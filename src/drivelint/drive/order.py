@@ -47,13 +47,13 @@ def without_duplicates(states: States) -> tuple[States, list[QualityFinding]]:
 
     If any column of `STATE_COLUMNS` differs, all of these columns become unknown: the actor is present, but without a position.
     """
-    repeated, of = repetitions(states)
+    repeated, of = repetition_mask_and_rows(states)
     if not repeated.any():
         return states, []
     unique_states = states.take(~repeated)
     differ = {
         name: np.bincount(of[repeated & rows], minlength=len(unique_states)) > 0
-        for name, rows in changed_columns(states).items()
+        for name, rows in value_changes_by_column(states).items()
     }
     moved = np.logical_or.reduce([differ[name] for name in STATE_COLUMNS if name in differ])
     for name, values in unique_states.numbers.items():
@@ -70,14 +70,14 @@ def without_duplicates(states: States) -> tuple[States, list[QualityFinding]]:
     ]
 
 
-def repetitions(states: States) -> tuple[Mask, Indices]:
+def repetition_mask_and_rows(states: States) -> tuple[Mask, Indices]:
     """Return the mask of rows that repeat the actor and time of the row before, and each row's index after these rows are removed."""
     repeated = np.zeros(len(states), np.bool_)
     repeated[1:] = (states.actor[1:] == states.actor[:-1]) & (states.t_ns[1:] == states.t_ns[:-1])
     return repeated, np.cumsum(~repeated) - 1
 
 
-def changed_columns(states: States) -> dict[str, Mask]:
+def value_changes_by_column(states: States) -> dict[str, Mask]:
     """Return for each column the mask of rows whose value differs from the row before; two unknown values are equal."""
     changes = {}
     columns: dict[str, NDArray[Any]] = {**states.numbers, **states.codes}
@@ -92,16 +92,16 @@ def changed_columns(states: States) -> dict[str, Mask]:
 class Steps:
     """The steps from each row of the states to the next row: arrays of n - 1 values for n rows.
 
-    `same`: both rows are of one actor. `dt_s`: the seconds between them. `continuous`: `same`, and no further apart than
+    `same_actor`: both rows are of one actor. `dt_s`: the seconds between them. `continuous`: `same_actor`, and no further apart than
     `MAX_GAP_PERIODS` periods of the track. `period_ns`: the median step of all actors (0: no actor has two states).
-    `own_ns` (n): for each row the period of its track, such as that of objects at 10 Hz beside an ego at 50 Hz.
+    `track_period_ns` (n): for each row the period of its track, such as that of objects at 10 Hz beside an ego at 50 Hz.
     """
 
-    same: Mask
+    same_actor: Mask
     dt_s: Floats
     continuous: Mask
     period_ns: int
-    own_ns: Times
+    track_period_ns: Times
 
 
 def steps(states: States) -> Steps:
@@ -109,17 +109,17 @@ def steps(states: States) -> Steps:
     same = states.actor[1:] == states.actor[:-1]
     dt = np.diff(states.t_ns)
     period = int(np.median(dt[same])) if same.any() else 0
-    return steps_between(states.t_ns, states.actor, period, _own_periods(states.t_ns, states.actor, period))
+    return steps_between(states.t_ns, states.actor, period, _track_periods_ns(states.t_ns, states.actor, period))
 
 
-def steps_between(t_ns: Times, actor: NDArray[np.int32], period_ns: int, own_ns: Times) -> Steps:
+def steps_between(t_ns: Times, actor: NDArray[np.int32], period_ns: int, track_period_ns: Times) -> Steps:
     """Measure the steps between these samples (n, in order), given the log's sampling period, and that of each sample's track."""
     same = actor[1:] == actor[:-1]
     dt = np.diff(t_ns)
-    return Steps(same, dt * 1e-9, same & (dt <= MAX_GAP_PERIODS * own_ns[1:]), period_ns, own_ns)
+    return Steps(same, dt * 1e-9, same & (dt <= MAX_GAP_PERIODS * track_period_ns[1:]), period_ns, track_period_ns)
 
 
-def _own_periods(t_ns: Times, actor: NDArray[np.int32], period_ns: int) -> Times:
+def _track_periods_ns(t_ns: Times, actor: NDArray[np.int32], period_ns: int) -> Times:
     """Return for each sample the sampling period of its track, but not less than that of the log.
 
     A track's period is the lower quartile of its steps, so holes do not lengthen it. If it is longer than `LONGEST_PERIOD_NS`, the
@@ -151,7 +151,7 @@ def time_derivative(values: Floats, step: Steps) -> Floats:
     return result
 
 
-def known_motion(states: States, step: Steps) -> Mask:
+def steps_with_known_motion(states: States, step: Steps) -> Mask:
     """Return the mask of the steps (n - 1) that are continuous and whose position and velocity are known at both ends."""
     known = np.ones(len(states), np.bool_)
     for name in ("x_m", "y_m", "vx_mps", "vy_mps"):
@@ -168,26 +168,29 @@ def integral_per_step(rate: Floats, step: Steps, known_steps: Mask) -> Floats:
     return led
 
 
-def displacements(states: States, step: Steps, known_steps: Mask, k: int) -> tuple[Floats, Floats, Mask, Floats]:
-    """Return, for every `k` successive steps, the displacement of the positions and that of the integrated velocities.
+def motion_over_steps(
+    states: States, step: Steps, known_steps: Mask, n_steps: int
+) -> tuple[Floats, Floats, Mask, Floats]:
+    """Return, for every `n_steps` successive steps, the displacement of the positions and that of the integrated velocities.
 
-    Returns, indexed by first row: both displacements (2, n - k) in metres, whether all `k` steps are known, and the time in seconds.
+    Returns, indexed by first row: both displacements (2, n - n_steps) in metres, whether all `n_steps` steps are known, and the time in
+    seconds.
     """
-    went, led = np.empty((2, 2, max(0, len(states) - k)))
+    went, led = np.empty((2, 2, max(0, len(states) - n_steps)))
     for axis, (place, rate) in enumerate((("x_m", "vx_mps"), ("y_m", "vy_mps"))):
-        np.subtract(states.numbers[place][k:], states.numbers[place][:-k], out=went[axis])
-        led[axis] = sums_over(integral_per_step(states.numbers[rate], step, known_steps), k)
-    whole: Mask = sums_over(~known_steps, k) == 0
-    return went, led, whole, np.subtract(states.t_ns[k:], states.t_ns[:-k]) * 1e-9
+        np.subtract(states.numbers[place][n_steps:], states.numbers[place][:-n_steps], out=went[axis])
+        led[axis] = sliding_sums(integral_per_step(states.numbers[rate], step, known_steps), n_steps)
+    whole: Mask = sliding_sums(~known_steps, n_steps) == 0
+    return went, led, whole, np.subtract(states.t_ns[n_steps:], states.t_ns[:-n_steps]) * 1e-9
 
 
-def sums_over(values: Floats | Mask, k: int) -> Floats:
+def sliding_sums(values: Floats | Mask, width: int) -> Floats:
     """Return the sum of every k neighbouring values along the last axis: m - k + 1 sums of m values."""
-    total = sums_until(values)
-    return total[..., k:] - total[..., :-k]
+    total = prefix_sums(values)
+    return total[..., width:] - total[..., :-width]
 
 
-def sums_until(values: Floats | Mask) -> Floats:
+def prefix_sums(values: Floats | Mask) -> Floats:
     """Return the sums of the first 0, 1, ... m values along the last axis: m + 1 sums."""
     total = np.zeros((*values.shape[:-1], values.shape[-1] + 1))
     np.cumsum(values, axis=-1, out=total[..., 1:])
@@ -199,6 +202,6 @@ def track_starts(actor: NDArray[np.int32]) -> Indices:
     return np.flatnonzero(np.r_[True, actor[1:] != actor[:-1]][: len(actor)])
 
 
-def extent(values: Floats, starts: Indices) -> Floats:
+def extent_by_track(values: Floats, starts: Indices) -> Floats:
     """Return the largest minus the smallest known value of each track (`starts`: first rows); NaN if no value is known."""
     return np.fmax.reduceat(values, starts, axis=-1) - np.fmin.reduceat(values, starts, axis=-1)

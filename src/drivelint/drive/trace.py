@@ -31,7 +31,7 @@ BRAKE_LIGHTS = words("brake_light")
 ACTOR_CLASSES = words("actor_class")
 MOTOR_VEHICLES = ("car", "van", "truck", "bus", "motorcycle", "vehicle")
 """The classes of the actors that `--ego all` judges: vehicles with an engine and a driver."""
-LEAST_UTC_NS = 946_684_800_000_000_000
+EARLIEST_UTC_NS = 946_684_800_000_000_000
 """2000-01-01 UTC. Later times count from 1970 in UTC, smaller times from the start of the recording."""
 SIGNAL_STATES = words("light_state")
 
@@ -53,23 +53,23 @@ class EgoSize(NamedTuple):
     forward_m: float = 0.0
 
 
-ASSUMED_MOTION = "assumed_motion"
+ASSUMED_MOTION_CHECK = "assumed_motion"
 """The id of the check for a log whose mapping assumes speeds and lanes."""
-ASSUMED_SIZE = "assumed_size"
+ASSUMED_SIZE_CHECK = "assumed_size"
 """The id of the check (information only) for a size that the log does not record. Converted logs and clips keep its findings."""
-TURNED_FRAME = "turned_frame"
+TURNED_FRAME_CHECK = "turned_frame"
 """The id of the check (information only) for a left-handed log, which the mapping converts to a right-handed frame."""
-OWN_MAP_UNUSABLE = "own_map_unusable"
-NOT_IN_FOLDER = "map_not_in_folder"
+OWN_MAP_UNUSABLE_CHECK = "own_map_unusable"
+NOT_IN_FOLDER_CHECK = "map_not_in_folder"
 """Ids of the checks for a log's own map that is unusable, and for a log without a map in the folder. Rules that need a map are then
 unknown, with the finding as reason."""
-ASIDE_OF_LANE = "aside_of_lane"
+ASIDE_OF_LANE_CHECK = "aside_of_lane"
 """The id of the check for a drive whose ego fits the map, but is far from the middle of its lane."""
-EGO_ABSENT = "ego_absent"
+EGO_ABSENT_CHECK = "ego_absent"
 """The id of the check for a log that continues while its ego has no position."""
-FOUND_ANEW = frozenset({
+CHECKS_REPEATED_AT_READING = frozenset({
     "acceleration_not_recorded", "aligned", "begin_overlap", "class_implausible", "clock_restart", "common_jolt",
-    "duplicate_state", EGO_ABSENT, "false_entry", "gap", "heading_spin", "heading_turned", "heading_unknown", "held_track",
+    "duplicate_state", EGO_ABSENT_CHECK, "false_entry", "gap", "heading_spin", "heading_turned", "heading_unknown", "held_track",
     "jumps_onto", "length_below_width", "motion_unknown", "no_position", "no_size", "no_yaw", "position_step", "removed",
     "same_body", "size_implausible", "teleport", "too_fast", "track_gap", "track_parted", "velocity_derived",
     "velocity_end_derived", "velocity_filtered", "velocity_jolt", "velocity_mismatch", "velocity_unknown", "yaw_mismatch",
@@ -129,7 +129,7 @@ class DriveInput:
             self.topic,
             self.sensor_range_m,
             need_ego=need_ego,
-            conditions=conditions.parse(self.env),
+            conditions=conditions.parse_env_settings(self.env),
             ego_size=self.ego_size,
             in_sight=self.visibility == "line-of-sight",
             map=self.map,
@@ -151,7 +151,7 @@ class Trace:
     `data_log` has one row, with a NULL `environment_id`. Every table is sorted, `actor_state` by actor_id and t_ns. `embedded_map`: the
     OpenDRIVE text that the log contains. `map_offset` (metres) is added to the map's coordinates. `frame_times` is None for a log with
     one clock. `geo_reference`: the PROJ string of a projection. `geo_offset` converts the log's coordinates into projected ones: x and y in
-    metres, after a rotation (radians). `nobody_ns`: times of frames without actors while the ego is absent.
+    metres, after a rotation (radians). `times_without_actors_ns`: times of frames without actors while the ego is absent.
     `in_log_order`: the states are those of the log (`IngestOptions.as_recorded`) in its own order, because its clock restarts.
     """
 
@@ -164,7 +164,7 @@ class Trace:
     frame_times: FrameTimes | None = None
     geo_reference: str | None = None
     geo_offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    nobody_ns: Times = field(default_factory=lambda: np.zeros(0, np.int64))
+    times_without_actors_ns: Times = field(default_factory=lambda: np.zeros(0, np.int64))
     in_log_order: bool = False
 
 
@@ -193,7 +193,7 @@ class QualityFinding:
     @classmethod
     def unusable_map(cls, message: str) -> QualityFinding:
         """Return the finding that the log's own map cannot be used."""
-        return cls(OWN_MAP_UNUSABLE, "warning", message)
+        return cls(OWN_MAP_UNUSABLE_CHECK, "warning", message)
 
     @classmethod
     def of_actors(cls, check_id: str, severity: Severity, message: str, ids: Sequence[str]) -> QualityFinding:
@@ -245,7 +245,7 @@ class States:
         """Return a shallow copy: it shares the arrays, but replacing an array in one of the two does not change the other."""
         return States(self.ids, self.actor, self.t_ns, dict(self.numbers), dict(self.codes), self.not_finite)
 
-    def completed(self) -> States:
+    def with_all_columns(self) -> States:
         """Return the rows with every column of `STATE_COLUMNS`; columns that the log lacks are unknown."""
         nothing = {name: np.full(len(self), np.nan) for name in STATE_COLUMNS if name not in self.numbers}
         return States(self.ids, self.actor, self.t_ns, self.numbers | nothing, self.codes, self.not_finite)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from drivelint.drive.order import steps_between, sums_until, time_derivative
+from drivelint.drive.order import prefix_sums, steps_between, time_derivative
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -29,7 +29,7 @@ HALF_WIDTHS_S: Final = (0.25, 0.5, 1.0)
 At a jerk of 10 m/s3, the derived velocities are wrong by up to 0.06, 0.25 and 1 m/s."""
 LONGEST_PERIOD_NS: Final = 210_000_000
 """With longer sampling periods, motion cannot be separated from noise: central differences are used, as for exact positions."""
-MOVED_M: Final = 1.0
+LEAST_MOVEMENT_M: Final = 1.0
 """An actor moves if its positions spread by more than this; the noise of a parked car's positions stays below it."""
 LEAST_NOISE_SAMPLES: Final = 8
 """Noise is not estimated from fewer samples than this."""
@@ -50,25 +50,29 @@ def derive_velocities(t_ns: Times, actor: NDArray[np.int32], place: Floats, step
     if not 0 < step.period_ns <= LONGEST_PERIOD_NS or not len(placed):
         return DerivedVelocity(v, filtered)
     # a filter does not need a sample at every step: it continues over a single sample without a position
-    of = steps_between(t_ns[placed], actor[placed], step.period_ns, step.own_ns[placed])
-    v[:, placed], filtered[placed] = _filtered(t_ns[placed], actor[placed], place[:, placed], of, v[:, placed])
+    of = steps_between(t_ns[placed], actor[placed], step.period_ns, step.track_period_ns[placed])
+    v[:, placed], filtered[placed] = _filtered_velocities(
+        t_ns[placed], actor[placed], place[:, placed], of, v[:, placed]
+    )
     return DerivedVelocity(v, filtered)
 
 
-def _filtered(t_ns: Times, actor: NDArray[np.int32], place: Floats, step: Steps, central: Floats) -> DerivedVelocity:
+def _filtered_velocities(
+    t_ns: Times, actor: NDArray[np.int32], place: Floats, step: Steps, central: Floats
+) -> DerivedVelocity:
     """Return the velocities (2, n) of samples that all have a position; `central`: the velocities by central differences."""
     runs = Tracklets.from_samples(t_ns, place, step)
-    sigma = sample_noise(place, runs, actor, unknown=0.0)
-    has_velocity = 3.0 * sigma * np.sqrt(2.0) / (2.0 * step.own_ns * 1e-9) <= LARGEST_ERROR_MPS
+    sigma = noise_of_samples_m(place, runs, actor, default_m=0.0)
+    has_velocity = 3.0 * sigma * np.sqrt(2.0) / (2.0 * step.track_period_ns * 1e-9) <= LARGEST_ERROR_MPS
     v, filtered = np.where(has_velocity, central, np.nan), np.zeros(len(t_ns), np.bool_)
     for width in HALF_WIDTHS_S:
         if has_velocity.all():
             break
-        wide, error = runs.slopes(place, width, sigma)
+        wide, error = runs.slopes_with_errors(place, width, sigma)
         now = ~has_velocity & (error <= LARGEST_ERROR_MPS)
         v, has_velocity, filtered = np.where(now, wide, v), has_velocity | now, filtered | now
     # the widest filter decides which actors stand still; at the ends of a track it is one-sided
-    wide, error = runs.slopes(place, HALF_WIDTHS_S[-1], sigma, both_sides=False)
+    wide, error = runs.slopes_with_errors(place, HALF_WIDTHS_S[-1], sigma, both_sides=False)
     stands = (sigma > 0.0) & (error <= LARGEST_ERROR_MPS) & (np.abs(wide) <= error).all(axis=0)
     return DerivedVelocity(np.where(stands, 0.0, v), filtered | (~has_velocity & ~stands))
 
@@ -96,38 +100,45 @@ class Tracklets(NamedTuple):
         key = since + of.astype(np.int64) * (2 * int(since.max(initial=0)) + 4_000_000_000)
         return cls(first, last, key, since.astype(np.float64) * 1e-9)
 
-    def slopes(self, place: Floats, width_s: float, sigma: Floats, *, both_sides: bool = True) -> tuple[Floats, Floats]:
-        """Return the slopes (2, n) over the samples within `width_s`, and three standard errors.
+    def slopes_with_errors(
+        self, place: Floats, half_width_s: float, noise_m: Floats, *, both_sides: bool = True
+    ) -> tuple[Floats, Floats]:
+        """Return the slopes (2, n) over the samples within `half_width_s`, and three standard errors.
 
         `both_sides`: the window is symmetric, so it becomes narrower at the ends of a tracklet.
         """
         to_edge = np.minimum(self.t_s - self.t_s[self.first], self.t_s[self.last] - self.t_s)
-        half = np.round(np.minimum(width_s, to_edge if both_sides else width_s) * 1e9).astype(np.int64) + 1_000_000
+        half = (
+            np.round(np.minimum(half_width_s, to_edge if both_sides else half_width_s) * 1e9).astype(np.int64)
+            + 1_000_000
+        )
         low = np.maximum(np.searchsorted(self.key, self.key - half, side="left"), self.first)
         end = np.minimum(np.searchsorted(self.key, self.key + half, side="right") - 1, self.last) + 1
         n = (end - low).astype(np.float64)
 
-        def over(values: Floats) -> Floats:
-            sums = sums_until(values)
+        def sum_in_window(values: Floats) -> Floats:
+            sums = prefix_sums(values)
             return sums.take(end, axis=-1) - sums.take(low, axis=-1)
 
         # relative to the first sample of the tracklet, so that the sums do not lose precision
         t, moved = self.t_s, np.nan_to_num(place - place.take(self.first, axis=1))
-        mean_t = over(t) / n
-        spread = over(t * t) - n * mean_t * mean_t
+        mean_t = sum_in_window(t) / n
+        spread = sum_in_window(t * t) - n * mean_t * mean_t
         spread = np.where(spread > 1e-9, spread, np.nan)
-        slopes = (over(t * moved) - mean_t * over(moved)) / spread
-        return slopes, np.where(np.isfinite(spread), 3.0 * sigma / np.sqrt(spread), np.inf)
+        slopes = (sum_in_window(t * moved) - mean_t * sum_in_window(moved)) / spread
+        return slopes, np.where(np.isfinite(spread), 3.0 * noise_m / np.sqrt(spread), np.inf)
 
 
-def sample_noise(place: Floats, runs: Tracklets, actor: NDArray[np.int32], *, unknown: float = np.inf) -> Floats:
-    """Return the standard deviation of each sample's position noise (m); `unknown` is the value for actors with too few samples."""
-    sigma = np.maximum(*(position_noise(values, runs, actor) for values in place))
-    sigma[np.bincount(actor) < LEAST_NOISE_SAMPLES] = unknown
+def noise_of_samples_m(
+    place: Floats, tracklets: Tracklets, actor: NDArray[np.int32], *, default_m: float = np.inf
+) -> Floats:
+    """Return the standard deviation of each sample's position noise (m); `default_m` is the value for actors with too few samples."""
+    sigma = np.maximum(*(noise_by_actor_m(values, tracklets, actor) for values in place))
+    sigma[np.bincount(actor) < LEAST_NOISE_SAMPLES] = default_m
     return sigma[actor]
 
 
-def position_noise(values: Floats, runs: Tracklets, actor: NDArray[np.int32]) -> Floats:
+def noise_by_actor_m(coordinates: Floats, tracklets: Tracklets, actor: NDArray[np.int32]) -> Floats:
     """Return the standard deviation of each actor's position noise (m), estimated by a median; 0 for actors with too few samples.
 
     A sample is off the line between its neighbours because of noise or acceleration. A constant acceleration cancels in the difference
@@ -135,12 +146,12 @@ def position_noise(values: Floats, runs: Tracklets, actor: NDArray[np.int32]) ->
     """
     n_actors = int(actor.max(initial=-1)) + 1
     noise_m = np.zeros(n_actors)
-    t = runs.t_s
-    inner = np.arange(1, len(values) - 1)
+    t = tracklets.t_s
+    inner = np.arange(1, len(coordinates) - 1)
     share = (t[inner] - t[inner - 1]) / (t[inner + 1] - t[inner - 1])
-    beside = values[inner] - values[inner - 1] - share * (values[inner + 1] - values[inner - 1])
+    beside = coordinates[inner] - coordinates[inner - 1] - share * (coordinates[inner + 1] - coordinates[inner - 1])
     twice = np.abs(np.diff(beside))  # `whole` leaves out differences between samples of two tracklets
-    whole = (runs.first[inner[:-1] - 1] == runs.first[inner[1:] + 1]) & np.isfinite(twice)
+    whole = (tracklets.first[inner[:-1] - 1] == tracklets.first[inner[1:] + 1]) & np.isfinite(twice)
     rows, who = twice[whole], actor[inner[:-1]][whole]
     edges = np.searchsorted(who, np.arange(n_actors + 1))
     for number in np.flatnonzero(np.diff(edges) >= LEAST_NOISE_SAMPLES):

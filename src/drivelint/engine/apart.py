@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from drivelint.engine.session import JudgingSession
 
 
-def judge_apart(session: JudgingSession, drives: Sequence[Drive], refusals: list[RefusedLog]) -> None:
+def judge_and_refuse_faulty(session: JudgingSession, drives: Sequence[Drive], refusals: list[RefusedLog]) -> None:
     """Judge a batch; if it fails, judge its drives separately, and add those that fail to `refusals`.
 
     Errors: those that no drive causes, such as a folder that cannot be written (`exit_code` 75).
@@ -36,4 +36,4 @@ def judge_apart(session: JudgingSession, drives: Sequence[Drive], refusals: list
         drives = sorted(drives, key=lambda drive: drive.trace.drive_id)
         many = len(drives) // 2 if isinstance(error, duckdb.OutOfMemoryException) else 1
         for at in range(0, len(drives), many):
-            judge_apart(session, drives[at : at + many], refusals)
+            judge_and_refuse_faulty(session, drives[at : at + many], refusals)

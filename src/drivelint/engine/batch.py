@@ -16,7 +16,7 @@ import pyarrow.compute as pc
 from drivelint.drive.finish import with_quality_finding
 from drivelint.drive.trace import IngestOptions, QualityFinding, Trace
 from drivelint.engine.barrier import RefusedLog, refusal_of
-from drivelint.engine.earth import place_on_earth
+from drivelint.engine.earth import frame_and_reference_problem
 from drivelint.errors import MapError
 from drivelint.formats import read_trace
 
@@ -30,13 +30,13 @@ if TYPE_CHECKING:
     from drivelint.road.map_reader import MapTables
 
 BATCH_STATES: Final = 400_000  # the tables of such a batch fit into 1 GiB, and larger batches would save little time
-LARGE_STATES: Final = 1_000_000
+LARGE_BATCH_STATES: Final = 1_000_000
 """With more states than this, the drives themselves need much memory: the database releases its memory between stages."""
-ONE_CORE_STATES: Final = 100_000
+MOST_STATES_ON_ONE_CORE: Final = 100_000
 """Up to this number of states, several cores do not make a statement faster, but cost a fifth more CPU time."""
 PAIRS_PER_PART: Final = 1_500_000
 """The most pairs (an ego's step and an actor present then) in a part of a drive, which is the row count of the largest tables."""
-READ_AHEAD: Final = 4
+LOGS_READ_AHEAD: Final = 4
 FIRST_BATCH_DRIVES: Final = 16
 FIRST_BATCH_STATES: Final = 100_000
 """The most states of a run's first batch, so that there are results soon."""
@@ -80,7 +80,7 @@ class Drive:
         return dict(sorted(found.items()))
 
     @property
-    def size(self) -> int:
+    def states_or_pairs(self) -> int:
         """The drive's size for batching: its states, or its pairs of ego steps and actors."""
         return max(self.n_states, sum(self.pairs_by_ego.values()))
 
@@ -88,7 +88,7 @@ class Drive:
 def sorted_logs(paths: Sequence[Path]) -> list[Path]:
     """Return the logs sorted by stem, then by content, so that the order does not depend on folders or the command line."""
     stems = Counter(path.stem for path in paths)
-    return sorted(paths, key=lambda p: (p.stem, _digest(p) if stems[p.stem] > 1 else "", str(p)))
+    return sorted(paths, key=lambda p: (p.stem, _sha256_of_log(p) if stems[p.stem] > 1 else "", str(p)))
 
 
 def read_drives(paths: Sequence[Path], options: IngestOptions, library: MapLibrary) -> Iterator[Drive | RefusedLog]:
@@ -98,27 +98,27 @@ def read_drives(paths: Sequence[Path], options: IngestOptions, library: MapLibra
         todo = iter(paths)
         try:
             while True:
-                while len(waiting) < READ_AHEAD and (path := next(todo, None)) is not None:
+                while len(waiting) < LOGS_READ_AHEAD and (path := next(todo, None)) is not None:
                     waiting.append((path, pool.submit(read_trace, path, options)))
-                    _reading.add(waiting[-1][1])
+                    _pending_reads.add(waiting[-1][1])
                 if not waiting:
                     return
                 path, future = waiting.popleft()
-                yield _wait_for(path, future, library)
+                yield _drive_when_read(path, future, library)
         finally:
             for _, future in waiting:
                 future.cancel()
 
 
-_reading: WeakSet[Future[Trace]] = WeakSet()
+_pending_reads: WeakSet[Future[Trace]] = WeakSet()
 
 
 def logs_being_read() -> bool:
     """Return whether logs are being read in other threads."""
-    return any(not future.done() for future in list(_reading))
+    return any(not future.done() for future in list(_pending_reads))
 
 
-def _wait_for(path: Path, future: Future[Trace], library: MapLibrary) -> Drive | RefusedLog:
+def _drive_when_read(path: Path, future: Future[Trace], library: MapLibrary) -> Drive | RefusedLog:
     try:
         return drive_with_map(future.result(), library)
     except BaseException as error:  # noqa: BLE001 - some libraries raise errors that are no `Exception`
@@ -135,7 +135,7 @@ def cut_batches(drives: Iterable[Drive | RefusedLog]) -> Iterator[list[Drive | R
     states, most_drives, most_states = 0, FIRST_BATCH_DRIVES, FIRST_BATCH_STATES
     done_drives = done_states = 0
     for drive in drives:
-        n = drive.size if isinstance(drive, Drive) else 0
+        n = drive.states_or_pairs if isinstance(drive, Drive) else 0
         if batch and (states + n > min(BATCH_STATES, most_states) or len(batch) >= most_drives):
             yield batch
             done_drives, done_states = done_drives + len(batch), done_states + states
@@ -150,17 +150,17 @@ def cut_batches(drives: Iterable[Drive | RefusedLog]) -> Iterator[list[Drive | R
         yield batch
 
 
-def are_large(drives: Iterable[Drive]) -> bool:
+def have_many_states(drives: Iterable[Drive]) -> bool:
     """Return whether the drives themselves need so much memory that the database gets less."""
-    return sum(drive.n_states for drive in drives) > LARGE_STATES
+    return sum(drive.n_states for drive in drives) > LARGE_BATCH_STATES
 
 
-def are_few(drives: Iterable[Drive]) -> bool:
+def have_few_states(drives: Iterable[Drive]) -> bool:
     """Return whether the drives have so few states that one core is best for a statement."""
-    return sum(drive.n_states for drive in drives) <= ONE_CORE_STATES
+    return sum(drive.n_states for drive in drives) <= MOST_STATES_ON_ONE_CORE
 
 
-def skipped_egos_by_part(drives: Sequence[Drive], pairs_per_part: int | None = None) -> list[list[str]]:
+def egos_to_skip_by_part(drives: Sequence[Drive], pairs_per_part: int | None = None) -> list[list[str]]:
     """Return, for each part of a batch, the egos that are not judged in it; each part judges at least one ego.
 
     Only a batch of a single drive is split: its egos, sorted by id, into parts of at most `pairs_per_part` pairs (default:
@@ -185,25 +185,25 @@ def drive_with_map(trace: Trace, library: MapLibrary) -> Drive:
     """
     try:
         environment, trace = library.find(trace)
-        doubts = library.doubts(trace, environment)
+        doubts = library.doubts_on_map(trace, environment)
     except MapError as error:
-        if not library.uses_embedded(trace):
+        if not library.uses_map_in_log(trace):
             raise
         unused = QualityFinding.unusable_map(f"the log's own map is not used: {error}")
         trace, environment, doubts = with_quality_finding(trace, unused), None, {}
     for check, doubt in doubts.items():
         trace = with_quality_finding(trace, QualityFinding(check, "warning", doubt))
-    geo, trouble = place_on_earth(trace, environment)
+    geo, trouble = frame_and_reference_problem(trace, environment)
     if trouble:
         trace = with_quality_finding(trace, QualityFinding("geo_reference_unusable", "info", trouble))
     return Drive(trace, environment, geo)
 
 
-def _digest(path: Path) -> str:
+def _sha256_of_log(path: Path) -> str:
     """Return the SHA-256 of a log; '' if it cannot be read, which its reader will report."""
     try:
         if path.is_dir():
-            return "".join(_digest(child) for child in sorted(path.iterdir()) if child.is_file())
+            return "".join(_sha256_of_log(child) for child in sorted(path.iterdir()) if child.is_file())
         if not path.is_file():
             return ""
         with path.open("rb") as file:

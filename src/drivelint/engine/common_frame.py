@@ -12,7 +12,7 @@ import pyarrow as pa
 from drivelint.arrays import floats, replace_columns, rotate_vectors, wrap_angles
 from drivelint.drive.finish import with_quality_finding
 from drivelint.drive.trace import QualityFinding
-from drivelint.engine.earth import frame_of_log, frame_of_map
+from drivelint.engine.earth import frame_of_map, log_frame_and_problem
 from drivelint.errors import MapError
 from drivelint.road import geo_reference
 
@@ -22,13 +22,14 @@ if TYPE_CHECKING:
     from drivelint.road.geo_reference import GeoFrame
     from drivelint.road.map_reader import MapTables
 
-STEP_M: Final = 100.0
+SQUARE_SIDE_M: Final = 100.0
 SHAPE_TOLERANCE_M: Final = 0.01
-"""The most (m) by which a square with sides of `STEP_M` may be distorted by the transformation."""
+"""The most (m) by which a square with sides of `SQUARE_SIDE_M` may be distorted by the transformation."""
 LENGTH_TOLERANCE_M: Final = 0.1
-"""The most (m) by which the transformation may change a length of `STEP_M`. UTM's scale is 0.9996 to 1.001, a local projection's 1."""
-SAME_M: Final = 0.01
-FAR_M: Final = 10_000.0
+"""The most (m) by which the transformation may change a length of `SQUARE_SIDE_M`. UTM's scale is 0.9996 to 1.001, a local projection's
+1."""
+SAME_POSITION_M: Final = 0.01
+FAR_OFFSET_M: Final = 10_000.0
 """With a larger offset of the map's coordinates, a drive fits the map either with or without it, not both."""
 
 
@@ -39,8 +40,8 @@ def move_into_map_frame(trace: Trace, environment: MapTables) -> Trace:
     transformed; each heading, velocity and acceleration is turned by the angle between the frames there; heights stay. Errors: `MapError`
     if the transformation would distort lengths or shapes.
     """
-    log_frame, map_frame = frame_of_log(trace)[0], frame_of_map(environment)
-    if not log_frame or not map_frame or _is_said_by_the_user(environment):
+    log_frame, map_frame = log_frame_and_problem(trace)[0], frame_of_map(environment)
+    if not log_frame or not map_frame or _is_placed_by_user(environment):
         return trace
     states = trace.tables["actor_state"]
     columns = {c: floats(states[c]).copy() for c in states.column_names if pa.types.is_floating(states[c].type)}
@@ -49,15 +50,16 @@ def move_into_map_frame(trace: Trace, environment: MapTables) -> Trace:
     if not placed.any():
         return trace
     low, high = xy[placed].min(axis=0), xy[placed].max(axis=0)
-    turn, stretch = _similarity(log_frame, map_frame, low, high)
+    turn, stretch = _rotation_and_scale(log_frame, map_frame, low, high)
     # a second point, one metre from each position, shows by which angle headings turn there
     there, beside = np.split(
-        _through(log_frame, map_frame, np.concatenate([xy[placed], xy[placed] + np.array([1.0, 0.0])])), 2
+        _log_to_map_coordinates(log_frame, map_frame, np.concatenate([xy[placed], xy[placed] + np.array([1.0, 0.0])])),
+        2,
     )
     now = replace(
         trace, geo_reference=map_frame.reference, geo_offset=(map_frame.x_m, map_frame.y_m, map_frame.yaw_rad)
     )
-    if np.abs(there - xy[placed]).max() < SAME_M:
+    if np.abs(there - xy[placed]).max() < SAME_POSITION_M:
         return now
     angle = np.full(len(xy), turn)
     angle[placed] = np.arctan2(*(beside - there).T[::-1])
@@ -77,30 +79,30 @@ def move_into_map_frame(trace: Trace, environment: MapTables) -> Trace:
 def is_far_from_projection(environment: MapTables) -> bool:
     """Return whether map coordinates and projected coordinates are so far apart that a drive can fit the map in only one of them."""
     frame = frame_of_map(environment)
-    return frame is not None and max(abs(frame.x_m), abs(frame.y_m)) > FAR_M
+    return frame is not None and max(abs(frame.x_m), abs(frame.y_m)) > FAR_OFFSET_M
 
 
-def _is_said_by_the_user(environment: MapTables) -> bool:
+def _is_placed_by_user(environment: MapTables) -> bool:
     (row,) = environment.tables["environment"].to_pylist()
     return bool(row["offset_x_m"] or row["offset_y_m"] or geo_reference.is_from_map_origin(row["geo_reference"]))
 
 
-def _similarity(log_frame: GeoFrame, map_frame: GeoFrame, low: Floats, high: Floats) -> tuple[float, float]:
+def _rotation_and_scale(log_frame: GeoFrame, map_frame: GeoFrame, low: Floats, high: Floats) -> tuple[float, float]:
     """Return the rotation (radians) and scale in the middle of an area. Errors: `MapError` if lengths or shapes in it are distorted."""
     at = np.array([(low + high) / 2, low, high, (low[0], high[1]), (high[0], low[1])])
-    ends = np.concatenate([at, at + np.array([STEP_M, 0.0]), at + np.array([0.0, STEP_M])])
-    start, along, across = np.split(_through(log_frame, map_frame, ends), 3)
+    ends = np.concatenate([at, at + np.array([SQUARE_SIDE_M, 0.0]), at + np.array([0.0, SQUARE_SIDE_M])])
+    start, along, across = np.split(_log_to_map_coordinates(log_frame, map_frame, ends), 3)
     along, across = along - start, across - start
     bent = np.hypot(*(across - along[:, ::-1] * (-1.0, 1.0)).T).max()
     lengths = np.hypot(*along.T)
-    if not (bent <= SHAPE_TOLERANCE_M and np.abs(lengths - STEP_M).max() <= LENGTH_TOLERANCE_M):
+    if not (bent <= SHAPE_TOLERANCE_M and np.abs(lengths - SQUARE_SIDE_M).max() <= LENGTH_TOLERANCE_M):
         raise MapError(
             f"the log's coordinates ({log_frame.reference!r}) cannot be moved into the map's ({map_frame.reference!r}): "
-            f"{STEP_M:.0f} m would be {lengths.min():.3f} to {lengths.max():.3f} m and {bent:.3f} m out of shape; "
+            f"{SQUARE_SIDE_M:.0f} m would be {lengths.min():.3f} to {lengths.max():.3f} m and {bent:.3f} m out of shape; "
             "bring log and map into one projection"
         )
-    return math.atan2(along[0, 1], along[0, 0]), float(lengths[0] / STEP_M)
+    return math.atan2(along[0, 1], along[0, 0]), float(lengths[0] / SQUARE_SIDE_M)
 
 
-def _through(log_frame: GeoFrame, map_frame: GeoFrame, xy: Floats) -> Floats:
+def _log_to_map_coordinates(log_frame: GeoFrame, map_frame: GeoFrame, xy: Floats) -> Floats:
     return map_frame.unproject(geo_reference.transform(log_frame.project(xy), log_frame.reference, map_frame.reference))

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 Options = TypeVar("Options", bound=JudgingOptions)
 
 
-def chosen_selectors(
+def selectors_of_run(
     selectors: tuple[str, ...], rules_dirs: Sequence[Path], options: DriveInput, library: MapLibrary | None = None
 ) -> tuple[str, ...]:
     """Return the selectors of a run: those of the user, else selectors of the stable rules of the nation's packs.
@@ -34,9 +34,9 @@ def chosen_selectors(
     return tuple(f"{pack},status:stable" for pack in packs) if len(packs) > 1 else selectors
 
 
-def with_chosen_rules(options: Options, library: MapLibrary | None = None) -> Options:
-    """Return the options with the selectors of the run. Errors: as `chosen_selectors`."""
-    return replace(options, rules=chosen_selectors(options.rules, options.rules_dirs, options, library))
+def with_selectors_of_run(options: Options, library: MapLibrary | None = None) -> Options:
+    """Return the options with the selectors of the run. Errors: as `selectors_of_run`."""
+    return replace(options, rules=selectors_of_run(options.rules, options.rules_dirs, options, library))
 
 
 def packs_of_nation(
@@ -47,12 +47,12 @@ def packs_of_nation(
     They apply to all logs of the run. If only a log states its nation, the first line of the report names the packs of its law. `library`:
     caches the map. Errors: `UsageError` for an unknown condition.
     """
-    nation = dict(conditions.parse(options.env)).get("nation") or _nation_of_map(options, library)
+    nation = dict(conditions.parse_env_settings(options.env)).get("nation") or _nation_of_map(options, library)
     return catalogue.default_packs(rules, nation)
 
 
 def _nation_of_map(options: DriveInput, library: MapLibrary | None) -> str | None:
     """Return the nation of the map of `--map`. None: no map, no nation, or an unreadable map (an error once a drive needs it)."""
     with suppress(DriveLintError):
-        return (library or MapLibrary(options)).given_nation() if options.map else None
+        return (library or MapLibrary(options)).nation_of_user_map() if options.map else None
     return None

@@ -22,10 +22,10 @@ if TYPE_CHECKING:
     from drivelint.sql.derivations import Derivation
 
 WORKERS: Final = 2
-ASKED_STATES: Final = 100_000
+MOST_STATES_TO_ASK_FIRST: Final = 100_000
 """Up to this number of states, the occasion of a table (see `Derivation`) is queried first: running a statement's first part twice is then
 faster than planning the whole statement."""
-ONE_WORKER_STATES: Final = 1_000_000
+LEAST_STATES_FOR_ONE_WORKER: Final = 1_000_000
 """From this number of states on there is one worker: a statement uses all cores, and two statements would need twice the memory."""
 
 
@@ -33,37 +33,37 @@ def derive(
     con: duckdb.DuckDBPyConnection,
     tables: Iterable[str],
     *,
-    of_the_map: bool,
-    also: Iterable[str] = ALWAYS_NEEDED,
+    are_map_tables: bool,
+    always_needed_tables: Iterable[str] = ALWAYS_NEEDED,
     filled_tables: Collection[str] = (),
 ) -> None:
     """Fill the library tables that `tables` depend on.
 
-    `of_the_map`: fill the tables that depend on the map only, and the geometries of the map's own tables; else the tables of the drives.
-    `also`: more tables to fill. `filled_tables`: tables that already have their rows.
+    `are_map_tables`: fill the tables that depend on the map only, and the geometries of the map's own tables; else the tables of the
+    drives. `always_needed_tables`: more tables to fill. `filled_tables`: tables that already have their rows.
     Two tables are filled at a time, because most are so small that DuckDB uses only one core. Do not call this inside a transaction: the
     other connections do not see its rows.
     Errors: `DriveLintError` naming the table, if its SELECT fails.
     """
     todo = {
         step.table: step
-        for step in needed_derivations(tables, also)
-        if step.of_the_map is of_the_map and step.table not in filled_tables
+        for step in needed_derivations(tables, always_needed_tables)
+        if step.of_the_map is are_map_tables and step.table not in filled_tables
     }
     graph = TopologicalSorter({table: sorted(step.reads & todo.keys()) for table, step in todo.items()})
     graph.prepare()
     (n_states,) = con.execute("SELECT count(*) FROM actor_state").fetchall()[0]
-    if n_states > ASKED_STATES:
+    if n_states > MOST_STATES_TO_ASK_FIRST:
         todo = {table: replace(step, occasion="") for table, step in todo.items()}
     empty = store.tables_without_rows(con) - todo.keys()
-    for table in statement_texts("map_shapes").keys() - empty if of_the_map else ():
+    for table in statement_texts("map_shapes").keys() - empty if are_map_tables else ():
         con.execute(statement(f"map_shapes/{table}"))
-    workers = WORKERS if n_states < ONE_WORKER_STATES else 1
+    workers = WORKERS if n_states < LEAST_STATES_FOR_ONE_WORKER else 1
     with ThreadPoolExecutor(workers) as pool, ExitStack() as stack:
         free = [stack.enter_context(store.cursor(con)) for _ in range(workers)]
         busy: dict[Future[int], tuple[str, duckdb.DuckDBPyConnection]] = {}
         ready: deque[str] = deque()
-        stack.callback(_stop, tuple(free), busy)  # if a statement fails or the user interrupts
+        stack.callback(_interrupt_until_stopped, tuple(free), busy)  # if a statement fails or the user interrupts
         while graph.is_active():
             ready.extend(sorted(graph.get_ready()))
             filled: list[str] = []
@@ -74,7 +74,7 @@ def derive(
                     filled.append(table)
                 else:
                     cursor = free.pop()
-                    busy[pool.submit(_fill, cursor, todo[table])] = table, cursor
+                    busy[pool.submit(_fill_table, cursor, todo[table])] = table, cursor
             for done in wait(busy, return_when=FIRST_COMPLETED).done if not filled else ():
                 table, cursor = busy.pop(done)
                 if not done.result():
@@ -84,7 +84,7 @@ def derive(
             graph.done(*filled)
 
 
-def _stop(cursors: Iterable[duckdb.DuckDBPyConnection], running: Iterable[Future[int]]) -> None:
+def _interrupt_until_stopped(cursors: Iterable[duckdb.DuckDBPyConnection], running: Iterable[Future[int]]) -> None:
     """Interrupt all cursors repeatedly until no statement runs, because an interrupt before a statement begins has no effect."""
     left = set(running)
     while left:
@@ -93,7 +93,7 @@ def _stop(cursors: Iterable[duckdb.DuckDBPyConnection], running: Iterable[Future
         left = wait(left, timeout=0.05).not_done
 
 
-def _fill(con: duckdb.DuckDBPyConnection, step: Derivation) -> int:
+def _fill_table(con: duckdb.DuckDBPyConnection, step: Derivation) -> int:
     """Fill one table, and return the number of its rows."""
     try:
         with store.uniform_memory_errors():

@@ -18,17 +18,17 @@ if TYPE_CHECKING:
     from drivelint.road.map_reader import MapTables
 
 
-def place_on_earth(trace: Trace, environment: MapTables | None) -> tuple[GeoFrame | None, str | None]:
+def frame_and_reference_problem(trace: Trace, environment: MapTables | None) -> tuple[GeoFrame | None, str | None]:
     """Return the frame of the map, else that of the log (None: unknown), and why the log's geo reference is unusable, if it is.
 
     `map_quality` contains the problems of the map's geo reference.
     """
     if environment is not None and (frame := frame_of_map(environment)):
         return frame, None
-    return frame_of_log(trace)
+    return log_frame_and_problem(trace)
 
 
-def frame_of_log(trace: Trace) -> tuple[GeoFrame | None, str | None]:
+def log_frame_and_problem(trace: Trace) -> tuple[GeoFrame | None, str | None]:
     """Return the frame of the log's own geo reference, or None and why that reference is unusable (None: there is none)."""
     states = trace.tables["actor_state"]
     ends = [pc.min_max(states[axis]).as_py() for axis in ("x_m", "y_m")]
@@ -51,7 +51,7 @@ def frame_of_map(environment: MapTables) -> GeoFrame | None:
     return own.after_shift(row["offset_x_m"], row["offset_y_m"])
 
 
-def place_rows(con: duckdb.DuckDBPyConnection, ids: Sequence[str], table: str) -> None:
+def set_longitude_and_latitude(con: duckdb.DuckDBPyConnection, ids: Sequence[str], table: str) -> None:
     """Set the longitude and latitude of these drives in `data_log`, or of their findings in `finding`.
 
     `table`: `data_log` or `finding`.

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import duckdb
 
 
-COPIES_S: Final = 20.0
+COPIES_MAY_BEGIN_S: Final = 20.0
 """For this time (s) after an interruption, judging of copies may still begin."""
 
 
@@ -45,9 +45,9 @@ class Interruption:
             if self._con is not None:
                 store.interrupt(self._con)
 
-    def ends_judging_of_copies(self) -> bool:
-        """Return whether judging of copies must not begin: the run was interrupted more than `COPIES_S` ago."""
-        return self.requested and time.monotonic() > self._requested_s + COPIES_S
+    def forbids_new_copies(self) -> bool:
+        """Return whether judging of copies must not begin: the run was interrupted more than `COPIES_MAY_BEGIN_S` ago."""
+        return self.requested and time.monotonic() > self._requested_s + COPIES_MAY_BEGIN_S
 
     @contextmanager
     def interruptible(self, con: duckdb.DuckDBPyConnection) -> Iterator[None]:
@@ -63,15 +63,15 @@ class Interruption:
         try:
             yield
         except Exception as error:
-            self._release()
+            self._forget_connection()
             if self.requested:
                 raise InterruptedRunError from error
             raise
         else:
-            self._release()
+            self._forget_connection()
             if self.requested:
                 raise InterruptedRunError
 
-    def _release(self) -> None:
+    def _forget_connection(self) -> None:
         with self._lock:
             self._con = None

@@ -23,9 +23,11 @@ LEAST_VOTES: Final = 20
 FIRST_POSITIONS, MOST_POSITIONS = 20, 2000  # positions for checking whether a drive is on its map
 LEAST_REVERSED_EACH_WAY: Final = 5
 """A road counts as reversed if at least this many steps are against the lane in each direction: overtaking explains only one direction."""
-BESIDE_M: Final = 8.0  # the most between the centre lines of neighbouring lanes of one road, a median strip included
-FACING_COSINE: Final = 0.9
-AGREEMENT_SHARE: Final = 0.8  # vehicles drive against their lane only in short overtakes
+SAMPLED_BESIDE_LANE_M: Final = (
+    8.0  # the most between the centre lines of neighbouring lanes of one road, a median strip included
+)
+LEAST_FACING_COSINE: Final = 0.9
+LEAST_AGREEING_SHARE: Final = 0.8  # vehicles drive against their lane only in short overtakes
 
 
 class OneWayLanes(NamedTuple):
@@ -49,7 +51,7 @@ def one_way_lanes(environment: MapTables) -> OneWayLanes:
     lanelets = environment.tables["lanelet"]
     one_way = lanelets.filter(pc.and_(lanelets["drivable"], pc.invert(lanelets["bidirectional"])))
     one_way = one_way.sort_by("lanelet_id")
-    areas, lines = _shapes(environment, one_way["lanelet_id"])
+    areas, lines = _areas_and_centre_lines(environment, one_way["lanelet_id"])
     shapely.prepare(areas)
     return OneWayLanes(
         shapely.STRtree(areas),
@@ -72,7 +74,7 @@ def compare_headings(lanes: OneWayLanes, x_m: Floats, y_m: Floats, yaw_rad: Floa
     state, lane = lanes.areas.query(points, predicate="intersects")
     single = np.bincount(state, minlength=len(chosen))[state] == 1
     state, lane = state[single], lane[single]
-    return LaneHeadings(np.cos(yaw_rad[chosen][state] - _heading(lanes.lines[lane], points[state])) > 0, lane)
+    return LaneHeadings(np.cos(yaw_rad[chosen][state] - _heading_of_lines(lanes.lines[lane], points[state])) > 0, lane)
 
 
 def vote_handedness(handedness: str, headings: LaneHeadings) -> str | None:
@@ -83,9 +85,9 @@ def vote_handedness(handedness: str, headings: LaneHeadings) -> str | None:
     if len(headings.agree) < LEAST_VOTES:
         return None
     agree = float(np.mean(headings.agree))
-    if agree >= AGREEMENT_SHARE:
+    if agree >= LEAST_AGREEING_SHARE:
         return handedness
-    if agree <= 1 - AGREEMENT_SHARE:
+    if agree <= 1 - LEAST_AGREEING_SHARE:
         return opposite_side(handedness)
     return None
 
@@ -95,7 +97,7 @@ def reversed_road(lanes: OneWayLanes, headings: LaneHeadings) -> str | None:
 
     Nearly all traffic on the map must be against its lane. Two parallel roads of opposite direction count as one road.
     """
-    if len(headings.agree) < LEAST_VOTES or float(np.mean(headings.agree)) > 1 - AGREEMENT_SHARE:
+    if len(headings.agree) < LEAST_VOTES or float(np.mean(headings.agree)) > 1 - LEAST_AGREEING_SHARE:
         return None
     against = headings.lane[~headings.agree]
     for road in sorted({str(name) for name in lanes.road[against]}):
@@ -106,13 +108,15 @@ def reversed_road(lanes: OneWayLanes, headings: LaneHeadings) -> str | None:
     often = lane[counts >= LEAST_REVERSED_EACH_WAY]
     one, other = (often[k] for k in np.triu_indices(len(often), 1))
     near = shapely.shortest_line(lanes.lines[one], lanes.lines[other])
-    heading, back = (_heading(lanes.lines[lane], shapely.get_point(near, end)) for lane, end in ((one, 0), (other, -1)))
-    facing = np.cos(heading - back) < -FACING_COSINE
-    found = facing & (shapely.length(near) < BESIDE_M)
+    heading, back = (
+        _heading_of_lines(lanes.lines[lane], shapely.get_point(near, end)) for lane, end in ((one, 0), (other, -1))
+    )
+    facing = np.cos(heading - back) < -LEAST_FACING_COSINE
+    found = facing & (shapely.length(near) < SAMPLED_BESIDE_LANE_M)
     return min((str(lanes.road[k]) for k in one[found]), default=None)
 
 
-def _heading(line: NDArray[np.object_], points: NDArray[np.object_]) -> Floats:
+def _heading_of_lines(line: NDArray[np.object_], points: NDArray[np.object_]) -> Floats:
     """Return the heading (rad) of each line at the location closest to the point."""
     at = shapely.line_locate_point(line, points)
     ahead = shapely.get_coordinates(shapely.line_interpolate_point(line, at + 0.5))
@@ -123,7 +127,7 @@ def _heading(line: NDArray[np.object_], points: NDArray[np.object_]) -> Floats:
 
 def lane_areas(environment: MapTables) -> shapely.STRtree:
     """Return a spatial index of the areas of all lanelets of any type."""
-    areas = _shapes(environment, environment.tables["lanelet"]["lanelet_id"])[0]
+    areas = _areas_and_centre_lines(environment, environment.tables["lanelet"]["lanelet_id"])[0]
     shapely.prepare(areas)
     return shapely.STRtree(areas)
 
@@ -144,7 +148,9 @@ def count_on_map(lanes: shapely.STRtree, x_m: Floats, y_m: Floats) -> tuple[int,
     return looked, found
 
 
-def _shapes(environment: MapTables, lanelet_ids: pa.ChunkedArray) -> tuple[NDArray[np.object_], NDArray[np.object_]]:
+def _areas_and_centre_lines(
+    environment: MapTables, lanelet_ids: pa.ChunkedArray
+) -> tuple[NDArray[np.object_], NDArray[np.object_]]:
     """Return the areas and the centre lines of these lanelets."""
     points = environment.tables["lane_point"]
     points = points.filter(pc.is_in(points["lanelet_id"], value_set=lanelet_ids.combine_chunks())).sort_by(
@@ -154,12 +160,12 @@ def _shapes(environment: MapTables, lanelet_ids: pa.ChunkedArray) -> tuple[NDArr
     if not len(ids):
         return np.array([], dtype=object), np.array([], dtype=object)
     _, index, counts = np.unique(ids, return_inverse=True, return_counts=True)
-    line = np.asarray(shapely.linestrings(_xy(points, "x_m", "y_m"), indices=index))
-    left, right = _xy(points, "left_x_m", "left_y_m"), _xy(points, "right_x_m", "right_y_m")
+    line = np.asarray(shapely.linestrings(_coordinates(points, "x_m", "y_m"), indices=index))
+    left, right = _coordinates(points, "left_x_m", "left_y_m"), _coordinates(points, "right_x_m", "right_y_m")
     ends = np.cumsum(counts)
     rings = [np.vstack([left[a:b], right[a:b][::-1]]) for a, b in zip(ends - counts, ends, strict=True)]
     return np.array([shapely.Polygon(ring) for ring in rings], dtype=object), line
 
 
-def _xy(points: pa.Table, x: str, y: str) -> Floats:
+def _coordinates(points: pa.Table, x: str, y: str) -> Floats:
     return np.column_stack([points[x].to_numpy(), points[y].to_numpy()])

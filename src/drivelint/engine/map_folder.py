@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from drivelint.road.map_reader import MapSource
 
-MANIFEST: Final = "maps.csv"
+MANIFEST_FILE: Final = "maps.csv"
 _HEAD_BYTES = 65536
 _LANES_OF_ARGOVERSE: Final = b'"lane_segments"'
 """A key that the JSON of every Argoverse map contains, and other JSON files do not."""
@@ -65,7 +65,7 @@ class MapFolder:
         return [self._source(name) for name in self._files]
 
     def _read_manifest(self) -> list[tuple[str, str]]:
-        file = self.folder / MANIFEST
+        file = self.folder / MANIFEST_FILE
         if not file.is_file():
             return []
         with file.open(encoding="utf-8-sig", newline="") as lines:

@@ -22,9 +22,9 @@ import pyarrow.compute as pc
 
 from drivelint.arrays import floats
 from drivelint.drive.finish import with_condition_of_map, with_quality_finding
-from drivelint.drive.trace import NOT_IN_FOLDER, QualityFinding
+from drivelint.drive.trace import NOT_IN_FOLDER_CHECK, QualityFinding
 from drivelint.engine import common_frame, map_fit
-from drivelint.engine.map_folder import MANIFEST, MapFolder
+from drivelint.engine.map_folder import MANIFEST_FILE, MapFolder
 from drivelint.errors import MapError, UsageError
 from drivelint.formats.map_registry import load_map, read_source
 from drivelint.phrases import name_list
@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from drivelint.road.map_reader import MapTables
 
 MOVING_MPS = 1.0
-FITS_PROJECTION: Final = QualityFinding(
+FITS_PROJECTION_FINDING: Final = QualityFinding(
     "fits_projection",
     "info",
     "the log does not state its frame: it fits the map in the coordinates of the map's projection",
@@ -54,7 +54,7 @@ OFF_MAP_M = 50.0  # a drive that is farther than this from all lanes of a map is
 class MapLibrary:
     """Finds the environment (map) of each drive: the user's map, or the map in its log; `None` if there is neither.
 
-    A drive without a map in the user's folder is judged without a map: `doubts` reports it.
+    A drive without a map in the user's folder is judged without a map: `doubts_on_map` reports it.
 
     Errors: `MapError` for a map or folder that cannot be read, `UsageError` for options that exclude each other.
     """
@@ -71,14 +71,14 @@ class MapLibrary:
         self._unread: dict[Path, str] = {}
         self._without_map: dict[Path, str] = {}
 
-    def load_given(self) -> None:
+    def read_user_map(self) -> None:
         """Read the map of `--map` before any drive, to report an unreadable map early. Errors: `MapError`, `UsageError`."""
         if self._given is not None:
-            self._load(self._given, None, None)
+            self._load_map(self._given, None, None)
 
-    def given_nation(self) -> str | None:
+    def nation_of_user_map(self) -> str | None:
         """Return the nation of the map of `--map`; None: no map, or no nation in it. Errors: `MapError`, `UsageError`."""
-        return None if self._given is None else self._load(self._given, None, None).nation
+        return None if self._given is None else self._load_map(self._given, None, None).nation
 
     def find(self, trace: Trace) -> tuple[MapTables | None, Trace]:
         """Return the environment of one drive, and the drive in the environment's frame.
@@ -89,8 +89,8 @@ class MapLibrary:
         source = self.find_source(trace)
         if source is None:
             return None, trace
-        environment = self._load(source, trace, None)
-        trace, trouble = self._in_its_frame(environment, trace)
+        environment = self._load_map(source, trace, None)
+        trace, trouble = self._moved_into_map_frame(environment, trace)
         if trouble:
             raise MapError(
                 f"map {environment.environment_id} is of another place than {trace.path.name}: {trouble}; "
@@ -98,12 +98,12 @@ class MapLibrary:
             )
         if environment.lanes_source == "default":
             assert environment.lanes is not None  # noqa: S101 - `lanes` is None only where the map gives each lane's direction
-            headings = self._headings(environment, trace.tables["actor_state"], map_fit.VOTE_SAMPLES)
+            headings = self._lane_headings(environment, trace.tables["actor_state"], map_fit.VOTE_SAMPLES)
             if voted := map_fit.vote_handedness(environment.lanes, headings):
-                environment = self._load(source, trace, voted)
+                environment = self._load_map(source, trace, voted)
         return environment, with_condition_of_map(trace, "nation", environment.nation)
 
-    def _in_its_frame(self, environment: MapTables, trace: Trace) -> tuple[Trace, str | None]:
+    def _moved_into_map_frame(self, environment: MapTables, trace: Trace) -> tuple[Trace, str | None]:
         """Return the drive in the map's frame, and the evidence that it is at another place, or None.
 
         These coordinates are tried, and the first that fit the map are used:
@@ -122,12 +122,12 @@ class MapLibrary:
         if not any(trace.geo_offset) and geo_reference.is_same_reference(trace.geo_reference or "", theirs):
             both.reverse()
         ground = self._ground(environment)
-        troubles = [_elsewhere(environment, ground, each.tables["actor_state"]) for each in both]
+        troubles = [_evidence_of_other_place(environment, ground, each.tables["actor_state"]) for each in both]
         fitting = next((each for each, trouble in zip(both, troubles, strict=True) if not trouble), None)
         if fitting is None and trace.geo_reference is None and common_frame.is_far_from_projection(environment):
             projected = common_frame.move_into_map_frame(replace(trace, geo_reference=theirs), environment)
-            if not _elsewhere(environment, ground, projected.tables["actor_state"]):
-                fitting = with_quality_finding(projected, FITS_PROJECTION)
+            if not _evidence_of_other_place(environment, ground, projected.tables["actor_state"]):
+                fitting = with_quality_finding(projected, FITS_PROJECTION_FINDING)
         return (trace, refused or troubles[0]) if fitting is None else (fitting, None)
 
     def find_source(self, trace: Trace) -> MapSource | None:
@@ -139,22 +139,22 @@ class MapLibrary:
             self._map_folder.for_log(trace.path)
             or own
             or (self._map_folder.with_reference(trace.geo_reference) if trace.geo_reference else None)
-            or self._only_fitting(self._map_folder, trace)
+            or self._only_fitting_map(self._map_folder, trace)
         )
 
-    def uses_embedded(self, trace: Trace) -> bool:
+    def uses_map_in_log(self, trace: Trace) -> bool:
         """Return whether `find` uses the map in the log."""
         if trace.embedded_map is None or self._given is not None:
             return False
         return self._map_folder is None or not self._map_folder.for_log(trace.path)
 
-    def doubts(self, trace: Trace, environment: MapTables | None) -> dict[str, str]:
+    def doubts_on_map(self, trace: Trace, environment: MapTables | None) -> dict[str, str]:
         """Return check id -> why the map may be wrong or missing for this drive: driving side, geo reference, unreadable maps.
 
         Errors: `MapError` if the traffic shows that the lanes have the wrong direction.
         """
         if environment is None:
-            return {NOT_IN_FOLDER: text} if (text := self._without_map.get(trace.path)) else {}
+            return {NOT_IN_FOLDER_CHECK: text} if (text := self._without_map.get(trace.path)) else {}
         found = {
             "handedness_disagrees": self._side_doubt(trace, environment),
             "map_unread": self._unread.get(trace.path),
@@ -171,7 +171,7 @@ class MapLibrary:
         side, source = environment.handedness, environment.handedness_source
         if (environment.lanes_source or source) in {"default", "traces"}:
             return None
-        seen = self._headings(environment, trace.tables["actor_state"], map_fit.SIDE_CHECK_SAMPLES)
+        seen = self._lane_headings(environment, trace.tables["actor_state"], map_fit.SIDE_CHECK_SAMPLES)
         if road := map_fit.reversed_road(self._lanes(environment), seen):
             raise MapError(
                 f"map {environment.environment_id}: the traffic of {trace.path.name} runs against its lanes, on road {road} both ways: "
@@ -187,13 +187,13 @@ class MapLibrary:
             f"{correction_hint(side, source)}."
         )
 
-    def _headings(self, environment: MapTables, states: pa.Table, max_positions: int) -> LaneHeadings:
+    def _lane_headings(self, environment: MapTables, states: pa.Table, max_positions: int) -> LaneHeadings:
         speed = np.hypot(floats(states["vx_mps"]), floats(states["vy_mps"]))
         moving = states.select(["x_m", "y_m", "yaw_rad"]).filter(np.nan_to_num(speed) > MOVING_MPS)
         x_m, y_m, yaw_rad = (floats(moving[name]) for name in ("x_m", "y_m", "yaw_rad"))
         return map_fit.compare_headings(self._lanes(environment), x_m, y_m, yaw_rad, max_positions)
 
-    def _only_fitting(self, maps: MapFolder, trace: Trace) -> MapSource | None:
+    def _only_fitting_map(self, maps: MapFolder, trace: Trace) -> MapSource | None:
         """Return the only readable map that fits the drive's positions; None: no map fits.
 
         Errors: `MapError` if several maps fit.
@@ -202,11 +202,11 @@ class MapLibrary:
         unread: list[MapError] = []
         for source in maps.sources():
             try:
-                environment = self._load(source, trace, None)
+                environment = self._load_map(source, trace, None)
             except MapError as error:
                 unread.append(error)
                 continue
-            if not self._in_its_frame(environment, trace)[1]:
+            if not self._moved_into_map_frame(environment, trace)[1]:
                 fitting.append(source)
         if len(fitting) == 1:
             if unread:  # an unreadable map may be the right one
@@ -219,15 +219,15 @@ class MapLibrary:
         if fitting:
             raise MapError(
                 f"{maps.folder}: {name_list([s.name for s in fitting])} are all of the place of {trace.path.name}{besides}: "
-                f"name its map in {maps.folder / MANIFEST}"
+                f"name its map in {maps.folder / MANIFEST_FILE}"
             )
         self._without_map[trace.path] = (
             f"no map in {maps.folder.name} is of the place of {trace.path.name}{besides}: it is judged without one: "
-            f"name its map in {MANIFEST}"
+            f"name its map in {MANIFEST_FILE}"
         )
         return None
 
-    def _load(self, source: MapSource, trace: Trace | None, voted_handedness: str | None) -> MapTables:
+    def _load_map(self, source: MapSource, trace: Trace | None, voted_handedness: str | None) -> MapTables:
         """Return a map, shifted by the offset of the user, else of the log. `trace` None: the user's offset only."""
         offset = self._options.map_offset or (trace and trace.map_offset) or (0.0, 0.0)
         key = (source.sha256, offset, voted_handedness)
@@ -242,9 +242,9 @@ class MapLibrary:
         return self._loaded[key]
 
 
-def _elsewhere(environment: MapTables, lanes: shapely.STRtree, states: pa.Table) -> str | None:
+def _evidence_of_other_place(environment: MapTables, lanes: shapely.STRtree, states: pa.Table) -> str | None:
     """Return the evidence that the map and the drive are at different places, or None."""
-    drive, roads = _extent(states), _extent(environment.tables["lane_point"])
+    drive, roads = _coordinate_bounds(states), _coordinate_bounds(environment.tables["lane_point"])
     if drive is None or roads is None:
         return None
     apart = max(drive[0] - roads[1], roads[0] - drive[1], drive[2] - roads[3], roads[2] - drive[3])
@@ -259,7 +259,7 @@ def _elsewhere(environment: MapTables, lanes: shapely.STRtree, states: pa.Table)
     return None
 
 
-def _extent(table: pa.Table) -> tuple[float, float, float, float] | None:
+def _coordinate_bounds(table: pa.Table) -> tuple[float, float, float, float] | None:
     x, y = pc.min_max(table["x_m"]).as_py(), pc.min_max(table["y_m"]).as_py()
     if x["min"] is None or y["min"] is None:
         return None

@@ -12,12 +12,12 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from drivelint.engine.memory import Memory
+    from drivelint.engine.memory import MemoryLimit
 
 ROW_GROUP_ROWS: Final = 1 << 20
 """The rows of a row group, and the most in memory at once: a drive of many egos has too many."""
-_ORDER: Final = "drive_id, ego_id, rule_id, profile NULLS FIRST, object_id NULLS FIRST, ref_id NULLS FIRST, t_ns"
-_COLUMNS: Final = (
+_SORT_COLUMNS: Final = "drive_id, ego_id, rule_id, profile NULLS FIRST, object_id NULLS FIRST, ref_id NULLS FIRST, t_ns"
+_SELECTED_COLUMNS: Final = (
     "* REPLACE (drive_id::VARCHAR AS drive_id, ego_id::VARCHAR AS ego_id, object_id::VARCHAR AS object_id)"
 )
 
@@ -30,24 +30,24 @@ class MarginFile:
         self._file: pq.ParquetWriter | None = None
         self._waiting: list[pa.RecordBatch] = []
 
-    def add(self, con: duckdb.DuckDBPyConnection, memory: Memory) -> None:
+    def add(self, con: duckdb.DuckDBPyConnection, memory: MemoryLimit) -> None:
         """Append the sorted margins of the batch that was just judged."""
         if self._file is None:
             self.path.parent.mkdir(parents=True, exist_ok=True)
-            schema = con.execute(f"SELECT {_COLUMNS} FROM margin LIMIT 0").to_arrow_table().schema
+            schema = con.execute(f"SELECT {_SELECTED_COLUMNS} FROM margin LIMIT 0").to_arrow_table().schema
             self._file = pq.ParquetWriter(self.path, schema, compression="zstd")
-        for block in _blocks(con, memory):
+        for block in _sorted_margin_batches(con, memory):
             self._waiting.append(block)
             while sum(rows.num_rows for rows in self._waiting) >= ROW_GROUP_ROWS:
-                self._write()
+                self._write_row_group()
 
     def close(self) -> None:
         """Write the waiting rows, and finish the file."""
         if self._file:
-            self._write()
+            self._write_row_group()
             self._file.close()
 
-    def _write(self) -> None:
+    def _write_row_group(self) -> None:
         """Write one row group of the waiting rows, or all rows if they are fewer."""
         if self._file and self._waiting:
             rows = pa.Table.from_batches(self._waiting)
@@ -56,11 +56,11 @@ class MarginFile:
             self._waiting = rows.slice(ROW_GROUP_ROWS).to_batches()
 
 
-def _blocks(con: duckdb.DuckDBPyConnection, memory: Memory) -> Iterator[pa.RecordBatch]:
+def _sorted_margin_batches(con: duckdb.DuckDBPyConnection, memory: MemoryLimit) -> Iterator[pa.RecordBatch]:
     sent = 0
     while True:
         try:
-            rows = con.execute(f"SELECT {_COLUMNS} FROM margin ORDER BY {_ORDER} OFFSET ?", [sent])
+            rows = con.execute(f"SELECT {_SELECTED_COLUMNS} FROM margin ORDER BY {_SORT_COLUMNS} OFFSET ?", [sent])
             for block in rows.to_arrow_reader(ROW_GROUP_ROWS):
                 yield block
                 sent += block.num_rows

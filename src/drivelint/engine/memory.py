@@ -26,7 +26,7 @@ LEAST_MEMORY_BYTES: Final = 100_000_000
 """The least limit in bytes with which a database can be opened and a small drive judged."""
 
 
-class Memory:
+class MemoryLimit:
     """The memory limit of the database `con` (`limit` in bytes, None: 80 % of the machine's memory), and how much is judged at once.
 
     With a lower limit, parts are smaller from the start, so that fewer run out of memory. A halved part size or a lifted limit stays so for
@@ -42,7 +42,7 @@ class Memory:
         self.limited = limit is not None
         share = 1.0 if limit is None else min(1.0, limit / DEFAULT_MEMORY)
         self.pairs_per_part = max(1, int(batch.PAIRS_PER_PART * share))
-        """The most pairs of a part of a drive: see `batch.skipped_egos_by_part`."""
+        """The most pairs of a part of a drive: see `batch.egos_to_skip_by_part`."""
 
     def halve_parts(self, pairs: int) -> None:
         """Limit parts to half the pairs of the part that ran out of memory."""
@@ -69,7 +69,7 @@ class Memory:
             else:
                 store.lift_memory_limit(self._con)
 
-    def most_growth(self) -> int | None:
+    def most_growth_bytes(self) -> int | None:
         """Return by how many bytes the process may grow while a rule runs.
 
         None: the system does not report free memory, or logs are being read, so growth says nothing about the rule. This limit is needed

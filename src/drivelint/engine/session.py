@@ -10,14 +10,14 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.arrays import replace_columns
-from drivelint.engine.batch import BATCH_STATES, are_few, are_large, skipped_egos_by_part
+from drivelint.engine.batch import BATCH_STATES, egos_to_skip_by_part, have_few_states, have_many_states
 from drivelint.engine.derive import derive
-from drivelint.engine.earth import place_rows
+from drivelint.engine.earth import set_longitude_and_latitude
 from drivelint.engine.interruption import InterruptedRunError, Interruption
 from drivelint.engine.margins import MarginFile
-from drivelint.engine.memory import Memory
-from drivelint.engine.robustness.judging import Robustness
-from drivelint.engine.set_aside import set_aside
+from drivelint.engine.memory import MemoryLimit
+from drivelint.engine.robustness.judging import RobustnessJudge
+from drivelint.engine.set_aside import move_large_tables_to_disk
 from drivelint.errors import RuleError
 from drivelint.evaluate import evaluate
 from drivelint.evaluate.limits import RuleLimits
@@ -68,7 +68,7 @@ class JudgingSession:
         margins: bool = False,
         keep_db: bool = False,
         observers: Sequence[BatchObserver] = (),
-        memory: Memory | None = None,
+        memory: MemoryLimit | None = None,
         interruption: Interruption | None = None,
         errors: MeasurementErrors | None = None,
         copies_of_all: bool = False,
@@ -83,23 +83,23 @@ class JudgingSession:
         self._also: tuple[str, ...] = NEEDED_OF_DRIVES
         if rules:
             self._also = ALWAYS_NEEDED if any(rule.looks_at_others for rule in rules) else NEEDED_OF_RULES
-        self._memory = memory or Memory(con, None)
+        self._memory = memory or MemoryLimit(con, None)
         self._interruption = interruption or Interruption()
         self._limits = limits or RuleLimits()
-        self._limits.memory = self._memory.most_growth
+        self._limits.memory = self._memory.most_growth_bytes
         self._limits_of_copies = limits_of_copies or RuleLimits()
         self._robustness = None
         if errors:
-            self._robustness = Robustness(
+            self._robustness = RobustnessJudge(
                 con,
                 rules,
                 params,
                 errors=errors,
                 memory=self._memory,
-                load=self._load,
-                forget=self._forget_copies,
+                load=self._load_drives,
+                forget=self._delete_copies,
                 limits=self._limits_of_copies,
-                is_stopped=self._interruption.ends_judging_of_copies,
+                is_stopped=self._interruption.forbids_new_copies,
                 of_all=copies_of_all,
             )
         self._seen: set[str] = set()
@@ -108,7 +108,7 @@ class JudgingSession:
         self._margins = MarginFile(out / ".margins.parquet") if margins and out else None
         self._kept = out / "drivelint.duckdb" if keep_db and out else None
         if self._kept:
-            self._attach(self._kept)
+            self._attach_kept_database(self._kept)
         store.lock_down(con)  # from here on, rules of other authors may run in the database
 
     @property
@@ -129,7 +129,7 @@ class JudgingSession:
         """Clear the list of judged logs, so that they can be judged again. The caller must first delete their results."""
         self._seen.clear()
         for limits in (self._limits, self._limits_of_copies):
-            limits.forget()  # limits must not depend on which logs this worker happened to judge before
+            limits.forget_excesses()  # limits must not depend on which logs this worker happened to judge before
 
     def judge(self, drives: Sequence[Drive]) -> None:
         """Judge a batch of drives; if it fails, its rows are deleted.
@@ -140,14 +140,14 @@ class JudgingSession:
         if not drives:
             return
         done = False
-        self._limits.batches = sum(drive.size for drive in drives) / BATCH_STATES
+        self._limits.batches = sum(drive.states_or_pairs for drive in drives) / BATCH_STATES
         while not done:
             try:
-                one_core = store.one_thread(self._con) if are_few(drives) else nullcontext()
+                one_core = store.one_thread(self._con) if have_few_states(drives) else nullcontext()
                 with one_core, store.uniform_memory_errors(), self._interruption.interruptible(self._con):
                     done = self._judge(drives)
             except InterruptedRunError:
-                self._forget([drive.trace.drive_id for drive in drives])  # `_judge`'s deletion may be incomplete
+                self._delete_drives([drive.trace.drive_id for drive in drives])  # `_judge`'s deletion may be incomplete
                 raise
             except duckdb.OutOfMemoryException:
                 # data of a single ego that cannot be spilled to disk may use all memory of the machine
@@ -155,24 +155,24 @@ class JudgingSession:
                     raise
         ids = [drive.trace.drive_id for drive in drives]
         with ExitStack() as undo:
-            undo.callback(self._forget, ids)
+            undo.callback(self._delete_drives, ids)
             if self._margins:
                 self._margins.add(self._con, self._memory)
             if self._robustness:
                 self._robustness.add(drives)
             undo.pop_all()
         self._seen.update(ids)
-        if not are_few(drives):  # few states need little memory, and the next batch recreates the tables anyway
-            store.recreate_empty(self._con, self._filled("drive", "part"))
+        if not have_few_states(drives):  # few states need little memory, and the next batch recreates the tables anyway
+            store.recreate_empty(self._con, self._tables_to_fill("drive", "part"))
 
     @property
     def n_waiting(self) -> int:
         """The number of drives whose copies are not judged yet."""
         return self._robustness.n_waiting if self._robustness else 0
 
-    def n_to_copy(self) -> int:
+    def n_findings_to_copy(self) -> int:
         """Return the number of findings for which copies are judged first."""
-        return self._robustness.n_asked() if self._robustness else 0
+        return self._robustness.n_first_findings() if self._robustness else 0
 
     def judge_copies(self, advance: Callable[[int], None] | None = None) -> None:
         """Judge the waiting copies of several batches together; after an interruption, only for a limited time.
@@ -187,13 +187,13 @@ class JudgingSession:
         ids = [drive.trace.drive_id for drive in drives]
         on_earth = [drive.trace.drive_id for drive in drives if drive.geo]
         with ExitStack() as undo:
-            undo.callback(self._forget, ids)
-            self._load(drives)
-            place_rows(self._con, on_earth, "data_log")
-            todo = skipped_egos_by_part(drives, self._memory.pairs_per_part)
+            undo.callback(self._delete_drives, ids)
+            self._load_drives(drives)
+            set_longitude_and_latitude(self._con, on_earth, "data_log")
+            todo = egos_to_skip_by_part(drives, self._memory.pairs_per_part)
             for no, deferred in enumerate(todo):
                 if no:
-                    store.recreate_empty(self._con, self._filled("part"))
+                    store.recreate_empty(self._con, self._tables_to_fill("part"))
                 if deferred:
                     egos = pa.table({"drive_id": ids * len(deferred), "ego_id": deferred})
                     store.insert(self._con, "deferred_ego", egos)
@@ -203,9 +203,9 @@ class JudgingSession:
                     may_retry = len(drives) > 1 or cuttable or self._memory.limited
                     with store.uniform_memory_errors():
                         self._judge_part(
-                            ids, may_retry=may_retry, release=self._memory.release if are_large(drives) else None
+                            ids, may_retry=may_retry, release=self._memory.release if have_many_states(drives) else None
                         )
-                        place_rows(self._con, on_earth, "finding")
+                        set_longitude_and_latitude(self._con, on_earth, "finding")
                         for observer in self._observers:
                             observer(self._con, drives, first=no == 0, last=no + 1 == len(todo))
                 except duckdb.OutOfMemoryException:
@@ -214,14 +214,16 @@ class JudgingSession:
                     self._memory.halve_parts(sum(judged.values()))
                     return False
                 # the kept database contains every ego, so `deferred_ego` is not copied
-                self._keep((t for t in store.tables_of_lifetime("part") if t != "deferred_ego"), again=no > 0)
-            self._keep(store.tables_of_lifetime("drive"))
+                self._append_to_kept_database(
+                    (t for t in store.tables_of_lifetime("part") if t != "deferred_ego"), again=no > 0
+                )
+            self._append_to_kept_database(store.tables_of_lifetime("drive"))
             undo.pop_all()
         return True
 
     def _judge_part(self, ids: Sequence[str], *, may_retry: bool, release: Callable[[], None] | None) -> None:
         """Judge the egos of the current part."""
-        derive(self._con, self._tables, of_the_map=False, also=self._also)
+        derive(self._con, self._tables, are_map_tables=False, always_needed_tables=self._also)
         margins, series = self._margins is not None, bool(self._observers)
         evaluate(
             self._con,
@@ -243,11 +245,11 @@ class JudgingSession:
         if self._margins:
             self._margins.close()
         if self._kept:
-            self._keep(store.tables_of_lifetime("run"))
+            self._append_to_kept_database(store.tables_of_lifetime("run"))
             self._con.execute("DETACH kept")
             self._kept = None
 
-    def _load(self, drives: Sequence[Drive]) -> None:
+    def _load_drives(self, drives: Sequence[Drive]) -> None:
         environments = {d.environment.environment_id: d.environment for d in drives if d.environment}
         if not environments.keys() <= self._maps:
             self._maps = frozenset()  # until the new maps are complete: a failure here must not leave half a map
@@ -258,23 +260,27 @@ class JudgingSession:
                 for table, rows in environment.tables.items():
                     if not (known and store.lifetimes()[table] == "run"):
                         store.insert(self._con, table, rows)
-            derive(self._con, self._tables, of_the_map=True, also=self._also)
+            derive(self._con, self._tables, are_map_tables=True, always_needed_tables=self._also)
             self._maps = frozenset(environments)
-            self._keep_maps(environments.keys() - self._kept_maps)
-        store.recreate_with_enums(self._con, self._filled("drive", "part"), _drive_ids(drives), _actors(drives))
+            self._append_maps_to_kept(environments.keys() - self._kept_maps)
+        store.recreate_with_enums(
+            self._con, self._tables_to_fill("drive", "part"), _drive_ids(drives), _actor_ids(drives)
+        )
         for table in drives[0].trace.tables:
-            rows = pa.concat_tables([_on_map(d) if table == "data_log" else d.trace.tables[table] for d in drives])
+            rows = pa.concat_tables(
+                [_log_rows_with_map(d) if table == "data_log" else d.trace.tables[table] for d in drives]
+            )
             store.insert(self._con, table, rows)
         del rows
         for drive in drives:
-            set_aside(self._con, drive.trace)
+            move_large_tables_to_disk(self._con, drive.trace)
 
-    def _filled(self, *lifetimes: str) -> list[str]:
+    def _tables_to_fill(self, *lifetimes: str) -> list[str]:
         """Return the tables of these lifetimes that get rows: those of a log, and the derived tables that the rules need."""
         unneeded = derived_tables() - {each.table for each in needed_derivations(self._tables, self._also)}
         return [table for table in store.tables_of_lifetime(*lifetimes) if table not in unneeded]
 
-    def _attach(self, path: Path) -> None:
+    def _attach_kept_database(self, path: Path) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.unlink(missing_ok=True)
         with store.connect(path):
@@ -282,7 +288,7 @@ class JudgingSession:
         self._con.execute("RESET GLOBAL checkpoint_threshold")  # else the WAL would grow as large as the database
         self._con.execute(f"ATTACH {store.quoted(path)} AS kept")
 
-    def _keep(self, tables: Iterable[str], *, again: bool = False) -> None:
+    def _append_to_kept_database(self, tables: Iterable[str], *, again: bool = False) -> None:
         """Append tables to the kept database; `again`: it already contains the rows that all parts of a drive have in common."""
         if not self._kept:
             return
@@ -291,7 +297,7 @@ class JudgingSession:
             known = f" EXCEPT FROM kept.{table}" if whole else ""
             self._memory.execute(f"INSERT INTO kept.{table} SELECT * FROM {table}{known}")
 
-    def _keep_maps(self, ids: Iterable[str]) -> None:
+    def _append_maps_to_kept(self, ids: Iterable[str]) -> None:
         new = sorted(ids)
         if self._kept and new:
             for table in store.tables_of_lifetime("map"):
@@ -300,20 +306,20 @@ class JudgingSession:
                 )
             self._kept_maps.update(new)
 
-    def _forget(self, ids: Sequence[str]) -> None:
-        self._forget_copies(ids)
+    def _delete_drives(self, ids: Sequence[str]) -> None:
+        self._delete_copies(ids)
         for table in store.tables_of_lifetime("drive", "part") if self._kept else ():  # some parts may have been copied
             self._con.execute(f"DELETE FROM kept.{table} WHERE list_contains(?, drive_id)", [list(ids)])
 
-    def _forget_copies(self, ids: Sequence[str]) -> None:
+    def _delete_copies(self, ids: Sequence[str]) -> None:
         """Delete the rows of these drives from the database, but not from the kept database, which never contains copies."""
-        store.recreate_empty(self._con, self._filled("drive", "part"))
+        store.recreate_empty(self._con, self._tables_to_fill("drive", "part"))
         for table in store.tables_of_lifetime("run"):
             if "drive_id" in store.column_comments()[table]:
                 self._con.execute(f"DELETE FROM {table} WHERE list_contains(?, drive_id)", [list(ids)])
 
 
-def _on_map(drive: Drive) -> pa.Table:
+def _log_rows_with_map(drive: Drive) -> pa.Table:
     log, geo = drive.trace.tables["data_log"], drive.geo
     place = drive.environment.environment_id if drive.environment else None
     found: dict[str, str | float | None] = {"environment_id": place}
@@ -326,7 +332,7 @@ def _drive_ids(drives: Iterable[Drive]) -> list[str]:
     return [each for drive in drives for each in drive.trace.tables["data_log"]["drive_id"].to_pylist()]
 
 
-def _actors(drives: Iterable[Drive]) -> set[str]:
+def _actor_ids(drives: Iterable[Drive]) -> set[str]:
     held = set(store.tables_of_lifetime("drive", "part"))
     tables = [d.trace.tables[name] for d in drives for name in d.trace.tables if name in held]
     columns = [table.column(c) for table in tables for c in table.column_names if c in store.ACTOR_ID_COLUMNS]

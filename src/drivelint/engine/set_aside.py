@@ -18,7 +18,7 @@ LEAST_SPILLED_TABLE_BYTES = 200_000_000
 """Smaller tables stay in memory."""
 
 
-def set_aside(con: duckdb.DuckDBPyConnection, trace: Trace) -> None:
+def move_large_tables_to_disk(con: duckdb.DuckDBPyConnection, trace: Trace) -> None:
     """Replace large tables of a trace, in place, by memory-mapped files in the database's spill folder.
 
     If there is no such folder, or no space in it, the tables stay in memory.

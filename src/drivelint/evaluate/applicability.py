@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 ROUNDING_MPS = 0.01
 """The tolerance for speed limits, which are converted from km/h or mph and may be rounded: 50 km/h is 13.89 or 13.8889 m/s."""
-ENGAGED = "(w.ego_id IS NULL OR e.engaged)"
+ENGAGED_SQL = "(w.ego_id IS NULL OR e.engaged)"
 
 
 def has_conditions(rule: Rule) -> bool:
@@ -23,17 +23,17 @@ def has_conditions(rule: Rule) -> bool:
     return bool(rule.applies.restricted_conditions) or rule.applies.has_speed_limit_condition
 
 
-def fragments(rule: Rule, alias: str, time: str, check_engagement: bool) -> dict[str, str]:
-    """Return SQL fragments for the rows of the table `alias` at `time` (an SQL expression).
+def condition_fragments(rule: Rule, alias: str, time_sql: str, check_engagement: bool) -> dict[str, str]:
+    """Return SQL fragments for the rows of the table `alias` at `time_sql` (an SQL expression).
 
     `in_force`: whether the rule is in force: false if any condition is false, else NULL if any is unknown. `doubt`: the reason code of the
     first unknown condition, or NULL. `condition_joins`: the joins that these fragments need, and with `check_engagement` those that
-    `ENGAGED` needs.
+    `ENGAGED_SQL` needs.
     """
-    terms = _terms(rule, check_engagement)
+    terms = _sql_by_condition(rule, check_engagement)
     whens = " ".join(f"WHEN ({term}) IS NULL THEN '{name}_unknown'" for name, term in terms.items())
     same = "{0}.drive_id = {1}.drive_id AND {0}.ego_id = {1}.ego_id"
-    joins = f"LEFT JOIN ego_condition e ON {same.format('e', alias)} AND e.t_ns = {time}" if terms else ""
+    joins = f"LEFT JOIN ego_condition e ON {same.format('e', alias)} AND e.t_ns = {time_sql}" if terms else ""
     if check_engagement:
         joins += f" LEFT JOIN _watched w ON {same.format('w', alias)}"
     return {
@@ -43,7 +43,7 @@ def fragments(rule: Rule, alias: str, time: str, check_engagement: bool) -> dict
     }
 
 
-def bound_values(rule: Rule) -> dict[str, object]:
+def parameters_of_conditions(rule: Rule) -> dict[str, object]:
     """Return parameter name -> value, for the parameters in the conditions' SQL."""
     least, most = rule.applies.limit_min_mps, rule.applies.limit_max_mps
     values: dict[str, object] = {
@@ -56,9 +56,9 @@ def bound_values(rule: Rule) -> dict[str, object]:
     return values
 
 
-def _terms(rule: Rule, check_engagement: bool) -> dict[str, str]:
+def _sql_by_condition(rule: Rule, check_engagement: bool) -> dict[str, str]:
     """Return condition -> its SQL (true, false or NULL), with the automated driver's engagement first."""
-    found = {"engaged": ENGAGED} if check_engagement else {}
+    found = {"engaged": ENGAGED_SQL} if check_engagement else {}
     for name in rule.applies.restricted_conditions:
         found[name] = (
             f"CASE WHEN list_contains($_is_{name}, e.{name}) THEN true "

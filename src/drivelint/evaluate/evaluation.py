@@ -38,7 +38,7 @@ MOST_PENDING_ROWS: Final = 50_000
 class _StepsToJudge(NamedTuple):
     """Which steps of an invariant's grid are judged one by one, and their number (-1: unknown)."""
 
-    selection: invariant.Steps
+    selection: invariant.StepsToJudge
     n: int
 
 
@@ -54,24 +54,24 @@ class Evaluation:
     limits: RuleLimits = field(default_factory=lambda: RuleLimits(None))
     release: Callable[[], None] | None = None
     """Called before the statements about all rules, to free memory."""
-    alone: bool = True
+    is_only_connection: bool = True
     """Whether no rule is judged on another connection at the same time."""
     _n_todo: dict[int, int] = field(default_factory=dict, init=False)
-    _outside: set[int] = field(default_factory=set, init=False)
+    _rules_outside_conditions: set[int] = field(default_factory=set, init=False)
     """The numbers of the rules whose conditions are met at no step."""
     _n_subjects: int = field(default=0, init=False)
     _has_holes: bool = field(default=False, init=False)
     _check_engagement: bool = field(default=False, init=False)
     _has_doubts: bool = field(default=False, init=False)
     _has_sensors: bool = field(default=False, init=False)
-    _empty: set[str] = field(default_factory=set, init=False)
+    _empty_tables: set[str] = field(default_factory=set, init=False)
     _is_short: bool = field(default=False, init=False)
     _pending: list[Binding] = field(default_factory=list, init=False)
     """The rules whose judged steps are not aggregated to outcomes yet."""
     _n_pending: int = field(default=0, init=False)
     _may_be_double: bool = field(default=False, init=False)
     """Whether there may be several pending steps with the same key."""
-    _alone: set[int] = field(default_factory=set, init=False)
+    _rules_to_conclude_separately: set[int] = field(default_factory=set, init=False)
     """The numbers of the rules whose steps are concluded separately, because `conclude` failed with several rules."""
 
     def judge(self) -> None:
@@ -80,88 +80,92 @@ class Evaluation:
         todo = deque(binding for binding in self.bindings if self._n_todo.get(binding.no))
         # only built-in rules run in parallel: the growth of memory is a user rule's only if no other rule runs
         shipped = deque(binding for binding in todo if _is_shipped(binding))
-        n_steps = self._count("SELECT count(*) FROM step")
+        n_steps = self._count_rows("SELECT count(*) FROM step")
         if (
             len(shipped) >= LEAST_RULES_FOR_TWO_CONNECTIONS
             and LEAST_STEPS_FOR_TWO_CONNECTIONS <= n_steps < MOST_STEPS_FOR_TWO_CONNECTIONS
         ):
             todo = deque(binding for binding in todo if binding not in shipped)
-            self._share(shipped)
-        self._work(todo)
+            self._judge_on_two_connections(shipped)
+        self._judge_queue_and_conclude(todo)
         if self.release:
             self.release()
-        self._run("blind", "closed")
+        self._run_statements("blind", "closed")
         unexplained = "FROM _closed WHERE verdict = 'unknown' AND reason IS NULL AND tells_no_cause(code)"
-        self._run("cause" if self._count(f"SELECT count(*) {unexplained}") else "no_cause", "named", "failed")
+        self._run_statements(
+            "cause" if self._count_rows(f"SELECT count(*) {unexplained}") else "no_cause", "named", "failed"
+        )
         make_reason_table(
             self.con,
             "SELECT rule_no, cause, start_ns FROM _named UNION ALL SELECT rule_no, cause, start_ns FROM _failed",
             {binding.no: binding.rule.reasons for binding in self.bindings},
         )
-        n_failed = self._count("SELECT count(*) FROM _failed")
-        self._run(*(("finding",) if n_failed else ()), "verdict", *(("margin",) if self.margins else ()))
+        n_failed = self._count_rows("SELECT count(*) FROM _failed")
+        self._run_statements(*(("finding",) if n_failed else ()), "verdict", *(("margin",) if self.margins else ()))
         if self.keep_measure_series:
-            self._run("course")
+            self._run_statements("course")
 
-    def _share(self, todo: deque[Binding]) -> None:
+    def _judge_on_two_connections(self, todo: deque[Binding]) -> None:
         """Judge the rules of the queue on two connections, because DuckDB uses only one core for few rows."""
         with ThreadPoolExecutor(1) as pool, store.cursor(self.con) as other:
-            self.alone = False
+            self.is_only_connection = False
             helper = replace(self, con=other)
             helped = pool.submit(helper.judge_from_queue, todo)
             try:
-                self._work(todo)
+                self._judge_queue_and_conclude(todo)
                 helped.result()
                 for table in temp_tables.OUTCOME_TABLES:
                     store.insert(self.con, table, other.execute(f"FROM temp.{table}").to_arrow_table())
             finally:
                 todo.clear()  # if an error occurred, the helper stops after its current rule
                 wait([helped])
-                self.alone = True
+                self.is_only_connection = True
 
     def judge_from_queue(self, todo: deque[Binding]) -> None:
         """Judge rules from a shared queue; the other `Evaluation` collects the outcomes."""
         self.prepare()
-        self._work(todo)
+        self._judge_queue_and_conclude(todo)
 
-    def _work(self, todo: deque[Binding]) -> None:
+    def _judge_queue_and_conclude(self, todo: deque[Binding]) -> None:
         """Judge by the rules of the queue until it is empty, and make outcomes of their steps."""
-        self._evaluate_all(todo)
+        self._judge_queue(todo)
         while self._pending:
             try:
                 with store.uniform_memory_errors():
                     self.conclude()
             except duckdb.Error:
-                self._evaluate_all(deque(self._apart(self._pending)))
+                self._judge_queue(deque(self._discard_to_judge_separately(self._pending)))
 
-    def _apart(self, bindings: Sequence[Binding]) -> list[Binding]:
+    def _discard_to_judge_separately(self, bindings: Sequence[Binding]) -> list[Binding]:
         """Delete the results of these rules, and return the rules to judge them separately, so that only the faulty one fails."""
         again = list(bindings)
         numbers = [binding.no for binding in again]
         for table in temp_tables.OUTCOME_TABLES:
             self.con.execute(f"DELETE FROM {table} WHERE list_contains(?, rule_no)", [numbers])
-        self._alone.update(numbers)
+        self._rules_to_conclude_separately.update(numbers)
         self._forget_pending()
         return again
 
-    def _evaluate_all(self, todo: deque[Binding]) -> None:
+    def _judge_queue(self, todo: deque[Binding]) -> None:
         """Evaluate the bindings, taken from the front of `todo`, which two threads may share, until it is empty."""
         while True:
             try:
                 binding = todo.popleft()
             except IndexError:
                 return
-            if (lost := self.limits.excess_of(binding.rule.id)) is not None:
-                self._record(binding, lost, again=True)
+            if (lost := self.limits.exceeded_limit(binding.rule.id)) is not None:
+                self._insert_error_verdicts(binding, lost, again=True)
                 continue
             if self._has_no_occasion(binding):
                 continue
             concludes = False
-            with self.limits.hold(self.con, binding.rule.id, alone=self.alone) as held:
+            with self.limits.limit_statements(self.con, binding.rule.id, alone=self.is_only_connection) as held:
                 try:
                     with store.uniform_memory_errors():
                         self.judge_rule(binding)
-                        concludes = binding.no in self._alone or self._n_pending > MOST_PENDING_ROWS
+                        concludes = (
+                            binding.no in self._rules_to_conclude_separately or self._n_pending > MOST_PENDING_ROWS
+                        )
                         if concludes:
                             self.conclude()
                 except duckdb.Error as error:
@@ -170,24 +174,24 @@ class Evaluation:
                     continue
             self._pending = [other for other in self._pending if other is not binding]
             if concludes:
-                todo.extendleft(self._apart(self._pending))
-            self._blame(binding, failure, held.excess)
+                todo.extendleft(self._discard_to_judge_separately(self._pending))
+            self._record_error(binding, failure, held.excess)
 
     def prepare(self) -> None:
         """Create the temporary tables, decide which rules need not run, and group the default grids once for all rules."""
-        self._n_todo, self._outside = temp_tables.create_tables(self.con, self.bindings)
+        self._n_todo, self._rules_outside_conditions = temp_tables.create_tables(self.con, self.bindings)
         self._forget_pending()
-        self._is_short = self._count("SELECT count(*) FROM step") < LEAST_STEPS_FOR_A_FIRST_PASS
-        self._n_subjects = self._count("SELECT count(*) FROM _subject")
-        self._has_holes = self._count("SELECT count(*) FROM _segment WHERE seg > 0") > 0
-        self._run("watched")
-        self._check_engagement = self._count("SELECT count(*) FROM _watched") > 0
-        self._empty = store.tables_without_rows(self.con)
-        self._has_doubts = "doubt" not in self._empty
-        self._has_sensors = bool(self._count("SELECT count(*) FROM data_log WHERE sensor_range_m IS NOT NULL"))
+        self._is_short = self._count_rows("SELECT count(*) FROM step") < LEAST_STEPS_FOR_A_FIRST_PASS
+        self._n_subjects = self._count_rows("SELECT count(*) FROM _subject")
+        self._has_holes = self._count_rows("SELECT count(*) FROM _segment WHERE seg > 0") > 0
+        self._run_statements("watched")
+        self._check_engagement = self._count_rows("SELECT count(*) FROM _watched") > 0
+        self._empty_tables = store.tables_without_rows(self.con)
+        self._has_doubts = "doubt" not in self._empty_tables
+        self._has_sensors = bool(self._count_rows("SELECT count(*) FROM data_log WHERE sensor_range_m IS NOT NULL"))
         if self._has_doubts:
             temp_tables.create_doubts(self.con, self.bindings)
-        quick = [b for b in self.bindings if self._is_quick(b)]
+        quick = [b for b in self.bindings if self._has_first_pass(b)]
         if quick:
             objects = any(binding.rule.per_object for binding in quick)
             self.con.execute(statement("judging/grid_group"), {"_objects": objects})
@@ -196,23 +200,23 @@ class Evaluation:
         """Judge the steps by one rule; `conclude` makes outcomes of the judged steps."""
         self._pending.append(binding)
         if binding.rule.kind == "invariant":
-            self._invariant(binding)
+            self._judge_invariant(binding)
         else:
-            self._occasion(binding)
+            self._judge_at_references(binding)
 
     def _has_no_occasion(self, binding: Binding) -> bool:
         """Return whether a built-in rule has no outcome because a table is empty; a user's rule always runs, to show its errors."""
-        return bool(binding.rule.occasion_needs & self._empty) and _is_shipped(binding)
+        return bool(binding.rule.occasion_needs & self._empty_tables) and _is_shipped(binding)
 
-    def _is_quick(self, binding: Binding) -> bool:
+    def _has_first_pass(self, binding: Binding) -> bool:
         """Return whether the rule has a first pass; margins need every step, so there is none then."""
         return not self._is_short and not self.margins and invariant.has_default_grid(binding.rule)
 
-    def _is_partial(self, binding: Binding) -> bool:
+    def _skips_some_subjects(self, binding: Binding) -> bool:
         return self._n_todo.get(binding.no, 0) < self._n_subjects
 
-    def _invariant(self, binding: Binding) -> None:
-        rule, partial, steps = binding.rule, self._is_partial(binding), self._first_pass(binding)
+    def _judge_invariant(self, binding: Binding) -> None:
+        rule, partial, steps = binding.rule, self._skips_some_subjects(binding), self._settle_groups(binding)
         if steps is None:
             return
         n_judged = self._execute(
@@ -222,36 +226,36 @@ class Evaluation:
         # if there are as many rows as steps in the grid, no key can be repeated
         self._may_be_double |= self._check_engagement or n_judged != steps.n
 
-    def _first_pass(self, binding: Binding) -> _StepsToJudge | None:
+    def _settle_groups(self, binding: Binding) -> _StepsToJudge | None:
         """Settle groups without judging each step; return the remaining steps, or None if there are none."""
-        rule, partial = binding.rule, self._is_partial(binding)
+        rule, partial = binding.rule, self._skips_some_subjects(binding)
         if rule.per_profile:
             self._execute(rule_statement("profile_set", rule), binding)
-        if rule.per_object and "applies" not in rule.sections and "lost_object" not in self._empty:
+        if rule.per_object and "applies" not in rule.sections and "lost_object" not in self._empty_tables:
             self._execute(invariant.lost_objects_sql(rule, partial, self._check_engagement), binding)
-        if binding.no in self._outside and _is_shipped(binding):
+        if binding.no in self._rules_outside_conditions and _is_shipped(binding):
             return None
-        if self._is_quick(binding):
+        if self._has_first_pass(binding):
             self._execute(invariant.first_pass_sql(rule, partial), binding)
             if self._has_doubts:
                 self._execute(statement("judging/doubt_of_groups"), binding)
             left = f"SELECT coalesce(sum(n), 0)::BIGINT FROM _group WHERE rule_no = {binding.no} AND NOT clean"
-            n_steps = self._count(left)
+            n_steps = self._count_rows(left)
             near = f"FROM _group JOIN _rule USING (rule_no) WHERE rule_no = {binding.no} AND clean AND is_near_miss(margin, near_margin)"
-            if self.keep_measure_series and not self._may_stop(self._count(f"SELECT count(*) {near}")):
+            if self.keep_measure_series and not self._may_skip_rest(self._count_rows(f"SELECT count(*) {near}")):
                 self._execute(invariant.first_pass_measure_series_sql(rule), binding)
-            return None if self._may_stop(n_steps) else _StepsToJudge("unsettled", n_steps)
+            return None if self._may_skip_rest(n_steps) else _StepsToJudge("unsettled", n_steps)
         if "applies" in rule.sections or not self._is_short:
             n_steps = self._execute(invariant.steps_to_judge_sql(rule, partial, self._check_engagement), binding)
-            return None if self._may_stop(n_steps) else _StepsToJudge("asked", -1)
+            return None if self._may_skip_rest(n_steps) else _StepsToJudge("asked", -1)
         return _StepsToJudge("all", -1)
 
-    def _occasion(self, binding: Binding) -> None:
+    def _judge_at_references(self, binding: Binding) -> None:
         rule = binding.rule
-        columns = rule.columns.get("reference") or self._columns(rule.sections["reference"], binding)
+        columns = rule.columns.get("reference") or self._columns_of_select(rule.sections["reference"], binding)
         own_object = "object_id" in columns
-        if self._may_stop(
-            self._execute(reference_points.references_sql(rule, columns, self._is_partial(binding)), binding)
+        if self._may_skip_rest(
+            self._execute(reference_points.references_sql(rule, columns, self._skips_some_subjects(binding)), binding)
         ):
             return
         self._execute(reference_points.windows_sql(rule, own_object, self._check_engagement), binding)
@@ -266,34 +270,36 @@ class Evaluation:
     def conclude(self) -> None:
         """Aggregate the pending steps to outcomes, failing stretches, measure series and margins, for all pending rules at once."""
         kinds = {binding.rule.kind == "invariant" for binding in self._pending}
-        if not self._may_stop(self._n_pending):
+        if not self._may_skip_rest(self._n_pending):
             if self._may_be_double:
-                self._run("error_of_steps")
+                self._run_statements("error_of_steps")
             if self._has_doubts:
-                self._run("doubt_of_short_time", "doubt_of_steps")
+                self._run_statements("doubt_of_short_time", "doubt_of_steps")
             if self._has_sensors:
-                self._run("error_of_measuring", "key_frames", "error_of_one_sample")
+                self._run_statements("error_of_measuring", "key_frames", "error_of_one_sample")
             if True in kinds:
-                self._run("outcome_of_episodes", *(["outcome_of_holes"] if self._has_holes else []))
-        if False in kinds and not self._may_stop(self._count("SELECT count(*) FROM (FROM _occasion LIMIT 1)")):
-            self._run("outcome_of_references")
+                self._run_statements("outcome_of_episodes", *(["outcome_of_holes"] if self._has_holes else []))
+        if False in kinds and not self._may_skip_rest(
+            self._count_rows("SELECT count(*) FROM (FROM _occasion LIMIT 1)")
+        ):
+            self._run_statements("outcome_of_references")
         near = "FROM _outcome JOIN _rule USING (rule_no) WHERE verdict = 'pass' AND is_near_miss(margin, near_margin)"
-        if self.keep_measure_series and not self._may_stop(self._count(f"SELECT count(*) {near}")):
-            self._run("course_of_near_misses")
-        if not self._may_stop(self._count("SELECT count(*) FROM (FROM _judged WHERE NOT holds LIMIT 1)")):
-            self._run("stretch", *(["course_of_stretches"] if self.keep_measure_series else []))
+        if self.keep_measure_series and not self._may_skip_rest(self._count_rows(f"SELECT count(*) {near}")):
+            self._run_statements("course_of_near_misses")
+        if not self._may_skip_rest(self._count_rows("SELECT count(*) FROM (FROM _judged WHERE NOT holds LIMIT 1)")):
+            self._run_statements("stretch", *(["course_of_stretches"] if self.keep_measure_series else []))
         if self.margins:
-            self._run("margin_of_steps")
+            self._run_statements("margin_of_steps")
         self._forget_pending()
 
     def _forget_pending(self) -> None:
         self._pending, self._n_pending, self._may_be_double = [], 0, False
         self.con.execute(statement("judging/pending"))  # a new table: DuckDB does not free space of deleted rows
 
-    def _may_stop(self, n_rows: int) -> bool:
+    def _may_skip_rest(self, n_rows: int) -> bool:
         return n_rows == 0
 
-    def _run(self, *names: str) -> None:
+    def _run_statements(self, *names: str) -> None:
         """Run statements of `queries/judging` in this order."""
         for name in names:
             self.con.execute(statement(f"judging/{name}"))
@@ -304,30 +310,32 @@ class Evaluation:
         row = self.con.execute(parsed, binding.values(parsed.named_parameters)).fetchone()
         return int(row[0]) if row else 0
 
-    def _columns(self, sql: str, binding: Binding) -> list[str]:
+    def _columns_of_select(self, sql: str, binding: Binding) -> list[str]:
         """Return the names of the columns of a rule's SELECT."""
         parsed = self.con.extract_statements(f"SELECT * FROM (\n{sql}\n) LIMIT 0")[0]
         described = self.con.execute(parsed, binding.values(parsed.named_parameters)).description or []
         return [str(column[0]) for column in described]
 
-    def _count(self, sql: str) -> int:
+    def _count_rows(self, sql: str) -> int:
         row = self.con.execute(sql).fetchone()
         return int(row[0]) if row else 0
 
-    def _blame(self, binding: Binding, error: duckdb.Error, excess: Excess | None) -> None:
+    def _record_error(self, binding: Binding, error: duckdb.Error, excess: Excess | None) -> None:
         """Record an error for this rule, for every drive and ego that it had to judge; raise the error if a retry may avoid it."""
         if excess is not None:
-            self._record(binding, excess)
+            self._insert_error_verdicts(binding, excess)
         elif isinstance(error, duckdb.OutOfMemoryException):
             if self.may_retry:
                 raise error
-            self._record(
+            self._insert_error_verdicts(
                 binding, "out_of_memory"
             )  # the database's message names block sizes that differ from run to run
         else:
-            self._record(binding, "rule_error", f"rule {binding.rule.id}: {str(error).splitlines()[0]}")
+            self._insert_error_verdicts(binding, "rule_error", f"rule {binding.rule.id}: {str(error).splitlines()[0]}")
 
-    def _record(self, binding: Binding, code: str, detail: str | None = None, *, again: bool = False) -> None:
+    def _insert_error_verdicts(
+        self, binding: Binding, code: str, detail: str | None = None, *, again: bool = False
+    ) -> None:
         values = {"no": binding.no, "code": code, "told": detail, "again": again, "rule": binding.rule.id}
         self.con.execute(statement("judging/error_of_rule"), {**values, "limit_s": self.limits.allowed_s})
 
@@ -347,9 +355,9 @@ class PlanRecorder(Evaluation):
         """Create the temporary tables, and enable the statements about holes and engagement, whatever the drives contain."""
         super().prepare()
         self._has_holes = self._check_engagement = True
-        self._empty, self._outside = set(), set()
+        self._empty_tables, self._rules_outside_conditions = set(), set()
 
-    def _may_stop(self, n_rows: int) -> bool:  # noqa: ARG002 - the signature of the overridden method
+    def _may_skip_rest(self, n_rows: int) -> bool:  # noqa: ARG002 - the signature of the overridden method
         return False
 
     def _execute(self, sql: str, binding: Binding) -> int:
@@ -358,8 +366,8 @@ class PlanRecorder(Evaluation):
         self.plans += [str(plan) for _, plan in rows]
         return super()._execute(sql, binding)
 
-    def _run(self, *names: str) -> None:
+    def _run_statements(self, *names: str) -> None:
         for name in names:
             rows = self.con.execute(f"EXPLAIN {statement(f'judging/{name}')}").fetchall()
             self.plans += [str(plan) for _, plan in rows]
-            super()._run(name)
+            super()._run_statements(name)

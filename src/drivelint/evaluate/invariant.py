@@ -9,13 +9,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal
 
 from drivelint.evaluate import applicability
-from drivelint.evaluate.sql_fragments import deciding_step, rule_statement, subject_join
+from drivelint.evaluate.sql_fragments import deciding_step_sql, rule_statement, subject_join_sql
 from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
     from drivelint.catalogue import Rule
 
-Steps = Literal["all", "unsettled", "asked"]
+StepsToJudge = Literal["all", "unsettled", "asked"]
 """The steps to judge: all of a rule's grid, those of the groups that the first pass did not settle, or those of the table `_asked`."""
 
 
@@ -30,15 +30,15 @@ def has_default_grid(rule: Rule) -> bool:
     )
 
 
-def first_pass_sql(rule: Rule, partial: bool) -> str:
+def first_pass_sql(rule: Rule, skips_subjects: bool) -> str:
     """Return the SQL that appends the groups to `_group`, `clean` if they pass at all their steps without a gap."""
     return rule_statement(
         "group",
         rule,
         grid="pair" if rule.per_object else "step",
         same_object=" AND g.object_id = s.object_id" if rule.per_object else "",
-        todo=subject_join(partial, "g"),
-        deciding_step=deciding_step(rule),
+        todo=subject_join_sql(skips_subjects, "g"),
+        deciding_step=deciding_step_sql(rule),
     )
 
 
@@ -51,7 +51,7 @@ def first_pass_measure_series_sql(rule: Rule) -> str:
     )
 
 
-def _grid_sql(rule: Rule, partial: bool, unsettled: bool, check_engagement: bool) -> str:
+def _grid_sql(rule: Rule, skips_subjects: bool, unsettled: bool, check_engagement: bool) -> str:
     """Return CTEs of which the last is `_step_to_judge`; `unsettled`: only the groups that the first pass did not settle."""
     keep = ""
     if unsettled:
@@ -60,14 +60,14 @@ def _grid_sql(rule: Rule, partial: bool, unsettled: bool, check_engagement: bool
         keep += " AND a.object_id = _u.object_id" if rule.per_object else ""
     return statement(
         "judging/grid",
-        base=_base_sql(rule),
-        todo=subject_join(partial, "a"),
+        base=_grid_of_all_steps_sql(rule),
+        todo=subject_join_sql(skips_subjects, "a"),
         unsettled=keep,
-        **applicability.fragments(rule, "a", "a.t_ns", check_engagement),
+        **applicability.condition_fragments(rule, "a", "a.t_ns", check_engagement),
     )
 
 
-def _base_sql(rule: Rule) -> str:
+def _grid_of_all_steps_sql(rule: Rule) -> str:
     if "applies" not in rule.sections:
         return statement("judging/grid_by_default", grid="_pair_grid" if rule.per_object else "_step_grid")
     own = rule.columns["applies"]
@@ -85,12 +85,12 @@ def _base_sql(rule: Rule) -> str:
     )
 
 
-def steps_to_judge_sql(rule: Rule, partial: bool, check_engagement: bool) -> str:
+def steps_to_judge_sql(rule: Rule, skips_subjects: bool, check_engagement: bool) -> str:
     """Return the SQL for `_asked`: the steps to judge of a rule without a first pass."""
-    return statement("judging/asked", grid=_grid_sql(rule, partial, False, check_engagement))
+    return statement("judging/asked", grid=_grid_sql(rule, skips_subjects, False, check_engagement))
 
 
-def judged_steps_sql(rule: Rule, partial: bool, check_engagement: bool, steps: Steps) -> str:
+def judged_steps_sql(rule: Rule, skips_subjects: bool, check_engagement: bool, steps: StepsToJudge) -> str:
     """Return the SQL that judges these steps of the grid and appends them to `_judged`."""
     same_key = ""
     if rule.per_object:
@@ -104,7 +104,7 @@ def judged_steps_sql(rule: Rule, partial: bool, check_engagement: bool, steps: S
         kept = statement("judging/aged", steps_with_episode=numbered)
     grid = "_step_to_judge AS (SELECT * FROM _asked)"
     if steps != "asked":
-        grid = _grid_sql(rule, partial, steps == "unsettled", check_engagement)
+        grid = _grid_sql(rule, skips_subjects, steps == "unsettled", check_engagement)
     return rule_statement("judged_of_grid", rule, grid=grid, same_key=same_key, kept=kept)
 
 
@@ -112,11 +112,11 @@ def _steps_with_episode(source: str) -> str:
     return statement("judging/steps_with_episode", source=source)
 
 
-def lost_objects_sql(rule: Rule, partial: bool, check_engagement: bool) -> str:
+def lost_objects_sql(rule: Rule, skips_subjects: bool, check_engagement: bool) -> str:
     """Return the SQL that appends one unknown outcome per object that may have been present after its track ended."""
     return rule_statement(
         "outcome_of_lost_objects",
         rule,
-        todo=subject_join(partial, "l"),
-        **applicability.fragments(rule, "l", "l.t_from_ns", check_engagement),
+        todo=subject_join_sql(skips_subjects, "l"),
+        **applicability.condition_fragments(rule, "l", "l.t_from_ns", check_engagement),
     )

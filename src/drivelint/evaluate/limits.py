@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 
 DEFAULT_TIMEOUT_S: Final = 30.0
 """The default limit of CPU seconds per rule and batch."""
-MOST_EXCESSES: Final = 3
+EXCESSES_BEFORE_REFUSAL: Final = 3
 """A rule that exceeded its limits this many times does not run again; else it would run for each drive of a failed batch."""
-_LOOK_S: Final = 0.1
+_WATCH_PERIOD_S: Final = 0.1
 _MEMORY_GRACE_S: Final = 0.5
 """CPU seconds within which a rule must react to an interrupt because of its memory, unless `_MOST_MEMORY_SHARE` is reached before."""
 _MOST_MEMORY_SHARE: Final = 1.25
@@ -36,11 +36,11 @@ Excess = Literal["rule_timeout", "out_of_memory"]
 
 
 class RunningRule:
-    """The current run of a rule, and the limit that it exceeded, if any. `over` is set at its end."""
+    """The current run of a rule, and the limit that it exceeded, if any. `end_event` is set at its end."""
 
     def __init__(self) -> None:
         self.excess: Excess | None = None
-        self.over = Event()
+        self.end_event = Event()
         self.lock = Lock()
         """Locked while the rule is interrupted, because an interrupt after its end would hit the next rule."""
 
@@ -80,24 +80,24 @@ class RuleLimits:
         self._deaf = deaf_rules
         self._lost: dict[str, Excess] = {}
         self._excesses: Counter[str] = Counter()
-        self.forget()
+        self.forget_excesses()
 
     @property
     def allowed_s(self) -> float | None:
         """The CPU seconds of a rule for the current drives; None: no limit."""
         return None if self.seconds is None else self.seconds * max(1.0, self.batches)
 
-    def excess_of(self, rule_id: str) -> Excess | None:
+    def exceeded_limit(self, rule_id: str) -> Excess | None:
         """Return the limit because of which a rule must not run; None: it may run."""
         return self._lost.get(rule_id)
 
-    def forget(self) -> None:
+    def forget_excesses(self) -> None:
         """Allow every rule to run again, except the deaf ones."""
         self._lost = {} if self._deaf is None else dict(self._deaf.exceeded_limits(self._task))
         self._excesses.clear()
 
     @contextmanager
-    def hold(self, con: duckdb.DuckDBPyConnection, rule_id: str, *, alone: bool) -> Iterator[RunningRule]:
+    def limit_statements(self, con: duckdb.DuckDBPyConnection, rule_id: str, *, alone: bool) -> Iterator[RunningRule]:
         """Apply the limits to the statements on `con` inside the block.
 
         `alone`: no other rule runs at the same time, so that this rule causes the growth of the process's memory.
@@ -113,10 +113,10 @@ class RuleLimits:
             yield rule_run
         finally:
             with rule_run.lock:
-                rule_run.over.set()
+                rule_run.end_event.set()
             if rule_run.excess is not None:
                 self._excesses[rule_id] += 1
-                if self._excesses[rule_id] >= MOST_EXCESSES:
+                if self._excesses[rule_id] >= EXCESSES_BEFORE_REFUSAL:
                     self._lost[rule_id] = rule_run.excess
 
     def _watch(
@@ -126,7 +126,7 @@ class RuleLimits:
         work, before = ProcessorClock(thread), resident_bytes()
         patience = 0.0
         most: int | None = None  # the memory of the process above which the rule gets no more time to react
-        while not rule_run.over.wait(min(_LOOK_S, seconds)):
+        while not rule_run.end_event.wait(min(_WATCH_PERIOD_S, seconds)):
             now, resident = work.seconds(), resident_bytes()
             excess = rule_run.excess
             if excess is None:
@@ -143,7 +143,7 @@ class RuleLimits:
             elif most is not None and resident > most:
                 patience = now  # also for a rule that was interrupted because of its time, and continues to grow
             with rule_run.lock:
-                if rule_run.over.is_set():
+                if rule_run.end_event.is_set():
                     return
                 rule_run.excess = excess
                 report_not_repeatable(f"rule {rule_id} exceeded its limits")

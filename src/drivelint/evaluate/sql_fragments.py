@@ -16,14 +16,16 @@ if TYPE_CHECKING:
 
     from drivelint.catalogue import Rule
 
-_NS = 1_000_000_000
-_PROFILES = "JOIN (SELECT drive_id, ego_id, profile FROM _profile_set WHERE rule_no = $_no) p USING (drive_id, ego_id)"
-_REFERENCE_STEP = (
+_NS_PER_S = 1_000_000_000
+_PROFILE_JOIN = (
+    "JOIN (SELECT drive_id, ego_id, profile FROM _profile_set WHERE rule_no = $_no) p USING (drive_id, ego_id)"
+)
+_REFERENCE_STEP_CTE = (
     "reference_step AS NOT MATERIALIZED (SELECT * EXCLUDE (rule_no) FROM _reference_step WHERE rule_no = $_no), "
 )
 """The CTE with the steps of a rule's reference points, which its condition reads. DuckDB materializes CTEs that are read twice by default,
 and does not filter them."""
-_ENGINE = {"window_s": "_window_ns", "exempt_after_s": "_exempt_ns", "merge_gap_s": "_merge_ns"}
+_PARAMETER_BY_FIELD = {"window_s": "_window_ns", "exempt_after_s": "_exempt_ns", "merge_gap_s": "_merge_ns"}
 
 
 class Binding:
@@ -47,9 +49,9 @@ class Binding:
             "_sense": rule.sense,
             "_all": rule.combine == "all",
             "_combined": rule.combine != "each",
-            **applicability.bound_values(rule),
+            **applicability.parameters_of_conditions(rule),
         }
-        for field, name in _ENGINE.items():
+        for field, name in _PARAMETER_BY_FIELD.items():
             given = getattr(rule, field)
             seconds = params[given] if isinstance(given, str) else given
             self._values[name] = None if seconds is None else _nanoseconds(seconds, rule.id, field)
@@ -60,23 +62,23 @@ class Binding:
 
 
 def _nanoseconds(seconds: object, rule_id: str, field: str) -> int:
-    if isinstance(seconds, bool) or not isinstance(seconds, int | float) or not 0 <= seconds < _NS:
+    if isinstance(seconds, bool) or not isinstance(seconds, int | float) or not 0 <= seconds < _NS_PER_S:
         raise UsageError(f"rule {rule_id}: {field} must be a number of seconds, not {seconds!r}")
-    return round(seconds * _NS)
+    return round(seconds * _NS_PER_S)
 
 
 def rule_statement(name: str, rule: Rule, **fragments: str) -> str:
-    """Return `queries/judging/<name>.sql` for a rule, with its condition, its profiles, and `fragments` filled in."""
+    """Return `queries/judging/<name>.sql` for a rule, with its condition, its profiles, and `condition_fragments` filled in."""
     return statement(
         f"judging/{name}",
-        condition=f"{_REFERENCE_STEP if rule.kind != 'invariant' else ''}{condition_ctes(rule)}",
+        condition=f"{_REFERENCE_STEP_CTE if rule.kind != 'invariant' else ''}{condition_ctes_sql(rule)}",
         profile="p.profile" if rule.per_profile else "''",
-        profiles=_PROFILES if rule.per_profile else "",
+        profiles=_PROFILE_JOIN if rule.per_profile else "",
         **fragments,
     )
 
 
-def condition_ctes(rule: Rule) -> str:
+def condition_ctes_sql(rule: Rule) -> str:
     """Return the CTEs `_condition` and `_state` of a rule.
 
     `_state`: drive_id, ego_id, t_ns, object_id, ref_id, profile (NULL: none), applies, observed, required, holds (NULL: unknown), gain (the
@@ -128,25 +130,25 @@ def condition_ctes(rule: Rule) -> str:
     {holds} AS holds, {gain} AS gain, {code} AS code, reason FROM _value)"""
 
 
-def subject_join(partial: bool, alias: str) -> str:
-    """Return the semi-join that keeps the subjects that the rule has to judge; '' if it judges all (`partial` is False)."""
-    if not partial:
+def subject_join_sql(skips_subjects: bool, alias: str) -> str:
+    """Return the semi-join that keeps the subjects that the rule has to judge; '' if it judges all (`skips_subjects` is False)."""
+    if not skips_subjects:
         return ""
     subjects = "(SELECT drive_id, ego_id FROM _todo WHERE rule_no = $_no) _t"
     return f" SEMI JOIN {subjects} ON {alias}.drive_id = _t.drive_id AND {alias}.ego_id = _t.ego_id"
 
 
-def deciding_step(rule: Rule) -> str:
-    """Return the aggregate that selects the deciding step of `_state`, like the macro `deciding_step`, but without `who`."""
+def deciding_step_sql(rule: Rule) -> str:
+    """Return the aggregate that selects the deciding step of `_state`, like the macro `deciding_step_sql`, but without `who`."""
     eventually = rule.quantifier == "eventually"
     good, bad = (0, 1) if eventually else (1, 0)
     unknown = 2
     if rule.sense == "holds":
         good, unknown, bad = (0, 1, 2) if eventually else (2, 1, 0)
-    return step_by_rank(good, bad, unknown, "-" if eventually else "", "")
+    return step_by_rank_sql(good, bad, unknown, "-" if eventually else "", "")
 
 
-def step_by_rank(good: int, bad: int, unknown: int, sign: str, object_fields: str) -> str:
+def step_by_rank_sql(good: int, bad: int, unknown: int, sign: str, object_fields: str) -> str:
     """Return the aggregate that selects a step by these ranks, then by margin, time and `object_fields`.
 
     `good`, `bad`, `unknown`: the ranks by result, the lowest first. `sign`: '-' for the largest margin first, else ''. `object_fields`: SQL

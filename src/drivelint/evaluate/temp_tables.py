@@ -27,8 +27,8 @@ OUTCOME_TABLES = ("_error", "_group", "_outcome", "_stretch", "_course", "_margi
 _ALLOWED_WORD_SCHEMA = pa.schema(
     [("rule_no", pa.int32()), *((name, pa.string()) for name in ("code", "condition", "word"))]
 )
-_QUANTITIES = pa.schema([("rule_no", pa.int32()), ("quantity", pa.string())])
-_CREATED_TABLE = re.compile(r"^CREATE OR REPLACE TEMP (TABLE|VIEW) (\w+)", re.MULTILINE)
+_QUANTITY_SCHEMA = pa.schema([("rule_no", pa.int32()), ("quantity", pa.string())])
+_CREATE_STATEMENT = re.compile(r"^CREATE OR REPLACE TEMP (TABLE|VIEW) (\w+)", re.MULTILINE)
 
 
 def create_tables(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -> tuple[dict[int, int], set[int]]:
@@ -39,9 +39,9 @@ def create_tables(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -
     for name in ("macros", "sentences", "tables"):
         con.execute(statement(f"judging/{name}"))
     # as Arrow tables, because binding a list as a parameter takes a tenth of a second
-    store.insert(con, "_rule", _rules(bindings))
-    store.insert(con, "_needs", _needs(bindings))
-    store.insert(con, "_allowed", _allowed_words(bindings))
+    store.insert(con, "_rule", _rule_rows(bindings))
+    store.insert(con, "_needs", _required_signal_rows(bindings))
+    store.insert(con, "_allowed", _allowed_word_rows(bindings))
     con.execute(statement("judging/todo"))
     sql = "SELECT rule_no, count(*), count(o.rule_no) FROM _todo t LEFT JOIN _outside o USING (rule_no, drive_id, ego_id) GROUP BY rule_no"
     counts = con.execute(sql).fetchall()
@@ -50,11 +50,11 @@ def create_tables(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -
 
 def create_doubts(con: duckdb.DuckDBPyConnection, bindings: Sequence[Binding]) -> None:
     """Create the table of the steps that rules must not judge, because a quantity that they use is doubtful there."""
-    with store.registered(con, {"_rule_quantity": _quantities(bindings)}):
+    with store.registered(con, {"_rule_quantity": _quantity_rows(bindings)}):
         con.execute(statement("judging/doubted"))
 
 
-def _rules(bindings: Sequence[Binding]) -> pa.Table:
+def _rule_rows(bindings: Sequence[Binding]) -> pa.Table:
     told = ("kind", "subtype", "severity", "sense", "unit", "observes", "near_margin", "without_time", "without_anchor")
     rows = []
     for binding in bindings:
@@ -69,12 +69,12 @@ def _rules(bindings: Sequence[Binding]) -> pa.Table:
         }
         row |= {"by_object": rule.combine == "each", "eventually": rule.quantifier == "eventually"}
         row |= {"merge_ns": binding.values(["_merge_ns"])["_merge_ns"]}
-        limits = applicability.bound_values(rule)
+        limits = applicability.parameters_of_conditions(rule)
         rows.append(row | {"limit_min_mps": limits["_limit_min"], "limit_max_mps": limits["_limit_max"]})
     return pa.Table.from_pylist(rows)
 
 
-def _needs(bindings: Sequence[Binding]) -> pa.Table:
+def _required_signal_rows(bindings: Sequence[Binding]) -> pa.Table:
     return pa.Table.from_pylist([
         {
             "rule_no": b.no, "pos": pos, "signal": signal, "is_assumed": signal == ROAD_USERS_SIGNAL,
@@ -85,12 +85,12 @@ def _needs(bindings: Sequence[Binding]) -> pa.Table:
     ])  # fmt: skip
 
 
-def _quantities(bindings: Sequence[Binding]) -> pa.Table:
+def _quantity_rows(bindings: Sequence[Binding]) -> pa.Table:
     pairs = [(b.no, quantity) for b in bindings for quantity in sorted(b.rule.quantities)]
-    return pa.table([[no for no, _ in pairs], [quantity for _, quantity in pairs]], schema=_QUANTITIES)
+    return pa.table([[no for no, _ in pairs], [quantity for _, quantity in pairs]], schema=_QUANTITY_SCHEMA)
 
 
-def _allowed_words(bindings: Sequence[Binding]) -> pa.Table:
+def _allowed_word_rows(bindings: Sequence[Binding]) -> pa.Table:
     """Return the words that each rule's law and conditions allow, and more general words, which may include an allowed one."""
     columns = ("rule_no", "code", "condition", "word")
     rows = []
@@ -106,5 +106,5 @@ def _allowed_words(bindings: Sequence[Binding]) -> pa.Table:
 
 def drop_tables(con: duckdb.DuckDBPyConnection) -> None:
     """Drop the temporary tables of an evaluation."""
-    made = [("TABLE", "_worded"), *_CREATED_TABLE.findall("\n".join(statement_texts("judging").values()))]
+    made = [("TABLE", "_worded"), *_CREATE_STATEMENT.findall("\n".join(statement_texts("judging").values()))]
     con.execute(";".join(f"DROP {kind} IF EXISTS temp.{name}" for kind, name in made))

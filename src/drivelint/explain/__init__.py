@@ -21,7 +21,7 @@ from drivelint.errors import UsageError
 from drivelint.explain import evidence
 from drivelint.explain.change import verdict_changes
 from drivelint.explain.model import Explanation
-from drivelint.explain.sensitivity import for_verdict, sensitivity_of_check, verdict_sensitivity
+from drivelint.explain.sensitivity import errors_for_verdict, sensitivity_of_check, verdict_sensitivity
 from drivelint.explain.source import open_drive
 from drivelint.explain.target import VerdictFilter, find_verdict
 from drivelint.explain.verdict_context import VerdictContext, lacks_signal, sufficient_part
@@ -45,10 +45,10 @@ if TYPE_CHECKING:
 
 __all__ = ["ExplainRequest", "Explanation", "MeasurementErrors", "VerdictFilter", "explain"]
 
-_RULE: Final = (
+_RULE_COLUMNS: Final = (
     "title", "clause", "hypothesis", "kind", "severity", "legal", "status", "sense", "unit", "observes", "near_margin",
 )  # fmt: skip
-_DRIVE: Final = ["drive_id", "file_name", "format", "t_start_ns", "duration_s", "map_name"]
+_DRIVE_COLUMNS: Final = ["drive_id", "file_name", "format", "t_start_ns", "duration_s", "map_name"]
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ def explain(request: ExplainRequest) -> Explanation:
     result = load_result(request.folder)
     target = find_verdict(result, request.name, request.verdict_filter)
     run_options = run_request.load(request.folder).of_drive(target.verdict_row["drive_id"])
-    case = _case(run_options, target, result.rules, request.memory)
+    case = _context_of_verdict(run_options, target, result.rules, request.memory)
     row = target.verdict_row
     of_drive = next(each for each in result.drives.to_pylist() if each["drive_id"] == row["drive_id"])
     drive, source = open_drive(
@@ -90,34 +90,34 @@ def explain(request: ExplainRequest) -> Explanation:
         judged = sandbox.judge(case.params)
         now = case.verdicts_on(judged, [sandbox.drive_id])[0]
         series = evidence.judged_steps(case.rule, target, judged)
-        decides = _decides(target, series, now)
+        decides = _deciding_time_ns(target, series, now)
         parts = evidence.requirement_parts(case.rule, target, sandbox, case.params, decides)
         missing_signal = row["reason_code"].removeprefix("missing_") if lacks_signal(row) else None
         condition = (
             unknown_condition_column(row["reason_code"]) if row["verdict"] == "unknown" and not target.finding else None
         )
-        rows = evidence.rows_read(
+        rows = evidence.rows_read_by_rule(
             case.rule, target, sandbox, decides, missing_signal=missing_signal, condition=condition
         )
         changes: list[Change] = []
         sensitivity = None
         if not lacks_signal(row):
-            changes, sensitivity = _what_would_change_it(
+            changes, sensitivity = _changes_and_sensitivity(
                 case, drive, sandbox, now, errors=request.errors, exit_stack=exit_stack
             )
     rule = case.rule
-    about = {name: of_drive[name] for name in _DRIVE}
+    about = {name: of_drive[name] for name in _DRIVE_COLUMNS}
     return Explanation(
         rule={
             "rule_id": rule.id,
             "rule_version": rule.version,
-            **{key: getattr(rule, key) for key in _RULE},
+            **{key: getattr(rule, key) for key in _RULE_COLUMNS},
             "applies": rule.applies.restricted_conditions,
         },
         drive=about,
         verdict={**row, "judged_anew": now},
         other_verdicts=target.other_verdicts,
-        asks=_advice(rule, row, about["t_start_ns"] or 0),
+        asks=_advice_on_unknown(rule, row, about["t_start_ns"] or 0),
         decides_ns=decides,
         parts=parts,
         sql=evidence.sql_with_values(rule, case.params),
@@ -130,29 +130,35 @@ def explain(request: ExplainRequest) -> Explanation:
         changes=changes,
         sensitivity=sensitivity,
         source=source,
-        notes=[*_notes(case, now), *_left_out(of_drive, row["reason_code"])],
+        notes=[*_notes(case, now), *_notes_on_removed_ends(of_drive, row["reason_code"])],
     )
 
 
-def _what_would_change_it(
-    case: VerdictContext, drive: Drive, whole: Sandbox, now: str, *, errors: MeasurementErrors, exit_stack: ExitStack
+def _changes_and_sensitivity(
+    context: VerdictContext,
+    drive: Drive,
+    whole_sandbox: Sandbox,
+    verdict: str,
+    *,
+    errors: MeasurementErrors,
+    exit_stack: ExitStack,
 ) -> tuple[list[Change], Sensitivity | None]:
     """Return the least changes of the rule's numbers that change the verdict, and the verdict's sensitivity to measurement errors.
 
-    `whole`: a sandbox with the whole drive, on which the verdict is `now`. The sensitivity is None if no copies were requested.
+    `whole_sandbox`: a sandbox with the whole drive, on which the verdict is `verdict`. The sensitivity is None if no copies were requested.
     """
-    row = case.target.verdict_row
-    part, span, sandbox = sufficient_part(case, drive, whole, now, exit_stack)
+    row = context.target.verdict_row
+    part, span, sandbox = sufficient_part(context, drive, whole_sandbox, verdict, exit_stack)
     sensitivity = None
-    if case.rule.version == row["rule_version"] and now == row["verdict"]:
-        sensitivity = sensitivity_of_check(case.target.worst, errors)
-    of_verdict = for_verdict(errors, row["verdict"])
+    if context.rule.version == row["rule_version"] and verdict == row["verdict"]:
+        sensitivity = sensitivity_of_check(context.target.worst_finding, errors)
+    of_verdict = errors_for_verdict(errors, row["verdict"])
     if of_verdict.samples and sensitivity is None:
-        sensitivity = verdict_sensitivity(case, part, of_verdict, span)
-    return verdict_changes(case, sandbox, now), sensitivity
+        sensitivity = verdict_sensitivity(context, part, of_verdict, span)
+    return verdict_changes(context, sandbox, verdict), sensitivity
 
 
-def _case(run_options: RunRequest, target: Target, rules: pa.Table, memory: int | None) -> VerdictContext:
+def _context_of_verdict(run_options: RunRequest, target: Target, rules: pa.Table, memory: int | None) -> VerdictContext:
     """Return the context of a verdict, with the rule, parameters and profiles of its run. `rules`: the run's table of rules."""
     rule_id = target.verdict_row["rule_id"]
     rule = catalogue.load_rule(rule_id, run_options.rules_dirs)
@@ -170,7 +176,7 @@ def _case(run_options: RunRequest, target: Target, rules: pa.Table, memory: int 
     )
 
 
-def _advice(rule: Rule, row: Mapping[str, Any], start_ns: int) -> str | None:
+def _advice_on_unknown(rule: Rule, row: Mapping[str, Any], start_ns: int) -> str | None:
     """Return in words what the user can record or provide to decide an unknown verdict; None: nothing helps."""
     if row["cause_code"] is not None:
         return reason_text.sentence_with_advice(
@@ -179,30 +185,30 @@ def _advice(rule: Rule, row: Mapping[str, Any], start_ns: int) -> str | None:
     return {"reference_time_unknown": rule.without_time, "anchor_unknown": rule.without_anchor}.get(row["reason_code"])
 
 
-def _decides(target: Target, series: list[Step], now: str) -> int | None:
+def _deciding_time_ns(target: Target, series: list[Step], verdict: str) -> int | None:
     """Return the time of the step that decides the verdict; None if no step decides it."""
     # for an actor whose track ends, the first unknown step
-    unknown = [step.t_ns for step in series if step.holds is None and now == "unknown"]
+    unknown = [step.t_ns for step in series if step.holds is None and verdict == "unknown"]
     times = [*unknown[:1], target.verdict_row["t_worst_ns"], target.verdict_row["t_start_ns"]]
     return next((t_ns for t_ns in times if t_ns is not None), None)
 
 
-def _notes(case: VerdictContext, now: str) -> list[str]:
+def _notes(context: VerdictContext, verdict: str) -> list[str]:
     notes = []
-    version, before = case.target.verdict_row["rule_version"], case.target.verdict["verdict"]
-    if case.rule.version != version:
+    version, before = context.target.verdict_row["rule_version"], context.target.verdict["verdict"]
+    if context.rule.version != version:
         notes.append(
-            f"The rule has changed since (version {version[:8]} before, {case.rule.version[:8]} now): "
+            f"The rule has changed since (version {version[:8]} before, {context.rule.version[:8]} now): "
             "the SQL and everything computed from it are those of the present version."
         )
-    if now != before:
+    if verdict != before:
         notes.append(
-            f"Judged again, the verdict is {now}, but the result contains {before}: the tool or the rule has changed."
+            f"Judged again, the verdict is {verdict}, but the result contains {before}: the tool or the rule has changed."
         )
     return notes
 
 
-def _left_out(drive: Row, reason_code: str | None) -> list[str]:
+def _notes_on_removed_ends(drive: Row, reason_code: str | None) -> list[str]:
     """Return notes on tracks whose ends drivelint removed, if the verdict is unknown because a track ends."""
     removed = [check["message"] for check in drive["quality"] if check["check_id"] == "removed"]
     told = "drivelint removed the ends of tracks; a longer recording would not change this"

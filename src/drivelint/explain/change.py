@@ -24,11 +24,11 @@ _NEAR_FACTORS: Final = 3
 """The number of distances that are judged first, because most changes of a verdict occur there."""
 _LEAST_HALVINGS_OF_INTERVAL: Final = 8
 _MOST_HALVINGS_OF_INTERVAL: Final = 12
-_LARGEST_ERROR_SHARE: Final = 0.005
+_LARGEST_INTERVAL_SHARE: Final = 0.005
 """After the least number of halvings, the interval in which the verdict changes is halved until it is at most this share of the value.
 
 A value is rounded by at most this share."""
-_PROFILE: Final = {
+_UNIT_AND_TEXT_BY_COLUMN: Final = {
     "pull_out_angle_rad": ("rad", "angle at which this profile pulls out"),
     "cut_in_angle_rad": ("rad", "angle at which this profile cuts in"),
     "pull_out_headroom_m": ("m", "gap to the vehicle ahead at which this profile pulls out"),
@@ -54,13 +54,15 @@ def verdict_changes(context: VerdictContext, sandbox: Sandbox, verdict: str) -> 
     The tables of `sandbox` that are derived from profiles are not valid afterwards.
     """
     changes = [
-        *_search(
-            list(_parameters(context)), verdict, lambda tried_values: _with_parameters(context, sandbox, tried_values)
-        ),
-        *_search(
-            list(_profile_numbers(context, sandbox)),
+        *_search_changes(
+            list(_varied_parameters(context)),
             verdict,
-            lambda tried_values: _with_profiles(context, sandbox, tried_values),
+            lambda tried_values: _verdicts_with_parameters(context, sandbox, tried_values),
+        ),
+        *_search_changes(
+            list(_varied_profile_numbers(context, sandbox)),
+            verdict,
+            lambda tried_values: _verdicts_with_profiles(context, sandbox, tried_values),
         ),
     ]
     return sorted(
@@ -69,7 +71,7 @@ def verdict_changes(context: VerdictContext, sandbox: Sandbox, verdict: str) -> 
     )
 
 
-def _parameters(context: VerdictContext) -> Iterator[_VariedNumber]:
+def _varied_parameters(context: VerdictContext) -> Iterator[_VariedNumber]:
     for name, param in context.rule.params.items():
         now = context.params[name]
         if not isinstance(now, bool) and isinstance(now, int | float):
@@ -77,12 +79,12 @@ def _parameters(context: VerdictContext) -> Iterator[_VariedNumber]:
             yield _VariedNumber(name, param.why, param.unit, float(now), math.inf, None, halvings=2)
 
 
-def _profile_numbers(context: VerdictContext, sandbox: Sandbox) -> Iterator[_VariedNumber]:
+def _varied_profile_numbers(context: VerdictContext, sandbox: Sandbox) -> Iterator[_VariedNumber]:
     profile = context.target.verdict_row["profile"]
     if not context.rule.per_profile or profile is None:
         return
     for row in sandbox.query("SELECT * FROM profile WHERE profile = ?", [profile]):
-        for column, (unit, what) in _PROFILE.items():
+        for column, (unit, what) in _UNIT_AND_TEXT_BY_COLUMN.items():
             now = row[column]
             if now is not None:  # NULL: the profile `observed`
                 maximum = math.pi / 2 if unit == "rad" else math.inf
@@ -90,14 +92,14 @@ def _profile_numbers(context: VerdictContext, sandbox: Sandbox) -> Iterator[_Var
                 yield _VariedNumber(f"{profile}.{column}", what, unit, float(now), maximum, column, halvings=4)
 
 
-def _with_parameters(
+def _verdicts_with_parameters(
     context: VerdictContext, sandbox: Sandbox, tried_values: Sequence[tuple[_VariedNumber, float]]
 ) -> list[str]:
     judged = sandbox.judge_each([{**context.params, number.name: value} for number, value in tried_values])
     return ["error" if each is None else context.verdicts_on(each, [sandbox.drive_id])[0] for each in judged]
 
 
-def _with_profiles(
+def _verdicts_with_profiles(
     context: VerdictContext, sandbox: Sandbox, tried_values: Sequence[tuple[_VariedNumber, float]]
 ) -> list[str]:
     columns_and_values = [(number.column, value) for number, value in tried_values if number.column is not None]
@@ -105,13 +107,13 @@ def _with_profiles(
     return [context.verdicts_on(each, [sandbox.drive_id])[0] for each in judged]
 
 
-def _search(
+def _search_changes(
     numbers: Sequence[_VariedNumber], verdict: str, judge: Callable[[Sequence[tuple[_VariedNumber, float]]], list[str]]
 ) -> list[Change]:
     """Return the nearest change of each number. `judge` returns the verdict for each number and value."""
     changes: list[Change] = []
     running: list[tuple[_VariedNumber, Search, dict[float, str] | None]] = [
-        (n, _nearest(n, verdict), None) for n in numbers
+        (n, _search_nearest_change(n, verdict), None) for n in numbers
     ]
     while running:
         requests: list[tuple[_VariedNumber, Search, Sequence[float]]] = []
@@ -126,11 +128,11 @@ def _search(
     return changes
 
 
-def _nearest(number: _VariedNumber, verdict: str) -> Search:
+def _search_nearest_change(number: _VariedNumber, verdict: str) -> Search:
     """Try values further away on both sides until the verdict changes on one side, then halve the last interval there."""
     scale = abs(number.now) or 1.0
     least = 0.0 if number.now >= 0 else -math.inf  # keep a number that is not negative at 0 or more
-    sides = [_values(number, scale * sign, least) for sign in (1, -1)]
+    sides = [_values_to_try(number, scale * sign, least) for sign in (1, -1)]
     low, high = min(number.now, *sides[1]), max(number.now, *sides[0])
     none = Change(number.name, number.description, number.unit, number.now, None, None, False, low, high)
     shut: set[int] = set()
@@ -145,43 +147,43 @@ def _nearest(number: _VariedNumber, verdict: str) -> Search:
             becomes = verdicts[values[n]]
             if becomes == "error":
                 shut.add(side)  # values beyond are not valid either
-            elif not _same(becomes, verdict):
-                value, becomes, beyond = yield from _edge(number, values, n, verdict, verdicts)
+            elif not _is_no_useful_change(becomes, verdict):
+                value, becomes, beyond = yield from _nearest_changing_value(number, values, n, verdict, verdicts)
                 edges.append(none._replace(nearest_value=value, becomes=becomes, beyond=beyond))
         if edges:
             return min(edges, key=lambda edge: (abs((edge.nearest_value or 0.0) - number.now), edge.nearest_value))
     return none
 
 
-def _values(number: _VariedNumber, scale: float, least: float) -> list[float]:
+def _values_to_try(number: _VariedNumber, scale: float, least: float) -> list[float]:
     """Return the values to try on one side, the nearest first."""
     reached = dict.fromkeys(min(number.maximum, max(least, number.now + scale * factor)) for factor in SEARCH_FACTORS)
     return [value for value in reached if value != number.now]
 
 
-def _same(becomes: str, verdict: str) -> bool:
+def _is_no_useful_change(becomes: str, verdict: str) -> bool:
     """Return whether a verdict counts as unchanged: it is the same, or a pass or fail became unknown, which is no useful change."""
     return becomes == verdict or (becomes == "unknown" and verdict in {"pass", "fail"})
 
 
-def _edge(
-    number: _VariedNumber, values: list[float], at: int, verdict: str, verdicts: dict[float, str]
+def _nearest_changing_value(
+    number: _VariedNumber, values: list[float], index: int, verdict: str, verdicts: dict[float, str]
 ) -> Generator[Sequence[float], dict[float, str], tuple[float, str, bool]]:
     """Return the nearest value on one side that changes the verdict, the new verdict, and whether values further away give it too."""
-    near, far = (values[at - 1] if at else number.now), values[at]
+    near, far = (values[index - 1] if index else number.now), values[index]
     becomes = verdicts[far]
     for n in range(0, _MOST_HALVINGS_OF_INTERVAL, number.halvings):
-        if n >= _LEAST_HALVINGS_OF_INTERVAL and abs(far - near) <= _LARGEST_ERROR_SHARE * abs(far):
+        if n >= _LEAST_HALVINGS_OF_INTERVAL and abs(far - near) <= _LARGEST_INTERVAL_SHARE * abs(far):
             break
-        halved = yield list(_middles(near, far, number.halvings))
+        halved = yield list(_values_by_halving(near, far, number.halvings))
         for _ in range(number.halvings):
             middle = (near + far) / 2
-            if halved[middle] == "error" or _same(halved[middle], verdict):
+            if halved[middle] == "error" or _is_no_useful_change(halved[middle], verdict):
                 near = middle
             else:  # the verdict may differ from that further away: fail, then pass, then not applicable
                 far, becomes = middle, halved[middle]
-    further = values[at + 1 : at + 3] or [values[at]]
-    short = _short_values(number, far)
+    further = values[index + 1 : index + 3] or [values[index]]
+    short = _short_values_beyond(number, far)
     verdicts = verdicts | (yield [v for v in dict.fromkeys((*further, *short[:1])) if v not in verdicts])
     beyond = all(verdicts[v] == becomes for v in further)
     for value in short:
@@ -192,16 +194,16 @@ def _edge(
     return far, becomes, beyond
 
 
-def _middles(near: float, far: float, halvings: int) -> Iterator[float]:
+def _values_by_halving(near: float, far: float, halvings: int) -> Iterator[float]:
     """Yield every value that `halvings` halvings of the interval from `near` to `far` can reach."""
     if halvings:
         middle = (near + far) / 2
         yield middle
-        yield from _middles(near, middle, halvings - 1)
-        yield from _middles(middle, far, halvings - 1)
+        yield from _values_by_halving(near, middle, halvings - 1)
+        yield from _values_by_halving(middle, far, halvings - 1)
 
 
-def _short_values(number: _VariedNumber, far: float) -> list[float]:
+def _short_values_beyond(number: _VariedNumber, far: float) -> list[float]:
     """Return numbers with few digits at or just beyond `far`, the shortest first."""
     away = math.ceil if far > number.now else math.floor
     size = math.floor(math.log10(max(abs(far), 1e-12)))
@@ -209,6 +211,6 @@ def _short_values(number: _VariedNumber, far: float) -> list[float]:
     for digits in range(1, 7):
         unit = 10.0 ** (size - digits + 1)
         value = float(f"{away(far / unit) * unit:.{digits}g}")
-        if abs(value - far) <= max(min(0.05 * abs(far - number.now), _LARGEST_ERROR_SHARE * abs(far)), 1e-9):
+        if abs(value - far) <= max(min(0.05 * abs(far - number.now), _LARGEST_INTERVAL_SHARE * abs(far)), 1e-9):
             found.append(value)
     return found

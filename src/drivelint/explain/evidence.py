@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.catalogue.requirement_parts import read_parts
-from drivelint.explain.model import Part, Step, TableRows
+from drivelint.explain.model import RequirementPart, Step, TableRows
 from drivelint.reasons import reason_text
 from drivelint.sql import store
 from drivelint.sql.syntax import with_values
@@ -26,23 +26,23 @@ TRACK_TABLES: Final = ("pair",)
 """Tables with a row at each step of an object's track. After the end of the track, its last row is shown."""
 SERIES_PADDING_NS: Final = 30_000_000_000
 """Of a longer episode, this much time is shown before and after the explained interval."""
-_SPANS: Final = (
+_SPAN_COLUMNS: Final = (
     ("t_ns", "t_ns"),
     ("t_start_ns", "t_end_ns"),
     ("t_from_ns", "t_to_ns"),
     ("t0_ns", "t_end_ns"),
     ("t_first_ns", "t_last_ns"),
 )
-_OBJECTS: Final = ("object_id", "vbp_id", "ov_id", "lead_id")
+_OBJECT_COLUMNS: Final = ("object_id", "vbp_id", "ov_id", "lead_id")
 
 
 def sql_with_values(rule: Rule, params: Mapping[str, object]) -> dict[str, str]:
     """Return the rule's SQL sections with the parameters replaced by their values, for display only."""
-    literals = {name: _literal(value) for name, value in params.items()}
+    literals = {name: _sql_literal(value) for name, value in params.items()}
     return {section: with_values(sql, literals) for section, sql in rule.sections.items()}
 
 
-def _literal(value: object) -> str:
+def _sql_literal(value: object) -> str:
     if isinstance(value, bool):
         return str(value).lower()
     return f"'{value.replace(chr(39), chr(39) * 2)}'" if isinstance(value, str) else repr(value)
@@ -50,7 +50,7 @@ def _literal(value: object) -> str:
 
 def judged_steps(rule: Rule, target: Target, judgement: Judgement) -> list[Step]:
     """Return the judged steps of the explained episode or window, at most 30 s before and after the explained interval."""
-    row, span = target.verdict_row, target.span
+    row, span = target.verdict_row, target.judged_span_ns
     if span is None:
         return []
     start, end = target.verdict["t_start_ns"], target.verdict["t_end_ns"]
@@ -69,7 +69,7 @@ def judged_steps(rule: Rule, target: Target, judgement: Judgement) -> list[Step]
 
 def requirement_parts(
     rule: Rule, target: Target, sandbox: Sandbox, params: Mapping[str, object], t_ns: int | None
-) -> list[Part]:
+) -> list[RequirementPart]:
     """Return the summands of the requirement at one time; [] if the rule defines none, or their sum is not the requirement."""
     row, found = target.verdict_row, read_parts(rule)
     if found is None or row["required"] is None or t_ns is None:
@@ -79,13 +79,15 @@ def requirement_parts(
     bound = {name: params[name] for name in found.parameters} | {f"_{name}": value for name, value in keys.items()}
     where = " AND ".join(f"{name} = $_{name}" for name in keys)
     for each in sandbox.query(f"SELECT * FROM ({found.sql}) WHERE {where} ORDER BY ALL", bound):
-        parts = [Part(name, words, each[name]) for name, words in found.parts.items() if each[name] is not None]
+        parts = [
+            RequirementPart(name, words, each[name]) for name, words in found.parts.items() if each[name] is not None
+        ]
         if parts and math.isclose(sum(part.value for part in parts), row["required"], rel_tol=1e-6, abs_tol=1e-6):
             return parts
     return []
 
 
-def rows_read(
+def rows_read_by_rule(
     rule: Rule, target: Target, sandbox: Sandbox, t_ns: int | None, *, missing_signal: str | None, condition: str | None
 ) -> list[TableRows]:
     """Return the rows of each table that the rule reads, for ego and object, at one time or in the whole drive.
@@ -101,37 +103,37 @@ def rows_read(
     for table in dict.fromkeys((*(CONDITION_TABLES if condition else ()), *rule.reads)):
         columns = list(store.column_comments().get(table, {}))
         if "drive_id" in columns or table == "profile":
-            found.append(_of_table(target, sandbox, table, columns, t_ns))
+            found.append(_rows_of_table(target, sandbox, table, columns, t_ns))
     return found
 
 
-def _of_table(target: Target, sandbox: Sandbox, table: str, columns: list[str], t_ns: int | None) -> TableRows:
+def _rows_of_table(target: Target, sandbox: Sandbox, table: str, columns: list[str], t_ns: int | None) -> TableRows:
     row = target.verdict_row
     terms: dict[str, list[Any]] = {}
     if "ego_id" in columns:
         terms["ego_id = ?"] = [row["ego_id"]]
     if "profile" in columns and row["profile"] is not None:
         terms["profile IS NOT DISTINCT FROM ?"] = [row["profile"]]
-    who = [column for column in _OBJECTS if column in columns and row["object_id"] is not None]
+    who = [column for column in _OBJECT_COLUMNS if column in columns and row["object_id"] is not None]
     if who:
         terms[f"({' OR '.join(f'{column} = ?' for column in who)})"] = [row["object_id"]] * len(who)
-    at_time = {} if t_ns is None else _at_time(columns, t_ns)
-    found = _selected(sandbox, table, columns, terms | at_time, row)
+    at_time = {} if t_ns is None else _terms_of_time(columns, t_ns)
+    found = _select_rows(sandbox, table, columns, terms | at_time, row)
     if not found.rows and at_time and who and table in TRACK_TABLES:
-        track = sandbox.query(f"SELECT t_ns FROM {table}{_where(terms)} ORDER BY t_ns", _values(terms))
+        track = sandbox.query(f"SELECT t_ns FROM {table}{_where_clause(terms)} ORDER BY t_ns", _values_of_terms(terms))
         times = [each["t_ns"] for each in track]
         nearest = max((t for t in times if t < t_ns), default=min(times, default=None)) if t_ns is not None else None
         if nearest is not None:
-            found = _selected(sandbox, table, columns, terms | _at_time(columns, nearest), row)
+            found = _select_rows(sandbox, table, columns, terms | _terms_of_time(columns, nearest), row)
             return found._replace(at_ns=nearest)
     return found
 
 
-def _selected(
+def _select_rows(
     sandbox: Sandbox, table: str, columns: list[str], terms: Mapping[str, list[Any]], verdict: Mapping[str, Any]
 ) -> TableRows:
     """Return the rows of a table that fulfil these terms; table and columns are from our schemas, never from a user."""
-    where, values = _where(terms), _values(terms)
+    where, values = _where_clause(terms), _values_of_terms(terms)
     # the rows of the ego and the object come first
     ours = [verdict["ego_id"], verdict["object_id"] or ""] if "actor_id" in columns else []
     first = "actor_id NOT IN (?, ?), COLUMNS(*)" if ours else "ALL"
@@ -142,17 +144,17 @@ def _selected(
     return TableRows(table, plain, max(0, n - len(everything)))
 
 
-def _where(terms: Mapping[str, list[Any]]) -> str:
+def _where_clause(terms: Mapping[str, list[Any]]) -> str:
     return f" WHERE {' AND '.join(terms)}" if terms else ""
 
 
-def _values(terms: Mapping[str, list[Any]]) -> list[Any]:
+def _values_of_terms(terms: Mapping[str, list[Any]]) -> list[Any]:
     return [value for some in terms.values() for value in some]
 
 
-def _at_time(columns: list[str], t_ns: int) -> dict[str, list[int]]:
+def _terms_of_time(columns: list[str], t_ns: int) -> dict[str, list[int]]:
     """Return the SQL term that selects the rows of one time, with its values."""
-    for start, end in _SPANS:
+    for start, end in _SPAN_COLUMNS:
         if start in columns and end in columns:
             return {f"{start} <= ? AND coalesce({end}, {start}) >= ?": [t_ns, t_ns]}
     return {"t0_ns <= ?": [t_ns]} if "t0_ns" in columns else {}

@@ -30,7 +30,7 @@ class TableRows(NamedTuple):
     at_ns: int | None = None
 
 
-class Part(NamedTuple):
+class RequirementPart(NamedTuple):
     """One summand of a requirement."""
 
     name: str
@@ -88,7 +88,7 @@ class Explanation:
     asks: str | None
     """What the user can record or provide so that the verdict can be decided; None: nothing."""
     decides_ns: int | None
-    parts: list[Part]
+    parts: list[RequirementPart]
     """The summands of the verdict's `required`; empty: not known."""
     sql: dict[str, str]
     params: list[Row]

@@ -22,10 +22,10 @@ class _Column(NamedTuple):
     margin: float | None
     failed: bool
     unknown: bool
-    there: bool
+    has_step: bool
 
 
-def plot(steps: Sequence[Step], width: int, height: int, start_ns: int, unit: str) -> list[str]:
+def plot_lines(steps: Sequence[Step], width: int, height: int, drive_start_ns: int, unit: str) -> list[str]:
     """Return the lines of a plot with margins as bars from the zero line, and `?` for unknown steps. `steps` are in time order.
 
     The plot of a rule that measures nothing is one line: `█` broken, `·` kept, `?` unknown.
@@ -35,9 +35,9 @@ def plot(steps: Sequence[Step], width: int, height: int, start_ns: int, unit: st
     columns = [column for column in _columns(steps, width) for _ in range(max(1, width // len(steps)))]
     measured = any(column.margin is not None for column in columns)
     label = max(9, len(unit) + 8)
-    strip = "".join("█" if c.failed else _UNKNOWN if c.unknown else "·" if c.there else " " for c in columns)
-    body = _bars(columns, height, label, unit) if measured else [" " * label + " " + strip]
-    first, last = (seconds(step.t_ns, start_ns) for step in (steps[0], steps[-1]))
+    strip = "".join("█" if c.failed else _UNKNOWN if c.unknown else "·" if c.has_step else " " for c in columns)
+    body = _bar_lines(columns, height, label, unit) if measured else [" " * label + " " + strip]
+    first, last = (seconds(step.t_ns, drive_start_ns) for step in (steps[0], steps[-1]))
     axis = " " * label + " " + first + last.rjust(max(len(last) + 1, len(columns) - len(first)))
     return [*body, axis]
 
@@ -59,7 +59,7 @@ def _columns(steps: Sequence[Step], width: int) -> list[_Column]:
     ]
 
 
-def _bars(columns: Sequence[_Column], height: int, label: int, unit: str) -> list[str]:
+def _bar_lines(columns: Sequence[_Column], height: int, label: int, unit: str) -> list[str]:
     known = [c.margin for c in columns if c.margin is not None]
     top, bottom = max(0.0, *known), min(0.0, *known)
     size = (top - bottom) / height or 1.0
@@ -68,16 +68,18 @@ def _bars(columns: Sequence[_Column], height: int, label: int, unit: str) -> lis
     lines = []
     for row in range(above, -below - 1, -1):
         if row:
-            cells = "┤" + "".join(_cell(c.margin, row, size) for c in columns)
+            cells = "┤" + "".join(_bar_character(c.margin, row, size) for c in columns)
         else:
-            cells = "┼" + "".join(_UNKNOWN if c.unknown and not c.failed else "─" if c.there else " " for c in columns)
+            cells = "┼" + "".join(
+                _UNKNOWN if c.unknown and not c.failed else "─" if c.has_step else " " for c in columns
+            )
         lines.append(f"{heads.get(row, ''):>{label}}{cells}")
     return lines
 
 
-def _cell(margin: float | None, row: int, size: float) -> str:
+def _bar_character(margin: float | None, row: int, row_height: float) -> str:
     """Return the character of a column in a row above (1, 2, ...) or below (-1, -2, ...) the zero line."""
-    part = 0.0 if margin is None else ((margin if row > 0 else -margin) - (abs(row) - 1) * size) / size
+    part = 0.0 if margin is None else ((margin if row > 0 else -margin) - (abs(row) - 1) * row_height) / row_height
     if part <= 0:
         return " "
     if row > 0:

@@ -12,7 +12,7 @@ import pyarrow as pa
 from drivelint.arrays import replace_columns
 from drivelint.engine.batch import BATCH_STATES
 from drivelint.engine.derive import derive
-from drivelint.engine.memory import Memory
+from drivelint.engine.memory import MemoryLimit
 from drivelint.errors import UsageError
 from drivelint.evaluate import evaluate
 from drivelint.evaluate.sql_fragments import Binding
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 _T = TypeVar("_T")
 _RESULT_TABLES: Final = ("verdict", "finding", "margin")
-_READS_PROFILE: Final = re.compile(r"\b(?:FROM|JOIN)\s+profile\b", re.IGNORECASE)
+_SQL_THAT_READS_PROFILE: Final = re.compile(r"\b(?:FROM|JOIN)\s+profile\b", re.IGNORECASE)
 
 
 class Judgement(NamedTuple):
@@ -57,58 +57,58 @@ class Sandbox:
         self._rule = rule
         self.drive_id = drives[0].trace.drive_id
         self.con = con
-        self._memory = Memory(con, memory)
+        self._memory = MemoryLimit(con, memory)
         states = sum(drive.trace.tables["actor_state"].num_rows for drive in drives)
         self._at_once = max(1, BATCH_STATES // max(1, states))
-        self._insert("profile", profiles)
-        self._fill(drives)
-        self._derive()
+        self._insert_rows("profile", profiles)
+        self._insert_drives(drives)
+        self._derive_tables()
 
-    def _insert(self, table: str, rows: pa.Table) -> None:
+    def _insert_rows(self, table: str, rows: pa.Table) -> None:
         self._memory.run_job(lambda con: store.insert(con, table, rows))
 
-    def _fill(self, drives: Sequence[Drive]) -> None:
+    def _insert_drives(self, drives: Sequence[Drive]) -> None:
         environment = drives[0].environment
         if environment is not None:
             for table, rows in environment.tables.items():
-                self._insert(table, rows)
+                self._insert_rows(table, rows)
         store.lock_down(self.con)
         place = environment.environment_id if environment else None
         for table in drives[0].trace.tables:
             rows = pa.concat_tables([drive.trace.tables[table] for drive in drives])
             if table == "data_log":
                 rows = replace_columns(rows, {"environment_id": [place] * rows.num_rows})
-            self._insert(table, rows)
+            self._insert_rows(table, rows)
 
-    def _derive(self) -> None:
+    def _derive_tables(self) -> None:
         try:
             for of_the_map in (True, False):
-                derive(self.con, self._rule.reads, of_the_map=of_the_map)
+                derive(self.con, self._rule.reads, are_map_tables=of_the_map)
         except duckdb.OutOfMemoryException:
             if not self._memory.lift_limit():
                 raise
             store.recreate_empty(self.con, derivations())
-            self._derive()
+            self._derive_tables()
 
     def judge(self, params: Mapping[str, object]) -> Judgement:
         """Judge every copy by the rule with these parameters."""
-        return self._run({self._rule.id: params})[self._rule.id]
+        return self._judge_settings({self._rule.id: params})[self._rule.id]
 
-    def judge_each(self, settings: Sequence[Mapping[str, object]]) -> list[Judgement | None]:
+    def judge_each(self, params_of_runs: Sequence[Mapping[str, object]]) -> list[Judgement | None]:
         """Judge by the rule with each of these settings of parameters; None for an invalid setting, such as a negative window.
 
         Several settings are judged in one evaluation, because starting and ending it takes as long as judging four rules.
         """
-        valid = [no for no, params in enumerate(settings) if self._is_valid(params)]
+        valid = [no for no, params in enumerate(params_of_runs) if self._are_params_valid(params)]
         found: dict[str, Judgement] = {}
         for some in _batches(valid, self._at_once):
-            found |= self._run({f"{self._rule.id}~{no}": settings[no] for no in some})
-        return [found.get(f"{self._rule.id}~{no}") for no in range(len(settings))]
+            found |= self._judge_settings({f"{self._rule.id}~{no}": params_of_runs[no] for no in some})
+        return [found.get(f"{self._rule.id}~{no}") for no in range(len(params_of_runs))]
 
-    def _run(self, params_by_name: Mapping[str, Mapping[str, object]]) -> dict[str, Judgement]:
+    def _judge_settings(self, params_by_name: Mapping[str, Mapping[str, object]]) -> dict[str, Judgement]:
         return self._memory.run_job(lambda _con: self._judgements(params_by_name))
 
-    def _is_valid(self, params: Mapping[str, object]) -> bool:
+    def _are_params_valid(self, params: Mapping[str, object]) -> bool:
         try:
             Binding(self._rule, 0, params)
         except UsageError:
@@ -165,7 +165,7 @@ class Sandbox:
         stale: set[str] = set()
         for derivation in needed_derivations(self._rule.reads):
             # `reads` does not contain the table of profiles, which is not derived
-            if derivation.reads & stale or _READS_PROFILE.search(derivation.sql):
+            if derivation.reads & stale or _SQL_THAT_READS_PROFILE.search(derivation.sql):
                 stale.add(derivation.table)
                 self.con.execute(f"DELETE FROM {derivation.table}")
                 self._memory.execute(f"INSERT INTO {derivation.table} BY NAME {derivation.sql}")

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 _VERDICTS: Final = ("fail", "unknown", "pass", "not_applicable", "error")
 
 
-def for_verdict(errors: MeasurementErrors, verdict: str) -> MeasurementErrors:
+def errors_for_verdict(errors: MeasurementErrors, verdict: str) -> MeasurementErrors:
     """Return the errors with a number of copies: 10 for an unknown verdict, which small errors seldom decide, else 100."""
     return errors if errors.samples is not None else replace(errors, samples=10 if verdict == "unknown" else 100)
 
@@ -33,7 +33,7 @@ def sensitivity_of_check(finding: Row | None, errors: MeasurementErrors) -> Sens
     return Sensitivity(**told, from_ns=None, to_ns=None, certainty=certainty(finding))
 
 
-def perturbed_copies(drive: Drive, errors: MeasurementErrors) -> Iterator[tuple[list[str], Drive]]:
+def groups_of_perturbed_copies(drive: Drive, errors: MeasurementErrors) -> Iterator[tuple[list[str], Drive]]:
     """Yield the ids and tables of copies of a drive, in groups of a batch's size; the same seed gives the same copies."""
     samples = errors.samples or 0
     at_once = max(1, BATCH_STATES // max(1, drive.n_states))
@@ -42,13 +42,13 @@ def perturbed_copies(drive: Drive, errors: MeasurementErrors) -> Iterator[tuple[
 
 
 def verdict_sensitivity(
-    context: VerdictContext, drive: Drive, errors: MeasurementErrors, span: tuple[int, int] | None
+    context: VerdictContext, drive: Drive, errors: MeasurementErrors, span_ns: tuple[int, int] | None
 ) -> Sensitivity:
-    """Return how often each verdict occurs on copies of `drive`. `span`: the interval of `drive` if it is only a part of the log."""
+    """Return how often each verdict occurs on copies of `drive`. `span_ns`: the interval of `drive` if it is only a part of the log."""
     found: list[str] = []
-    for ids, batch in perturbed_copies(drive, errors):
+    for ids, batch in groups_of_perturbed_copies(drive, errors):
         with context.sandbox([batch]) as sandbox:
             found += context.verdicts_on(sandbox.judge(context.params), ids)
     counts: dict[str, int] = {verdict: found.count(verdict) for verdict in _VERDICTS if verdict in found}
-    start, end = span or (None, None)
+    start, end = span_ns or (None, None)
     return Sensitivity(**asdict(errors), counts=counts, from_ns=start, to_ns=end)

@@ -13,7 +13,7 @@ from drivelint.drive.finish import TRACE_TABLES
 from drivelint.drive.trace import Trace
 from drivelint.engine.batch import Drive, drive_with_map
 from drivelint.engine.map_library import MapLibrary
-from drivelint.engine.robustness.copies import renamed
+from drivelint.engine.robustness.copies import with_drive_id
 from drivelint.errors import DriveLintError, UsageError
 from drivelint.formats import read_trace
 from drivelint.road.map_reader import MapTables
@@ -45,13 +45,13 @@ def open_drive(
     kept = folder / DATABASE_FILE
     if trace is None and kept.is_file():
         try:
-            return _from_database(kept, drive_id, ego_id), f"the kept database {kept.name}"
+            return _drive_from_database(kept, drive_id, ego_id), f"the kept database {kept.name}"
         except duckdb.Error as error:
             raise UsageError(f"{kept}: {str(error).splitlines()[0]}: check the drives again with --keep-db") from error
-    return _from_log(run_options, drive_id, ego_id, trace=trace, map_=map_, map_sha256=map_sha256)
+    return _drive_from_log(run_options, drive_id, ego_id, trace=trace, map_=map_, map_sha256=map_sha256)
 
 
-def _from_log(
+def _drive_from_log(
     run_options: RunRequest,
     drive_id: str,
     ego_id: str,
@@ -66,7 +66,7 @@ def _from_log(
             f"the log of {drive_id} is no longer at {path}, and the result contains no database (check --keep-db): "
             "give its new path with --trace FILE"
         )
-    drive = _read(run_options, path, map_, drive_id, ego_id)
+    drive = _read_drive(run_options, path, map_, drive_id, ego_id)
     if drive.environment and map_sha256 not in {None, *drive.environment.tables["environment"]["sha256"].to_pylist()}:
         name = drive.environment.tables["environment"]["name"][0].as_py()
         raise UsageError(
@@ -75,7 +75,7 @@ def _from_log(
     return drive, f"the log {path.name}, read again"
 
 
-def _read(run_options: RunRequest, path: Path, map_: Path | None, drive_id: str, ego_id: str) -> Drive:
+def _read_drive(run_options: RunRequest, path: Path, map_: Path | None, drive_id: str, ego_id: str) -> Drive:
     map_path = map_ or run_options.map
     if map_path is not None and not map_path.exists():
         raise UsageError(f"the map {map_path} does not exist any more: give its new path with --map FILE")
@@ -88,7 +88,7 @@ def _read(run_options: RunRequest, path: Path, map_: Path | None, drive_id: str,
             f"{path} is the log {read.drive_id}, but {drive_id} was judged: give the right log with --trace"
         )
     if read.drive_id != drive_id:  # the same content under another name
-        read = renamed(read, drive_id)
+        read = with_drive_id(read, drive_id)
     return drive_with_map(read, MapLibrary(run_options))
 
 
@@ -100,9 +100,9 @@ def with_ego(drive: Drive, ego_id: str) -> Drive:
     return replace(drive, trace=replace(drive.trace, tables=tables))
 
 
-def _from_database(file: Path, drive_id: str, ego_id: str) -> Drive:
+def _drive_from_database(file: Path, drive_id: str, ego_id: str) -> Drive:
     with store.open_as_is(file, read_only=True) as con:
-        tables = {name: _rows(con, name, "drive_id", drive_id) for name in TRACE_TABLES}
+        tables = {name: _rows_with_key(con, name, "drive_id", drive_id) for name in TRACE_TABLES}
         if not tables["data_log"].num_rows:
             raise DriveLintError(f"{file}: does not contain the drive {drive_id}: check the drives again")
         place = tables["data_log"]["environment_id"][0].as_py()
@@ -110,11 +110,11 @@ def _from_database(file: Path, drive_id: str, ego_id: str) -> Drive:
         if place is not None:
             # nothing is derived from map_quality
             known = [name for name in store.column_comments("map") if name != "map_quality"]
-            road = {name: _rows(con, name, "environment_id", place) for name in known}
+            road = {name: _rows_with_key(con, name, "environment_id", place) for name in known}
             hand = road["environment"].to_pylist()[0]
             environment = MapTables(place, hand["handedness"], hand["handedness_source"], road)
     return with_ego(Drive(Trace(drive_id, file, tables, None, None, []), environment), ego_id)
 
 
-def _rows(con: duckdb.DuckDBPyConnection, table: str, key: str, value: str) -> pa.Table:
+def _rows_with_key(con: duckdb.DuckDBPyConnection, table: str, key: str, value: str) -> pa.Table:
     return con.execute(f"SELECT * FROM {table} WHERE {key} = ? ORDER BY ALL", [value]).to_arrow_table()

@@ -17,20 +17,20 @@ if TYPE_CHECKING:
     from drivelint.result.model import Result
 
 MAX_OTHER_VERDICTS = 6
-_WEIGHT = {"error": 0, "fail": 1, "unknown": 2, "pass": 3, "not_applicable": 4}
+_VERDICT_RANKS = {"error": 0, "fail": 1, "unknown": 2, "pass": 3, "not_applicable": 4}
 
 
 @dataclass(frozen=True)
 class Target:
     """The verdict to explain, the named finding if any, and the other verdicts of the rule in the drive.
 
-    `worst`: the named finding, else the finding with the verdict's worst step; None: the verdict is no fail.
+    `worst_finding`: the named finding, else the finding with the verdict's worst step; None: the verdict is no fail.
     """
 
     verdict: Row
     finding: Row | None
     other_verdicts: list[Row]
-    worst: Row | None
+    worst_finding: Row | None
 
     @property
     def verdict_row(self) -> Row:
@@ -38,7 +38,7 @@ class Target:
         return self.verdict if self.finding is None else self.verdict | self.finding
 
     @property
-    def span(self) -> tuple[int, int] | None:
+    def judged_span_ns(self) -> tuple[int, int] | None:
         """Start and end of the judged interval; None if the verdict is about the whole drive."""
         start, end = self.verdict_row["t_start_ns"], self.verdict_row["t_end_ns"]
         return None if start is None or end is None else (start, end)
@@ -66,10 +66,10 @@ def find_verdict(result: Result, name: str, verdict_filter: VerdictFilter) -> Ta
     if meant := [i for i in ids if i.startswith(name)]:
         exact = name if name in meant else _only_match(name, meant, "findings")
         finding = next(row for row in findings if row["finding_id"] == exact)
-        row = min(_under(finding, verdicts), key=_sort_key)
+        row = min(_verdicts_of_finding(finding, verdicts), key=_sort_key)
         return Target(row, finding, _other_verdicts(row, verdicts), finding)
     rule, _, drive = name.partition("@")
-    rule = _rule(rule, sorted({row["rule_id"] for row in verdicts}), ids)
+    rule = _rule_of_name(rule, sorted({row["rule_id"] for row in verdicts}), ids)
     rows = [row for row in verdicts if row["rule_id"] == rule]
     if drive:
         drive = _complete_name(drive, sorted({row["drive_id"] for row in rows}), f"{rule}: drive")
@@ -78,7 +78,7 @@ def find_verdict(result: Result, name: str, verdict_filter: VerdictFilter) -> Ta
     return Target(row, None, _other_verdicts(row, verdicts), _worst_finding(row, findings))
 
 
-def _under(finding: Row, verdicts: Iterable[Row]) -> list[Row]:
+def _verdicts_of_finding(finding: Row, verdicts: Iterable[Row]) -> list[Row]:
     """Return the verdicts to which a finding belongs. Errors: `UsageError` if there is none."""
     same = ("drive_id", "ego_id", "rule_id", "profile", "ref_id")
     rows = [row for row in verdicts if all(row[key] == finding[key] for key in same) and row["verdict"] == "fail"]
@@ -113,9 +113,9 @@ def _matching_verdicts(rows: list[Row], verdict_filter: VerdictFilter, starts: d
                 )
     if verdict_filter.at_s is None:
         return rows
-    around = [row for row in rows if _covers(row, verdict_filter.at_s, starts)]
+    around = [row for row in rows if _covers_time(row, verdict_filter.at_s, starts)]
     if not around:
-        spans = sorted({_span(row, starts) for row in rows if row["t_start_ns"] is not None})
+        spans = sorted({_span_text(row, starts) for row in rows if row["t_start_ns"] is not None})
         there = ", ".join(spans[:MAX_OTHER_VERDICTS]) or "none"
         raise UsageError(
             f"no such verdict of {rows[0]['rule_id']} includes {verdict_filter.at_s:g} s of the drive; its verdicts have the times {there}"
@@ -123,12 +123,12 @@ def _matching_verdicts(rows: list[Row], verdict_filter: VerdictFilter, starts: d
     return around
 
 
-def _span(row: Row, starts: dict[str, int | None]) -> str:
+def _span_text(row: Row, starts: dict[str, int | None]) -> str:
     start, end = (seconds(row[key], starts[row["drive_id"]]) for key in ("t_start_ns", "t_end_ns"))
     return start if start == end else f"{start} to {end}"
 
 
-def _covers(row: Row, at_s: float, starts: dict[str, int | None]) -> bool:
+def _covers_time(row: Row, at_s: float, starts: dict[str, int | None]) -> bool:
     if row["t_start_ns"] is None or row["t_end_ns"] is None:
         return False
     t_ns = round(at_s * 1e9) + (starts.get(row["drive_id"]) or 0)
@@ -139,7 +139,7 @@ def _sort_key(row: Row) -> tuple[Any, ...]:
     """Return a sort key that puts the worst verdict first: by kind of verdict, then by margin, name and time."""
     margin = row["margin"]
     return (
-        _WEIGHT[row["verdict"]],
+        _VERDICT_RANKS[row["verdict"]],
         float("-inf") if margin is None else margin,
         row["drive_id"],
         row["ego_id"],
@@ -156,7 +156,7 @@ def _other_verdicts(row: Row, verdicts: Iterable[Row]) -> list[Row]:
     return [{key: v[key] for key in keys} for v in mine]
 
 
-def _rule(name: str, rules: Sequence[str], findings: Sequence[str]) -> str:
+def _rule_of_name(name: str, rules: Sequence[str], findings: Sequence[str]) -> str:
     if name in rules:
         return name
     meant = [r for r in rules if r.startswith(name)] or [r for r in rules if name in r]

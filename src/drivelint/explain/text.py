@@ -13,7 +13,7 @@ from rich.console import Group
 from rich.text import Text
 
 from drivelint.drive.declared_events import EVENTS
-from drivelint.explain.plot import plot
+from drivelint.explain.plot import plot_lines
 from drivelint.explain.verdict_context import lacks_signal
 from drivelint.phrases import one_line
 from drivelint.reasons.signals import UNRECORDED_PREFIX, remedy, unknown_condition_column
@@ -33,21 +33,21 @@ EXPLAIN_SCHEMA: Final = 1
 PLOT_HEIGHT: Final = 8
 _CELLS_INDENT: Final = 4
 """The number of spaces before a row of a table."""
-_STYLE: Final = {"pass": "bold green", "fail": "bold red", "unknown": "bold yellow", "error": "bold magenta"}
-_SMALL: Final = 0.1
-_GREAT: Final = 1e6
+_STYLE_BY_VERDICT: Final = {"pass": "bold green", "fail": "bold red", "unknown": "bold yellow", "error": "bold magenta"}
+_SMALL_NUMBER: Final = 0.1
+_GREAT_NUMBER: Final = 1e6
 _LONG_NUMBER: Final = re.compile(r"(?<![\w.-])-?\d+\.\d{3,}(?= (?:m|s|rad|m/s|m/s2|m/s3|mph|km/h|%)(?![\w/]))")
 """A number with more than two decimals that a unit follows."""
-_JSON_NAMES: Final = {"other_verdicts": "others", "description": "what", "nearest_value": "found"}
+_JSON_KEY_BY_FIELD: Final = {"other_verdicts": "others", "description": "what", "nearest_value": "found"}
 """The keys in the JSON of fields with another name."""
-_MEANS: Final = {
+_MEANING_BY_VERDICT: Final = {
     "fail": "the rule was broken",
     "pass": "the rule was kept",
     "unknown": "it is not known whether the rule was kept: this is not a pass",
     "not_applicable": "the situation that the rule is about did not occur",
     "error": "the rule could not be run",
 }
-_DOES_NOT_APPLY: Final = {
+_REASONS_NOT_TO_APPLY: Final = {
     "other_nation": "the rule is the law of another nation",
     "outside_conditions": "the rule applies only in other conditions",
 }
@@ -55,40 +55,43 @@ _DOES_NOT_APPLY: Final = {
 
 def to_json(explanation: Explanation) -> str:
     """Return the explanation as JSON; a step is [t_ns, observed, required, margin, holds]."""
-    plain = {"explain_schema": EXPLAIN_SCHEMA, **_json_names(asdict(explanation))}
+    plain = {"explain_schema": EXPLAIN_SCHEMA, **_with_json_keys(asdict(explanation))}
     plain["series"] = [list(step) for step in explanation.series]
     plain["rows"] = [rows._asdict() for rows in explanation.rows]
-    plain["parts"] = [_json_names(part._asdict()) for part in explanation.parts]
-    plain["changes"] = [_json_names(change._asdict()) for change in explanation.changes]
+    plain["parts"] = [_with_json_keys(part._asdict()) for part in explanation.parts]
+    plain["changes"] = [_with_json_keys(change._asdict()) for change in explanation.changes]
     return json.dumps(replace_non_finite(plain), indent=2, ensure_ascii=False, allow_nan=False)
 
 
-def _json_names(fields: dict[str, Any]) -> dict[str, Any]:
-    return {_JSON_NAMES.get(name, name): value for name, value in fields.items()}
+def _with_json_keys(fields: dict[str, Any]) -> dict[str, Any]:
+    return {_JSON_KEY_BY_FIELD.get(name, name): value for name, value in fields.items()}
 
 
 def render(explanation: Explanation, width: int) -> Group:
     """Return the explanation for a terminal of `width` columns."""
     width = max(40, min(width, 120))
-    parts: list[RenderableType] = [*_title(explanation, width)]
-    prose = _prose(explanation, width)
+    parts: list[RenderableType] = [*_title_and_verdict(explanation, width)]
+    prose = _sentences_by_section(explanation, width)
     sections = [
         ("What happened", prose["happened"]),
         ("What would decide it", prose["decides"]),
         ("How sure it is", prose["sure"]),
         ("What would change it", prose["changes"]),
-        ("Margin over time" if explanation.rule["sense"] != "holds" else "Over time", _series(explanation, width)),
+        (
+            "Margin over time" if explanation.rule["sense"] != "holds" else "Over time",
+            _plot_and_key_lines(explanation, width),
+        ),
         ("Data on which it was judged", prose["rows"]),
         ("What the rule requires", prose["asks"]),
-        ("How it was judged", [*prose["judged"], *_sql(explanation)]),
+        ("How it was judged", [*prose["judged"], *_sql_lines(explanation)]),
     ]
     for heading, lines in sections:
         if lines:
-            parts += [Text(), Text(heading, "bold"), *(Text(line) for line in _folded(lines, width))]
+            parts += [Text(), Text(heading, "bold"), *(Text(line) for line in _wrapped_lines(lines, width))]
     return Group(*parts)
 
 
-def _title(explanation: Explanation, width: int) -> list[RenderableType]:
+def _title_and_verdict(explanation: Explanation, width: int) -> list[RenderableType]:
     row, rule = explanation.verdict, explanation.rule
     who = [f"drive {row['drive_id']}", ego_name(row["ego_id"])]
     who += [f"object {row['object_id']}"] if row["object_id"] is not None else []
@@ -101,19 +104,19 @@ def _title(explanation: Explanation, width: int) -> list[RenderableType]:
     word = row["verdict"].replace("_", " ").upper()
     return [
         Text(f"{rule['rule_id']}: {one_line(rule['title'])}", "bold"),
-        Text.assemble((word, _STYLE.get(row["verdict"], "bold")), f": {_meaning(row)}"),
+        Text.assemble((word, _STYLE_BY_VERDICT.get(row["verdict"], "bold")), f": {_meaning_of_verdict(row)}"),
         *(Text(line) for line in textwrap.wrap(", ".join(who), width)),
     ]
 
 
-def _meaning(row: Mapping[str, Any]) -> str:
+def _meaning_of_verdict(row: Mapping[str, Any]) -> str:
     """Return the meaning of a verdict in words."""
     if row["verdict"] == "not_applicable" and row["reason_code"].startswith(UNRECORDED_PREFIX):
         return f"the log does not contain a signal that the rule needs; with `--rules {row['rule_id']}` the verdict is unknown"
-    return _DOES_NOT_APPLY.get(row["reason_code"], _MEANS[row["verdict"]])
+    return _REASONS_NOT_TO_APPLY.get(row["reason_code"], _MEANING_BY_VERDICT[row["verdict"]])
 
 
-def _prose(explanation: Explanation, width: int) -> dict[str, list[str]]:
+def _sentences_by_section(explanation: Explanation, width: int) -> dict[str, list[str]]:
     """Return the sections of the template by their names, as lists of sentences."""
     row, start_ns = explanation.verdict, explanation.drive["t_start_ns"]
     template = text_template(
@@ -121,12 +124,14 @@ def _prose(explanation: Explanation, width: int) -> dict[str, list[str]]:
         "explanation.txt.j2",
         # a line break in a value must not begin a new sentence
         finalize=lambda told: told.replace("\n", "\v") if isinstance(told, str) else told,
-        cells=lambda row, table: [_cut(line, width - _CELLS_INDENT) for line in _cells(explanation, table, row)],
+        cells=lambda row, table: [
+            _cut_line(line, width - _CELLS_INDENT) for line in _lines_on_row(explanation, table, row)
+        ],
         at_least=_rounded_up,
-        measure=_measure,
+        measure=_value_with_unit,
         rounded=_rounded_sentence,
         seconds=lambda t_ns: seconds(t_ns, start_ns),
-        value=_value,
+        value=_value_text,
     )
     context = template.new_context(
         {
@@ -144,13 +149,13 @@ def _prose(explanation: Explanation, width: int) -> dict[str, list[str]]:
     return {name: list(filter(None, text.split("\n"))) for name, text in sections.items()}
 
 
-def _sql(explanation: Explanation) -> list[str]:
+def _sql_lines(explanation: Explanation) -> list[str]:
     if lacks_signal(explanation.verdict):
         return []
     return [f"|{line}" for name, sql in explanation.sql.items() for line in (f"-- @{name}", *sql.splitlines())]
 
 
-def _cells(explanation: Explanation, table: str, row: Row) -> list[str]:
+def _lines_on_row(explanation: Explanation, table: str, row: Row) -> list[str]:
     """Return the columns of a row that the rule's SQL or the verdict's condition names, each with value and meaning."""
     condition = (
         None if "finding_id" in explanation.verdict else unknown_condition_column(explanation.verdict["reason_code"])
@@ -163,25 +168,25 @@ def _cells(explanation: Explanation, table: str, row: Row) -> list[str]:
     wide, comments = max(map(len, named)), store.column_comments().get(table, {})
     start_ns = explanation.drive["t_start_ns"] or 0
     return [
-        f"{column:<{wide}}  {_cell(column, row[column], start_ns):<12}  {_comment(comments.get(column, ''), row[column])}"
+        f"{column:<{wide}}  {_cell_text(column, row[column], start_ns):<12}  {_column_comment(comments.get(column, ''), row[column])}"
         for column in named
     ]
 
 
-def _cut(line: str, width: int) -> str:
+def _cut_line(line: str, width: int) -> str:
     """Return a line cut to `width`, so that a terminal does not wrap it."""
     return line if len(line) <= width else f"{line[: width - 3].rstrip()}..."
 
 
-def _cell(column: str, value: Any, start_ns: int) -> str:
+def _cell_text(column: str, value: Any, start_ns: int) -> str:
     """Return a value as text; a time in seconds from the drive's start."""
     is_time = column.endswith("_ns") and column[0] == "t" and isinstance(value, int)
     if value is None:
         return "NULL"  # the comment beside it explains NULL
-    return seconds(value, start_ns) if is_time else _value(value)
+    return seconds(value, start_ns) if is_time else _value_text(value)
 
 
-def _comment(text: str, value: Any) -> str:
+def _column_comment(text: str, value: Any) -> str:
     """Return a column's comment, shortened. For NULL: only the part about NULL, if any; for other values: without that part."""
     of_value, null, of_null = text.partition("NULL: ")
     if null:
@@ -189,11 +194,11 @@ def _comment(text: str, value: Any) -> str:
     return text if len(text) <= 70 else text[:67].rstrip() + "..."
 
 
-def _series(explanation: Explanation, width: int) -> list[str]:
+def _plot_and_key_lines(explanation: Explanation, width: int) -> list[str]:
     unit = one_line(explanation.rule["unit"] or "")
     lines = [
         f"|{line}"
-        for line in plot(explanation.series, width - 16, PLOT_HEIGHT, explanation.drive["t_start_ns"] or 0, unit)
+        for line in plot_lines(explanation.series, width - 16, PLOT_HEIGHT, explanation.drive["t_start_ns"] or 0, unit)
     ]
     if not lines:
         return ["It was judged at one moment only."] if len(explanation.series) == 1 else []
@@ -202,7 +207,7 @@ def _series(explanation: Explanation, width: int) -> list[str]:
     return [*lines, key if measured else "█ broken, · kept, ? not known."]
 
 
-def _folded(lines: list[str], width: int) -> list[str]:
+def _wrapped_lines(lines: list[str], width: int) -> list[str]:
     """Return the sentences wrapped and indented; a line that begins with `|` is not wrapped, and loses the `|`."""
     folded: list[str] = []
     for line in lines:
@@ -215,30 +220,36 @@ def _folded(lines: list[str], width: int) -> list[str]:
     return folded
 
 
-def _measure(value: float | None, unit: str | None) -> str:
-    return f"{_value(value)} {unit}" if unit else _value(value)
+def _value_with_unit(value: float | None, unit: str | None) -> str:
+    return f"{_value_text(value)} {unit}" if unit else _value_text(value)
 
 
-def _value(value: Any) -> str:
+def _value_text(value: Any) -> str:
     if value is None:
         return "not known"
     if isinstance(value, bool):
         return "yes" if value else "no"
-    return _rounded(value) if isinstance(value, float) else str(value)
+    return _rounded_text(value) if isinstance(value, float) else str(value)
 
 
-def _rounded(value: float) -> str:
+def _rounded_text(value: float) -> str:
     """Return a number with two decimals; a small number with two significant digits."""
     if value == 0 or not math.isfinite(value):
         return f"{value:g}"
-    return f"{value:.2g}" if abs(value) < _SMALL else f"{value:.2f}" if abs(value) < _GREAT else f"{value:.6g}"
+    return (
+        f"{value:.2g}"
+        if abs(value) < _SMALL_NUMBER
+        else f"{value:.2f}"
+        if abs(value) < _GREAT_NUMBER
+        else f"{value:.6g}"
+    )
 
 
 def _rounded_up(value: float) -> float:
     """Return the number rounded up to two decimals, so that a change by it is enough."""
-    return math.ceil(round(value * 100, 6)) / 100 if value >= _SMALL else value
+    return math.ceil(round(value * 100, 6)) / 100 if value >= _SMALL_NUMBER else value
 
 
 def _rounded_sentence(text: str) -> str:
     """Return a sentence with its measured values rounded as in the other texts; the JSON is not rounded."""
-    return _LONG_NUMBER.sub(lambda match: _rounded(float(match[0])), text)
+    return _LONG_NUMBER.sub(lambda match: _rounded_text(float(match[0])), text)

@@ -6,7 +6,7 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from drivelint.engine.batch import are_few
+from drivelint.engine.batch import have_few_states
 from drivelint.engine.robustness.copies import crop
 from drivelint.explain import evidence
 from drivelint.explain.sandbox import Sandbox
@@ -26,9 +26,9 @@ if TYPE_CHECKING:
 
 SAME_REFERENCE_NS: Final = 2_000_000_000
 """A reference point that moved by at most this time counts as the same reference point."""
-CROP_MARGINS_NS = (20_000_000_000, 60_000_000_000)
+TRIED_CROP_MARGINS_NS = (20_000_000_000, 60_000_000_000)
 """The margins around the explained interval with which parts of the drive are tried, in this order."""
-_WORST: Final = ("error", "fail", "unknown", "pass", "not_applicable")
+_VERDICTS_FROM_WORST: Final = ("error", "fail", "unknown", "pass", "not_applicable")
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class VerdictContext:
     @contextmanager
     def sandbox(self, drives: Sequence[Drive]) -> Iterator[Sandbox]:
         """Open a sandbox: a database with these drives and the derived tables that the rule needs."""
-        with store.workspace(self.memory, threads=1 if are_few(drives) else None) as con:
+        with store.workspace(self.memory, threads=1 if have_few_states(drives) else None) as con:
             yield Sandbox(self.rule, drives, self.profiles, con, self.memory)
 
     def judge(self, sandbox: Sandbox, params: Mapping[str, object] | None = None) -> str:
@@ -54,7 +54,9 @@ class VerdictContext:
     def verdicts_on(self, judgement: Judgement, drives: Sequence[str]) -> list[str]:
         """Return the verdict on the target's interval, profile and object in each of these drives, in the same order."""
         wanted, about = self.target.verdict_row, ["ego_id", "profile"]
-        if self.target.span is not None and self.rule.combine == "each":  # else it is just the deciding object
+        if (
+            self.target.judged_span_ns is not None and self.rule.combine == "each"
+        ):  # else it is just the deciding object
             about.append("object_id")
         verdicts, steps = (
             group_rows(
@@ -62,7 +64,10 @@ class VerdictContext:
             )
             for rows in (judgement.verdicts, judgement.steps)
         )
-        return [_outcome(self.rule, self.target, verdicts.get(drive, []), steps.get(drive, [])) for drive in drives]
+        return [
+            _verdict_on_target(self.rule, self.target, verdicts.get(drive, []), steps.get(drive, []))
+            for drive in drives
+        ]
 
 
 def lacks_signal(row: Row) -> bool:
@@ -78,11 +83,11 @@ def sufficient_part(
 
     `sandbox` contains the whole drive. `exit_stack` closes the sandbox of a part.
     """
-    span = context.target.span
+    span = context.target.judged_span_ns
     if span is None or verdict == "not_applicable":
         return drive, None, sandbox
     log = drive.trace.tables["data_log"].to_pylist()[0]
-    for margin in CROP_MARGINS_NS:
+    for margin in TRIED_CROP_MARGINS_NS:
         part = (max(log["t_start_ns"], span[0] - margin), min(log["t_end_ns"], span[1] + margin))
         if part == (log["t_start_ns"], log["t_end_ns"]):
             break
@@ -90,7 +95,7 @@ def sufficient_part(
         with ExitStack() as tried:
             of_part = tried.enter_context(context.sandbox([small]))
             judged = of_part.judge(context.params)
-            if context.verdicts_on(judged, [of_part.drive_id]) == [verdict] and _same_numbers(
+            if context.verdicts_on(judged, [of_part.drive_id]) == [verdict] and _has_same_margin(
                 context, evidence.judged_steps(context.rule, context.target, judged)
             ):
                 exit_stack.push(tried.pop_all())
@@ -98,7 +103,7 @@ def sufficient_part(
     return drive, None, sandbox
 
 
-def _same_numbers(context: VerdictContext, series: list[Step]) -> bool:
+def _has_same_margin(context: VerdictContext, series: list[Step]) -> bool:
     """Return whether the deciding step has the same margin in a part of the drive as in the whole drive."""
     row = context.target.verdict_row
     if context.rule.sense == "holds" or row["margin"] is None:
@@ -107,14 +112,14 @@ def _same_numbers(context: VerdictContext, series: list[Step]) -> bool:
     return any(abs(margin - row["margin"]) < 1e-6 for margin in here)
 
 
-def _outcome(rule: Rule, target: Target, verdicts: list[Row], steps: list[Row]) -> str:
-    span = target.span
+def _verdict_on_target(rule: Rule, target: Target, verdicts: list[Row], steps: list[Row]) -> str:
+    span = target.judged_span_ns
     if any(row["verdict"] == "error" for row in verdicts):
         return "error"
     if span is None:
-        return _worst(verdicts)
+        return _worst_verdict(verdicts)
     if rule.kind != "invariant":
-        return _worst(_at_reference(target, verdicts))
+        return _worst_verdict(_verdicts_at_reference(target, verdicts))
     within = [row["holds"] for row in steps if span[0] <= row["t_ns"] <= span[1]]
     if any(holds is False for holds in within):
         return "fail"
@@ -125,7 +130,7 @@ def _outcome(rule: Rule, target: Target, verdicts: list[Row], steps: list[Row]) 
     return "pass" if within else "not_applicable"
 
 
-def _at_reference(target: Target, verdicts: list[Row]) -> list[Row]:
+def _verdicts_at_reference(target: Target, verdicts: list[Row]) -> list[Row]:
     """Return the verdicts at the reference point nearest to the target's; [] if it is more than `SAME_REFERENCE_NS` away."""
     t_ref = target.verdict_row["t_ref_ns"]
     if t_ref is None:
@@ -135,5 +140,5 @@ def _at_reference(target: Target, verdicts: list[Row]) -> list[Row]:
     return [row for row in verdicts if apart.get(id(row)) == least] if least <= SAME_REFERENCE_NS else []
 
 
-def _worst(rows: list[Row]) -> str:
-    return min((row["verdict"] for row in rows), key=_WORST.index, default="not_applicable")
+def _worst_verdict(rows: list[Row]) -> str:
+    return min((row["verdict"] for row in rows), key=_VERDICTS_FROM_WORST.index, default="not_applicable")

@@ -78,7 +78,7 @@ def compare(
     for side, of in (("base", base), ("new", new)):
         con.execute(statement("fleet/timed_finding", side=side, of=of))
     con.execute(statement("fleet/candidate", **numbers))
-    _take_pairs(con)
+    _match_findings(con)
     con.execute(statement("fleet/part", **numbers))
     for side, other_side, of in (("base", "new", new), ("new", "base", base)):
         con.execute(statement("fleet/only", side=side, other_side=other_side, of=of, **numbers))
@@ -87,19 +87,21 @@ def compare(
     con.execute(made, {"base_tool": tools[0], "new_tool": tools[1]})
     rows = con.execute(statement("fleet/differences")).fetchall()
     counts = (DifferenceCount(r, p, s, tuple(causes), tuple(unknown), n) for r, p, s, causes, unknown, n in rows)
-    both = _number(con, "same_drive")
-    return Comparison(tuple(counts), both, _number(con, f"{base}drives") - both, _number(con, f"{new}drives") - both)
+    both = _count_rows(con, "same_drive")
+    return Comparison(
+        tuple(counts), both, _count_rows(con, f"{base}drives") - both, _count_rows(con, f"{new}drives") - both
+    )
 
 
-def _take_pairs(con: duckdb.DuckDBPyConnection) -> None:
+def _match_findings(con: duckdb.DuckDBPyConnection) -> None:
     """Fill the table `pair` from `candidate`, until no candidate is left. Each round takes at least one pair; usually one or two rounds
     suffice."""
     con.execute("CREATE OR REPLACE TEMP TABLE pair (drive VARCHAR, new_no BIGINT, base_no BIGINT)")
-    while _number(con, "candidate"):
+    while _count_rows(con, "candidate"):
         con.execute(statement("fleet/pair"))
         con.execute(statement("fleet/untaken"))
 
 
-def _number(con: duckdb.DuckDBPyConnection, table: str) -> int:
+def _count_rows(con: duckdb.DuckDBPyConnection, table: str) -> int:
     (n,) = con.execute(f"SELECT count(*) FROM {table}").fetchone() or (0,)
     return int(n)

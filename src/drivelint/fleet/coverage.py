@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.fleet.distinct_logs import subject
-from drivelint.fleet.situations import CANNOT_TELL, SITUATIONS, bound_tag, condition_of
+from drivelint.fleet.distinct_logs import subject_sql
+from drivelint.fleet.situations import SITUATIONS, UNAVAILABLE_SITUATIONS, parameters_of_tag, situation_sql
 from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
@@ -85,11 +85,11 @@ def coverage(con: duckdb.DuckDBPyConnection, *, of: str = "") -> Coverage:
 
     `rates(con, by=SITUATION)` returns failures of single rules by situation.
     """
-    parts = {"subject": subject(of)}
+    parts = {"subject": subject_sql(of)}
     parts["profiled"] = statement("fleet/profiled", of=of)
     rules = con.execute(statement("fleet/rule_coverage", of=of, **parts)).fetchall()
     situations = [each for name, values in SITUATIONS.items() for each in _situation_coverage(con, of, name, values)]
-    return Coverage(tuple(RuleCoverage(*row) for row in rules), tuple(situations), CANNOT_TELL)
+    return Coverage(tuple(RuleCoverage(*row) for row in rules), tuple(situations), UNAVAILABLE_SITUATIONS)
 
 
 def _situation_coverage(
@@ -100,7 +100,7 @@ def _situation_coverage(
     The last row, without a value, counts the drives in which the condition is not known.
     """
     rows: list[tuple[Any, ...]] = con.execute(
-        statement("fleet/situation", of=of, subject=subject(of, value=condition_of(name))), bound_tag(name)
+        statement("fleet/situation", of=of, subject=subject_sql(of, value=situation_sql(name))), parameters_of_tag(name)
     ).fetchall()
     told = {row[0]: SituationCoverage(name, *row) for row in rows}
     order = dict.fromkeys([*values, *(value for value in told if value is not None)])

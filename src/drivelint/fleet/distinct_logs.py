@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from drivelint.fleet.situations import value_of
+from drivelint.fleet.situations import tag_or_situation_sql
 from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 COUNTED_PREFIX: Final = "counted_"
 """The prefix of these views' names."""
-_SAME: Final = {
+_COLUMNS_THAT_IDENTIFY_ROWS: Final = {
     "verdicts": "t.ego_id, t.rule_id, t.profile, t.object_id, t.occurrence, t.ref_id, t.t_start_ns, t.verdict",
     "findings": "t.ego_id, t.rule_id, t.profile, t.object_id, t.t_start_ns, t.t_end_ns",
 }
@@ -40,14 +40,14 @@ def create_counted_views(con: duckdb.DuckDBPyConnection, of: str = "") -> str:
     first = statement("fleet/first_result")
     con.execute(statement("fleet/counted_key", of=of, counted=counted, first=first))
     con.execute(statement("fleet/counted_drives", of=of, counted=counted))
-    for table, same in _SAME.items():
+    for table, same in _COLUMNS_THAT_IDENTIFY_ROWS.items():
         con.execute(statement("fleet/counted_rows", of=of, counted=counted, table=table, same=same))
     con.execute(f"CREATE OR REPLACE TEMP VIEW {counted}rules AS FROM {of}rules")
     return counted
 
 
-def subject(of: str = "", by: str | None = None, without: str = "", value: str | None = None) -> str:
-    """Return the SQL fragment `subject` of a statement: one row per ego that counts, with its distance and time.
+def subject_sql(of: str = "", by: str | None = None, without: str = "", value: str | None = None) -> str:
+    """Return the SQL fragment `subject_sql` of a statement: one row per ego that counts, with its distance and time.
 
     `of`: prefix of the audit's views. `by`: a tag or a situation. `without`: a join that removes drives `d`. `value`: the SQL
     expression of a drive's value; default: that of `by`.
@@ -55,7 +55,7 @@ def subject(of: str = "", by: str | None = None, without: str = "", value: str |
     return statement(
         "fleet/subject",
         of=of,
-        value=value_of(by) if value is None else value,
+        value=tag_or_situation_sql(by) if value is None else value,
         without=without,
         first=statement("fleet/first_result"),
     )

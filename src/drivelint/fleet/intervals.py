@@ -19,7 +19,7 @@ class Estimate(NamedTuple):
     high: float
 
 
-def poisson(events: int, exposure: float) -> Estimate:
+def poisson_rate(events: int, exposure: float) -> Estimate:
     """Return events per unit of exposure, with Garwood's exact interval (1936).
 
     The interval is valid if events are independent. It is too narrow if one failure causes several findings in a drive; the share of egos
@@ -34,7 +34,7 @@ def poisson(events: int, exposure: float) -> Estimate:
     return Estimate(events / exposure, low / exposure, float(gammaincinv(events + 1, 1 - tail)) / exposure)
 
 
-def binomial(events: int, trials: int) -> Estimate:
+def binomial_rate(events: int, trials: int) -> Estimate:
     """Return events per trial, with the exact interval of Clopper and Pearson (1934)."""
     from scipy.special import betaincinv
 
@@ -46,7 +46,7 @@ def binomial(events: int, trials: int) -> Estimate:
     return Estimate(events / trials, low, high)
 
 
-def holm(p_values: Sequence[float]) -> list[float]:
+def holm_corrected(p_values: Sequence[float]) -> list[float]:
     """Return the p-values corrected by Holm's method (1979), in the same order.
 
     If no real difference exists, the probability of a corrected value below 0.05 is at most 5 %, even if the rules depend on each other.

@@ -6,7 +6,7 @@ import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from drivelint.fleet.distinct_logs import subject
+from drivelint.fleet.distinct_logs import subject_sql
 from drivelint.sql.statements import statement
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ class MissingSignal:
 
 
 @dataclass(frozen=True)
-class Undecided:
+class UndecidedReason:
     """A reason for unknown verdicts although all required signals are present, such as an ego that could not be placed in a lane for a
     while.
 
@@ -58,17 +58,17 @@ class SignalGaps:
     """The causes of undecided verdicts: missing signals, and other reasons. The most frequent come first."""
 
     signals: tuple[MissingSignal, ...]
-    other_reasons: tuple[Undecided, ...]
+    other_reasons: tuple[UndecidedReason, ...]
 
 
 def missing_signals(con: duckdb.DuckDBPyConnection, *, of: str = "") -> SignalGaps:
     """Return the signals that the drives lack. `of`: prefix of the views' names. Several results of the same log count once."""
-    egos = subject(of)
+    egos = subject_sql(of)
     signals = con.execute(statement("fleet/missing", of=of, subject=egos)).fetchall()
     other_reasons = con.execute(statement("fleet/undecided", of=of, subject=egos)).fetchall()
     return SignalGaps(
         tuple(MissingSignal(*row) for row in signals),
-        tuple(Undecided(*row) for row in other_reasons),
+        tuple(UndecidedReason(*row) for row in other_reasons),
     )
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import inf
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-from drivelint.fleet.intervals import holm
+from drivelint.fleet.intervals import holm_corrected
 from drivelint.fleet.rates import OTHER_PREFIX, rates
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from drivelint.fleet.intervals import Estimate
     from drivelint.fleet.rates import Rate
 
-ALLOWED_FALSE_CALLS: Final = 0.05
+ALLOWED_FALSE_CALL_PROBABILITY: Final = 0.05
 """The allowed probability that any rule is reported although no rate differs."""
 
 
@@ -45,7 +45,7 @@ class RateTest(NamedTuple):
     @property
     def is_significant(self) -> bool:
         """Whether the test reports a difference. The probability of any false report in all tests together is at most 5 %."""
-        return self.corrected <= ALLOWED_FALSE_CALLS
+        return self.corrected <= ALLOWED_FALSE_CALL_PROBABILITY
 
 
 @dataclass(frozen=True)
@@ -81,14 +81,14 @@ class RateChange:
         found = []
         if self.p_value is not None and self.corrected is not None:
             told = [(each.findings, each.km, each.per_100km) for each in sides]
-            found.append(_test("100 km", told, self.p_value, self.corrected))
+            found.append(_rate_test("100 km", told, self.p_value, self.corrected))
         if self.occasion_p_value is not None and self.occasion_corrected is not None:
             told = [(each.occasions_failed, float(each.occasions), each.per_occasion) for each in sides]
-            found.append(_test("occasion", told, self.occasion_p_value, self.occasion_corrected))
+            found.append(_rate_test("occasion", told, self.occasion_p_value, self.occasion_corrected))
         return found
 
 
-def _test(per: str, sides: list[tuple[int, float, Estimate]], p_value: float, corrected: float) -> RateTest:
+def _rate_test(per: str, sides: list[tuple[int, float, Estimate]], p_value: float, corrected: float) -> RateTest:
     (n, of, rate), (n_new, of_new, rate_new) = sides
     return RateTest(per, (n, n_new), (of, of_new), (rate, rate_new), p_value, corrected)
 
@@ -118,11 +118,11 @@ def rate_changes(base: Sequence[Rate], new: Sequence[Rate]) -> list[RateChange]:
     values: dict[tuple[Any, str], float] = {}
     for name in names:
         sides = had.get(name), has.get(name)
-        for per, found in (("km", _per_km(*sides)), ("occasion", _per_occasion(*sides))):
+        for per, found in (("km", _p_value_per_km(*sides)), ("occasion", _p_value_per_occasion(*sides))):
             if found is not None:
                 values[name, per] = found
     able = [key for key in values if _can_differ(had[key[0]], has[key[0]], key[1])]
-    corrected = dict(zip(able, holm([values[key] for key in able]), strict=True))
+    corrected = dict(zip(able, holm_corrected([values[key] for key in able]), strict=True))
     return [
         RateChange(
             *name,
@@ -141,7 +141,7 @@ def _can_differ(base: Rate, new: Rate, per: str) -> bool:
     return bool(base.findings + new.findings if per == "km" else base.occasions_failed + new.occasions_failed)
 
 
-def _per_km(base: Rate | None, new: Rate | None) -> float | None:
+def _p_value_per_km(base: Rate | None, new: Rate | None) -> float | None:
     from scipy.stats import binomtest
 
     if base is None or new is None or base.km <= 0 or new.km <= 0:
@@ -152,7 +152,7 @@ def _per_km(base: Rate | None, new: Rate | None) -> float | None:
     return float(binomtest(new.findings, findings, new.km / (base.km + new.km)).pvalue)
 
 
-def _per_occasion(base: Rate | None, new: Rate | None) -> float | None:
+def _p_value_per_occasion(base: Rate | None, new: Rate | None) -> float | None:
     from scipy.stats import fisher_exact
 
     if base is None or new is None or not base.occasions or not new.occasions:

@@ -23,8 +23,8 @@ from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import UsageError
 from drivelint.fleet import intervals
-from drivelint.fleet.distinct_logs import subject
-from drivelint.fleet.situations import SITUATIONS, bound_tag, value_of
+from drivelint.fleet.distinct_logs import subject_sql
+from drivelint.fleet.situations import SITUATIONS, parameters_of_tag, tag_or_situation_sql
 from drivelint.phrases import hint
 from drivelint.result.certainty import LEAST_KEEPING_SHARE
 from drivelint.sql.statements import statement
@@ -79,22 +79,22 @@ class Rate:
     @property
     def per_100km(self) -> Estimate:
         """The rate of findings per 100 km."""
-        return intervals.poisson(self.findings, self.km / 100)
+        return intervals.poisson_rate(self.findings, self.km / 100)
 
     @property
     def per_hour(self) -> Estimate:
         """The rate of findings per hour."""
-        return intervals.poisson(self.findings, self.hours)
+        return intervals.poisson_rate(self.findings, self.hours)
 
     @property
     def per_occasion(self) -> Estimate:
         """The share of occasions that failed."""
-        return intervals.binomial(self.occasions_failed, self.occasions)
+        return intervals.binomial_rate(self.occasions_failed, self.occasions)
 
     @property
     def per_ego(self) -> Estimate:
         """The share of completely judged egos that failed. Several findings of an ego count once, so they need not be independent."""
-        return intervals.binomial(self.egos_failed, self.egos_judged)
+        return intervals.binomial_rate(self.egos_failed, self.egos_judged)
 
     @property
     def at_least_per_100km(self) -> float | None:
@@ -102,7 +102,7 @@ class Rate:
 
         It uses `events_sure`: a possible finding may not have happened, and one contact must not count twice.
         """
-        found = intervals.poisson(self.events_sure, (self.km + self.km_unknown) / 100)
+        found = intervals.poisson_rate(self.events_sure, (self.km + self.km_unknown) / 100)
         return None if found.rate is None else found.low
 
 
@@ -114,22 +114,29 @@ def rates(
     `by`: a tag, or a situation of `situations.SITUATIONS`. `of`: prefix of the audit's views. `without`: prefix of another audit's views,
     whose logs are left out. Errors: `UsageError` if no drive has that tag.
     """
-    check_tag(con, by, of)
+    check_tag_exists(con, by, of)
     left_out = "" if without is None else f"ANTI JOIN {without}drives o ON o.sha256 = d.sha256"
-    fragments = {"of": of, "value": value_of(by), "without": left_out, "least_share": str(LEAST_KEEPING_SHARE)}
+    fragments = {
+        "of": of,
+        "value": tag_or_situation_sql(by),
+        "without": left_out,
+        "least_share": str(LEAST_KEEPING_SHARE),
+    }
     parts = {name: statement(f"fleet/{name}", **fragments) for name in ("profiled", "event")}
-    parts["subject"] = subject(of, by, left_out)
-    rows = con.execute(statement("fleet/rates", **fragments, **parts), bound_tag(by))
+    parts["subject"] = subject_sql(of, by, left_out)
+    rows = con.execute(statement("fleet/rates", **fragments, **parts), parameters_of_tag(by))
     names = [column[0] for column in rows.description or ()]
     return [Rate(**dict(zip(names, row, strict=True))) for row in rows.fetchall()]
 
 
-def check_tag(con: duckdb.DuckDBPyConnection, by: str | None, of: str) -> None:
+def check_tag_exists(con: duckdb.DuckDBPyConnection, by: str | None, of: str) -> None:
     """Raise `UsageError` if no drive has the tag: every value would be None."""
     if by is None or by in SITUATIONS:  # situations that no drive has are a valid result
         return
     if (
-        con.execute(f"SELECT 1 FROM {of}drives d WHERE {value_of(by)} IS NOT NULL LIMIT 1", {"by": by}).fetchone()
+        con.execute(
+            f"SELECT 1 FROM {of}drives d WHERE {tag_or_situation_sql(by)} IS NOT NULL LIMIT 1", {"by": by}
+        ).fetchone()
         is None
     ):
         tags = con.execute(f"SELECT DISTINCT unnest(map_keys(tags)) FROM {of}drives ORDER BY ALL").fetchall()

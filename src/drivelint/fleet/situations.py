@@ -12,10 +12,10 @@ MEASURED_SITUATIONS: Final = {
     "traffic": ("less than 1 other", "1 to 5 others", "5 to 20 others", "20 others and more"),
 }
 """Situations that are computed from a drive's exposure and states: name -> values in order."""
-_STATEMENTS: Final = {"speed_band": "value_of_speed_band", "traffic": "value_of_traffic"}
+_STATEMENT_BY_SITUATION: Final = {"speed_band": "value_of_speed_band", "traffic": "value_of_traffic"}
 SITUATIONS: Final = {**CONDITION_VALUES, **MEASURED_SITUATIONS}
 """All situations: name -> values. Situations that are not measured come from tags, from conditions given to `check`, or from the log."""
-CANNOT_TELL: Final = {
+UNAVAILABLE_SITUATIONS: Final = {
     "junction kind": "the tables say which rules applied, not at which junction: see the rules of junctions",
     "road type, as the map has it": "only a road type that was set for the whole drive is known",
     "speed at each moment": "the band is that of the mean speed of a drive",
@@ -24,21 +24,21 @@ CANNOT_TELL: Final = {
 """The situations that an audit's tables do not contain -> why not, or what to use instead."""
 
 
-def value_of(by: str | None) -> str:
+def tag_or_situation_sql(by: str | None) -> str:
     """Return the SQL expression for a drive's value of a tag or situation. It reads `d`, the drive, and `ego`, the exposure of an ego."""
-    return "NULL::VARCHAR" if by is None else _expression(_STATEMENTS.get(by, "value_of_tag"))
+    return "NULL::VARCHAR" if by is None else _measured_situation_sql(_STATEMENT_BY_SITUATION.get(by, "value_of_tag"))
 
 
-def condition_of(situation: str) -> str:
+def situation_sql(situation: str) -> str:
     """Return such an expression for the coverage, where a tag of the same name does not hide the condition that rules were judged under."""
-    return _expression(_STATEMENTS.get(situation, "value_of_condition"))
+    return _measured_situation_sql(_STATEMENT_BY_SITUATION.get(situation, "value_of_condition"))
 
 
-def _expression(name: str) -> str:
+def _measured_situation_sql(name: str) -> str:
     _, _, sql = statement(f"fleet/{name}").partition("\n")
     return sql.strip()
 
 
-def bound_tag(by: str | None) -> dict[str, str]:
-    """Return the parameters that the SQL of `value_of(by)` needs."""
+def parameters_of_tag(by: str | None) -> dict[str, str]:
+    """Return the parameters that the SQL of `tag_or_situation_sql(by)` needs."""
     return {} if by is None or by in MEASURED_SITUATIONS else {"by": by}

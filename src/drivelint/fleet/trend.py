@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.fleet.intervals import holm
-from drivelint.fleet.rate_change import ALLOWED_FALSE_CALLS
+from drivelint.fleet.intervals import holm_corrected
+from drivelint.fleet.rate_change import ALLOWED_FALSE_CALL_PROBABILITY
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 MAX_EXACT_EVENTS: Final = 500
 """Up to this number of events the p-value is exact; above it, the normal approximation of the same statistic is used."""
-_SAME_CHANCE: Final = 1 + 1e-7
+_EQUAL_CHANCE_FACTOR: Final = 1 + 1e-7
 """Chances that differ by less are equal: they are sums of floating-point numbers, and those of mirrored outcomes must both count."""
 
 
@@ -44,12 +44,12 @@ class Trend:
     @property
     def is_significant(self) -> bool:
         """Whether the rate rises or falls, if at most 5 % of such lists may contain a false call."""
-        return self.corrected is not None and self.corrected <= ALLOWED_FALSE_CALLS
+        return self.corrected is not None and self.corrected <= ALLOWED_FALSE_CALL_PROBABILITY
 
     @property
     def is_rising(self) -> bool:
         """Whether the later audits have more findings than the same rate for all would give."""
-        events, exposures = _counts(self.rates)
+        events, exposures = _findings_and_km(self.rates)
         steps = np.arange(len(events), dtype=float)
         return bool(steps @ events > (steps @ exposures) / exposures.sum() * events.sum())
 
@@ -63,9 +63,9 @@ def trends(audits: Sequence[Sequence[Rate]]) -> list[Trend]:
     by_audit = [{(rate.rule_id, rate.profile): rate for rate in rates} for rates in audits]
     names = sorted({name for rates in by_audit for name in rates}, key=lambda name: (name[0], name[1] or ""))
     rows = [tuple(rates.get(name) for rates in by_audit) for name in names]
-    values = [_rate_p_value(row) for row in rows]
-    tested = [n for n, row in enumerate(rows) if values[n] is not None and _counts(row)[0].any()]
-    corrected = dict(zip(tested, holm([values[n] or 0.0 for n in tested]), strict=True))
+    values = [_p_value_of_rates(row) for row in rows]
+    tested = [n for n, row in enumerate(rows) if values[n] is not None and _findings_and_km(row)[0].any()]
+    corrected = dict(zip(tested, holm_corrected([values[n] or 0.0 for n in tested]), strict=True))
     return [
         Trend(*name, row, values[n], corrected.get(n)) for n, (name, row) in enumerate(zip(names, rows, strict=True))
     ]
@@ -85,11 +85,11 @@ def trend_p_value(events: Sequence[int], exposures: Sequence[float]) -> float:
         return 1.0
     if n > MAX_EXACT_EVENTS:
         return _normal_p_value(observed, n, shares)
-    chances = _sum_chances(shares, n)
-    return float(min(1.0, chances[chances <= chances[observed] * _SAME_CHANCE].sum()))
+    chances = _chances_of_sums(shares, n)
+    return float(min(1.0, chances[chances <= chances[observed] * _EQUAL_CHANCE_FACTOR].sum()))
 
 
-def _sum_chances(shares: Floats, n: int) -> Floats:
+def _chances_of_sums(shares: Floats, n: int) -> Floats:
     """Return the chance of each sum of the steps of `n` events: the n-th power of the polynomial of the shares."""
     power, chances = shares, np.ones(1)
     while n:
@@ -111,14 +111,14 @@ def _normal_p_value(observed: int, n: int, shares: Floats) -> float:
     return float(min(1.0, 2 * norm.sf(max(0.0, abs(observed - n * mean) - 0.5) / spread)))
 
 
-def _rate_p_value(rates: Sequence[Rate | None]) -> float | None:
-    events, exposures = _counts(rates)
+def _p_value_of_rates(rates: Sequence[Rate | None]) -> float | None:
+    events, exposures = _findings_and_km(rates)
     if np.count_nonzero(exposures) < 2:
         return None
     return trend_p_value(events.astype(int).tolist(), exposures.tolist())
 
 
-def _counts(rates: Sequence[Rate | None]) -> tuple[Floats, Floats]:
+def _findings_and_km(rates: Sequence[Rate | None]) -> tuple[Floats, Floats]:
     """Return findings and km of each audit; 0 where an audit does not have the rule."""
     pairs = [(0.0, 0.0) if rate is None else (float(rate.findings), rate.km) for rate in rates]
     events, exposures = np.array(pairs, float).reshape(-1, 2).T

@@ -10,8 +10,8 @@ import re
 from typing import TYPE_CHECKING, NamedTuple
 
 from drivelint.errors import UsageError
-from drivelint.fleet.distinct_logs import subject
-from drivelint.fleet.situations import bound_tag
+from drivelint.fleet.distinct_logs import subject_sql
+from drivelint.fleet.situations import parameters_of_tag
 from drivelint.phrases import hint
 from drivelint.sql.statements import statement
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from drivelint.catalogue import Rule
 
 
-class Flip(NamedTuple):
+class FlipCount(NamedTuple):
     """The number of verdicts, of one profile and value of a tag, that change or stay the same. `becomes` None: they need a new check."""
 
     profile: str | None
@@ -31,7 +31,7 @@ class Flip(NamedTuple):
     n: int
 
 
-class Flipped(NamedTuple):
+class FlippedVerdict(NamedTuple):
     """One verdict that changes. `becomes` None: it needs a new check."""
 
     log: str
@@ -44,17 +44,17 @@ class Flipped(NamedTuple):
 
 
 class WhatIf(NamedTuple):
-    """The effect of another value of a parameter on the verdicts. `needs_check`: why every verdict needs a new check; None: stored values
-    are enough."""
+    """The effect of another value of a parameter on the verdicts. `needs_check`: why every verdict needs a new check; None:
+    stored values are enough."""
 
     rule_id: str
     param: str
     value: float
     needs_check: str | None
-    verdicts: tuple[Flip, ...] = ()
+    verdicts: tuple[FlipCount, ...] = ()
 
     @property
-    def flips(self) -> tuple[Flip, ...]:
+    def flips(self) -> tuple[FlipCount, ...]:
         """The counts of verdicts that are known to change."""
         return tuple(each for each in self.verdicts if each.becomes not in {None, each.was})
 
@@ -72,7 +72,7 @@ def what_if(
     The temporary table `what_if` gets one row per verdict, unless a new check is needed. Findings are not predicted: a failed verdict may
     have several, and their start and end depend on every step. Errors: `UsageError` for a parameter that the rule does not have.
     """
-    if why := needs_check(rule, param):
+    if why := reason_for_new_check(rule, param):
         return WhatIf(rule.id, param, value, why)
     # rounded as in an evaluation
     required = round(value, 9) if rule.sense in {">=", "<="} else value
@@ -83,19 +83,22 @@ def what_if(
         "is_bound": rule.has_column("at_least"),
     }
     bound["proven"] = "pass" if rule.sense.startswith(">") else "fail"
-    con.execute(statement("fleet/what_if", of=of, subject=subject(of, by), sense=rule.sense), bound | bound_tag(by))
+    con.execute(
+        statement("fleet/what_if", of=of, subject=subject_sql(of, by), sense=rule.sense), bound | parameters_of_tag(by)
+    )
     rows = con.execute(statement("fleet/flips")).fetchall()
-    return WhatIf(rule.id, param, value, None, tuple(Flip(*row) for row in rows))
+    return WhatIf(rule.id, param, value, None, tuple(FlipCount(*row) for row in rows))
 
 
-def flipped(con: duckdb.DuckDBPyConnection, max_verdicts: int, *, of: str = "") -> tuple[Flipped, ...]:
+def flipped_verdicts(con: duckdb.DuckDBPyConnection, max_verdicts: int, *, of: str = "") -> tuple[FlippedVerdict, ...]:
     """Return the first verdicts of the table `what_if` that change or need a new check."""
     return tuple(
-        Flipped(*row) for row in con.execute(statement("fleet/flipped", of=of), {"most": max_verdicts}).fetchall()
+        FlippedVerdict(*row)
+        for row in con.execute(statement("fleet/flipped", of=of), {"most": max_verdicts}).fetchall()
     )
 
 
-def needs_check(rule: Rule, param: str) -> str | None:
+def reason_for_new_check(rule: Rule, param: str) -> str | None:
     """Return why stored verdicts are not enough to apply another value of a parameter; None: they are enough."""
     if param not in rule.params:
         raise UsageError(f"rule {rule.id} has no parameter {param!r}; {hint(param, rule.params)}")

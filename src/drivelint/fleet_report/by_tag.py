@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from drivelint.fleet.rates import rates
-from drivelint.fleet.situations import MEASURED_SITUATIONS, bound_tag, value_of
+from drivelint.fleet.situations import MEASURED_SITUATIONS, parameters_of_tag, tag_or_situation_sql
 from drivelint.fleet_report.figures import logarithmic_axis
 from drivelint.result.counts import SEVERITIES
 from drivelint.sql.statements import statement
@@ -50,10 +50,13 @@ def rates_by_tag(con: duckdb.DuckDBPyConnection, tag: str) -> RatesByTag:
     """Return the rates by a tag or a situation. Errors: `UsageError` if no drive has that tag."""
     n_values, of = 0, ""
     if tag not in MEASURED_SITUATIONS:  # measured situations have few values, and belong to an ego
-        con.execute(statement("fleet_report/tag_values", value=value_of(tag)), {**bound_tag(tag), "most": MAX_VALUES})
+        con.execute(
+            statement("fleet_report/tag_values", value=tag_or_situation_sql(tag)),
+            {**parameters_of_tag(tag), "most": MAX_VALUES},
+        )
         n_values = con.execute("SELECT max(n_values) FROM shown_value").fetchall()[0][0] or 0
         if n_values > MAX_VALUES:
-            con.execute(statement("fleet_report/tag_drives", value=value_of(tag)), bound_tag(tag))
+            con.execute(statement("fleet_report/tag_drives", value=tag_or_situation_sql(tag)), parameters_of_tag(tag))
             for table in ("drives", "verdicts", "findings"):
                 con.execute(
                     f"CREATE OR REPLACE TEMP VIEW {_SHOWN_PREFIX}{table} AS FROM {table} SEMI JOIN shown_key USING (key)"

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     import duckdb
     from jinja2 import Environment
 
-    from drivelint.fleet.missing_signals import MissingSignal, Undecided
+    from drivelint.fleet.missing_signals import MissingSignal, UndecidedReason
     from drivelint.fleet.rates import Rate
     from drivelint.fleet_report.audit_views import Audit
     from drivelint.report.progress import Progress
@@ -143,7 +143,7 @@ def _advice_on_signal(missing_signal: MissingSignal) -> str:
     )
 
 
-def _remedy_with_example(undecided: Undecided) -> str:
+def _remedy_with_example(undecided: UndecidedReason) -> str:
     """Return the remedy for a reason of unknown verdicts, with the text of one verdict as an example."""
     advice = remedy(undecided.reason_code, None, "mapped")
     example = f"{undecided.rule_id}: {undecided.reason}"

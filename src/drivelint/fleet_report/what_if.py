@@ -11,8 +11,8 @@ import msgspec
 
 from drivelint import catalogue
 from drivelint.errors import ExitCode, UsageError
-from drivelint.fleet.rates import check_tag
-from drivelint.fleet.what_if import WhatIf, flipped, what_if
+from drivelint.fleet.rates import check_tag_exists
+from drivelint.fleet.what_if import WhatIf, flipped_verdicts, what_if
 from drivelint.fleet_report.audit_views import open_audits
 from drivelint.phrases import hint, one_line, plural
 from drivelint.result.text import ego_name
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import duckdb
 
     from drivelint.catalogue import Rule
-    from drivelint.fleet.what_if import Flip, Flipped
+    from drivelint.fleet.what_if import FlipCount, FlippedVerdict
     from drivelint.fleet_report.audit_views import Audit
 
 WHAT_IF_SCHEMA: Final = 1
@@ -47,8 +47,8 @@ class AuditWhatIf:
     old_value: str
     tag: str | None
     answer: WhatIf
-    flipped: tuple[Flipped, ...] = ()
-    by_tag_value: tuple[Flip, ...] = ()
+    flipped: tuple[FlippedVerdict, ...] = ()
+    by_tag_value: tuple[FlipCount, ...] = ()
 
     @property
     def exit_code(self) -> ExitCode:
@@ -63,7 +63,7 @@ def what_if_in_audit(dest: str, setting: str, tag: str | None) -> AuditWhatIf:
     Errors: `UsageError` for an audit, rule, parameter, value or tag that does not exist.
     """
     with open_audits(dest) as (con, audit, _):
-        check_tag(con, tag, "")
+        check_tag_exists(con, tag, "")
         rules = catalogue.load_rules([Path(each) for each in audit.settings.get("rules_dirs", ())])
         ((rule_id, values),) = catalogue.parse_params(rules.values(), [setting]).items()
         ((param, value),) = values.items()
@@ -76,7 +76,9 @@ def what_if_in_audit(dest: str, setting: str, tag: str | None) -> AuditWhatIf:
         if by_tag.needs_check:
             return AuditWhatIf(audit, setting, old_value, tag, by_tag)
         found = by_tag if tag is None else _what_if_or_refusal(con, rule, param, value, None)
-        return AuditWhatIf(audit, setting, old_value, tag, found, flipped(con, MAX_FLIPPED_VERDICTS), by_tag.verdicts)
+        return AuditWhatIf(
+            audit, setting, old_value, tag, found, flipped_verdicts(con, MAX_FLIPPED_VERDICTS), by_tag.verdicts
+        )
 
 
 def _what_if_or_refusal(
@@ -124,14 +126,14 @@ def to_text(analysis: AuditWhatIf) -> str:
     return "\n".join([*lines, _advice_on_new_audit(analysis)] if answer.not_known else lines)
 
 
-def _counts_by_change(flips: Iterable[Flip]) -> list[tuple[tuple[str, str | None], int]]:
+def _counts_by_change(flips: Iterable[FlipCount]) -> list[tuple[tuple[str, str | None], int]]:
     pairs = sorted((each.was, each.becomes or "", each.n) for each in flips)
     return [(key, sum(n for *_, n in group)) for key, group in groupby(pairs, key=lambda pair: pair[:2])]
 
 
 def _lines_by_tag_value(analysis: AuditWhatIf) -> list[str]:
     """Return a line per value of the tag and profile, with the changes of its verdicts."""
-    flips_by_group: dict[tuple[str, str], list[Flip]] = {}
+    flips_by_group: dict[tuple[str, str], list[FlipCount]] = {}
     for each in sorted(
         analysis.by_tag_value,
         key=lambda f: (f.tag_value is None, f.tag_value or "", f.profile or "", f.was, f.becomes or ""),
@@ -148,7 +150,7 @@ def _lines_by_tag_value(analysis: AuditWhatIf) -> list[str]:
     return lines
 
 
-def _flipped_verdict_lines(verdicts: Sequence[Flipped], n: int) -> list[str]:
+def _flipped_verdict_lines(verdicts: Sequence[FlippedVerdict], n: int) -> list[str]:
     """Return one line with the log for each changed verdict. `n`: the number of all changed verdicts."""
     lines = ["verdicts that change:"] if verdicts else []
     for each in verdicts[:MAX_TEXT_LINES]:
@@ -164,7 +166,7 @@ def _flipped_verdict_lines(verdicts: Sequence[Flipped], n: int) -> list[str]:
     return lines
 
 
-def _change_text(flip: Flip) -> str:
+def _change_text(flip: FlipCount) -> str:
     if flip.becomes is None:
         return f"{flip.was} -> needs a new audit"
     return f"stay {flip.was}" if flip.becomes == flip.was else f"{flip.was} -> {flip.becomes}"

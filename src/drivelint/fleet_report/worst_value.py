@@ -8,7 +8,7 @@ from operator import attrgetter
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from drivelint.fleet import intervals
-from drivelint.fleet.rate_change import ALLOWED_FALSE_CALLS
+from drivelint.fleet.rate_change import ALLOWED_FALSE_CALL_PROBABILITY
 from drivelint.fleet.rates import rates
 from drivelint.fleet.situations import MEASURED_SITUATIONS
 from drivelint.fleet_report.by_tag import MAX_VALUES
@@ -56,7 +56,7 @@ class WorstTagValue(NamedTuple):
     @property
     def is_significant(self) -> bool:
         """Whether the difference is significant. The probability of any false report in all comparisons together is at most 5 %."""
-        return self.corrected <= ALLOWED_FALSE_CALLS
+        return self.corrected <= ALLOWED_FALSE_CALL_PROBABILITY
 
 
 class _TagComparison(NamedTuple):
@@ -100,7 +100,7 @@ def worst_tag_value(con: duckdb.DuckDBPyConnection, all_rates: Sequence[Rate]) -
     return WorstTagValue(
         first.tag,
         first.rates,
-        intervals.poisson(sum(rate.findings for rate in rest), sum(rate.km for rate in rest) / 100),
+        intervals.poisson_rate(sum(rate.findings for rate in rest), sum(rate.km for rate in rest) / 100),
         min(1.0, n_tests * first.p_value),
         n_tests,
         len(tags),

@@ -47,7 +47,7 @@ def broken_line(rule: Row, rows: Sequence[Row], start_ns: int) -> str:
 
 
 def kept_line(rule: Row, rows: Sequence[Row], span: tuple[int, int], start_ns: int) -> str:
-    """Return the line of a rule that all `rows` kept: its worst measured value, and when it was judged if not in all of `span`.
+    """Return the line of a rule that all `rows` kept: its worst measured value, and when it was judged if not in all of `judged_span_ns`.
 
     The title replaces the value if the rule measures nothing, or may excuse a breach, because the value does not show the excuse.
     """

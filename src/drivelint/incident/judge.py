@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from drivelint import catalogue
-from drivelint.engine.memory import DEFAULT_MEMORY, Memory
+from drivelint.engine.memory import DEFAULT_MEMORY, MemoryLimit
 from drivelint.engine.profiles import load_profiles, profile_table
 from drivelint.engine.session import JudgingSession
 from drivelint.errors import UsageError
@@ -74,7 +74,7 @@ class Judge:
 
         with store.workspace(self.memory) as con:
             store.insert(con, "profile", self.profiles)
-            memory = Memory(con, self.memory)
+            memory = MemoryLimit(con, self.memory)
             session = JudgingSession(con, self.rules, self.params, None, observers=[look], memory=memory, errors=errors)
             session.judge([drive])
             session.judge_copies()

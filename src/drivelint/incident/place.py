@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 import numpy as np
 
 from drivelint.convert import CLIP_CHECK_ID
-from drivelint.drive.trace import TURNED_FRAME
+from drivelint.drive.trace import TURNED_FRAME_CHECK
 from drivelint.engine.earth import frame_of_map
 from drivelint.incident.land import is_at_sea
 from drivelint.incident.words import minus
@@ -81,7 +81,7 @@ def coordinates(case: Case) -> str:
     said = "the recording's coordinates"
     if CLIP_CHECK_ID in checks:
         said = "the clip's coordinates"  # a clip contains the coordinates that were judged
-    elif TURNED_FRAME in checks:
+    elif TURNED_FRAME_CHECK in checks:
         said += " with the sign of y changed, as its frame is left-handed"
     dx, dy = _map_offset(case)
     return f"{said}{minus(f' (the map was moved by {dx:+g} m, {dy:+g} m)')}" if dx or dy else said

@@ -9,12 +9,12 @@ import msgspec
 
 from drivelint import catalogue
 from drivelint.drive import conditions
-from drivelint.drive.trace import OWN_MAP_UNUSABLE, DriveInput
+from drivelint.drive.trace import OWN_MAP_UNUSABLE_CHECK, DriveInput
 from drivelint.engine.batch import Drive as Judgeable
 from drivelint.engine.batch import drive_with_map
 from drivelint.engine.default_rules import packs_of_nation
 from drivelint.engine.map_library import MapLibrary
-from drivelint.engine.memory import DEFAULT_MEMORY, Memory
+from drivelint.engine.memory import DEFAULT_MEMORY, MemoryLimit
 from drivelint.engine.session import JudgingSession
 from drivelint.errors import ExitCode, MapError, TraceError, UsageError
 from drivelint.formats import expand_traces, read_trace
@@ -137,7 +137,7 @@ def _trace_map_and_problem(trace: Trace, library: MapLibrary) -> tuple[Trace, Ma
     except MapError as error:
         return trace, None, str(error)
     rows = found.trace.tables["quality"].to_pylist()
-    own = next((row["message"] for row in rows if row["check_id"] == OWN_MAP_UNUSABLE), None)
+    own = next((row["message"] for row in rows if row["check_id"] == OWN_MAP_UNUSABLE_CHECK), None)
     return found.trace, found.environment, own if found.environment is None else None
 
 
@@ -153,7 +153,7 @@ def _egos_and_quality(
     """Derive the library tables of a drive; return its egos with their decidable rules, and its data-quality findings."""
     known = _KnownConditions()
     with store.workspace(memory) as con:
-        session = JudgingSession(con, (), {}, None, observers=[known], memory=Memory(con, memory))
+        session = JudgingSession(con, (), {}, None, observers=[known], memory=MemoryLimit(con, memory))
         session.judge([Judgeable(trace, environment)])
         rows = {table: _query_rows(con, f"FROM {table}") for table in ("capability", "exposure")}
         fits = _query_rows(con, statement("inspect/registration")) if environment is not None else []

@@ -10,7 +10,7 @@ import msgspec
 import pyarrow.parquet as pq
 
 from drivelint import catalogue
-from drivelint.engine.memory import DEFAULT_MEMORY, Memory
+from drivelint.engine.memory import DEFAULT_MEMORY, MemoryLimit
 from drivelint.engine.profiles import load_profiles, profile_table
 from drivelint.engine.session import JudgingSession
 from drivelint.errors import UsageError
@@ -129,7 +129,7 @@ def _of_drive(
 
     with store.workspace(memory) as con:
         store.insert(con, "profile", profile_table(load_profiles(check_request.rules_dirs), check_request.profiles))
-        session = JudgingSession(con, mine, params, None, observers=[look], memory=Memory(con, memory))
+        session = JudgingSession(con, mine, params, None, observers=[look], memory=MemoryLimit(con, memory))
         session.judge([drive])
         session.close()
     return found

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import duckdb
 
-from drivelint.evaluate.sql_fragments import condition_ctes
+from drivelint.evaluate.sql_fragments import condition_ctes_sql
 from drivelint.phrases import terminal_safe_line
 from drivelint.sql import syntax
 from drivelint.sql.statements import statement_texts
@@ -37,7 +37,7 @@ def tables_of(rule: Rule) -> list[str]:
 
 def query(rule: Rule, params: Mapping[str, object], finding: Row, ref_id: int | None) -> str:
     """Return the SELECT that computes a finding's numbers at its worst step. `ref_id`: the condition's number of the reference point."""
-    with_values = syntax.with_values(condition_ctes(rule), {name: literal(value) for name, value in params.items()})
+    with_values = syntax.with_values(condition_ctes_sql(rule), {name: literal(value) for name, value in params.items()})
     at = [f"t_ns = {finding['t_worst_ns']}"]
     if rule.per_object and finding["object_id"] is not None:
         at.append(f"object_id = {text_literal(finding['object_id'])}")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.drive.trace import ASIDE_OF_LANE, ASSUMED_MOTION, ASSUMED_SIZE, TURNED_FRAME
+from drivelint.drive.trace import ASIDE_OF_LANE_CHECK, ASSUMED_MOTION_CHECK, ASSUMED_SIZE_CHECK, TURNED_FRAME_CHECK
 from drivelint.phrases import name_list, plural
 from drivelint.reasons.signals import MISSING_PREFIX, UNRECORDED_PREFIX, signal_name
 from drivelint.report.law import law_words
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 LAW_LABEL: Final = "law"
 """The label of the note on the law, which the terminal prints in its first line instead."""
-_ASSUMPTION_CHECKS: Final = (ASSUMED_SIZE, TURNED_FRAME)
+_ASSUMPTION_CHECKS: Final = (ASSUMED_SIZE_CHECK, TURNED_FRAME_CHECK)
 _SUFFIXES_WITHOUT_END_MARKER: Final = (".csv", ".osi", ".tsv", ".txt")
 """Formats without an end marker: a file that was cut off between two messages or lines looks complete."""
 _MAX_LISTED_NAMES: Final = 2
@@ -67,7 +67,9 @@ def _map_note(drives: Sequence[Row]) -> InputNote:
         words += f" ({reasons[0]})"
     elif off_egos:
         words += f", but not {off_egos} of {egos} egos"
-    aside = [check["message"] for drive in on_map for check in drive["quality"] if check["check_id"] == ASIDE_OF_LANE]
+    aside = [
+        check["message"] for drive in on_map for check in drive["quality"] if check["check_id"] == ASIDE_OF_LANE_CHECK
+    ]
     if aside:
         words += f"{'; ' if off_egos else ', but '}{_far_aside_words(aside, egos)}"
     if bare := len(drives) - len(on_map):
@@ -94,8 +96,10 @@ def _n_egos_off_map(drive: Row) -> int:
 def _log_note(drives: Sequence[Row]) -> InputNote:
     """Return the note on whether the logs are complete: losses, assumptions, the number of warnings, and logs with the same bytes."""
     lossy = [drive["drive_id"] for drive in drives if drive["lossy"]]
-    checks = [check for drive in drives for check in drive["quality"] if check["check_id"] != ASIDE_OF_LANE]
-    assumed = sorted({check["message"].partition(";")[0] for check in checks if check["check_id"] == ASSUMED_MOTION})
+    checks = [check for drive in drives for check in drive["quality"] if check["check_id"] != ASIDE_OF_LANE_CHECK]
+    assumed = sorted(
+        {check["message"].partition(";")[0] for check in checks if check["check_id"] == ASSUMED_MOTION_CHECK}
+    )
     given = sorted({check["message"] for check in checks if check["check_id"] in _ASSUMPTION_CHECKS})
     warned = {(check["check_id"], check["message"]) for check in checks if check["severity"] != "info"}
     parts = [f"parts lost in {name_list(lossy, _MAX_LISTED_NAMES)}"] if lossy else []

@@ -6,7 +6,7 @@ from collections import Counter
 from typing import TYPE_CHECKING, Final
 
 from drivelint.catalogue import load_rules
-from drivelint.drive.conditions import all_values
+from drivelint.drive.conditions import related_values
 from drivelint.phrases import name_list, plural
 
 if TYPE_CHECKING:
@@ -32,17 +32,19 @@ def law_words(result: Result) -> str:
 def _words_on_unrequested_packs(laws: list[tuple[str, ...]], drives: list[Row]) -> Iterator[str]:
     """Yield in words the packs that implement the law of a drive's nation, if no rule of the run implements it."""
     nations = {said["value"] for drive in drives for said in drive["conditions"] if said["condition"] == "nation"}
-    lacking = sorted(nation for nation in nations if not any(nation in all_values(law) for law in laws))
+    lacking = sorted(nation for nation in nations if not any(nation in related_values(law) for law in laws))
     for nation in lacking:
         rules = load_rules().values()
-        packs = {rule.pack for rule in rules if rule.status == "stable" and rule.law and nation in all_values(rule.law)}
+        packs = {
+            rule.pack for rule in rules if rule.status == "stable" and rule.law and nation in related_values(rule.law)
+        }
         if packs:
             yield f"of {nation} not requested: --rules {' --rules '.join(sorted(packs))}"
 
 
 def _words_on_law(law: tuple[str, ...], drives: list[Row]) -> str:
     """Return in words whether this law was applied in the drives, and the source of each drive's nation."""
-    applied = all_values(law)
+    applied = related_values(law)
     counted: Counter[str] = Counter()
     for drive in drives:
         given = next((said for said in drive["conditions"] if said["condition"] == "nation"), None)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import pyarrow.compute as pc
 
-from drivelint.drive.trace import NOT_IN_FOLDER, OWN_MAP_UNUSABLE
+from drivelint.drive.trace import NOT_IN_FOLDER_CHECK, OWN_MAP_UNUSABLE_CHECK
 from drivelint.errors import ExitCode
 from drivelint.gate import descriptions
 from drivelint.phrases import plural
@@ -45,8 +45,8 @@ _KIND_OF_LABEL: Final = {
 LET_THROUGH_WORDS: Final = {"known": "known", "waived": "waived", "possible": "only possible"}
 """The standings (`Gate.status_at_gate`) of findings that a gate lets through, in words."""
 _NO_MAP_WORDS: Final = {
-    OWN_MAP_UNUSABLE: "the log's own map cannot be used",
-    NOT_IN_FOLDER: "no map in the folder covers the place",
+    OWN_MAP_UNUSABLE_CHECK: "the log's own map cannot be used",
+    NOT_IN_FOLDER_CHECK: "no map in the folder covers the place",
 }
 """Data-quality checks because of which a drive has no map, in words."""
 _COUNTED_LABEL: Final = "counted"

@@ -32,11 +32,11 @@ class ReportingRuleLimits(RuleLimits):
         self._progress.doing(f"judging {plural(n_drives, 'drive')}: deriving tables")
 
     @contextmanager
-    def hold(self, con: duckdb.DuckDBPyConnection, rule_id: str, *, alone: bool) -> Iterator[RunningRule]:
-        """Report the rule, then do as `RuleLimits.hold`."""
+    def limit_statements(self, con: duckdb.DuckDBPyConnection, rule_id: str, *, alone: bool) -> Iterator[RunningRule]:
+        """Report the rule, then do as `RuleLimits.limit_statements`."""
         self._begun.add(rule_id)
         n = len(self._begun)
         what = f"judging {plural(self._n_drives, 'drive')}: rule {n} of {self._n_rules}"
         self._progress.doing(what, self._n_drives * n / (self._n_rules + 1))
-        with super().hold(con, rule_id, alone=alone) as held:
+        with super().limit_statements(con, rule_id, alone=alone) as held:
             yield held

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 import pyarrow as pa
 
-from drivelint.drive.trace import ASIDE_OF_LANE, LOSS_CHECKS
+from drivelint.drive.trace import ASIDE_OF_LANE_CHECK, LOSS_CHECKS
 from drivelint.reasons.reason_table import make_reason_table
 from drivelint.result.schemas import conform
 from drivelint.sql.statements import statement
@@ -48,7 +48,7 @@ def drives(con: duckdb.DuckDBPyConnection, drive_ids: list[str] | None = None) -
     """Return the table `drive`, ordered, with one row per drive in `drive_ids`; None: one row per drive in the database."""
     make_reason_table(con, "SELECT NULL AS rule_no, reason AS cause, 0 AS start_ns FROM capability WHERE NOT available")
     rows = con.execute(
-        statement("evidence/drive"), {"only": drive_ids, "losses": LOSS_CHECKS, "aside_check": ASIDE_OF_LANE}
+        statement("evidence/drive"), {"only": drive_ids, "losses": LOSS_CHECKS, "aside_check": ASIDE_OF_LANE_CHECK}
     )
     return conform(rows.to_arrow_table(), "drive")
 

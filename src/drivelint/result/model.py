@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.drive.trace import EGO_ABSENT
+from drivelint.drive.trace import EGO_ABSENT_CHECK
 from drivelint.errors import ExitCode
 from drivelint.phrases import name_list, plural
 from drivelint.reasons.signals import UNRECORDED_PREFIX, signal_name
@@ -276,7 +276,7 @@ def _why_nothing_decided(result: Result) -> str | None:
 
 def ego_absence_texts(drive: Row) -> list[str]:
     """Return how long each ego of a drive is absent from its log, for absences that count as a loss. `drive`: a row of `drive`."""
-    return [found["message"].partition(",")[0] for found in drive["quality"] if found["check_id"] == EGO_ABSENT]
+    return [found["message"].partition(",")[0] for found in drive["quality"] if found["check_id"] == EGO_ABSENT_CHECK]
 
 
 def off_map_reason(drive: Row) -> str | None:

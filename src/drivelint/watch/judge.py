@@ -11,13 +11,13 @@ import pyarrow.compute as pc
 
 from drivelint import catalogue
 from drivelint.arrays import replace_columns
-from drivelint.engine.apart import judge_apart
+from drivelint.engine.apart import judge_and_refuse_faulty
 from drivelint.engine.batch import drive_with_map
-from drivelint.engine.default_rules import chosen_selectors
+from drivelint.engine.default_rules import selectors_of_run
 from drivelint.engine.map_library import MapLibrary
-from drivelint.engine.memory import Memory
+from drivelint.engine.memory import MemoryLimit
 from drivelint.engine.profiles import DEFAULT_PROFILES, load_profiles, profile_table
-from drivelint.engine.robustness.copies import renamed
+from drivelint.engine.robustness.copies import with_drive_id
 from drivelint.engine.session import JudgingSession
 from drivelint.errors import DriveLintError
 from drivelint.evaluate.limits import RuleLimits
@@ -85,8 +85,8 @@ class WindowJudge:
     def __init__(self, options: WatchOptions) -> None:
         self._known = known = catalogue.load_rules(options.rules_dirs)
         self._library = MapLibrary(options)
-        self._library.load_given()
-        chosen = chosen_selectors(options.rules, options.rules_dirs, options, self._library)
+        self._library.read_user_map()
+        chosen = selectors_of_run(options.rules, options.rules_dirs, options, self._library)
         rules = catalogue.select_rules(known, chosen, options.ignore)
         self.rules: dict[str, Rule] = {rule.id: rule for rule in rules}
         self._params = params = catalogue.parse_params(rules, options.params)
@@ -101,7 +101,7 @@ class WindowJudge:
         self._stack = ExitStack()
         self._con = self._stack.enter_context(store.workspace(options.memory, threads=1))
         store.insert(self._con, "profile", profile_table(profiles, sorted(asked)))
-        self._memory = Memory(self._con, options.memory)
+        self._memory = MemoryLimit(self._con, options.memory)
         # the session writes courses only if it has an observer
         observers = [_observe_nothing] if options.warn or options.serve else []
         limits = RuleLimits(options.rule_timeout, task="windows")
@@ -134,10 +134,10 @@ class WindowJudge:
             except DriveLintError as error:
                 found[name] = error
             else:
-                drives[name] = replace(drive, trace=_trace_with_start(renamed(drive.trace, name), start_ns))
+                drives[name] = replace(drive, trace=_trace_with_start(with_drive_id(drive.trace, name), start_ns))
         refusals: list[RefusedLog] = []
         if drives:
-            judge_apart(self._session, list(drives.values()), refusals)
+            judge_and_refuse_faulty(self._session, list(drives.values()), refusals)
         found |= {each.path.name: each.error for each in refusals}
         tables = {
             "findings": collect.findings(self._con),

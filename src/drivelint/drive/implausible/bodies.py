@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from drivelint.drive.implausible.motion import SPIN_MPS, TYRE_MPS2
+from drivelint.drive.implausible.motion import SPIN_FASTEST_MPS, TYRE_LIMIT_MPS2
 from drivelint.drive.order import track_starts
 from drivelint.drive.trace import MOTOR_VEHICLES
 from drivelint.phrases import name_list
@@ -24,62 +24,62 @@ if TYPE_CHECKING:
     from drivelint.drive.order import Steps
     from drivelint.drive.trace import QualityFinding, States
 
-DEEP_SHARE: Final = 0.5
+DEEP_OVERLAP_SHARE: Final = 0.5
 """Two boxes overlap deeply if they overlap by this share of the smaller extent, both along and across the first box."""
-SAME_MPS: Final = 2.0
+SAME_VELOCITY_MPS: Final = 2.0
 """The median difference of the velocities of two tracks of one body is at most this."""
-COMMON_SHARE: Final = 0.8
+LEAST_DEEP_SAMPLE_SHARE: Final = 0.8
 """Two tracks of one body overlap deeply in at least this share of their common samples."""
 LEAST_COMMON_SAMPLES: Final = 3
 """Two tracks of one body have at least this many common samples."""
-FARTHEST_REACH_M: Final = 100.0
+FARTHEST_OVERLAPPING_CENTRES_M: Final = 100.0
 """The centres of two overlapping bodies are at most this far apart."""
-FARTHEST_CELL: Final = 10**10
+LARGEST_CELL_NUMBER: Final = 10**10
 """Numbers of grid cells are clipped to this, so that the cell number times the number of times fits into 64 bits."""
 PAIRS_PER_PART: Final = 1_000_000
 """The approximate number of pairs of boxes in memory at once."""
-ENTRY_SAMPLES: Final = 3
+MOST_FALSE_ENTRY_SAMPLES: Final = 3
 """A track with a false start reaches its true position within this many samples."""
-ENTRY_LEAST_MPS: Final = 5.0
+FALSE_ENTRY_LEAST_MPS: Final = 5.0
 """If the first step differs by less than this from the next one, the difference is noise of the first detections."""
 
 
-COUPLED_M: Final = 2.0
+COUPLED_GAP_M: Final = 2.0
 COUPLED_ASIDE_M: Final = 1.0
 COUPLED_MPS: Final = 5.0
-COUPLED_LEAST: Final = 10
-SUNK_M: Final = 0.3
-"""Two tracks are coupled (one body) if in all common samples, at least `COUPLED_LEAST`, one box is within `COUPLED_M` behind the other and
-`COUPLED_ASIDE_M` to the side, at a median speed of `COUPLED_MPS`, and they overlap by `SUNK_M` in some sample."""
+LEAST_COUPLED_SAMPLES: Final = 10
+COUPLED_OVERLAP_M: Final = 0.3
+"""Two tracks are coupled (one body) if in all common samples, at least `LEAST_COUPLED_SAMPLES`, one box is within `COUPLED_GAP_M` behind
+the other and `COUPLED_ASIDE_M` to the side, at a median speed of `COUPLED_MPS`, and they overlap by `COUPLED_OVERLAP_M` in some sample."""
 
 
 class _Boxes(NamedTuple):
     """Boxes (n): centre (2, n), unit vector along the box (2, n), half length and half width (2, n), velocity (2, n)."""
 
     place: Floats
-    along: Floats
-    half: Floats
+    unit_along: Floats
+    half_sizes: Floats
     velocity: Floats
 
 
-BEGIN_M: Final = 0.3
-BEGIN_MPS: Final = 2.0
+BEGIN_OVERLAP_M: Final = 0.3
+BEGIN_LEAST_MPS: Final = 2.0
 """If two boxes, both at least this fast, overlap by this much in their first common sample, no contact was recorded: the positions are
 doubtful."""
-BESIDE_M: Final = 0.3
+LATERAL_NOISE_M: Final = 0.3
 """The noise that positions and headings add to a lateral overlap."""
-BESIDE_SHARE: Final = 2 / 3
+SIDE_BY_SIDE_SHARE: Final = 2 / 3
 """Two boxes that overlap laterally by at most this share of the smaller width may be side by side: the position error may be lateral."""
-HIT_MPS: Final = 1.5
+IMPACT_SPEED_CHANGE_MPS: Final = 1.5
 """A velocity that changes by more than this between two samples may be caused by an impact."""
-HELD_NS: Final = 2_000_000_000
-ARRIVAL_NS: Final = 1_000_000_000
-LEAVING_MPS2: Final = 4.0
-"""The highest acceleration of an actor after a standstill at the end of its track. If another vehicle is there sooner, within `ARRIVAL_NS`,
-the last `HELD_NS` of the track are repeated positions."""
+REPEATED_POSITION_NS: Final = 2_000_000_000
+NEXT_VEHICLE_ARRIVAL_NS: Final = 1_000_000_000
+LEAVING_ACCELERATION_MPS2: Final = 4.0
+"""The highest acceleration of an actor after a standstill at the end of its track. If another vehicle is there sooner, within
+`NEXT_VEHICLE_ARRIVAL_NS`, the last `REPEATED_POSITION_NS` of the track are repeated positions."""
 
 
-def same_bodies(states: States, actors: Actors, egos: Collection[str]) -> list[QualityFinding]:
+def same_body_findings(states: States, actors: Actors, egos: Collection[str]) -> list[QualityFinding]:
     """Return findings on tracks that are the same body as another, and on tracks that overlap from the start.
 
     Of two tracks of one body, the ego's is used, else the longer one.
@@ -88,16 +88,16 @@ def same_bodies(states: States, actors: Actors, egos: Collection[str]) -> list[Q
     half = _half_sizes(states, actors)
     for a, b in _pairs_starting_together(states, actors):
         track_a, track_b = (slice(*np.searchsorted(states.actor, [i, i + 1]).tolist()) for i in (a, b))
-        rows_a, rows_b = _common(states, track_a, track_b)
-        first, second = _boxes(states, half, rows_a), _boxes(states, half, rows_b)
-        deep = _deep(first, second)
-        if len(deep) < LEAST_COMMON_SAMPLES or not deep[0] or deep.mean() < COMMON_SHARE:
-            if not _coupled(first, second):
-                together = _overlap_at_begin(first, second)
+        rows_a, rows_b = _rows_at_common_times(states, track_a, track_b)
+        first, second = _boxes_of_rows(states, half, rows_a), _boxes_of_rows(states, half, rows_b)
+        deep = _overlap_deeply(first, second)
+        if len(deep) < LEAST_COMMON_SAMPLES or not deep[0] or deep.mean() < LEAST_DEEP_SAMPLE_SHARE:
+            if not _are_coupled(first, second):
+                together = _doubtful_begin_samples(first, second)
                 begun[rows_a[together]] = begun[rows_b[together]] = True
                 continue
             deep = np.ones(len(deep), np.bool_)
-        if not np.nanmedian(np.hypot(*(first.velocity - second.velocity))) <= SAME_MPS:
+        if not np.nanmedian(np.hypot(*(first.velocity - second.velocity))) <= SAME_VELOCITY_MPS:
             continue
         length = {a: track_a.stop - track_a.start, b: track_b.stop - track_b.start}
         order = sorted((a, b), key=lambda i: (states.ids[i] not in egos, -length[i], states.ids[i]))
@@ -110,7 +110,7 @@ def same_bodies(states: States, actors: Actors, egos: Collection[str]) -> list[Q
     return findings + states.findings(begun, "begin_overlap", "warning", text, quantity="position")
 
 
-def false_entries(states: States, step: Steps) -> list[QualityFinding]:
+def false_entry_findings(states: States, step: Steps) -> list[QualityFinding]:
     """Return a finding on the first samples of tracks that begin with an impossible step."""
     n = len(states)
     rows = np.zeros(n, np.bool_)
@@ -118,10 +118,10 @@ def false_entries(states: States, step: Steps) -> list[QualityFinding]:
     ends = np.r_[starts[1:], n]
     with np.errstate(invalid="ignore", divide="ignore"):
         moved = np.where(step.continuous, np.diff(states.place) / step.dt_s, np.nan)
-    for k in range(ENTRY_SAMPLES):
-        first = starts[ends - starts > ENTRY_SAMPLES + 2] + k
+    for k in range(MOST_FALSE_ENTRY_SAMPLES):
+        first = starts[ends - starts > MOST_FALSE_ENTRY_SAMPLES + 2] + k
         change = np.hypot(*(moved[:, first] - moved[:, first + 1]))
-        hard = change > ENTRY_LEAST_MPS + TYRE_MPS2 * (step.dt_s[first] + step.dt_s[first + 1])
+        hard = change > FALSE_ENTRY_LEAST_MPS + TYRE_LIMIT_MPS2 * (step.dt_s[first] + step.dt_s[first + 1])
         faster = np.hypot(*moved[:, first]) > np.hypot(*moved[:, first + 1])
         for at in first[hard & faster]:
             rows[at - k : at + 1] = True
@@ -131,7 +131,7 @@ def false_entries(states: States, step: Steps) -> list[QualityFinding]:
     return states.findings(rows, "false_entry", "warning", text, quantity="existence")
 
 
-def held_tracks(states: States, actors: Actors) -> list[QualityFinding]:
+def repeated_end_findings(states: States, actors: Actors) -> list[QualityFinding]:
     """Return a finding on tracks that end with repeated positions.
 
     They end at a standstill, and another vehicle is at the same position sooner than the first one could leave it.
@@ -143,29 +143,31 @@ def held_tracks(states: States, actors: Actors) -> list[QualityFinding]:
     motor = vehicle[np.array([index[name] for name in states.ids])]
     lasts, speeds, half = np.r_[starts[1:], len(states)] - 1, np.hypot(*states.velocity), _half_sizes(states, actors)
     with np.errstate(invalid="ignore"):
-        stands = (speeds[lasts] < SPIN_MPS / 2.0) & (states.t_ns[lasts] < t_ns[-1])
+        stands = (speeds[lasts] < SPIN_FASTEST_MPS / 2.0) & (states.t_ns[lasts] < t_ns[-1])
     for first, last in zip(starts[stands], lasts[stands], strict=True):
         now, after, end = np.searchsorted(
-            t_ns, [states.t_ns[last], states.t_ns[last] + 1, states.t_ns[last] + ARRIVAL_NS]
+            t_ns, [states.t_ns[last], states.t_ns[last] + 1, states.t_ns[last] + NEXT_VEHICLE_ARRIVAL_NS]
         )
         # an actor that touches it at that time, or brakes hard from then on, may have collided with it
         before = order[now:after]
         clear = (
-            _overlap(_boxes(states, half, np.full(len(before), last)), _boxes(states, half, before))[0].min(axis=0)
+            _overlaps_m(_boxes_of_rows(states, half, np.full(len(before), last)), _boxes_of_rows(states, half, before))[
+                0
+            ].min(axis=0)
             < 0.0
         )
         speed = dict(zip(states.actor[before[clear]].tolist(), speeds[before[clear]], strict=True))
         other_rows = order[after:end]
         other_rows = other_rows[motor[states.actor[other_rows]]]
         were = np.array([speed.get(number, np.nan) for number in states.actor[other_rows].tolist()])
-        other_rows = other_rows[speeds[other_rows] > np.maximum(were - HIT_MPS, SPIN_MPS)]
+        other_rows = other_rows[speeds[other_rows] > np.maximum(were - IMPACT_SPEED_CHANGE_MPS, SPIN_FASTEST_MPS)]
         if not len(other_rows):
             continue
         since_s = (states.t_ns[other_rows] - states.t_ns[last]) * 1e-9
-        mine = _boxes(states, half, np.full(len(other_rows), last))
-        depth = _overlap(mine, _boxes(states, half, other_rows))[0].min(axis=0)
-        if (depth > BEGIN_M + LEAVING_MPS2 / 2.0 * since_s**2).any():
-            rows[first : last + 1] |= states.t_ns[first : last + 1] >= states.t_ns[last] - HELD_NS
+        mine = _boxes_of_rows(states, half, np.full(len(other_rows), last))
+        depth = _overlaps_m(mine, _boxes_of_rows(states, half, other_rows))[0].min(axis=0)
+        if (depth > BEGIN_OVERLAP_M + LEAVING_ACCELERATION_MPS2 / 2.0 * since_s**2).any():
+            rows[first : last + 1] |= states.t_ns[first : last + 1] >= states.t_ns[last] - REPEATED_POSITION_NS
     text = (
         "tracks end with a standstill at a position from which another vehicle drives on at once, in {n} of {of} "
         "states ({ids}): these positions are repeated, not measured"
@@ -176,31 +178,33 @@ def held_tracks(states: States, actors: Actors) -> list[QualityFinding]:
 def _pairs_starting_together(states: States, actors: Actors) -> Iterator[tuple[int, int]]:
     """Yield pairs of tracks of which one starts inside the box of the other, or close before or behind it.
 
-    In the second case, only tracks with at least `COUPLED_LEAST` samples are used, which excludes many short tracks of a crowd.
+    In the second case, only tracks with at least `LEAST_COUPLED_SAMPLES` samples are used, which excludes many short tracks of a crowd.
     """
     starts, half = track_starts(states.actor), _half_sizes(states, actors)
-    may_be_coupled = np.bincount(states.actor, minlength=len(states.ids)) >= COUPLED_LEAST
+    may_be_coupled = np.bincount(states.actor, minlength=len(states.ids)) >= LEAST_COUPLED_SAMPLES
     number = np.full(len(states), -1)
     number[starts] = np.arange(len(starts))
-    for first, second in _neighbours(states, actors, starts):
+    for first, second in _possible_overlap_rows(states, actors, starts):
         # if both tracks start at this time, the pair is yielded only once
         once = (states.actor[first] != states.actor[second]) & ((number[second] < 0) | (number[second] > number[first]))
         first, second = first[once], second[once]  # noqa: PLW2901  only these pairs are used
-        mine, theirs = _boxes(states, half, first), _boxes(states, half, second)
-        coupled = may_be_coupled[states.actor[first]] & may_be_coupled[states.actor[second]] & _in_line(mine, theirs)
-        near = _deep(mine, theirs) | coupled | (_overlap(mine, theirs)[0] >= BEGIN_M).all(axis=0)
+        mine, theirs = _boxes_of_rows(states, half, first), _boxes_of_rows(states, half, second)
+        coupled = (
+            may_be_coupled[states.actor[first]] & may_be_coupled[states.actor[second]] & _are_in_line(mine, theirs)
+        )
+        near = _overlap_deeply(mine, theirs) | coupled | (_overlaps_m(mine, theirs)[0] >= BEGIN_OVERLAP_M).all(axis=0)
         yield from zip(states.actor[first[near]].tolist(), states.actor[second[near]].tolist(), strict=True)
 
 
-def _neighbours(states: States, actors: Actors, starts: Indices) -> Iterator[tuple[Indices, Indices]]:
+def _possible_overlap_rows(states: States, actors: Actors, starts: Indices) -> Iterator[tuple[Indices, Indices]]:
     """Yield pairs of rows in parts: the first row of a track, and a row of the same time whose box may overlap it along x."""
     half_m = np.hypot(actors.sizes["length_m"], actors.sizes["width_m"]) / 2.0
-    reach_m = min(2.0 * float(np.nanmax(half_m, initial=0.0)) + COUPLED_M, FARTHEST_REACH_M)
+    reach_m = min(2.0 * float(np.nanmax(half_m, initial=0.0)) + COUPLED_GAP_M, FARTHEST_OVERLAPPING_CENTRES_M)
     x = states.numbers["x_m"]
     rows, starts = np.flatnonzero(np.isfinite(x)), starts[np.isfinite(x[starts])]
     if not len(starts):
         return
-    cell = np.floor(x[rows] / reach_m).clip(-FARTHEST_CELL, FARTHEST_CELL).astype(np.int64)
+    cell = np.floor(x[rows] / reach_m).clip(-LARGEST_CELL_NUMBER, LARGEST_CELL_NUMBER).astype(np.int64)
     # one integer key for time and cell, so that neighbouring keys never belong to different times
     time = np.unique(states.t_ns[rows], return_inverse=True)[1].astype(np.int64)
     key = time * int(np.ptp(cell) + 3) + cell - cell.min()
@@ -215,7 +219,7 @@ def _neighbours(states: States, actors: Actors, starts: Indices) -> Iterator[tup
         yield np.repeat(starts[part == k], n), rows[np.repeat(begin, n) + nth]
 
 
-def _common(states: States, a: slice, b: slice) -> tuple[Indices, Indices]:
+def _rows_at_common_times(states: States, a: slice, b: slice) -> tuple[Indices, Indices]:
     """Return the rows of two tracks at their common times."""
     _, in_a, in_b = np.intersect1d(states.t_ns[a], states.t_ns[b], assume_unique=True, return_indices=True)
     return in_a + a.start, in_b + b.start
@@ -229,71 +233,73 @@ def _half_sizes(states: States, actors: Actors) -> Floats:
     return half
 
 
-def _boxes(states: States, half: Floats, rows: Indices) -> _Boxes:
+def _boxes_of_rows(states: States, half_sizes: Floats, rows: Indices) -> _Boxes:
     """Return the boxes at these states. This is called for each pair of tracks, so it must not loop over all actors."""
     x, y, yaw, vx, vy = (states.numbers[name][rows] for name in ("x_m", "y_m", "yaw_rad", "vx_mps", "vy_mps"))
-    sizes = half[:, states.actor[rows]]
+    sizes = half_sizes[:, states.actor[rows]]
     return _Boxes(np.stack([x, y]), np.stack([np.cos(yaw), np.sin(yaw)]), sizes, np.stack([vx, vy]))
 
 
-def _deep(first: _Boxes, second: _Boxes) -> Mask:
-    """Return the mask of the pairs of boxes (n) that overlap deeply (see `DEEP_SHARE`); False where a value is NaN."""
-    overlap, reach = _overlap(first, second)
-    deep: Mask = np.all(overlap >= 2.0 * DEEP_SHARE * np.minimum(first.half, reach), axis=0)
+def _overlap_deeply(first: _Boxes, second: _Boxes) -> Mask:
+    """Return the mask of the pairs of boxes (n) that overlap deeply (see `DEEP_OVERLAP_SHARE`); False where a value is NaN."""
+    overlap, reach = _overlaps_m(first, second)
+    deep: Mask = np.all(overlap >= 2.0 * DEEP_OVERLAP_SHARE * np.minimum(first.half_sizes, reach), axis=0)
     return deep
 
 
-def _in_line(first: _Boxes, second: _Boxes) -> Mask:
+def _are_in_line(first: _Boxes, second: _Boxes) -> Mask:
     """Return the mask of the pairs of boxes (n) that are close behind each other, in line, with one heading; False for NaN."""
-    overlap, reach = _overlap(first, second)
-    aside = first.half[1] + reach[1] - overlap[1]
-    ahead = first.half[0] + reach[0] - overlap[0]
-    near = (overlap[0] >= -COUPLED_M) & (aside <= COUPLED_ASIDE_M) & (ahead > aside)
-    line: Mask = near & ((first.along * second.along).sum(axis=0) > 0.95)
+    overlap, reach = _overlaps_m(first, second)
+    aside = first.half_sizes[1] + reach[1] - overlap[1]
+    ahead = first.half_sizes[0] + reach[0] - overlap[0]
+    near = (overlap[0] >= -COUPLED_GAP_M) & (aside <= COUPLED_ASIDE_M) & (ahead > aside)
+    line: Mask = near & ((first.unit_along * second.unit_along).sum(axis=0) > 0.95)
     return line
 
 
-def _coupled(first: _Boxes, second: _Boxes) -> bool:
+def _are_coupled(first: _Boxes, second: _Boxes) -> bool:
     """Return whether two tracks are coupled: close behind each other, in line, at speed in all common samples, with an overlap."""
-    line = _in_line(first, second)
-    if len(line) < COUPLED_LEAST or not line.all():
+    line = _are_in_line(first, second)
+    if len(line) < LEAST_COUPLED_SAMPLES or not line.all():
         return False
-    sunk = _overlap(first, second)[0][0] >= SUNK_M
+    sunk = _overlaps_m(first, second)[0][0] >= COUPLED_OVERLAP_M
     speeds = np.stack([np.hypot(*boxes.velocity) for boxes in (first, second)])
     return bool(sunk.any() and np.nanmedian(speeds) >= COUPLED_MPS)
 
 
-def _overlap_at_begin(first: _Boxes, second: _Boxes) -> Mask:
+def _doubtful_begin_samples(first: _Boxes, second: _Boxes) -> Mask:
     """Return the mask of the first common samples (n) with doubtful positions, because two moving tracks overlap from the start.
 
     It extends until the boxes are as far apart as they overlapped, and is empty after an impact.
     """
-    across, depth = _overlap(first, second)[0][1], _overlap(first, second)[0].min(axis=0)
+    across, depth = _overlaps_m(first, second)[0][1], _overlaps_m(first, second)[0].min(axis=0)
     speeds = np.minimum(np.hypot(*first.velocity), np.hypot(*second.velocity))
     together: Mask = np.logical_and.accumulate(depth >= 0.0)
-    if not (together.any() and depth[0] >= BEGIN_M and speeds[0] >= BEGIN_MPS) or together.all():
+    if not (together.any() and depth[0] >= BEGIN_OVERLAP_M and speeds[0] >= BEGIN_LEAST_MPS) or together.all():
         return np.zeros(len(together), np.bool_)
     until = int(together.sum()) + 1
-    hit = [np.hypot(*np.diff(boxes.velocity[:, :until])) > HIT_MPS for boxes in (first, second)]
+    hit = [np.hypot(*np.diff(boxes.velocity[:, :until])) > IMPACT_SPEED_CHANGE_MPS for boxes in (first, second)]
     # the position error may be as large as the overlap
     near: Mask = np.logical_and.accumulate(depth > -depth[together].max())
-    if across[0] <= BESIDE_SHARE * 2 * min(first.half[1][0], second.half[1][0]):
-        most = across[together].max() + BESIDE_M
+    if across[0] <= SIDE_BY_SIDE_SHARE * 2 * min(first.half_sizes[1][0], second.half_sizes[1][0]):
+        most = across[together].max() + LATERAL_NOISE_M
         near |= np.logical_and.accumulate((across <= most) & (across > -most))
     return near & ~np.any(hit)
 
 
-def _overlap(first: _Boxes, second: _Boxes) -> tuple[Floats, Floats]:
+def _overlaps_m(first: _Boxes, second: _Boxes) -> tuple[Floats, Floats]:
     """Return the overlaps (2, n) of pairs of boxes along and across the first box, negative if they are apart.
 
     Also return the half extents (2, n) of the second box in these directions.
     """
     apart = second.place - first.place
     cos, sin = (
-        (first.along * second.along).sum(axis=0),
-        first.along[0] * second.along[1] - first.along[1] * second.along[0],
+        (first.unit_along * second.unit_along).sum(axis=0),
+        first.unit_along[0] * second.unit_along[1] - first.unit_along[1] * second.unit_along[0],
     )
-    length, width = second.half
+    length, width = second.half_sizes
     reach = np.stack([length * abs(cos) + width * abs(sin), length * abs(sin) + width * abs(cos)])
-    offset = np.stack([(apart * first.along).sum(axis=0), first.along[0] * apart[1] - first.along[1] * apart[0]])
-    return first.half + reach - np.abs(offset), reach
+    offset = np.stack(
+        [(apart * first.unit_along).sum(axis=0), first.unit_along[0] * apart[1] - first.unit_along[1] * apart[0]]
+    )
+    return first.half_sizes + reach - np.abs(offset), reach

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from drivelint.drive.trace import Trace
     from drivelint.engine.batch import Drive
 
-BLOCK: Final = 20
+COPIES_PER_BLOCK: Final = 20
 """The number of copies in a block, and of the ranges that each error is drawn from."""
 
 
@@ -52,29 +52,31 @@ class MeasurementErrors:
         )
 
 
-def copies(drive: Drive, errors: MeasurementErrors, numbers: Sequence[int]) -> tuple[list[str], Drive]:
+def copies(drive: Drive, errors: MeasurementErrors, copy_numbers: Sequence[int]) -> tuple[list[str], Drive]:
     """Return the ids of the copies with these numbers, and one `Drive` with the rows of all of them; copy 0 has no errors."""
-    ids = [f"{drive.trace.drive_id}~{number:05}" for number in numbers]
+    ids = [f"{drive.trace.drive_id}~{number:05}" for number in copy_numbers]
     states = drive.trace.tables["actor_state"]
-    tables = {name: _repeated(rows, ids) for name, rows in drive.trace.tables.items()}
+    tables = {name: _rows_per_copy(rows, ids) for name, rows in drive.trace.tables.items()}
     tables["actor_state"] = replace_columns(
-        tables["actor_state"], _positions_of_copies(states, _draws(drive, errors, numbers))
+        tables["actor_state"], _positions_of_copies(states, _state_errors(drive, errors, copy_numbers))
     )
     return ids, replace(drive, trace=replace(drive.trace, drive_id=ids[0], tables=tables))
 
 
-def _repeated(rows: pa.Table, ids: Sequence[str]) -> pa.Table:
+def _rows_per_copy(rows: pa.Table, ids: Sequence[str]) -> pa.Table:
     """Return a table's rows repeated for each of these drive ids."""
     owner = pa.array(ids, pa.string()).take(np.repeat(np.arange(len(ids)), rows.num_rows))
     return replace_columns(pa.concat_tables([rows] * len(ids)), {"drive_id": owner})
 
 
-def _draws(drive: Drive, errors: MeasurementErrors, numbers: Sequence[int]) -> Floats:
+def _state_errors(drive: Drive, errors: MeasurementErrors, copy_numbers: Sequence[int]) -> Floats:
     """Return the errors of x, y (m) and clock (s) of each state, shape (copies, states, 3)."""
     tables = drive.trace.tables
     actors = pc.unique(tables["actor_state"]["actor_id"])
-    of_actor = np.stack([_standard_normal_draws(numbers, errors.seed, name) for name in actors.to_pylist()], axis=1)
-    of_map = _standard_normal_draws(numbers, errors.seed, None)[:, None, :]
+    of_actor = np.stack(
+        [_standard_normal_draws(copy_numbers, errors.seed, name) for name in actors.to_pylist()], axis=1
+    )
+    of_map = _standard_normal_draws(copy_numbers, errors.seed, None)[:, None, :]
     own = np.array([errors.position_m, errors.position_m, errors.time_s])
     common = np.array([errors.map_m, errors.map_m, 0.0])
     actor = pc.index_in(tables["actor_state"]["actor_id"], value_set=actors).to_numpy(zero_copy_only=False)
@@ -82,16 +84,19 @@ def _draws(drive: Drive, errors: MeasurementErrors, numbers: Sequence[int]) -> F
     return found
 
 
-def _standard_normal_draws(numbers: Sequence[int], seed: int, actor: str | None) -> Floats:
+def _standard_normal_draws(copy_numbers: Sequence[int], seed: int, actor: str | None) -> Floats:
     """Return draws (copies, 3) of the standard normal distribution, zeros for copy 0. `actor`: an actor's id; None: the map."""
     from scipy.special import ndtri  # imported here, because loading scipy takes longer than judging a rule
 
     key = sha256("\0".join([str(seed), "map" if actor is None else f"actor {actor}"]).encode()).digest()
     rng = np.random.Generator(np.random.PCG64(int.from_bytes(key)))
-    ranges = np.tile(np.arange(BLOCK)[:, None], (1, 3))
-    blocks = [(rng.permuted(ranges, axis=0) + rng.random((BLOCK, 3))) / BLOCK for _ in range(-(-max(numbers) // BLOCK))]
+    ranges = np.tile(np.arange(COPIES_PER_BLOCK)[:, None], (1, 3))
+    blocks = [
+        (rng.permuted(ranges, axis=0) + rng.random((COPIES_PER_BLOCK, 3))) / COPIES_PER_BLOCK
+        for _ in range(-(-max(copy_numbers) // COPIES_PER_BLOCK))
+    ]
     drawn: Floats = np.concatenate([np.zeros((1, 3)), *map(ndtri, blocks)])
-    return drawn[list(numbers)]
+    return drawn[list(copy_numbers)]
 
 
 def _positions_of_copies(states: pa.Table, draws: Floats) -> dict[str, Floats]:
@@ -103,9 +108,9 @@ def _positions_of_copies(states: pa.Table, draws: Floats) -> dict[str, Floats]:
     return found
 
 
-def renamed(trace: Trace, drive_id: str) -> Trace:
+def with_drive_id(trace: Trace, drive_id: str) -> Trace:
     """Return the trace with another drive id."""
-    tables = {name: _repeated(rows, [drive_id]) for name, rows in trace.tables.items()}
+    tables = {name: _rows_per_copy(rows, [drive_id]) for name, rows in trace.tables.items()}
     return replace(trace, drive_id=drive_id, tables=tables)
 
 

@@ -25,11 +25,11 @@ import duckdb
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from drivelint.engine.batch import BATCH_STATES, are_large
+from drivelint.engine.batch import BATCH_STATES, have_many_states
 from drivelint.engine.derive import derive
 from drivelint.engine.robustness.copies import copies
-from drivelint.engine.robustness.question import N_COPIES, Outcome, Question, breach, grouped_by_weight
-from drivelint.engine.robustness.window import SIZES, Window, cut, windows
+from drivelint.engine.robustness.question import N_COPIES, Outcome, Question, drive_ego_and_rule, grouped_by_weight
+from drivelint.engine.robustness.window import N_WINDOW_SIZES, Window, set_extents, windows_to_judge
 from drivelint.errors import DriveLintError, RuleError
 from drivelint.evaluate import evaluate
 from drivelint.sql import store
@@ -40,24 +40,25 @@ if TYPE_CHECKING:
 
     from drivelint.catalogue import Rule
     from drivelint.engine.batch import Drive
-    from drivelint.engine.memory import Memory
+    from drivelint.engine.memory import MemoryLimit
     from drivelint.engine.robustness.copies import MeasurementErrors
     from drivelint.evaluate.limits import RuleLimits
 
 SAME_REFERENCE_NS: Final = 2_000_000_000
 """Reference points of a drive and of its copy are the same if they are at most this far apart."""
-HASTY_STATES: Final = 10_000
+MOST_STATES_FOR_ONE_PASS: Final = 10_000
 """If the additional copies have at most this many states, all copies are judged in one pass. They cost a quarter of the fixed cost of a
 second pass."""
-_DERIVED: Final = ("clock", "step", "ego_state", "pair", "ego_condition")
+_TABLES_OF_EVALUATION: Final = ("clock", "step", "ego_state", "pair", "ego_condition")
 """Tables that the evaluation itself reads, except those that only unknown verdicts need."""
-_HANDED_OVER: Final = frozenset({"capability", "registration"})
+_COPIED_TABLES: Final = frozenset({"capability", "registration"})
 
 
-class Robustness:
+class RobustnessJudge:
     """Judges copies in the database of a session.
 
-    `load` fills the database with drives, `forget` deletes the rows of drives. `of_all`: judge copies for all critical and major findings.
+    `load` fills the database with drives, `forget_excesses` deletes the rows of drives. `of_all`: judge copies for all critical and major
+    findings.
     """
 
     def __init__(
@@ -67,7 +68,7 @@ class Robustness:
         params: Mapping[str, Mapping[str, object]],
         *,
         errors: MeasurementErrors,
-        memory: Memory,
+        memory: MemoryLimit,
         load: Callable[[Sequence[Drive]], None],
         forget: Callable[[Sequence[str]], None],
         limits: RuleLimits,
@@ -82,7 +83,7 @@ class Robustness:
         self._load = load
         self._forget = forget
         self._limits = limits
-        self._limits.memory = memory.most_growth
+        self._limits.memory = memory.most_growth_bytes
         self._is_stopped = is_stopped
         self._of_all = of_all
         self._waiting: dict[str, Drive] = {}
@@ -102,7 +103,7 @@ class Robustness:
         """The number of drives whose copies are not judged yet."""
         return len(self._waiting)
 
-    def n_asked(self) -> int:
+    def n_first_findings(self) -> int:
         """Return the number of findings of the waiting drives for which copies are judged first."""
         questions = self._questions(self._waiting)
         gravest, near, _ = grouped_by_weight(questions)
@@ -122,63 +123,75 @@ class Robustness:
             return
         self._advance = advance or (lambda _: None)
         questions = self._questions(by_id)
-        cut(questions)  # of all findings, so that the windows do not depend on which of them are judged
+        set_extents(questions)  # of all findings, so that the windows do not depend on which of them are judged
         gravest, near, others = grouped_by_weight(questions)
         most_states = BATCH_STATES
-        if are_large(by_id.values()):
+        if have_many_states(by_id.values()):
             self._memory.release()
             most_states //= 2
-        self._settle(by_id, questions if self._of_all else [*gravest, *near], most_states)
-        doubtful = {breach(question) for question in gravest if not question.is_sure}
-        self._settle(by_id, [question for question in others if breach(question) in doubtful], most_states)
-        self._answer([q for q in questions if q.n_copies and q.is_settled])
+        self._judge_until_settled(by_id, questions if self._of_all else [*gravest, *near], most_states)
+        doubtful = {drive_ego_and_rule(question) for question in gravest if not question.is_sure}
+        self._judge_until_settled(
+            by_id, [question for question in others if drive_ego_and_rule(question) in doubtful], most_states
+        )
+        self._write_counts([q for q in questions if q.n_copies and q.is_settled])
 
-    def _settle(self, drives: Mapping[str, Drive], questions: Sequence[Question], most_states: int) -> None:
+    def _judge_until_settled(
+        self, drives: Mapping[str, Drive], questions: Sequence[Question], most_states: int
+    ) -> None:
         """Judge copies until all questions are settled, no larger window is left, or the run is stopped."""
         open_ = questions
         while open_ and not self._is_stopped():
-            chunks = _chunks(_windows(drives, open_), most_states)
+            chunks = _groups_of_windows(_next_windows(drives, open_), most_states)
             for chunk in takewhile(lambda _chunk: not self._is_stopped(), chunks):
-                self._try(chunk)
-            left = [q for q in open_ if q.size < SIZES and not q.is_settled]
+                self._judge_windows(chunk)
+            left = [q for q in open_ if q.size < N_WINDOW_SIZES and not q.is_settled]
             self._advance(len(open_) - len(left))
             open_ = left
 
-    def _try(self, chunk: Sequence[Window]) -> None:
+    def _judge_windows(self, chunk: Sequence[Window]) -> None:
         """Judge windows together; if that fails, judge them one by one, so that only the faulty window gets no result."""
         try:
             with store.uniform_memory_errors():
-                found = self._stays(chunk)
+                found = self._outcomes_by_window(chunk)
         except (DriveLintError, duckdb.Error, MemoryError, pa.ArrowException) as error:
             if len(chunk) > 1:
                 for window in chunk:
-                    self._try([window])
+                    self._judge_windows([window])
                 return
             if isinstance(error, duckdb.OutOfMemoryException) and self._memory.lift_limit():
-                self._try(chunk)
+                self._judge_windows(chunk)
                 return
             for question in chunk[0].questions:
-                question.restart(SIZES)
+                question.restart_with_size(N_WINDOW_SIZES)
             return
         for window, outcomes in zip(chunk, found, strict=True):
             for question in window.questions:
                 outcome = outcomes.get(id(question), Outcome())
                 question.add_copies(window.numbers, outcome.margins, outcome.passes)
 
-    def _stays(self, chunk: Sequence[Window]) -> list[dict[int, Outcome]]:
+    def _outcomes_by_window(self, chunk: Sequence[Window]) -> list[dict[int, Outcome]]:
         """Judge the copies of the windows, and return for each window: id of the question -> outcome."""
-        made = [copies(window.part(f"{no:05}"), self._errors, window.numbers) for no, window in enumerate(chunk)]
+        made = [
+            copies(window.part_with_suffix(f"{no:05}"), self._errors, window.numbers) for no, window in enumerate(chunk)
+        ]
         asked = [(no, question) for no, window in enumerate(chunk) for question in window.questions]
         rules = {question.rule.id: question.rule for _, question in asked}
         reads = {table for rule in rules.values() for table in rule.reads}
         with store.one_thread(self._con), ExitStack() as undo:
             undo.callback(self._forget, [name for ids, _ in made for name in ids])
             self._load([many for _, many in made])
-            for name, rows in _input_rows(chunk, [ids for ids, _ in made]).items():
-                self._con.register(name, pa.Table.from_pylist(rows, schema=_schema(rows[0])))
+            for name, rows in _copy_and_question_rows(chunk, [ids for ids, _ in made]).items():
+                self._con.register(name, pa.Table.from_pylist(rows, schema=_schema_of_columns(rows[0])))
                 undo.callback(self._con.unregister, name)
             self._con.execute(statement("robustness/capability"))
-            derive(self._con, reads, of_the_map=False, also=_DERIVED, filled_tables=_HANDED_OVER)
+            derive(
+                self._con,
+                reads,
+                are_map_tables=False,
+                always_needed_tables=_TABLES_OF_EVALUATION,
+                filled_tables=_COPIED_TABLES,
+            )
             judged = [rules[name] for name in sorted(rules)]
             params = {r.id: self._params[r.id] for r in judged if r.id in self._params}
             evaluate(self._con, judged, params, may_retry=True, limits=self._limits)
@@ -198,7 +211,7 @@ class Robustness:
                 outcome.passes.add(copy_no)
         return found
 
-    def _answer(self, questions: Sequence[Question]) -> None:
+    def _write_counts(self, questions: Sequence[Question]) -> None:
         if not questions:
             return
         rows = [
@@ -214,18 +227,20 @@ class Robustness:
         self._con.unregister("_answer")
 
 
-def _windows(drives: Mapping[str, Drive], questions: Sequence[Question]) -> list[Window]:
+def _next_windows(drives: Mapping[str, Drive], questions: Sequence[Question]) -> list[Window]:
     """Return the windows to judge next, with all copies at once if that costs less than another pass."""
-    found = windows(drives, questions, N_COPIES)
+    found = windows_to_judge(drives, questions, N_COPIES)
     more = sum(window.n_states * (N_COPIES[-1] // len(window.numbers)) for window in found if window.numbers[1] == 1)
-    if more > HASTY_STATES:
+    if more > MOST_STATES_FOR_ONE_PASS:
         return found
     for question in questions:
         question.is_hasty = True
-    return windows(drives, questions, N_COPIES)
+    return windows_to_judge(drives, questions, N_COPIES)
 
 
-def _input_rows(chunk: Sequence[Window], ids: Sequence[Sequence[str]]) -> dict[str, list[dict[str, object]]]:
+def _copy_and_question_rows(
+    chunk: Sequence[Window], ids: Sequence[Sequence[str]]
+) -> dict[str, list[dict[str, object]]]:
     """Return the rows of the tables `_copy` and `_question`: the copies and the findings to search in them, by window."""
     copies_ = [
         {"window_id": no, "copy_id": name, "copy_no": number, "drive_id": window.drive_id, "ego_id": window.ego_id}
@@ -249,12 +264,13 @@ def _input_rows(chunk: Sequence[Window], ids: Sequence[Sequence[str]]) -> dict[s
     return {"_copy": copies_, "_question": findings}
 
 
-def _chunks(windows: Sequence[Window], most_states: int) -> Iterator[list[Window]]:
-    """Yield groups of windows whose copies have at most `most_states` states; larger windows are split into parts with fewer copies."""
+def _groups_of_windows(windows: Sequence[Window], most_states_per_group: int) -> Iterator[list[Window]]:
+    """Yield groups of windows whose copies have at most `most_states_per_group` states; larger windows are split into parts with fewer
+    copies."""
     chunk: list[Window] = []
     n_states = 0
-    for window in (part for whole in windows for part in whole.parts(most_states)):
-        if chunk and n_states + window.n_states > most_states:
+    for window in (part for whole in windows for part in whole.split_by_copies(most_states_per_group)):
+        if chunk and n_states + window.n_states > most_states_per_group:
             yield chunk
             chunk, n_states = [], 0
         chunk.append(window)
@@ -263,7 +279,7 @@ def _chunks(windows: Sequence[Window], most_states: int) -> Iterator[list[Window
         yield chunk
 
 
-def _schema(row: Mapping[str, object]) -> pa.Schema:
+def _schema_of_columns(row: Mapping[str, object]) -> pa.Schema:
     """Return the schema of a table by the names of its columns, because all values of a column may be NULL."""
     texts = {"copy_id", "drive_id", "ego_id", "rule_id", "profile", "object_id"}
     kinds = {"any_object": pa.bool_(), **dict.fromkeys(texts, pa.string())}

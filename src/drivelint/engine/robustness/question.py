@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from drivelint.engine.robustness.window import span
+from drivelint.engine.robustness.window import window_span_ns
 from drivelint.sql.derivations import tables_with_sources
 
 if TYPE_CHECKING:
@@ -23,13 +23,13 @@ N_COPIES: Final = (20, 32, 100)
 32 suffice if all keep the finding. If the true share of copies that keep it is 90 %, all of 32 keep it with a probability of 3.4 %, and at
 least 95 of 100 with 2.4 %; if it is 93 %, with 10 % and 25 %. 20 is the block size of `copies`: a block has errors from the smallest to
 the largest."""
-FAR_SPREADS: Final = 5.0
+FAR_STANDARD_DEVIATIONS: Final = 5.0
 """20 copies suffice if all keep the finding, and the mean of their margins is at least this many standard deviations from 0."""
 LEAST_KEEPING_SHARE: Final = 0.95
 """A finding is only possible if less than this share of its copies keep it (see `result.certainty`)."""
 SMALL_MARGIN: Final = {"m": 0.3, "s": 0.1}
 """Unit -> margin up to which a finding is near the threshold: errors of a decimetre may remove it, so all copies are judged."""
-NOT_FAR: Final = 10.0
+NOT_FAR_MULTIPLE: Final = 10.0
 """For margins below this multiple of `SMALL_MARGIN`, 20 copies will probably not suffice."""
 
 
@@ -40,7 +40,8 @@ class Question:
     finding: dict[str, Any]
     rule: Rule
     size: int = 0
-    """The judged window: 0, some seconds around the worst step; 1 and 2, larger ones; `SIZES`: none is left, so there is no count."""
+    """The judged window: 0, some seconds around the worst step; 1 and 2, larger ones; `N_WINDOW_SIZES`: none is left, so there is no
+    count."""
     ends_early: bool = True
     """Stop judging copies as soon as the finding is only possible. False: the user gave a confidence, which needs all copies."""
     n_copies: int = 0
@@ -56,29 +57,29 @@ class Question:
     """The times and actors of the current window; None: it was not cut yet."""
 
     @cached_property
-    def of_overtake(self) -> bool:
+    def is_about_overtakes(self) -> bool:
         """Whether the finding's rule is about overtakes."""
         return "overtake" in tables_with_sources(self.rule.reads)
 
     @property
     def is_near(self) -> bool:
         """Whether the margin is so small that errors of a decimetre may remove the finding."""
-        return self._is_within(1.0)
+        return self._is_margin_within(1.0)
 
-    def _is_within(self, share: float) -> bool:
+    def _is_margin_within(self, share: float) -> bool:
         margin = self.finding["margin"]
         return margin is not None and abs(margin) <= share * SMALL_MARGIN.get(self.rule.unit or "", 0.0)
 
     @property
-    def numbers(self) -> range:
+    def next_copy_numbers(self) -> range:
         """The numbers of the copies to judge next."""
         goal = N_COPIES[-1] if self.is_hasty else next((n for n in N_COPIES if n > self.n_copies), N_COPIES[-1])
-        return range(self.n_copies + 1, max(goal, self._n_first) + 1)
+        return range(self.n_copies + 1, max(goal, self._n_copies_in_first_pass) + 1)
 
     @property
-    def _n_first(self) -> int:
+    def _n_copies_in_first_pass(self) -> int:
         """The number of copies in the first pass: 32 if 20 will probably not suffice."""
-        return N_COPIES[self.finding["margin"] is None or self._is_within(NOT_FAR)]
+        return N_COPIES[self.finding["margin"] is None or self._is_margin_within(NOT_FAR_MULTIPLE)]
 
     @property
     def is_settled(self) -> bool:
@@ -90,15 +91,15 @@ class Question:
             return True
         if self.n_stays < self.n_copies or self.is_near or self.is_doubtful:
             return False
-        return self.n_copies >= (few if self._is_far else more)
+        return self.n_copies >= (few if self._are_margins_far_from_zero else more)
 
     @property
-    def _is_far(self) -> bool:
+    def _are_margins_far_from_zero(self) -> bool:
         """Whether the margins of the copies are far from 0."""
         known = [margin for margin in self.margins if margin is not None]
         if len(known) < max(len(self.margins), N_COPIES[0]):
             return False
-        return abs(float(np.mean(known))) >= FAR_SPREADS * float(np.std(known))
+        return abs(float(np.mean(known))) >= FAR_STANDARD_DEVIATIONS * float(np.std(known))
 
     @property
     def is_sure(self) -> bool:
@@ -110,27 +111,27 @@ class Question:
     ) -> None:
         """Add the results of a window of the drive that was judged in several copies.
 
-        `numbers`: the numbers of the copies; the first is 0, the copy without measuring errors. `margins`: number -> margin, for copies
-        that keep the finding. `passes`: numbers of the copies in which the worst step passes.
+        `next_copy_numbers`: the numbers of the copies; the first is 0, the copy without measuring errors. `margins`: number -> margin, for
+        copies that keep the finding. `passes`: numbers of the copies in which the worst step passes.
         """
         if numbers[1] != self.n_copies + 1 or self.is_settled:
             return  # the window of the copies before these failed, or the question is settled
         margin, whole = self.finding["margin"], margins.get(0)
         same = 0 in margins and (margin is None or (whole is not None and abs(whole - margin) < 1e-6))
         if not same:
-            self.restart(self.size + 1)
-        elif self._is_whole or self._is_decided(numbers, {*margins, *passes}, len(margins) - 1):
+            self.restart_with_size(self.size + 1)
+        elif self._has_all_steps_of_finding or self._is_decided(numbers, {*margins, *passes}, len(margins) - 1):
             self.n_copies = numbers[-1]
             self.n_stays += len(margins) - 1
             self.margins += [margin for number, margin in margins.items() if number]
         else:
-            self.restart(self.size + 1)
+            self.restart_with_size(self.size + 1)
             self.is_doubtful = True
 
     @property
-    def _is_whole(self) -> bool:
+    def _has_all_steps_of_finding(self) -> bool:
         """Whether the window contains every step that can keep the finding; the first window may have only a part of a stretch."""
-        start, end = span(self)
+        start, end = window_span_ns(self)
         whole = start <= self.finding["t_start_ns"] and end >= self.finding["t_end_ns"]
         return self.size > 0 or self.finding["t_ref_ns"] is not None or whole
 
@@ -139,8 +140,8 @@ class Question:
         may_stay = self.n_stays + n_stays + len(set(numbers) - set(conclusive_copies)) + N_COPIES[-1] - numbers[-1]
         return set(conclusive_copies) >= set(numbers) or may_stay < LEAST_KEEPING_SHARE * N_COPIES[-1]
 
-    def restart(self, size: int) -> None:
-        """Discard the results, and continue with this size of window; with the size `SIZES`, the finding gets no count."""
+    def restart_with_size(self, size: int) -> None:
+        """Discard the results, and continue with this size of window; with the size `N_WINDOW_SIZES`, the finding gets no count."""
         self.size, self.n_copies, self.n_stays, self.margins, self.extent = size, 0, 0, [], None
 
 
@@ -152,7 +153,7 @@ class Outcome:
     passes: set[int] = field(default_factory=set)
 
 
-def breach(question: Question) -> tuple[str, ...]:
+def drive_ego_and_rule(question: Question) -> tuple[str, ...]:
     """Return the drive, ego and rule of a finding."""
     return tuple(question.finding[key] for key in ("drive_id", "ego_id", "rule_id"))
 
@@ -162,6 +163,6 @@ def grouped_by_weight(questions: Sequence[Question]) -> tuple[list[Question], li
     remaining ones."""
     gravest: dict[tuple[str, ...], Question] = {}
     for question in sorted(questions, key=lambda q: np.nan_to_num(q.finding["margin"] or np.nan, nan=np.inf)):
-        gravest.setdefault(breach(question), question)
-    others = [question for question in questions if gravest[breach(question)] is not question]
+        gravest.setdefault(drive_ego_and_rule(question), question)
+    others = [question for question in questions if gravest[drive_ego_and_rule(question)] is not question]
     return list(gravest.values()), [q for q in others if q.is_near], [q for q in others if not q.is_near]

@@ -12,38 +12,38 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from drivelint.arrays import floats, replace_columns
-from drivelint.engine.robustness.copies import crop, renamed
+from drivelint.engine.robustness.copies import crop, with_drive_id
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from drivelint.engine.batch import Drive
 
-SIZES: Final = 3
+N_WINDOW_SIZES: Final = 3
 """The number of window sizes. Size 0 is some seconds around the worst step; sizes 1 and 2 are larger, if that is not enough."""
-NEAR_M: Final = (10.0, 25.0, 100.0)
+NEAR_ACTOR_M_BY_SIZE: Final = (10.0, 25.0, 100.0)
 """For each size: actors that are always farther than this from the ego, along x or y, are left out."""
-SHORT_NS: Final = 3_000_000_000
+LONGEST_WHOLE_STRETCH_NS: Final = 3_000_000_000
 """The first window contains the whole stretch of a finding that is at most this long."""
-LONG_NS: Final = 10_000_000_000
+SIZE_1_AROUND_STEP_NS: Final = 10_000_000_000
 """A window of size 1 is limited to this time before and after the worst step of a stretch."""
 
 
-class Around(NamedTuple):
+class TimeAround(NamedTuple):
     """The time in nanoseconds by which a window of size 0 extends before the first of its steps and after the last."""
 
     before_ns: int
     after_ns: int
 
 
-AT_STEP: Final = Around(1_000_000_000, 600_000_000)
+AROUND_STEP: Final = TimeAround(1_000_000_000, 600_000_000)
 """The window around the worst step of an invariant."""
-AT_REFERENCE: Final = Around(2_000_000_000, 2_000_000_000)
+AROUND_REFERENCE: Final = TimeAround(2_000_000_000, 2_000_000_000)
 """The window around the reference point and the worst step, for rules with reference points."""
-IN_OVERTAKE: Final = Around(3_000_000_000, 2_000_000_000)
+AROUND_STEP_OF_OVERTAKE: Final = TimeAround(3_000_000_000, 2_000_000_000)
 """The window around the worst step of an invariant about overtakes, which are detected by the ego's lane before them."""
-AT_OVERTAKE: Final = Around(3_000_000_000, 6_000_000_000)
-"""The same as `AT_REFERENCE`, for rules about overtakes."""
+AROUND_REFERENCE_OF_OVERTAKE: Final = TimeAround(3_000_000_000, 6_000_000_000)
+"""The same as `AROUND_REFERENCE`, for rules about overtakes."""
 
 
 class FindingWithCopies(Protocol):
@@ -55,12 +55,12 @@ class FindingWithCopies(Protocol):
     """The times and actors of its window; None: the window was not cut yet."""
 
     @property
-    def of_overtake(self) -> bool:
+    def is_about_overtakes(self) -> bool:
         """Whether the finding's rule is about overtakes."""
         ...
 
     @property
-    def numbers(self) -> range:
+    def next_copy_numbers(self) -> range:
         """The numbers of the copies to judge next."""
         ...
 
@@ -74,16 +74,16 @@ class Extent:
     size: int
     objects: set[str]
     """The objects of the findings in the window."""
-    at_once: bool
+    is_near_at_same_time: bool
     """Whether an actor is near only if it is close to the ego at the same time. False: if it is close to any part of the ego's path."""
 
     def add(self, question: FindingWithCopies) -> None:
         """Include the window of this finding, and set the finding's extent."""
-        start, end = span(question)
+        start, end = window_span_ns(question)
         self.from_ns, self.to_ns = min(self.from_ns, start), max(self.to_ns, end)
         if question.finding["object_id"]:
             self.objects.add(question.finding["object_id"])
-        self.at_once &= question.size == 0 and not question.of_overtake
+        self.is_near_at_same_time &= question.size == 0 and not question.is_about_overtakes
         question.extent = self
 
 
@@ -104,41 +104,41 @@ class Window:
         return self.drive.trace.drive_id
 
     @cached_property
-    def _part(self) -> Drive:
-        part = crop(self.drive, self.extent.from_ns, self.extent.to_ns, self._near())
+    def _part_of_drive(self) -> Drive:
+        part = crop(self.drive, self.extent.from_ns, self.extent.to_ns, self._actors_near_ego())
         is_ego = pc.equal(part.trace.tables["actor"]["actor_id"], self.ego_id)
         actors = replace_columns(part.trace.tables["actor"], {"is_ego": is_ego.combine_chunks()})
         return replace(part, trace=replace(part.trace, tables={**part.trace.tables, "actor": actors}))
 
-    def part(self, name: str) -> Drive:
+    def part_with_suffix(self, name: str) -> Drive:
         """Return the part as a drive whose id is that of the whole drive with this suffix."""
-        return replace(self._part, trace=renamed(self._part.trace, f"{self.drive_id}~{name}"))
+        return replace(self._part_of_drive, trace=with_drive_id(self._part_of_drive.trace, f"{self.drive_id}~{name}"))
 
     @property
     def n_states(self) -> int:
         """The number of rows of `actor_state` of all copies."""
-        return self._part.n_states * len(self.numbers)
+        return self._part_of_drive.n_states * len(self.numbers)
 
-    def parts(self, most_states: int) -> Iterator[Window]:
+    def split_by_copies(self, most_states: int) -> Iterator[Window]:
         """Yield the window split into parts with fewer copies, each with at most `most_states` states if that is possible."""
-        at_once = max(1, most_states // max(1, self._part.n_states) - 1)
+        at_once = max(1, most_states // max(1, self._part_of_drive.n_states) - 1)
         for start in range(1, len(self.numbers), at_once):
             yield replace(self, numbers=(0, *self.numbers[start : start + at_once]))
 
-    def _near(self) -> set[str]:
+    def _actors_near_ego(self) -> set[str]:
         """Return the ego, the objects of the findings, and the actors near the ego; an actor at an unknown position counts as near."""
         states, extent = self.drive.trace.tables["actor_state"], self.extent
         t_ns = states["t_ns"].to_numpy()
         rows = np.flatnonzero((t_ns >= extent.from_ns) & (t_ns <= extent.to_ns))
         t_ns, actors = t_ns[rows], states["actor_id"].take(rows)
         own = pc.equal(actors, self.ego_id).to_numpy(zero_copy_only=False)
-        near, beyond = np.ones(len(rows), dtype=bool), NEAR_M[extent.size]
+        near, beyond = np.ones(len(rows), dtype=bool), NEAR_ACTOR_M_BY_SIZE[extent.size]
         for axis in ("x_m", "y_m"):
             place = floats(states[axis])[rows]
             known = np.flatnonzero(own & np.isfinite(place))
             if len(known):
                 lowest, highest = place[known].min(), place[known].max()
-                if extent.at_once:
+                if extent.is_near_at_same_time:
                     known = known[np.argsort(t_ns[known], kind="stable")]
                     lowest = highest = np.interp(t_ns, t_ns[known], place[known])
                 near &= ~((place < lowest - beyond) | (place > highest + beyond))
@@ -146,53 +146,62 @@ class Window:
         return found | extent.objects | {self.ego_id}
 
 
-def windows(drives: Mapping[str, Drive], questions: Sequence[FindingWithCopies], goals: Sequence[int]) -> list[Window]:
+def windows_to_judge(
+    drives: Mapping[str, Drive], questions: Sequence[FindingWithCopies], goals: Sequence[int]
+) -> list[Window]:
     """Return the windows to judge next for these findings, those with the lowest copy numbers first.
 
     Overlapping windows of one ego are merged. The copy numbers are split after each of the `goals`, so that merged windows have the same
     ones. Each window also has copy 0.
     """
-    cut([question for question in questions if question.extent is None])
+    set_extents([question for question in questions if question.extent is None])
     found: dict[tuple[Any, ...], Window] = {}
     for question in questions:
         drive_id, ego_id, extent = question.finding["drive_id"], question.finding["ego_id"], question.extent
         if extent is None:
             continue
-        for numbers in _parts(question.numbers, goals):
+        for numbers in _ranges_by_goal(question.next_copy_numbers, goals):
             key = (numbers.start, drive_id, ego_id, extent.size, extent.from_ns, extent.to_ns, numbers)
             window = found.setdefault((*key, id(extent)), Window(drives[drive_id], ego_id, (0, *numbers), extent, []))
             window.questions.append(question)
     return [found[key] for key in sorted(found, key=lambda key: key[:-2])]
 
 
-def cut(questions: Sequence[FindingWithCopies]) -> None:
+def set_extents(questions: Sequence[FindingWithCopies]) -> None:
     """Set the extent of each finding; findings of one ego, of the same size and kind, share it if their windows overlap."""
     last: dict[tuple[object, ...], Extent] = {}
-    for question in sorted(questions, key=lambda each: (each.finding["drive_id"], each.finding["ego_id"], span(each))):
-        key = (question.finding["drive_id"], question.finding["ego_id"], question.size, question.of_overtake)
-        start, end = span(question)
+    for question in sorted(
+        questions, key=lambda each: (each.finding["drive_id"], each.finding["ego_id"], window_span_ns(each))
+    ):
+        key = (question.finding["drive_id"], question.finding["ego_id"], question.size, question.is_about_overtakes)
+        start, end = window_span_ns(question)
         if key not in last or start > last[key].to_ns:
-            last[key] = Extent(start, end, question.size, set(), at_once=True)
+            last[key] = Extent(start, end, question.size, set(), is_near_at_same_time=True)
         last[key].add(question)
 
 
-def _parts(numbers: range, goals: Sequence[int]) -> list[range]:
+def _ranges_by_goal(numbers: range, goals: Sequence[int]) -> list[range]:
     """Return the numbers as several ranges, split after each goal."""
     cuts = [goal + 1 for goal in goals if numbers.start < goal + 1 < numbers.stop]
     return [range(*ends) for ends in pairwise((numbers.start, *cuts, numbers.stop))]
 
 
-def span(question: FindingWithCopies) -> tuple[int, int]:
+def window_span_ns(question: FindingWithCopies) -> tuple[int, int]:
     """Return the start and end (ns) of a finding's window, by its size, the kind of rule, and the finding's times."""
     finding, ref, worst = question.finding, question.finding["t_ref_ns"], question.finding["t_worst_ns"]
     if question.size == 0:
         steps = (worst,) if ref is None else (ref, worst)
-        around = (AT_STEP, IN_OVERTAKE) if ref is None else (AT_REFERENCE, AT_OVERTAKE)
-        before, after = around[question.of_overtake]
-        if ref is None and finding["t_end_ns"] - finding["t_start_ns"] <= SHORT_NS:
+        around = (
+            (AROUND_STEP, AROUND_STEP_OF_OVERTAKE) if ref is None else (AROUND_REFERENCE, AROUND_REFERENCE_OF_OVERTAKE)
+        )
+        before, after = around[question.is_about_overtakes]
+        if ref is None and finding["t_end_ns"] - finding["t_start_ns"] <= LONGEST_WHOLE_STRETCH_NS:
             steps = (finding["t_start_ns"], finding["t_end_ns"])
         return min(steps) - before, max(steps) + after
-    start, end = max(finding["t_start_ns"], worst - LONG_NS), min(finding["t_end_ns"], worst + LONG_NS)
+    start, end = (
+        max(finding["t_start_ns"], worst - SIZE_1_AROUND_STEP_NS),
+        min(finding["t_end_ns"], worst + SIZE_1_AROUND_STEP_NS),
+    )
     before, after = 2_000_000_000, 1_000_000_000
     if ref is not None:
         start, end = min(ref, finding["t_start_ns"]), max(ref, finding["t_end_ns"])

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.drive.trace import ASSUMED_SIZE, QualityFinding
+from drivelint.drive.trace import ASSUMED_SIZE_CHECK, QualityFinding
 from drivelint.formats.coordinate_frames import Poses
 
 if TYPE_CHECKING:
@@ -39,4 +39,4 @@ def box_centres(x_m: Floats, y_m: Floats, yaw_rad: Floats) -> tuple[Floats, Floa
 def assumed_size_finding(ego_id: str) -> QualityFinding:
     """Return the finding that the ego's size is assumed, not recorded."""
     message = "size of Argoverse's Ford Fusion from its documentation, not recorded"
-    return QualityFinding(ASSUMED_SIZE, "info", message, actor_id=ego_id)
+    return QualityFinding(ASSUMED_SIZE_CHECK, "info", message, actor_id=ego_id)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from drivelint.drive.trace import LEAST_UTC_NS
+from drivelint.drive.trace import EARLIEST_UTC_NS
 from drivelint.errors import TraceError
 from drivelint.formats.d123.arrow_files import integers
 
@@ -49,4 +49,4 @@ def clock_from_times(folder: Path, time_columns: Iterable[pa.Array], *, utc: boo
         raise TraceError(
             f"{folder}: times from {low} to {high} us: the clock or its unit is wrong: convert the log again"
         )
-    return Clock(0 if utc or high * 1000 < LEAST_UTC_NS else low)
+    return Clock(0 if utc or high * 1000 < EARLIEST_UTC_NS else low)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 import numpy as np
 import pyarrow as pa
 
-from drivelint.drive.trace import ACTOR_CLASSES, ASSUMED_SIZE, SIZE_COLUMNS, STATE_COLUMNS, QualityFinding, States
+from drivelint.drive.trace import ACTOR_CLASSES, ASSUMED_SIZE_CHECK, SIZE_COLUMNS, STATE_COLUMNS, QualityFinding, States
 from drivelint.errors import TraceError
 from drivelint.formats.coordinate_frames import Poses, rotated, unit_quaternions
 from drivelint.formats.d123.arrow_files import EGO_STATE, is_null, read_modality, vectors
@@ -82,7 +82,7 @@ def ego_box(
     elif not about.ego_size_recorded and not np.isnan(sizes[:2]).any():
         model = entries.get("vehicle_name") or "its model"
         message = f"the ego's size is the size that 123D states for {model}, not recorded"
-        findings.append(QualityFinding(ASSUMED_SIZE, "info", message, actor_id=name))
+        findings.append(QualityFinding(ASSUMED_SIZE_CHECK, "info", message, actor_id=name))
     return EgoBox(centre[:3], centre[[4, 5, 6, 3]], sizes), findings
 
 

@@ -12,7 +12,14 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from drivelint.drive.trace import ACTOR_CLASSES, ASSUMED_MOTION, ASSUMED_SIZE, QualityFinding, Recording, States
+from drivelint.drive.trace import (
+    ACTOR_CLASSES,
+    ASSUMED_MOTION_CHECK,
+    ASSUMED_SIZE_CHECK,
+    QualityFinding,
+    Recording,
+    States,
+)
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats.film import boxes
 from drivelint.formats.film import mapping as video_mapping
@@ -83,8 +90,8 @@ def read(probe: Probe) -> Recording:
     message = (
         f"mapping {stem!r} assumes {assumed}; only distances ahead are measured: all other rules judge assumed values"
     )
-    findings.append(QualityFinding(ASSUMED_MOTION, "warning", message))
-    findings.append(QualityFinding(ASSUMED_SIZE, "info", f"size from the mapping {stem!r}, not recorded"))
+    findings.append(QualityFinding(ASSUMED_MOTION_CHECK, "warning", message))
+    findings.append(QualityFinding(ASSUMED_SIZE_CHECK, "info", f"size from the mapping {stem!r}, not recorded"))
     recording = Recording(stem, states, ego_ids=[film.ego.id], findings=findings)
     recording.embedded_map = _assumed_road_xml(film, egos_x)
     recording.sensor_range_m = film.sensor_range_m

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final, TypeVar
 
-from drivelint.drive.lost_time import LATEST_NS
+from drivelint.drive.lost_time import LATEST_CREDIBLE_NS
 from drivelint.formats.mcap.reader import MessageError
 
 if TYPE_CHECKING:
@@ -28,8 +28,8 @@ def decode_readable(
     """
 
     def decode_timed(some: list[LogMessage]) -> T:
-        if max(log_message.log_time_ns for log_message in some) > LATEST_NS:
-            late = next(log_message for log_message in some if log_message.log_time_ns > LATEST_NS)
+        if max(log_message.log_time_ns for log_message in some) > LATEST_CREDIBLE_NS:
+            late = next(log_message for log_message in some if log_message.log_time_ns > LATEST_CREDIBLE_NS)
             raise late.error(container.path, "its log time is not in this or the next century")
         return decode(some)
 

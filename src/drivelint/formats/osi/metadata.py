@@ -15,7 +15,7 @@ import numpy as np
 import pyarrow as pa
 
 from drivelint.drive import conditions
-from drivelint.drive.trace import FOUND_ANEW, SIZE_COLUMNS, QualityFinding
+from drivelint.drive.trace import CHECKS_REPEATED_AT_READING, SIZE_COLUMNS, QualityFinding
 from drivelint.errors import TraceError
 from drivelint.sql.words import vocabularies
 
@@ -90,7 +90,7 @@ def metadata_records(trace: Trace, osi_ids: Mapping[str, int], *, as_recorded: b
         "conditions": holds or None, "map_offset_m": trace.map_offset,
         "sensor_range_m": log["sensor_range_m"], "utc_start_ns": log["utc_start_ns"],
         "geo_reference": trace.geo_reference, "geo_offset": trace.geo_offset if trace.geo_reference else None,
-        "as_recorded": as_recorded or None, "nobody_ns": trace.nobody_ns.tolist() or None,
+        "as_recorded": as_recorded or None, "nobody_ns": trace.times_without_actors_ns.tolist() or None,
     }  # fmt: skip
     trace_facts |= {name: value for name, value in optional.items() if value is not None}
     actors = trace.tables["actor"].drop_columns("drive_id").to_pylist()
@@ -169,7 +169,7 @@ def _apply_trace_record(path: Path, facts: _TraceRecord, recording: Recording) -
         recording.states.numbers[name] = np.full(len(recording.states), np.nan)
     # only these empty frames were in the original log; the conversion added frames for traffic lights
     recording.frames_ns = np.array(facts.nobody_ns, np.int64)
-    kept = [f for f in facts.quality if not facts.as_recorded or f.check_id not in FOUND_ANEW]
+    kept = [f for f in facts.quality if not facts.as_recorded or f.check_id not in CHECKS_REPEATED_AT_READING]
     recording.findings += validated_findings(path, kept)
 
 

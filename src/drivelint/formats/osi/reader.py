@@ -16,9 +16,9 @@ import pyarrow as pa
 import pyarrow.compute as pc
 from mcap.records import Channel
 
-from drivelint.drive.clock_restart import backward_steps
+from drivelint.drive.clock_restart import backward_step_findings
 from drivelint.drive.lost_time import times_of_lost_rows
-from drivelint.drive.trace import LEAST_UTC_NS, FrameTimes, QualityFinding, Recording, States, single_map
+from drivelint.drive.trace import EARLIEST_UTC_NS, FrameTimes, QualityFinding, Recording, States, single_map
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.losses import Losses
 from drivelint.formats.mcap.malformed import decode_others, decode_readable
@@ -289,7 +289,7 @@ def _recording(
         ego_ids=_ego_ids_of_hosts([host for batch in batches for host in batch.hosts], t_ns, findings),
         findings=findings,
         lost_times=lost_times,
-        utc_start_ns=int(log_ns.min()) if log_ns.min() >= LEAST_UTC_NS else None,
+        utc_start_ns=int(log_ns.min()) if log_ns.min() >= EARLIEST_UTC_NS else None,
         frame_times=FrameTimes(t_ns, log_ns),
         frames_ns=t_ns,
         embedded_map=first_message.lanes,
@@ -325,7 +325,7 @@ def _frame_times_ns(batches: list[FrameBatch], log_ns: Times, findings: list[Qua
         findings.append(
             QualityFinding("log_time_used", "warning", message, int((~timed).sum()) or len(stamps), int(stamps.min()))
         )
-    findings += backward_steps(stamps)
+    findings += backward_step_findings(stamps)
     return stamps
 
 

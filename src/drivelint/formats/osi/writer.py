@@ -51,7 +51,7 @@ def write(sink: BinaryIO, trace: Trace, map_source: MapSource | None, *, as_reco
         GROUND_TRUTH_TOPIC, "protobuf", writer.register_schema(GROUND_TRUTH, "protobuf", descriptor_set()), described
     )
     times = [pc.min(trace.tables[name]["t_ns"]).as_py() for name in ("actor_state", "signal_state", "declared_event")]
-    earliest = int(min(t for t in (*times, *trace.nobody_ns.tolist()) if t is not None))
+    earliest = int(min(t for t in (*times, *trace.times_without_actors_ns.tolist()) if t is not None))
     if map_source is not None:
         schema = writer.register_schema(OPEN_DRIVE, "protobuf", descriptor_set())
         channel = writer.register_channel(MAP_TOPIC, "protobuf", schema, described)
@@ -81,7 +81,7 @@ def _frame_messages(trace: Trace, osi_ids: dict[str, int]) -> Iterator[tuple[int
     states = trace.tables["actor_state"]
     t_ns = states["t_ns"].to_numpy()
     lights = _encoded_lights_by_time(trace.tables["signal_state"])
-    actorless_ns = np.concatenate([np.fromiter(lights, np.int64, len(lights)), trace.nobody_ns])
+    actorless_ns = np.concatenate([np.fromiter(lights, np.int64, len(lights)), trace.times_without_actors_ns])
     if trace.in_log_order:
         order = np.arange(len(t_ns))
         starts = np.flatnonzero(np.r_[True, np.diff(t_ns) != 0])

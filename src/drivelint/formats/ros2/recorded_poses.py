@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyarrow as pa
 
-from drivelint.drive.clock_restart import backward_steps
+from drivelint.drive.clock_restart import backward_step_findings
 from drivelint.drive.order import steps, time_derivative
-from drivelint.drive.trace import LEAST_UTC_NS, SIZE_COLUMNS, STATE_COLUMNS, FrameTimes, QualityFinding, States
+from drivelint.drive.trace import EARLIEST_UTC_NS, SIZE_COLUMNS, STATE_COLUMNS, FrameTimes, QualityFinding, States
 from drivelint.formats.coordinate_frames import Poses, clean_frame_name, rotated, unit_quaternions
 
 if TYPE_CHECKING:
@@ -223,7 +223,7 @@ def choose_clock(parts: dict[str, RecordedPoses], findings: list[QualityFinding]
         if not len(rows):
             continue
         # 0 can be the start of a simulation's clock; but if other stamps are in UTC, 0 means that there is no time
-        missing = ~rows.stamped | ((rows.stamp_ns == 0) & (rows.stamp_ns.max() >= LEAST_UTC_NS))
+        missing = ~rows.stamped | ((rows.stamp_ns == 0) & (rows.stamp_ns.max() >= EARLIEST_UTC_NS))
         if missing.any():
             why = f"{topic}: {int(missing.sum())} of {len(rows)} poses are without a time stamp"
         elif len(rows) > 1 and rows.stamp_ns.min() == rows.stamp_ns.max() and rows.log_ns.min() < rows.log_ns.max():
@@ -238,7 +238,7 @@ def choose_clock(parts: dict[str, RecordedPoses], findings: list[QualityFinding]
         rows.t_ns = rows.stamp_ns if why is None else rows.log_ns
         if len(rows):
             messages = np.r_[0, np.flatnonzero(np.diff(rows.log_ns)) + 1]
-            findings += backward_steps(np.maximum.reduceat(rows.t_ns, messages), topic)
+            findings += backward_step_findings(np.maximum.reduceat(rows.t_ns, messages), topic)
     if why is not None:
         n = sum(len(rows) for rows in parts.values())
         first = min((int(rows.t_ns.min()) for rows in parts.values() if len(rows)), default=0)
@@ -253,7 +253,7 @@ def message_times(parts: Sequence[RecordedPoses]) -> tuple[FrameTimes, int | Non
     new = np.r_[True, (t_ns[1:] != t_ns[:-1]) | (log_ns[1:] != log_ns[:-1])]
     pairs = np.unique(np.stack([log_ns[new], t_ns[new]]), axis=1)
     first = int(pairs[0, 0])
-    return FrameTimes(pairs[1], pairs[0].astype(np.uint64)), first if first >= LEAST_UTC_NS else None
+    return FrameTimes(pairs[1], pairs[0].astype(np.uint64)), first if first >= EARLIEST_UTC_NS else None
 
 
 def ids_at_ego(ego: States, object_states: States) -> list[str]:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 import pyarrow as pa
 
-from drivelint.drive.trace import LEAST_UTC_NS, SIGNAL_STATES, QualityFinding
+from drivelint.drive.trace import EARLIEST_UTC_NS, SIGNAL_STATES, QualityFinding
 from drivelint.formats.ros2.objects import stamps
 
 if TYPE_CHECKING:
@@ -125,7 +125,7 @@ def signal_states(
     message = np.concatenate([batch.message + at for batch, at in zip(batches, first, strict=False)])
     group, state = (np.concatenate([getattr(batch, name) for batch in batches]) for name in ("group", "state"))
     since, until = span_ns
-    usable = (t_ns != 0) | (until < LEAST_UTC_NS)
+    usable = (t_ns != 0) | (until < EARLIEST_UTC_NS)
     if not usable.any() or t_ns[usable].min() > until or t_ns[usable].max() + LONGEST_HOLD_NS < since:
         why = (
             f"{topic}: the messages have other times than the states of the drive: the states of the lights are unknown"

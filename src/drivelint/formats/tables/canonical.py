@@ -17,7 +17,7 @@ from drivelint.drive.lost_time import times_of_lost_rows
 from drivelint.drive.trace import (
     ACTOR_CLASSES,
     BRAKE_LIGHTS,
-    FOUND_ANEW,
+    CHECKS_REPEATED_AT_READING,
     INDICATORS,
     SIGNAL_STATES,
     SIZE_COLUMNS,
@@ -125,7 +125,7 @@ def _findings_before_conversion(path: Path) -> list[QualityFinding]:
         return []
     rows = parquet.table(path)
     _require_columns_and_one_drive(path, rows, ("check_id", "severity", "message"))
-    again = FOUND_ANEW if AS_RECORDED_KEY.encode() in (rows.schema.metadata or {}) else ()
+    again = CHECKS_REPEATED_AT_READING if AS_RECORDED_KEY.encode() in (rows.schema.metadata or {}) else ()
     try:
         found = [msgspec.convert(row, QualityFinding) for row in _dict_rows(path, rows)]
         return validated_findings(path, [finding for finding in found if finding.check_id not in again])
@@ -198,11 +198,11 @@ def _read_states(path: Path) -> Recording:
 
 def with_empty_frames(states: pa.Table, trace: Trace) -> pa.Table:
     """Return the states with an added row, which has only a time, for each frame without actors."""
-    n = len(trace.nobody_ns)
+    n = len(trace.times_without_actors_ns)
     if not n:
         return states
     empty = {field.name: pa.nulls(n, field.type) for field in states.schema}
-    empty |= {"drive_id": pa.array([trace.drive_id] * n, pa.string()), "t_ns": pa.array(trace.nobody_ns)}
+    empty |= {"drive_id": pa.array([trace.drive_id] * n, pa.string()), "t_ns": pa.array(trace.times_without_actors_ns)}
     return pa.concat_tables([states, pa.table(empty, schema=states.schema)])
 
 

@@ -18,10 +18,10 @@ from drivelint.arrays import codes_of_texts
 from drivelint.drive.lost_time import times_of_lost_rows
 from drivelint.drive.trace import (
     ACTOR_CLASSES,
-    ASSUMED_SIZE,
+    ASSUMED_SIZE_CHECK,
     LOSS_CHECKS,
     MOTOR_VEHICLES,
-    TURNED_FRAME,
+    TURNED_FRAME_CHECK,
     LostTime,
     QualityFinding,
     Recording,
@@ -90,11 +90,11 @@ def _assumption_findings(name: str, mapping: Mapping) -> list[QualityFinding]:
     findings = []
     given = mappings.fields(mapping)
     if any(side in given and given[side].value is not None for side in ("length", "width")):
-        findings.append(QualityFinding(ASSUMED_SIZE, "info", f"size from the mapping {name!r}, not recorded"))
+        findings.append(QualityFinding(ASSUMED_SIZE_CHECK, "info", f"size from the mapping {name!r}, not recorded"))
     turns = {"y": mapping.frame.flip_y, "heading": mapping.frame.flip_yaw}
     if turned := [what for what, is_turned in turns.items() if is_turned]:
         message = f"{' and '.join(turned)} changed in sign, because the frame of the log is left-handed according to the mapping {name!r}"
-        findings.append(QualityFinding(TURNED_FRAME, "info", message))
+        findings.append(QualityFinding(TURNED_FRAME_CHECK, "info", message))
     return findings
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final, cast
 
 import numpy as np
 
-from drivelint.drive.lost_time import LATEST_NS
+from drivelint.drive.lost_time import LATEST_CREDIBLE_NS
 from drivelint.formats.mcap.bag import OSI_SCHEMAS
 from drivelint.formats.mcap.writer import Sink
 from drivelint.watch.source import Frame, WindowFileSource
@@ -79,7 +79,7 @@ class McapSource(WindowFileSource):
             schema = self._schema_name(each.channel)
             if not is_watched(schema):
                 continue
-            if each.log_ns <= LATEST_NS:  # a later time is malformed
+            if each.log_ns <= LATEST_CREDIBLE_NS:  # a later time is malformed
                 self._last_ns = each.log_ns
             numbered = NumberedMessage(self._count, each)
             self._count += 1
