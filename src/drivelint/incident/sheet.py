@@ -14,7 +14,7 @@ from drivelint.catalogue.header import CONTACT
 from drivelint.convert import CLIP
 from drivelint.engine.robustness.copies import MeasurementErrors
 from drivelint.incident.case import LETTERS
-from drivelint.incident.command import commands
+from drivelint.incident.command import commands, named_by_user
 from drivelint.incident.conduct import conduct, name_party
 from drivelint.incident.delta_v import WINDOW_S
 from drivelint.incident.fitting import (
@@ -28,22 +28,18 @@ from drivelint.incident.fitting import (
 )
 from drivelint.incident.judge import same_finding
 from drivelint.incident.motion import BEFORE_S, MOST_ROWS, Motion, second_by_second, slowings
-from drivelint.incident.parties import against_each_other, kinds, others_drawn, overtaking, party, title
+from drivelint.incident.parties import against_each_other, kinds, overtaking, party, title
 from drivelint.incident.place import coordinates, geo_source, inferred_side, place, road_of, sea_note, surroundings
 from drivelint.incident.record import held_elements
-from drivelint.incident.scene import scene_at
+from drivelint.incident.scene import plan_at_moment
 from drivelint.incident.sizes import size_source
 from drivelint.incident.strips import strips
 from drivelint.incident.words import amount, closing, contact, how_sure, measured_text, minus, profile, story, told_unit
 from drivelint.report.html.pictures import pictures_by_moment
-from drivelint.report.html.plan_view import actor_shapes, plan_view
-from drivelint.report.html.road import Road
 from drivelint.result.certainty import LEAST_KEEPING_SHARE, POSSIBLE, SURE, certainty
 from drivelint.result.text import seconds, utc_at
 
 if TYPE_CHECKING:
-    import pyarrow as pa
-
     from drivelint.incident.case import Case
     from drivelint.incident.finding import NamedFinding
     from drivelint.result.model import Result
@@ -55,13 +51,10 @@ _NO_NUMBER: Final = "-"
 _CLIP: Final = re.compile(r"^(.+)-clip-[0-9a-f]{8}$")
 """The name of a clip from `convert --clip`, see `clip.py`."""
 _CLIP_NOTE: Final = "; values that depend on the time before or after it may differ from those of the log"
-_SPACES: Final = "danger_space"
 _LONGEST: Final = 330
 _NOTE_CHARACTERS: Final = 370
 """The number of characters that warnings about the log, or the source of a clip, may have in the columns of page 2."""
 _WARNING_CHARACTERS: Final = 300
-_LABEL_SHARE: Final = 0.1
-"""Size of the plan view's labels as a share of its height; at the least height (`sheet.css`) they are 6 pt or more."""
 _RECORDS_ROOM: Final = 1300
 """The characters that the lists of missing records take in the columns of page 2, if page 1 has no space for them."""
 _MOST_CONTACTS: Final = 2
@@ -121,7 +114,7 @@ def content(case: Case) -> dict[str, Any]:
         "least": _least_gap(motion, finding),
         "contacts": Fitting((hits := _told_contacts(case))[:_MOST_CONTACTS], max(len(hits) - _MOST_CONTACTS, 0)),
         "overlap": contact(row, finding.rule),
-        **_plan(case),
+        **plan_at_moment(case),
         "cameras": pictures_by_moment(case.result.pictures).get((row["drive_id"], row["t_worst_ns"]), []),
         "pictured_at": seconds(row["t_worst_ns"], finding.start_ns),
         "strips": strips(motion, _names(finding), *_courses(case), finding.moment_ns),
@@ -141,7 +134,9 @@ def content(case: Case) -> dict[str, Any]:
         "quality": _told_warnings(case),
         "again": same_finding(case.again.findings, row),
         "source": case.source,
-        "commands": commands(case.run_options, finding, case.result.rules["rule_id"].to_pylist()),
+        "commands": commands(
+            case.run_options, finding, case.result.rules["rule_id"].to_pylist(), named_by_user(case.result.rules)
+        ),
         "log": f"{finding.drive['file_name']} ({finding.drive['format']}), SHA-256",
         "rules_sha256": _rules_hash(case.result),
         "n_rules": case.result.rules.num_rows,
@@ -346,31 +341,6 @@ def _rests_on(case: Case, motion: Motion) -> str:
     assumed = any(size_source(case.drive.trace, who) for who in case.finding.parties)
     sizes = "; sizes are assumed, not recorded" if assumed else ""
     return f"It is based on a sudden change of speed: {boxes} ({told}{sizes})."
-
-
-def _plan(case: Case) -> dict[str, Any]:
-    """Return the plan view of the moment, with its lanes and shapes; `plan` is None if the result has no scene of the worst step."""
-    finding = case.finding
-    at = (finding.row["drive_id"], finding.row["ego_id"], finding.row["t_worst_ns"])
-    scene, *_ = [*_at(case.result.scenes, at), None]
-    drawn_at = seconds(finding.moment_ns, finding.start_ns)
-    if scene is None:
-        return {"plan": None, "tiles": [], "shapes": [], "drawn": [], "drawn_at": drawn_at}
-    drawn_scene = scene_at(scene, case.drive.trace.tables["actor_state"], finding.moment_ns)
-    road = Road(case.result.lanes)
-    spaces = _at(case.result.spaces, at) if _SPACES in finding.rule["tags"] else []
-    plan = plan_view(drawn_scene, road, set(finding.parties[1:]), spaces)
-    tiles = [tile for tile in road.tiles() if tile["name"] in plan["tiles"]]
-    drawn = others_drawn(plan, drawn_scene)
-    letters = dict(zip(finding.parties, LETTERS, strict=False))
-    plan["texts"] = [{**text, "text": letters.get(text.get("actor"), text["text"])} for text in plan["texts"]]
-    plan["font"] = f"{_LABEL_SHARE * float(plan['height']):.1f}"
-    return {"plan": plan, "tiles": tiles, "shapes": actor_shapes([drawn_scene]), "drawn": drawn, "drawn_at": drawn_at}
-
-
-def _at(table: pa.Table, at: tuple[str, str, int]) -> list[dict[str, Any]]:
-    """Return the rows of a table at one moment of an ego; `at`: drive, ego and time."""
-    return [row for row in table.to_pylist() if (row["drive_id"], row["ego_id"], row["t_ns"]) == at]
 
 
 def _courses(case: Case) -> tuple[list[dict[str, Any]], dict[str, Any] | None]:
