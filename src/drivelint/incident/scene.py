@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from drivelint.result.text import Row
 
 _SPACES: Final = "danger_space"
-_LABEL_SHARE: Final = 0.1
-"""Size of the plan view's labels as a share of its height; at the least height (`sheet.css`) they are 6 pt or more."""
+_LABEL_SHARE: Final = 0.135
+"""Size of the plan view's labels as a share of its height; at the least height (`sheet.css`) they are 8 pt or more."""
 
 _NEAR_NS: Final = 500_000_000
 """An actor is drawn only if one of its samples is at most this far away in time."""

@@ -1,4 +1,4 @@
-"""The content of the two pages of an incident sheet, as plain values for the template."""
+"""The content of an incident sheet, as plain values for the template."""
 
 from __future__ import annotations
 
@@ -104,6 +104,8 @@ def content(case: Case) -> dict[str, Any]:
         "surroundings": surroundings(finding.drive),
         "hand": inferred_side(finding.drive),
         "contact": finding.is_contact,
+        "near": finding.is_near_miss,
+        "near_margin": amount(finding.rule["near_margin"], row["unit"]),
         "delta_v_s": WINDOW_S,
         "peak": "deepest" if row["unit"] == "m" else "hardest",
         "before": None if before_s is None else f"{-before_s:.2f} s before",
@@ -132,7 +134,7 @@ def content(case: Case) -> dict[str, Any]:
         "rests": _rests_on(case, motion),
         "records": held_elements(case.drive.trace.tables, finding.drive, row["ego_id"]),
         "quality": _told_warnings(case),
-        "again": same_finding(case.again.findings, row),
+        "again": same_finding(case.again.verdicts if finding.is_near_miss else case.again.findings, row),
         "source": case.source,
         "commands": commands(
             case.run_options, finding, case.result.rules["rule_id"].to_pylist(), named_by_user(case.result.rules)
@@ -165,7 +167,8 @@ def _finding_sentence(finding: NamedFinding) -> str:
         return f"{overlap[:1].upper()}{overlap[1:]}."
     observed = measured_text(row, rule)
     if observed and row["margin"] is not None:
-        observed = f"{rule['observes'] or 'measured'}: {observed}; missed by {amount(-row['margin'], row['unit'])}"
+        by = "kept by" if finding.is_near_miss else "missed by"
+        observed = f"{rule['observes'] or 'measured'}: {observed}; {by} {amount(abs(row['margin']), row['unit'])}"
     if row["unit"] == "m/s2" and finding.is_contact:
         observed += " (of the speed alone, not of its direction; from one step to the next)"
     reason = "" if row["reason_measures"] and observed else row["reason"]
@@ -295,8 +298,9 @@ def _conduct(case: Case, span: tuple[int, int], seconds_left: int, used_characte
     beside = sum(len(line) for told in found for line in told.get("beside", ()))
     of_both |= {"in_report": any(told["in_report"] for told in found), "id": found[-1]["id"]}
     lines = used_characters + beside + SHARED_HEAD * bool(of_both["reasons"])
-    fit([*found, of_both], seconds_left, lines + _NOTE_CHARACTERS * (bool(_warnings(case)) + bool(_cut_from(case))))
-    return {"conduct": found, "of_both": of_both}
+    lines += _NOTE_CHARACTERS * (bool(_warnings(case)) + bool(_cut_from(case)))
+    further = fit([*found, of_both], seconds_left, lines)
+    return {"conduct": found, "of_both": of_both, "further": further}
 
 
 def _surest(case: Case) -> dict[str, Any]:
@@ -350,16 +354,20 @@ def _courses(case: Case) -> tuple[list[dict[str, Any]], dict[str, Any] | None]:
     """
     rules = {rule["rule_id"]: rule for rule in case.result.rules.to_pylist()}
     units = {row["finding_id"]: row["unit"] for row in case.result.findings.to_pylist()}
-    about = case.finding.row
+    about, near_miss_keys = case.finding.row, ("rule_id", "profile", "occurrence")
+    if case.finding.is_near_miss:
+        units[None] = about["unit"]  # the courses of near misses have no finding
     gaps, own = [], None
     for row in case.result.courses.to_pylist():
         rule, unit = rules[row["rule_id"]], units.get(row["finding_id"])
+        if row["finding_id"] is None and any(row[key] != about[key] for key in near_miss_keys):
+            continue
         if unit is None or any(row[key] != about[key] for key in ("drive_id", "ego_id", "object_id")):
             continue
         title = f"\u201c{rule['title']}\u201d"
         if unit == "m" and any((value or 0.0) > 0.0 for value in row["required"]):
             gaps.append({**row, "title": title, "planned": profile(row["profile"])})
-        elif row["finding_id"] == about["finding_id"] and not (unit == "m" and case.finding.is_contact):
+        elif row["finding_id"] in {None, about["finding_id"]} and not (unit == "m" and CONTACT in rule["tags"]):
             own = {**row, "title": f"{rule['observes'] or title}, {told_unit(unit)}"}
     return gaps, own if own and any(value is not None for value in own["observed"]) else None
 
