@@ -21,9 +21,11 @@ _MAY_GO: Final = frozenset({"kept", "excused"})
 """Parts that may be left out completely, because the party's first line contains their number."""
 _EMPTY_LINE_END_CHARACTERS: Final = {"broken": 30}
 """The empty characters at the end of a text's last line, in parts in which each text begins a new line."""
-_CHARACTERS_OF_ALL_PARTS: Final = 2600
+_CHARACTERS_OF_ALL_PARTS: Final = 3100
 """The characters that all parts of both parties may take together; a part may use the space that others leave."""
-_CHARACTERS_OF_A_FURTHER_PAGE: Final = 6200
+_EXPLANATION_CHARACTERS: Final = 150
+"""The characters of the sentences that explain the parts in `_MAY_GO`; they are left out with these parts."""
+_CHARACTERS_OF_A_FURTHER_PAGE: Final = 8400
 """The characters that a page after page 2 has space for."""
 _CHARACTERS_OF_A_HEADING: Final = 110
 """The characters that fit into the space of a heading on such a page."""
@@ -144,6 +146,8 @@ def fit(parties: Sequence[dict[str, Any]], seconds_left: int, used_characters: i
         - used_characters
         - sum(room for *_, room in parts)
     )
+    if spare + sum(room for _, name, room in parts if name in _MAY_GO) <= 0:
+        spare = min(spare + _EXPLANATION_CHARACTERS, 0)
     if spare < 0:
         parts = _shrunk(parts, -spare)
     rooms = [room for *_, room in parts]

@@ -55,7 +55,7 @@ _LONGEST: Final = 330
 _NOTE_CHARACTERS: Final = 370
 """The number of characters that warnings about the log, or the source of a clip, may have in the columns of page 2."""
 _WARNING_CHARACTERS: Final = 300
-_RECORDS_ROOM: Final = 1300
+_RECORDS_ROOM: Final = 1050
 """The characters that the lists of missing records take in the columns of page 2, if page 1 has no space for them."""
 _MOST_CONTACTS: Final = 2
 
@@ -300,7 +300,8 @@ def _conduct(case: Case, span: tuple[int, int], seconds_left: int, used_characte
     lines = used_characters + beside + SHARED_HEAD * bool(of_both["reasons"])
     lines += _NOTE_CHARACTERS * (bool(_warnings(case)) + bool(_cut_from(case)))
     further = fit([*found, of_both], seconds_left, lines)
-    return {"conduct": found, "of_both": of_both, "further": further}
+    has_kept = any(told[name].texts for told in found for name in ("kept", "excused") if name in told)
+    return {"conduct": found, "of_both": of_both, "further": further, "has_kept": has_kept}
 
 
 def _surest(case: Case) -> dict[str, Any]:
