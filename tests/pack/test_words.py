@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import json
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from drivelint.pack.bag import Problem, explanation
+from drivelint.pack.bag import Problem, explanation, sha256_of
+from drivelint.pack.consistency import of_statement
 from drivelint.pack.contents import told_findings
-from drivelint.pack.statement import SEALED, differences, resource_descriptor
+from drivelint.pack.statement import FILE, SEALED, altered_files, differences, resource_descriptor
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 
 def finding(finding_id: str, profile: str | None, *, start_ns: int = 0) -> dict[str, Any]:
@@ -45,6 +49,21 @@ def test_the_file_whose_bytes_were_altered_is_named() -> None:
     lost = json.loads(statement("1" * 64))
     lost["predicate"]["drivelint_pack"] = None
     assert [each.subject for each in differences(json.dumps(lost).encode(), statement("1" * 64))] == list(SEALED)
+
+
+def test_the_altered_file_is_named_though_the_result_is_unreadable(tmp_path: Path) -> None:
+    for name in SEALED:
+        (tmp_path / name).write_text(name)
+    sealed = [resource_descriptor(name, sha256_of(tmp_path / name)) for name in SEALED]
+    said = json.dumps({"predicate": {"drivelint_pack": sealed}}).encode()
+    assert altered_files(said, tmp_path) == []
+    (tmp_path / FILE).write_bytes(said)
+    (tmp_path / SEALED[-1]).write_text("other")
+    problems, stated = of_statement(tmp_path)
+    assert stated is None
+    assert problems[0] == ("file changed since the statement about it", "manifest-sha256.txt")
+    assert problems[1].kind == "result not readable"
+    assert altered_files(b"no JSON", tmp_path) == []
 
 
 def test_each_line_about_a_file_says_what_is_wrong_with_it() -> None:

@@ -16,7 +16,7 @@ from drivelint.incident import sheet_ids
 from drivelint.pack import again, finding_rows, finding_sql, sheets, signature
 from drivelint.pack.bag import DATA, Problem
 from drivelint.pack.contents import EVIDENCE, FINDINGS, FORM, OUTPUTS, RESULT, SAID_OF_FINDINGS, facts, summary_of
-from drivelint.pack.statement import ENVELOPE, FILE, differences, statement
+from drivelint.pack.statement import ENVELOPE, FILE, altered_files, differences, statement
 from drivelint.phrases import plural
 from drivelint.report import summary
 from drivelint.report.outputs import REPORT_FORMATS
@@ -62,8 +62,18 @@ def of_statement(folder: Path) -> tuple[list[Problem], Stated | None]:
         content = (folder / name).read_bytes()
         said = signature.payload_of(content) if name == ENVELOPE else content
     except (DriveLintError, *UNREADABLE) as error:
-        return [Problem("result not readable", str(error))], None
+        return [*_altered(folder), Problem("result not readable", str(error))], None
     return differences(said, due) + wrong, stated
+
+
+def _altered(folder: Path) -> list[Problem]:
+    """Return the files whose hashes are not those in the statement; [] if the statement cannot be read."""
+    try:
+        sealed = (folder / ENVELOPE).is_file()
+        content = (folder / (ENVELOPE if sealed else FILE)).read_bytes()
+        return altered_files(signature.payload_of(content) if sealed else content, folder)
+    except (DriveLintError, *UNREADABLE):
+        return []
 
 
 def evidence_of(folder: Path) -> dict[str, Any]:

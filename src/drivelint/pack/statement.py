@@ -86,6 +86,16 @@ def differences(statement: bytes, due: bytes) -> list[bag.Problem]:
     return problems
 
 
+def altered_files(statement: bytes, folder: Path) -> list[bag.Problem]:
+    """Return the files of a pack whose hashes are not those in its statement; the result in the pack may be unreadable."""
+    try:
+        listed = json.loads(statement)["predicate"]["drivelint_pack"]
+    except (ValueError, KeyError, TypeError):
+        return []
+    there = [resource_descriptor(name, bag.sha256_of(folder / name)) for name in SEALED if (folder / name).is_file()]
+    return [bag.Problem(bag.OTHER_BYTES, file["name"]) for file in there if file not in listed]
+
+
 def _other_files(listed: Any, due: list[dict[str, Any]]) -> list[str]:
     """Return the names of the files in `due` that the statement does not list with this hash; all if it lists more, or no files."""
     wrong = [file["name"] for file in due if not isinstance(listed, list) or file not in listed]
