@@ -291,7 +291,7 @@ def test_a_result_without_a_contact_names_its_nearest_miss(folder: Path) -> None
         named_finding(calm, "contact")
     row = next(row for row in result.verdicts.to_pylist() if row["rule_id"] == "ukhc.no-collision")
     just_kept = pa.Table.from_pylist([{**row, "near_miss": True, "margin": 0.46}], schema=result.verdicts.schema)
-    with pytest.raises(UsageError, match=rf"report DIR --incident ukhc.no-collision@{row['drive_id']}$"):
+    with pytest.raises(UsageError, match=rf"report {folder} --incident ukhc.no-collision@{row['drive_id']}$"):
         named_finding(replace(result, findings=nothing, verdicts=just_kept), "contact")
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+import shlex
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
@@ -149,7 +150,8 @@ def _without_contact(result: Result, drive_id: str) -> str:
     if near:
         rule, drive = near[0]["rule_id"], near[0]["drive_id"]
         named = near[0]["finding_id"] if (rule, drive) in broken else f"{rule}@{drive}"
-        told += f": the nearest miss has a sheet: drivelint report DIR --incident {named}"
+        folder = "DIR" if result.folder is None else shlex.quote(str(result.folder))
+        told += f": the nearest miss has a sheet: drivelint report {folder} --incident {named}"
         return f"{told}; or name another finding" if found else told
     return f"{told}: {'name another finding' if found else 'nothing was found there that a sheet could be about'}"
 
