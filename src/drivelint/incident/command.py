@@ -55,20 +55,22 @@ def of_rules(run_options: RunRequest, rule_ids: Sequence[str], named_ids: Collec
 def _rules(run_options: RunRequest, rule_ids: Sequence[str], named_ids: Collection[str]) -> list[str]:
     """Return the shortest options that select these rules, and by their ids the named rules whose signals few logs have."""
     known, wanted = catalogue.load_rules(run_options.rules_dirs), set(rule_ids)
-    # without its id, such a rule would not apply instead of being unknown
-    named = sorted(
-        rule_id for rule_id in wanted & set(named_ids) if SIGNALS_OF_FEW_LOGS & set(known[rule_id].needed_signals)
-    )
-    candidates = [_selectors(sorted(wanted))]
-    for pack in (None, *sorted({known[rule_id].pack for rule_id in wanted & known.keys()})):
-        chosen = [*([pack] if pack else []), *named]
-        if named and pack is None:
-            continue  # without a pack, --rules selects the named rules alone
+    rules = [known[rule_id] for rule_id in sorted(wanted & known.keys())]
+    # if its id does not select it, such a rule does not apply instead of being unknown
+    of_few_logs = [rule.id for rule in rules if SIGNALS_OF_FEW_LOGS & set(rule.needed_signals)]
+    named = [rule_id for rule_id in of_few_logs if rule_id in named_ids]
+    by_ids = _selectors(sorted(wanted))
+    candidates = [by_ids] if named == of_few_logs else []
+    packs = sorted({rule.pack for rule in rules})
+    stable = sorted({rule.pack for rule in rules if rule.status == "stable"})
+    # without --rules, the stable rules are selected; with a name alone, only that rule
+    bases = [*([] if named else [[]]), *([pack] for pack in packs), *([f"{pack},status:stable"] for pack in stable)]
+    for chosen in ([*base, *named] for base in bases):
         selected = {rule.id for rule in catalogue.select_rules(known, chosen, ())}
         if wanted <= selected:
             left_out = (word for rule_id in sorted(selected - wanted) for word in ("--ignore", rule_id))
             candidates.append([*_selectors(chosen), *left_out])
-    return min(candidates, key=len)
+    return min(candidates or [by_ids], key=len)
 
 
 def named_by_user(rules_of_run: pa.Table) -> list[str]:
