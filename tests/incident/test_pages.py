@@ -138,7 +138,7 @@ def test_what_does_not_fit_is_on_further_pages(case_of: CaseOf, tmp_path: Path) 
     n_pages = 2 + len(told["further"])
     assert n_pages > 2
     for party in told["conduct"]:
-        further = [part for parts in told["further"] for part in parts if part.told is party]
+        further = [part for parts in told["further"] for part in parts if part.party is party]
         texts = [*party["broken"].texts, *(text for part in further if part.part == "broken" for text in part.texts)]
         assert len(texts) == party["n"]["broken"]
         assert len(set(texts)) == len(texts)

@@ -80,7 +80,7 @@ class Fitting(NamedTuple):
 class Continuation(NamedTuple):
     """The texts of one part about one party, or about both, that page 2 has no space for."""
 
-    told: dict[str, Any]
+    party: dict[str, Any]
     part: str
     texts: list[str]
 
