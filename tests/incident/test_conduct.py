@@ -40,7 +40,7 @@ def row(rule: str, verdict: str = "pass", **said: Any) -> dict[str, Any]:
 
 def finding(rule: str, copies: tuple[int, int] | None, **said: Any) -> dict[str, Any]:
     n = dict(zip(("n_stays", "n_copies"), copies or (None, None), strict=True))
-    return {**row(rule, "fail", margin=-1.0, finding_id="f", **said), **n}
+    return {**row(rule, "fail", margin=-1.0, finding_id="f", drive_id="d", ego_id="ego", **said), **n}
 
 
 def told(verdicts: list[dict[str, Any]], findings: list[dict[str, Any]], *, touched: bool = False) -> dict[str, Any]:
@@ -98,13 +98,13 @@ def test_begin_and_worst_time() -> None:
     assert ": for the manoeuvre at 7.00 s, " in told([], [once])["broken"].texts[0]
 
 
-def test_every_profile_is_told_the_mildest_first() -> None:
+def test_every_profile_is_told_the_mildest_first_and_one_overtake_counts_once() -> None:
     needs = {"relaxed": 112.57, "aggressive": 51.19, "nominal": 74.92}
     found = [finding("ahead", (32, 32), profile=name, observed=45.59, required=m) for name, m in needs.items()]
     found = [{**each, "margin": each["observed"] - each["required"]} for each in found]
     assert (
         "45.59 m, must be more than 51.19 m (planned as aggressive), 74.92 m (planned as nominal), "
-        "112.57 m (planned as relaxed) (3 findings: 3 sure)" in told([], found)["broken"].texts[0]
+        "112.57 m (planned as relaxed); sure, 32 of 32" in told([], found)["broken"].texts[0]
     )
 
 

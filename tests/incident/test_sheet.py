@@ -37,6 +37,7 @@ from tests.incident.recorded import carla_log, closing_by_places, fixture_log, g
 from tests.shared_data import shared
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from tests.incident.conftest import CaseOf
@@ -112,7 +113,8 @@ def test_both_parties_are_judged_as_ego(case_of: CaseOf) -> None:
     """The other party's conduct is what a check with --ego of that party says."""
     case = case_of("no-collision@collision")
     settings: dict[str, Any] = {"traces": (str(OVERTAKE / "collision.csv"),), "profiles": ("relaxed", "nominal")}
-    settings |= {"map": OVERTAKE / "road.xodr", "mapping": str(OVERTAKE / "mapping.toml"), "rules": ("ukhc",)}
+    settings |= {"map": OVERTAKE / "road.xodr", "mapping": str(OVERTAKE / "mapping.toml")}
+    settings |= {"rules": ("ukhc", "ukhc.r112.horn", "ukhc.r113.headlights")}
     result = run_check(CheckOptions(**settings, ego="oncoming"), Silent())
     assert not isinstance(case.other_party, str)
     assert case.other_party is not None
@@ -152,14 +154,17 @@ def test_the_shortest_selection_of_rules(case_of: CaseOf) -> None:
     case = case_of("no-collision@collision")
     stable = case.result.rules["rule_id"].to_pylist()
 
-    def selected(asked_for: list[str]) -> list[str]:
-        words = shlex.split(commands(case.run_options, case.finding, asked_for)[0])
+    def selected(asked_for: list[str], named: Sequence[str] = ()) -> list[str]:
+        words = shlex.split(commands(case.run_options, case.finding, asked_for, named)[0])
         return [word for i, word in enumerate(words) if {"--rules", "--ignore"} & {word, words[i - 1]}]
 
     ukhc = {rule.id for rule in catalogue.load_rules().values() if rule.pack == "ukhc" and rule.status == "stable"}
     assert selected(sorted(ukhc)) == []
     assert selected(sorted(ukhc - {"ukhc.no-collision"})) == ["--ignore", "ukhc.no-collision"]
     assert selected(stable[:1]) == ["--rules", stable[0]]
+    horn = selected(sorted(ukhc), ["ukhc.r112.horn", "ukhc.no-collision"])
+    by_id = ["--rules", "ukhc,status:stable", "--rules", "ukhc.r112.horn"]
+    assert horn == by_id, "if a rule is not selected by its id, it does not apply to a log without its signal"
 
 
 @pytest.mark.ci
@@ -289,7 +294,7 @@ def test_a_result_without_a_contact_names_its_nearest_miss(folder: Path) -> None
         named_finding(calm, "contact")
     row = next(row for row in result.verdicts.to_pylist() if row["rule_id"] == "ukhc.no-collision")
     just_kept = pa.Table.from_pylist([{**row, "near_miss": True, "margin": 0.46}], schema=result.verdicts.schema)
-    with pytest.raises(UsageError, match=rf"drivelint explain ukhc.no-collision@{row['drive_id']}` tell of it$"):
+    with pytest.raises(UsageError, match=rf"report {folder} --incident ukhc.no-collision@{row['drive_id']}$"):
         named_finding(replace(result, findings=nothing, verdicts=just_kept), "contact")
 
 

@@ -168,7 +168,7 @@ def test_only_the_worst_findings_are_packed_where_that_is_asked(
         cli_main("pack", str(packed.audit), "--out", str(tmp_path / "pack"), "--findings", "1")
     assert ended.value.code == 0
     said = capsys.readouterr().out
-    assert "1 of 1 findings have SQL that computes their margin; 1 finding that are less severe left out" in said
+    assert "1 of 1 finding has SQL that computes the margin; 1 less severe finding left out" in said
     told = evidence_of(tmp_path / "pack")
     worst = min(rows_of(packed.pack, "findings"), key=lambda row: float(row["margin"]))
     assert [row["finding_id"] for row in told["findings"]] == [worst["finding_id"]]
@@ -276,7 +276,7 @@ def refusal_left_out_and_hashed_anew(pack: Path, _p: PackedAudit) -> tuple[str, 
         audited.keep_rows(pack, table, lambda row: REFUSED not in row["log"])
     audited.follow_tables(pack)
     rehash(pack)
-    return "statement about another pack", "drivelint_pack"
+    return "file changed since the statement about it", "manifest-sha256.txt"
 
 
 @into(TAMPERED)

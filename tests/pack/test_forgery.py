@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from tests.pack.conftest import Packed
     from tests.pack.packed import Tamper
 VERDICTS, SUMMARY, EVIDENCE = "data/result/verdicts.parquet", "data/result/summary.json", "data/evidence.json"
-OTHER_PACK = ("statement about another pack", "drivelint_pack")
+OTHER_PACK = ("file changed since the statement about it", "manifest-sha256.txt")
 SEEN: dict[str, Tamper] = {}
 UNSEEN: dict[str, Tamper] = {}
 

@@ -155,7 +155,7 @@ def table_changed_and_manifest(pack: Path, _p: Packed) -> tuple[str, str]:
 def rule_changed_and_all_hashes(pack: Path, _p: Packed) -> tuple[str, str]:
     edit(pack / "data/rules/ukhc/no-collision.sql", "title", "titel")
     rehash(pack)
-    return "statement about another pack", "drivelint_pack"
+    return "file changed since the statement about it", "manifest-sha256.txt"
 
 
 @tamper
@@ -181,7 +181,7 @@ def declaration_changed(pack: Path, _p: Packed) -> tuple[str, str]:
 def day_added_and_hashed(pack: Path, _p: Packed) -> tuple[str, str]:
     edit(pack / "bag-info.txt", "Bag-Software-Agent", "Bagging-Date: 2020-01-01\nBag-Software-Agent")
     rehash(pack)
-    return "statement about another pack", "drivelint_pack"
+    return "file changed since the statement about it", "manifest-sha256.txt"
 
 
 @tamper

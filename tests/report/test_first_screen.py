@@ -231,6 +231,14 @@ def test_how_sure_a_near_miss_is_was_not_examined() -> None:
     assert "not examined" in plain(section(both, "findings"))
 
 
+def test_a_near_miss_names_the_command_of_its_sheet(tmp_path: Path) -> None:
+    run = result([verdict("pass", near_miss=True)])
+    write(run, tmp_path)
+    name = "{rule_id}@{drive_id}".format(**run.verdicts.to_pylist()[0])
+    shown = plain(section((tmp_path / "report.html").read_text(), "worst"))
+    assert f"drivelint explain {name} --in . drivelint report . --incident {name}" in " ".join(shown.split())
+
+
 def test_findings_are_sorted_by_severity_then_contact_then_margin() -> None:
     rows = [
         finding(finding_id="minor", severity="minor", margin=-99.0),

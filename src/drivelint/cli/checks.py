@@ -36,7 +36,7 @@ def report_check(folder: Path, to: str, base_url: str | None) -> None:
 def write_incident_sheet(request: IncidentRequest) -> None:
     """Write the incident sheet of a finding and print the names of its files.
 
-    If the name fits findings in several drives, print the other drives on stderr.
+    If the name fits findings (or near misses) in several drives, print the other drives on stderr.
     """
     from drivelint.incident import other_drives, write_incident
 
@@ -44,7 +44,9 @@ def write_incident_sheet(request: IncidentRequest) -> None:
         typer.echo(terminal_safe_line(str(path)))
     if others := other_drives(request):
         name = request.name
-        message = f"{name} also has findings in {name_list(others)}: the sheet is about the worst; choose another with {name}@DRIVE"
+        message = (
+            f"{name} also fits {name_list(others)}: the sheet is about the worst; choose another with {name}@DRIVE"
+        )
         typer.echo(f"drivelint: {terminal_safe_line(message)}", err=True)
 
 

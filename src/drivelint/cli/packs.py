@@ -89,16 +89,23 @@ def pack(
 def write_and_print_summary(request: PackRequest, *, on_stderr: bool = False) -> None:
     """Write a pack and print a summary of its content; with `on_stderr` on stderr."""
     from drivelint.pack import write_pack
+    from drivelint.pack.contents import told_findings
+    from drivelint.result.load import load_result
 
     told = run_interruptible(lambda: write_pack(request))
-    findings = told["findings"]
-    n = sum(1 for finding in findings if finding["sql"])
+    findings, left = told["findings"], told.get("findings_left_out")
+    if left is not None:  # an audit
+        n = sum(1 for finding in findings if finding["sql"])
+        counted = (
+            f"{n} of {plural(len(findings), 'finding')} {'has' if n == 1 else 'have'} SQL that computes the margin"
+        )
+    else:
+        counted = told_findings(load_result(request.folder).findings.to_pylist(), findings)
     signed = "signed" if request.key else "not signed"
-    left = told.get("findings_left_out")
-    less = f"; {plural(left, 'finding')} that are less severe left out (drivelint pack --findings all)" if left else ""
+    less = f"; {plural(left, 'less severe finding')} left out (drivelint pack --findings all)" if left else ""
     pages = sum(name.endswith(".html") for name in told.get("incidents", ()))
     sheets = f"; {plural(pages, 'incident sheet')}" if pages else ""
-    said = f"{signed}; {n} of {len(findings)} findings have SQL that computes their margin{less}{sheets}"
+    said = f"{signed}; {counted}{less}{sheets}"
     typer.echo(f"{terminal_safe_line(str(request.out))}: {said}", err=on_stderr)
     for finding in findings:
         if finding["without_sql_because"]:
@@ -145,6 +152,7 @@ def verify(
     """
     from drivelint.pack import VerifyRequest
     from drivelint.pack import verify as verified
+    from drivelint.pack.bag import explanation
 
     request = VerifyRequest(
         folder, key, tuple(traces or ()), map_, timestamp_root,
@@ -154,7 +162,7 @@ def verify(
     for note in found.notes:
         typer.echo(f"drivelint: {terminal_safe_line(note)}", err=True)
     for problem in found.problems:
-        typer.echo(f"{problem.kind}: {terminal_safe_line(problem.subject)}")
+        typer.echo(f"{problem.kind}: {terminal_safe_line(problem.subject)}{explanation(problem)}")
     if not found.problems:
         typer.echo(terminal_safe(found.sentence))
     raise typer.Exit(int(ExitCode.FAILED if found.problems else ExitCode.OK))

@@ -32,8 +32,8 @@ def report(
         option(
             "--incident",
             "FINDING",
-            "Write two A4 pages about one finding instead: incidents/ID.html. Give its id, RULE or RULE@DRIVE, as in explain; "
-            "or contact, for the worst contact.",
+            "Write two A4 pages about one finding or near miss instead: incidents/ID.html. Give its id, RULE or RULE@DRIVE, as in "
+            "explain; or contact, for the worst contact.",
         ),
     ] = None,
     pdf: Annotated[
@@ -86,9 +86,9 @@ def report(
     For an audit: fleet.html or fleet.md, with rates, worst drives, coverage, and what could not be judged; beside fleet.html, a page
     for each of the worst drives.
 
-    With --incident: writes a sheet about one finding, for the records. The sheet has time and place, and both parties with their speeds
-    and braking second by second. It states what each party did by the same rules, how sure the finding is, and what the recording
-    lacks. To write it, the log is judged again.
+    With --incident: writes a sheet about one finding or near miss, for the records. The sheet has time and place, and both parties
+    with their speeds and braking second by second. It states what each party did by the same rules, how sure the finding is, and what
+    the recording lacks. To write it, the log is judged again.
     """
     from drivelint.fleet_report.audit_views import is_audit, path_or_url
 

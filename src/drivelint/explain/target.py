@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from drivelint.errors import UsageError
 from drivelint.phrases import plural
+from drivelint.result.counts import one_finding_per_event
 from drivelint.result.text import seconds
 
 if TYPE_CHECKING:
@@ -69,7 +70,7 @@ def find_verdict(result: Result, name: str, verdict_filter: VerdictFilter) -> Ta
         row = min(_verdicts_of_finding(finding, verdicts), key=_sort_key)
         return Target(row, finding, _other_verdicts(row, verdicts), finding)
     rule, _, drive = name.partition("@")
-    rule = _rule_of_name(rule, sorted({row["rule_id"] for row in verdicts}), ids)
+    rule = _rule_of_name(rule, sorted({row["rule_id"] for row in verdicts}), len(one_finding_per_event(findings)))
     rows = [row for row in verdicts if row["rule_id"] == rule]
     if drive:
         drive = _complete_name(drive, sorted({row["drive_id"] for row in rows}), f"{rule}: drive")
@@ -156,7 +157,7 @@ def _other_verdicts(row: Row, verdicts: Iterable[Row]) -> list[Row]:
     return [{key: v[key] for key in keys} for v in mine]
 
 
-def _rule_of_name(name: str, rules: Sequence[str], findings: Sequence[str]) -> str:
+def _rule_of_name(name: str, rules: Sequence[str], n_findings: int) -> str:
     if name in rules:
         return name
     meant = [r for r in rules if r.startswith(name)] or [r for r in rules if name in r]
@@ -164,9 +165,7 @@ def _rule_of_name(name: str, rules: Sequence[str], findings: Sequence[str]) -> s
         return _only_match(name, meant, "rules")
     near = get_close_matches(name, [*rules, *(r.partition(".")[2] for r in rules)], n=1, cutoff=0.4)
     hint = (
-        f"it has {plural(len(findings), 'finding')} and {plural(len(rules), 'rule')}, such as {rules[0]}"
-        if rules
-        else ""
+        f"it has {plural(n_findings, 'finding')} and {plural(len(rules), 'rule')}, such as {rules[0]}" if rules else ""
     )
     if near:
         hint = f"did you mean {near[0]!r}?"

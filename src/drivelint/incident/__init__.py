@@ -1,4 +1,4 @@
-"""The incident sheet (two A4 pages about one finding, for the files of a claims handler) and the clip of the log around the finding."""
+"""The incident sheet (two A4 pages about one finding or near miss, for a claims handler) and the clip of the log around a finding."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from drivelint.engine.robustness.copies import MeasurementErrors
 from drivelint.explain.source import open_drive, with_ego
 from drivelint.incident import pdf, sheet
 from drivelint.incident.case import Case
-from drivelint.incident.finding import contacts, named_finding
+from drivelint.incident.finding import contacts, named_finding, near_misses, with_closing_speed
 from drivelint.incident.judge import EgoRows, Judge
 from drivelint.report import html as report_page
 from drivelint.report.html.anchors import anchor
@@ -45,7 +45,7 @@ _NO_VEHICLES: Final = frozenset({"pedestrian", "animal", "object"})
 
 @dataclass(frozen=True)
 class IncidentRequest:
-    """A request to `report --incident`: a finding, named as for `explain`, and the paths of log and map if they were moved."""
+    """A request to `report --incident`: a finding or near miss, named as for `explain`, and the paths of log and map if they were moved."""
 
     name: str
     folder: Path
@@ -56,7 +56,7 @@ class IncidentRequest:
 
 
 def write_incident(request: IncidentRequest) -> list[Path]:
-    """Write the sheet of a finding into the result folder and return the paths of its files.
+    """Write the sheet of a finding or near miss into the result folder and return the paths of its files.
 
     Errors: `UsageError` if the finding, log or map does not exist, or if no installed browser can print a PDF.
     """
@@ -71,18 +71,27 @@ def write_incident(request: IncidentRequest) -> list[Path]:
 
 
 def other_drives(request: IncidentRequest) -> list[str]:
-    """Return the other drives with findings that match the name; they exist only if the name is a rule, or `contact`, without a drive."""
+    """Return the other drives with findings that match the name; they exist only if the name is a rule, or `contact`, without a drive.
+
+    If no drive has such a finding, return the other drives with near misses.
+    """
     result = load_result(request.folder)
-    row = named_finding(result, request.name).row
+    named = named_finding(result, request.name, with_near_misses=True)
+    row = named.row
     if "@" in request.name or row["finding_id"].startswith(request.name):
         return []
-    every = result.findings.select(["rule_id", "drive_id"]).to_pylist()
+    every = near_misses(result) if named.is_near_miss else result.findings.select(["rule_id", "drive_id"]).to_pylist()
     same = (
         contacts(result)
         if request.name == CONTACT_TAG
         else [each for each in every if each["rule_id"] == row["rule_id"]]
     )
     return sorted({each["drive_id"] for each in same} - {row["drive_id"]})
+
+
+def sheet_ids(result: Result) -> set[str]:
+    """Return the ids of all findings and near misses of a result; the file of a sheet has its id as name."""
+    return {*result.findings["finding_id"].to_pylist(), *(row["finding_id"] for row in near_misses(result))}
 
 
 def render(case: Case) -> bytes:
@@ -98,7 +107,7 @@ def open_case(request: IncidentRequest, run_options: RunRequest | None = None) -
     Errors: `UsageError` if the finding, log or map does not exist.
     """
     result = load_result(request.folder)
-    finding = named_finding(result, request.name)
+    finding = named_finding(result, request.name, with_near_misses=True)
     run_options = (run_options or run_request.load(request.folder)).of_drive(finding.row["drive_id"])
     judge = Judge.of_run(run_options, result.rules, request.memory)
     ego, other = finding.row["ego_id"], finding.row["object_id"]
@@ -112,6 +121,8 @@ def open_case(request: IncidentRequest, run_options: RunRequest | None = None) -
         map_sha256=finding.drive["map_sha256"],
     )
     again = judge.judge(drive, ego, other)
+    if finding.is_near_miss:
+        finding = with_closing_speed(finding, again.steps)
     return Case(
         result, run_options, finding, drive, again, _other_party(request, run_options, result, finding, judge), source
     )

@@ -11,6 +11,7 @@ from drivelint.catalogue.header import EXCUSES_TAG
 from drivelint.incident.words import SENSE, amount, how_sure, measured_text, minus, profile, required
 from drivelint.phrases import plural
 from drivelint.result.certainty import certainty
+from drivelint.result.counts import one_finding_per_event
 from drivelint.result.text import seconds
 
 if TYPE_CHECKING:
@@ -97,8 +98,8 @@ def _when(row: Row, rule: Row, start_ns: int) -> str:
 
 
 def _certainties(rows: Sequence[Row]) -> str:
-    """Return in words how sure findings are; '' for verdicts without findings."""
-    found = [row for row in rows if "finding_id" in row]
+    """Return in words how sure findings are, one per event; '' for verdicts without findings."""
+    found = one_finding_per_event(row for row in rows if "finding_id" in row)
     if not found:
         return ""
     if len(found) == 1:

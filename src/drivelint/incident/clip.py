@@ -16,7 +16,7 @@ from drivelint.engine.map_library import MapLibrary
 from drivelint.errors import DriveLintError, UsageError
 from drivelint.formats import expand_traces, read_trace
 from drivelint.formats.files import identify
-from drivelint.incident.command import of_rules
+from drivelint.incident.command import named_by_user, of_rules
 from drivelint.incident.finding import named_finding
 from drivelint.incident.judge import Judge, same_finding
 from drivelint.result import request as run_request
@@ -55,7 +55,7 @@ def write_clip(request: ConvertRequest, name: str, folder: Path, memory: int | N
         if same:
             written = convert(replace(request, clip=clip))
             notes = (*written.notes, _clip_sentence(finding, clip, before_s, after_s))
-            options = of_rules(run_options, result.rules["rule_id"].to_pylist())
+            options = of_rules(run_options, result.rules["rule_id"].to_pylist(), named_by_user(result.rules))
             return replace(written, notes=notes, check_options=tuple(options))
     raise UsageError(
         f"finding {finding.row['finding_id']}: judging the whole log again does not give this finding: the tool, the rule or an option "

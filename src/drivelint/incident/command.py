@@ -8,16 +8,24 @@ from typing import TYPE_CHECKING
 
 from drivelint import catalogue
 from drivelint.engine.profiles import DEFAULT_PROFILES
+from drivelint.reasons.signals import SIGNALS_OF_FEW_LOGS
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Collection, Sequence
+
+    import pyarrow as pa
 
     from drivelint.incident.finding import NamedFinding
     from drivelint.result.request import RunRequest
 
 
-def commands(run_options: RunRequest, finding: NamedFinding, rule_ids: Sequence[str]) -> list[str]:
-    """Return two commands: the check of the finding's log by the rules of the run, and the report. Files are named without folders."""
+def commands(
+    run_options: RunRequest, finding: NamedFinding, rule_ids: Sequence[str], named_ids: Collection[str] = ()
+) -> list[str]:
+    """Return two commands: the check of the finding's log by the rules of the run, and the report. Files are named without folders.
+
+    `rule_ids`: the rules of the run; `named_ids`: those that the user selected by their id.
+    """
     row, drive = finding.row, finding.drive
     words = ["drivelint", "check", drive["file_name"]]
     if run_options.map is not None:
@@ -27,14 +35,14 @@ def commands(run_options: RunRequest, finding: NamedFinding, rule_ids: Sequence[
     words += _options(run_options)
     if row["ego_id"]:
         words += ["--ego", row["ego_id"] if len(drive["exposure"]) == 1 else "all"]
-    words += of_rules(run_options, rule_ids)
+    words += of_rules(run_options, rule_ids, named_ids)
     name = row["finding_id"]
     return [_line([*words, "--out", "again"]), _line(["drivelint", "report", "again", "--incident", name])]
 
 
-def of_rules(run_options: RunRequest, rule_ids: Sequence[str]) -> list[str]:
+def of_rules(run_options: RunRequest, rule_ids: Sequence[str], named_ids: Collection[str] = ()) -> list[str]:
     """Return the options that select the rules, profiles and parameters of a run. Folders are given without their parent folders."""
-    words = _rules(run_options, rule_ids)
+    words = _rules(run_options, rule_ids, named_ids)
     for profile in run_options.profiles if tuple(run_options.profiles) != tuple(DEFAULT_PROFILES) else ():
         words += ["--profile", profile]
     for setting in run_options.params:
@@ -44,20 +52,34 @@ def of_rules(run_options: RunRequest, rule_ids: Sequence[str]) -> list[str]:
     return words
 
 
-def _rules(run_options: RunRequest, rule_ids: Sequence[str]) -> list[str]:
-    """Return the shortest options that select these rules."""
+def _rules(run_options: RunRequest, rule_ids: Sequence[str], named_ids: Collection[str]) -> list[str]:
+    """Return the shortest options that select these rules, and by their ids the named rules whose signals few logs have."""
     known, wanted = catalogue.load_rules(run_options.rules_dirs), set(rule_ids)
-    candidates = [[word for rule_id in sorted(wanted) for word in ("--rules", rule_id)]]
-    for chosen in (
-        [],
-        *(["--rules", pack] for pack in sorted({known[rule_id].pack for rule_id in wanted & known.keys()})),
-    ):
-        selected = {rule.id for rule in catalogue.select_rules(known, chosen[1:], ())}
+    rules = [known[rule_id] for rule_id in sorted(wanted & known.keys())]
+    # if its id does not select it, such a rule does not apply instead of being unknown
+    of_few_logs = [rule.id for rule in rules if SIGNALS_OF_FEW_LOGS & set(rule.needed_signals)]
+    named = [rule_id for rule_id in of_few_logs if rule_id in named_ids]
+    by_ids = _selectors(sorted(wanted))
+    candidates = [by_ids] if named == of_few_logs else []
+    packs = sorted({rule.pack for rule in rules})
+    stable = sorted({rule.pack for rule in rules if rule.status == "stable"})
+    # without --rules, the stable rules are selected; with a name alone, only that rule
+    bases = [*([] if named else [[]]), *([pack] for pack in packs), *([f"{pack},status:stable"] for pack in stable)]
+    for chosen in ([*base, *named] for base in bases):
+        selected = {rule.id for rule in catalogue.select_rules(known, chosen, ())}
         if wanted <= selected:
-            candidates.append(
-                [*chosen, *(word for rule_id in sorted(selected - wanted) for word in ("--ignore", rule_id))]
-            )
-    return min(candidates, key=len)
+            left_out = (word for rule_id in sorted(selected - wanted) for word in ("--ignore", rule_id))
+            candidates.append([*_selectors(chosen), *left_out])
+    return min(candidates or [by_ids], key=len)
+
+
+def named_by_user(rules_of_run: pa.Table) -> list[str]:
+    """Return the ids of the rules that the user selected by their ids. `rules_of_run`: rows of the table `rule`."""
+    return [row["rule_id"] for row in rules_of_run.to_pylist() if row["is_named"]]
+
+
+def _selectors(names: Sequence[str]) -> list[str]:
+    return [word for name in names for word in ("--rules", name)]
 
 
 def _options(run_options: RunRequest) -> list[str]:

@@ -1,8 +1,12 @@
-"""Looks up the finding that a user names, with its drive and rule."""
+"""Looks up the finding or near miss that a user names, with its drive and rule."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import hashlib
+import json
+import math
+import shlex
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final
 
 import pyarrow.compute as pc
@@ -10,28 +14,37 @@ import pyarrow.compute as pc
 from drivelint.catalogue.header import CONTACT_TAG
 from drivelint.errors import UsageError
 from drivelint.explain.target import VerdictFilter, find_verdict
+from drivelint.incident.motion import Motion
 from drivelint.phrases import name_list
 from drivelint.report.worst_first import is_contact, worst_first
 
 if TYPE_CHECKING:
+    import pyarrow as pa
+
     from drivelint.result.model import Result
     from drivelint.result.text import Row
 
+_NEAR_MISS_ID: Final = "near-miss-"
+"""The beginning of the id of a near miss; the ids of findings are hexadecimal numbers."""
 _SAME: Final = ("drive_id", "ego_id", "rule_id", "profile", "ref_id")
 
 
 @dataclass(frozen=True)
 class NamedFinding:
-    """One finding of a result: its rows of `finding`, `drive` and `rule`."""
+    """One finding of a result: its rows of `finding`, `drive` and `rule`.
+
+    `is_near_miss`: it is a near miss; `row` is then its row of `verdict`, with the columns that only findings have.
+    """
 
     row: Row
     drive: Row
     rule: Row
+    is_near_miss: bool = False
 
     @property
     def is_contact(self) -> bool:
         """Whether the finding is a contact."""
-        return CONTACT_TAG in self.rule["tags"]
+        return CONTACT_TAG in self.rule["tags"] and not self.is_near_miss
 
     @property
     def moment_ns(self) -> int:
@@ -49,23 +62,76 @@ class NamedFinding:
         return [name for name in (self.row["ego_id"], self.row["object_id"]) if name is not None]
 
 
-def named_finding(result: Result, name: str) -> NamedFinding:
+def named_finding(result: Result, name: str, *, with_near_misses: bool = False) -> NamedFinding:
     """Return the finding with a name that `explain` accepts; a rule means its worst finding, `contact[@DRIVE]` the worst contact.
 
-    Errors: `UsageError` if nothing has this name, or if the verdict is no finding.
+    `with_near_misses`: if the rule was not broken, return its nearest miss.
+    Errors: `UsageError` if nothing has this name, or if the verdict is neither a finding nor a near miss.
     """
     drives = {drive["drive_id"]: drive for drive in result.drives.to_pylist()}
     rules = {rule["rule_id"]: rule for rule in result.rules.to_pylist()}
     word, _, drive_id = name.partition("@")
+    is_near_miss = with_near_misses and name.startswith(_NEAR_MISS_ID)
     if word == CONTACT_TAG:
         found = [row for row in contacts(result) if row["drive_id"].startswith(drive_id)]
         if not found:
             raise UsageError(f"--incident {name}: {_without_contact(result, drive_id)}")
         row = found[0]
+    elif is_near_miss:
+        row = _near_miss_with_id(result, name)
     else:
         target = find_verdict(result, name, VerdictFilter())
-        row = target.finding or _worst_of(target.verdict, result)
-    return NamedFinding(row, drives[row["drive_id"]], rules[row["rule_id"]])
+        may_be_near = with_near_misses and target.finding is None and target.verdict["verdict"] != "fail"
+        near = _nearest_miss(result, target.verdict, of_drive=bool(drive_id)) if may_be_near else None
+        is_near_miss = near is not None
+        row = near or target.finding or _worst_of(target.verdict, result)
+    return NamedFinding(row, drives[row["drive_id"]], rules[row["rule_id"]], is_near_miss)
+
+
+def near_misses(result: Result) -> list[Row]:
+    """Return the near misses of a result as rows of `verdict`, with the columns that only findings have; the nearest first."""
+    rows = result.verdicts.filter(
+        pc.and_(pc.fill_null(result.verdicts["near_miss"], False), pc.is_valid(result.verdicts["t_worst_ns"]))
+    ).to_pylist()
+    content = {drive["drive_id"]: drive["sha256"] for drive in result.drives.to_pylist()}
+    tags = {rule["rule_id"]: rule["tags"] for rule in result.rules.to_pylist()}
+    unknown = dict.fromkeys(("n_copies", "n_stays", "closing_mps", "lat", "lon"))
+    found = [{**unknown, **row, "finding_id": _near_miss_id(row, content[row["drive_id"]])} for row in rows]
+    # margins of different units do not compare: a near miss of a contact is the nearest
+    return sorted(
+        found,
+        key=lambda row: (CONTACT_TAG not in tags[row["rule_id"]], row["margin"], row["drive_id"], row["finding_id"]),
+    )
+
+
+def with_closing_speed(finding: NamedFinding, steps: pa.Table) -> NamedFinding:
+    """Return a near miss with the closing speed at its moment. `steps`: rows of `queries/incident/step.sql`."""
+    motion = Motion.of_steps(steps, finding.moment_ns)
+    at = motion.at(0.0)
+    closing_mps = math.nan if at is None else float(motion.closing[at])
+    return replace(finding, row={**finding.row, "closing_mps": None if math.isnan(closing_mps) else closing_mps})
+
+
+def _near_miss_id(row: Row, content_sha256: str) -> str:
+    parts = [content_sha256, *(row[name] for name in ("ego_id", "rule_id", "profile", "object_id", "occurrence"))]
+    return f"{_NEAR_MISS_ID}{hashlib.sha256(json.dumps(parts).encode()).hexdigest()[:16]}"
+
+
+def _near_miss_with_id(result: Result, name: str) -> Row:
+    """Return the near miss whose id begins with `name`. Errors: `UsageError` if there is none, or more than one."""
+    found = [row for row in near_misses(result) if row["finding_id"].startswith(name)]
+    if len(found) != 1:
+        raise UsageError(
+            f"--incident {name}: {'several near misses have' if found else 'no near miss has'} an id with this beginning: "
+            "name it by its rule and drive (RULE@DRIVE)"
+        )
+    return found[0]
+
+
+def _nearest_miss(result: Result, verdict: Row, *, of_drive: bool) -> Row | None:
+    """Return the nearest miss of a verdict's rule, in its drive only if `of_drive`; None if there is none."""
+    keys = ("rule_id", "drive_id") if of_drive else ("rule_id",)
+    return next((row for row in near_misses(result) if all(row[key] == verdict[key] for key in keys)), None)
 
 
 def contacts(result: Result) -> list[Row]:
@@ -77,16 +143,17 @@ def contacts(result: Result) -> list[Row]:
 
 def _without_contact(result: Result, drive_id: str) -> str:
     """Return what to do if no finding is a contact. `drive_id`: the beginning of the drive's id; '' for all drives."""
-    begins = pc.starts_with(result.verdicts["drive_id"], drive_id)
-    near = result.verdicts.filter(pc.and_(begins, pc.fill_null(result.verdicts["near_miss"], False))).to_pylist()
-    found = any(row["drive_id"].startswith(drive_id) for row in result.findings.to_pylist())
-    told = [f"no finding is a contact{f' in {drive_id}' if drive_id else ''}"]
-    told += ["name another finding"] if found else ["nothing was found there that a sheet could be about"]
+    near = [row for row in near_misses(result) if row["drive_id"].startswith(drive_id)]
+    broken = {(row["rule_id"], row["drive_id"]) for row in result.findings.to_pylist()}
+    found = any(drive.startswith(drive_id) for _, drive in broken)
+    told = f"no finding is a contact{f' in {drive_id}' if drive_id else ''}"
     if near:
-        nearest = min(near, key=lambda row: (row["margin"] is None, row["margin"], row["rule_id"]))
-        named = f"{nearest['rule_id']}@{nearest['drive_id']}"
-        told.append(f"of a near miss there is no sheet, but report.html and `drivelint explain {named}` tell of it")
-    return ": ".join(told[:2]) + "".join(f"; {each}" for each in told[2:])
+        rule, drive = near[0]["rule_id"], near[0]["drive_id"]
+        named = near[0]["finding_id"] if (rule, drive) in broken else f"{rule}@{drive}"
+        folder = "DIR" if result.folder is None else shlex.quote(str(result.folder))
+        told += f": the nearest miss has a sheet: drivelint report {folder} --incident {named}"
+        return f"{told}; or name another finding" if found else told
+    return f"{told}: {'name another finding' if found else 'nothing was found there that a sheet could be about'}"
 
 
 def _worst_of(verdict: Row, result: Result) -> dict[str, Any]:

@@ -1,4 +1,7 @@
-"""Fits the content into two pages. To save space, reasons lose the titles of their rules first; then whole reasons are left out."""
+"""Fits the content into two pages. To save space, reasons lose the titles of their rules first; then whole reasons are left out.
+
+Broken rules are never left out: if they do not fit into the two pages, further pages contain all that page 2 has no space for.
+"""
 
 from __future__ import annotations
 
@@ -11,16 +14,22 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 _RESERVED_CHARACTERS: Final = {"broken": 1500, "kept": 300, "excused": 80, "reasons": 350}
-"""The characters reserved for each part; if texts are left out, their number is printed."""
+"""The characters reserved for each part; if page 2 has no space for some texts, it contains their number."""
 _FIRST: Final = ("broken", "reasons")
 """Parts that get free space first, in this order."""
 _MAY_GO: Final = frozenset({"kept", "excused"})
 """Parts that may be left out completely, because the party's first line contains their number."""
 _EMPTY_LINE_END_CHARACTERS: Final = {"broken": 30}
 """The empty characters at the end of a text's last line, in parts in which each text begins a new line."""
-_CHARACTERS_OF_ALL_PARTS: Final = 3300
+_CHARACTERS_OF_ALL_PARTS: Final = 3100
 """The characters that all parts of both parties may take together; a part may use the space that others leave."""
-_CHARACTERS_PER_SECOND_ROW: Final = 110
+_EXPLANATION_CHARACTERS: Final = 150
+"""The characters of the sentences that explain the parts in `_MAY_GO`; they are left out with these parts."""
+_CHARACTERS_OF_A_FURTHER_PAGE: Final = 8400
+"""The characters that a page after page 2 has space for."""
+_CHARACTERS_OF_A_HEADING: Final = 110
+"""The characters that fit into the space of a heading on such a page."""
+_CHARACTERS_PER_SECOND_ROW: Final = 120
 """The characters that fit into the space of one row of the table of seconds."""
 _SEPARATOR_CHARACTERS: Final = 2
 """The number of characters between two texts."""
@@ -28,11 +37,11 @@ SHARED_HEAD: Final = 100
 """The characters of the heading of the reasons that both parties share, with the empty end of the line before."""
 _TITLES_NOTE_CHARACTERS: Final = 80
 """The characters of the sentence that refers to the titles that were left out."""
-_WIDE, _CELL, _FACT, _CHECK = 92, 43, 41, 98
+_WIDE, _CELL, _FACT, _CHECK = 92, 39, 40, 88
 """The characters of a line in the widest possible font: across page 1, in a column of the parties or the facts, and beside a hash."""
-_LINE_PX, _TEXT_PX = 13.7, 15.7
+_LINE_PX, _TEXT_PX = 13.6, 15.7
 """The height of a line in the tables of page 1, and in its first sentences."""
-_FIRST_PX: Final = 465
+_FIRST_PX: Final = 440
 """The greatest height of the finding and the parties on page 1 that leaves enough space for the lists of missing records."""
 _CHECK_LINE: Final = 125
 """The characters in the columns of page 2 that need as much space as one line of the hashes."""
@@ -66,6 +75,14 @@ class Fitting(NamedTuple):
     texts: list[str]
     more: int
     is_short: bool = False
+
+
+class Continuation(NamedTuple):
+    """The texts of one part about one party, or about both, that page 2 has no space for."""
+
+    party: dict[str, Any]
+    part: str
+    texts: list[str]
 
 
 def is_crowded(page: dict[str, Any]) -> bool:
@@ -109,13 +126,14 @@ def shared_reasons(parties: Sequence[dict[str, Any]]) -> dict[str, Any]:
     return {"reasons": shared}
 
 
-def fit(parties: Sequence[dict[str, Any]], seconds_left: int, used_characters: int) -> None:
-    """Cut the lists about both parties so that they fit into two columns with a common limit of characters.
+def fit(parties: Sequence[dict[str, Any]], seconds_left: int, used_characters: int) -> list[list[Continuation]]:
+    """Cut the lists about both parties so that they fit into two columns with a common limit of characters, and return further pages.
 
     Free space goes first to the broken rules, then to the reasons, until all are printed. If other lines need space, the lists are
-    shortened, the list of broken rules last.
+    shortened, the list of broken rules last. If a broken rule has no space, all texts without space are on the further pages.
     `seconds_left`: the unused rows of the table of seconds; `used_characters`: the characters of other lines.
     """
+    lists = [(told, name, list(told[name])) for name in _RESERVED_CHARACTERS for told in parties if name in told]
     parts = [
         (told, name, min(_least(told[name], name), room))
         for name, room in _RESERVED_CHARACTERS.items()
@@ -128,6 +146,8 @@ def fit(parties: Sequence[dict[str, Any]], seconds_left: int, used_characters: i
         - used_characters
         - sum(room for *_, room in parts)
     )
+    if spare + sum(room for _, name, room in parts if name in _MAY_GO) <= 0:
+        spare = min(spare + _EXPLANATION_CHARACTERS, 0)
     if spare < 0:
         parts = _shrunk(parts, -spare)
     rooms = [room for *_, room in parts]
@@ -141,6 +161,35 @@ def fit(parties: Sequence[dict[str, Any]], seconds_left: int, used_characters: i
         fitting = _fitting_reasons if name == "reasons" else _fitting
         told[name] = fitting(told[name], name, room + max(spare, 0))
         spare -= max(_n_characters(told[name].texts, name) + _TITLES_NOTE_CHARACTERS * told[name].is_short - room, 0)
+    if not any(told["broken"].more for told in parties if "broken" in told):
+        return []
+    return _further_pages([Continuation(told, name, _rest(texts, told[name])) for told, name, texts in lists])
+
+
+def _rest(texts: Sequence[Any], fitting: Fitting) -> list[str]:
+    """Return the texts of a part that page 2 does not contain, or contains only in a short form."""
+    full = [text.full_text if isinstance(text, Reason) else text for text in texts]
+    return [text for text in full if text not in fitting.texts]
+
+
+def _further_pages(lists: Sequence[Continuation]) -> list[list[Continuation]]:
+    """Distribute the lists over as many pages as they need; a list that goes on has a heading on each page."""
+    pages: list[list[Continuation]] = []
+    room = 0
+    for told, part, texts in lists:
+        on_page: Continuation | None = None
+        for text in texts:
+            needed = len(text) + _EMPTY_LINE_END_CHARACTERS["broken"]
+            if needed + _CHARACTERS_OF_A_HEADING * (on_page is None) > room:
+                pages.append([])
+                room, on_page = _CHARACTERS_OF_A_FURTHER_PAGE, None
+            if on_page is None:
+                on_page = Continuation(told, part, [])
+                pages[-1].append(on_page)
+                room -= _CHARACTERS_OF_A_HEADING
+            on_page.texts.append(text)
+            room -= needed
+    return pages
 
 
 def _shrunk(parts: Sequence[_Part], by: int) -> list[_Part]:

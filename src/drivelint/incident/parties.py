@@ -13,7 +13,7 @@ from drivelint.incident.delta_v import told_delta_v
 from drivelint.incident.judge import EgoRows
 from drivelint.incident.motion import BEFORE_S, slowing_known
 from drivelint.incident.sizes import size_source
-from drivelint.incident.words import collision_title, nearly_same, speed
+from drivelint.incident.words import amount, collision_title, nearly_same, speed
 from drivelint.report.html.plan_view import box_corners_m
 from drivelint.result.text import breach_title, seconds
 
@@ -146,9 +146,13 @@ def overtaking(case: Case, at: int | None) -> str:
 
 
 def title(case: Case, motion: Motion, at: int | None, *, possible: bool) -> str:
-    """Return the title of the sheet: a collision of A and B, or the broken rule."""
+    """Return the title of the sheet: a collision of A and B, the broken rule, or the rule that was nearly broken."""
     finding, row = case.finding, case.finding.row
     when = seconds(finding.moment_ns, finding.start_ns)
+    if finding.is_near_miss:
+        return (
+            f"Near miss at {when}: \u201c{finding.rule['title']}\u201d was kept by {amount(row['margin'], row['unit'])}"
+        )
     if not finding.is_contact or len(finding.parties) < 2:
         return f"{breach_title(finding.rule)}{', possibly' if possible else ''}, at {when}"
     oncoming = at is not None and case.again.steps["with_traffic"][at].as_py() is False

@@ -44,7 +44,8 @@ def place(case: Case) -> Place:
     row, moment_ns = case.finding.row, case.finding.moment_ns
     steps = case.again.steps.select(["t_ns", "x_m", "y_m", "lanelet_id"]).to_pylist()
     at = next((step for step in steps if step["t_ns"] == moment_ns), None)
-    if row["t_worst_ns"] == moment_ns or at is None or at["x_m"] is None or at["y_m"] is None:
+    is_in_row = row["t_worst_ns"] == moment_ns and not case.finding.is_near_miss  # a verdict has no degrees
+    if is_in_row or at is None or at["x_m"] is None or at["y_m"] is None:
         return Place(row["t_worst_ns"], *(row[name] for name in Place._fields[1:]))
     lat = lon = None
     if case.drive.geo is not None:

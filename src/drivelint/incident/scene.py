@@ -1,4 +1,4 @@
-"""Moves the scene of a finding's worst step to another moment of the drive."""
+"""The plan view of the moment: the scene of a finding's worst step, moved to another moment of the drive."""
 
 from __future__ import annotations
 
@@ -7,12 +7,21 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from drivelint.arrays import floats
+from drivelint.incident.case import LETTERS
+from drivelint.incident.parties import others_drawn
+from drivelint.report.html.plan_view import actor_shapes, plan_view
+from drivelint.report.html.road import DrawnMaps
+from drivelint.result.text import seconds
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
+    from drivelint.incident.case import Case
     from drivelint.result.text import Row
 
+_SPACES: Final = "danger_space"
+_LABEL_SHARE: Final = 0.135
+"""Size of the plan view's labels as a share of its height; at the least height (`sheet.css`) they are 8 pt or more."""
 
 _NEAR_NS: Final = 500_000_000
 """An actor is drawn only if one of its samples is at most this far away in time."""
@@ -45,3 +54,28 @@ def scene_at(scene: Row, states: pa.Table, t_ns: int) -> Row:
             }
         )
     return {**scene, "t_ns": t_ns, "actors": actors}
+
+
+def plan_at_moment(case: Case) -> dict[str, Any]:
+    """Return the plan view of the moment, with its lanes and shapes; `plan` is None if the result has no scene of the worst step."""
+    finding = case.finding
+    at = (finding.row["drive_id"], finding.row["ego_id"], finding.row["t_worst_ns"])
+    scene, *_ = [*_at(case.result.scenes, at), None]
+    drawn_at = seconds(finding.moment_ns, finding.start_ns)
+    if scene is None:
+        return {"plan": None, "tiles": [], "shapes": [], "drawn": [], "drawn_at": drawn_at}
+    drawn_scene = scene_at(scene, case.drive.trace.tables["actor_state"], finding.moment_ns)
+    road = DrawnMaps(case.result.lanes)
+    spaces = _at(case.result.spaces, at) if _SPACES in finding.rule["tags"] else []
+    plan = plan_view(drawn_scene, road, set(finding.parties[1:]), spaces)
+    tiles = [tile for tile in road.tiles() if tile["name"] in plan["tiles"]]
+    drawn = others_drawn(plan, drawn_scene)
+    letters = dict(zip(finding.parties, LETTERS, strict=False))
+    plan["texts"] = [{**text, "text": letters.get(text.get("actor"), text["text"])} for text in plan["texts"]]
+    plan["font"] = f"{_LABEL_SHARE * float(plan['height']):.1f}"
+    return {"plan": plan, "tiles": tiles, "shapes": actor_shapes([drawn_scene]), "drawn": drawn, "drawn_at": drawn_at}
+
+
+def _at(table: pa.Table, at: tuple[str, str, int]) -> list[dict[str, Any]]:
+    """Return the rows of a table at one moment of an ego; `at`: drive, ego and time."""
+    return [row for row in table.to_pylist() if (row["drive_id"], row["ego_id"], row["t_ns"]) == at]

@@ -1,4 +1,4 @@
-"""The content of the two pages of an incident sheet, as plain values for the template."""
+"""The content of an incident sheet, as plain values for the template."""
 
 from __future__ import annotations
 
@@ -14,28 +14,24 @@ from drivelint.catalogue.header import CONTACT_TAG
 from drivelint.convert import CLIP_CHECK_ID
 from drivelint.engine.robustness.copies import MeasurementErrors
 from drivelint.incident.case import LETTERS
-from drivelint.incident.command import commands
+from drivelint.incident.command import commands, named_by_user
 from drivelint.incident.conduct import conduct, name_party
 from drivelint.incident.delta_v import WINDOW_S
 from drivelint.incident.fitting import SHARED_HEAD, Fitting, check_room, first_fitting, fit, is_crowded, shared_reasons
 from drivelint.incident.judge import same_finding
 from drivelint.incident.motion import BEFORE_S, MOST_ROWS, Motion, second_by_second, slowings
-from drivelint.incident.parties import against_each_other, kinds, others_drawn, overtaking, party, title
+from drivelint.incident.parties import against_each_other, kinds, overtaking, party, title
 from drivelint.incident.place import coordinates, geo_source, inferred_side, place, road_of, sea_note, surroundings
 from drivelint.incident.record import held_elements
-from drivelint.incident.scene import scene_at
+from drivelint.incident.scene import plan_at_moment
 from drivelint.incident.sizes import size_source
 from drivelint.incident.strips import strips
 from drivelint.incident.words import amount, closing, contact, how_sure, measured_text, minus, profile, story, told_unit
 from drivelint.report.html.pictures import cameras_by_moment
-from drivelint.report.html.plan_view import actor_shapes, plan_view
-from drivelint.report.html.road import DrawnMaps
 from drivelint.result.certainty import LEAST_KEEPING_SHARE, POSSIBLE, SURE, certainty
 from drivelint.result.text import seconds, utc_at
 
 if TYPE_CHECKING:
-    import pyarrow as pa
-
     from drivelint.incident.case import Case
     from drivelint.incident.finding import NamedFinding
     from drivelint.result.model import Result
@@ -47,14 +43,11 @@ _NO_NUMBER: Final = "-"
 _CLIP: Final = re.compile(r"^(.+)-clip-[0-9a-f]{8}$")
 """The name of a clip from `convert --clip`, see `clip.py`."""
 _CLIP_NOTE: Final = "; values that depend on the time before or after it may differ from those of the log"
-_SPACES: Final = "danger_space"
 _LONGEST: Final = 330
 _NOTE_CHARACTERS: Final = 370
 """The number of characters that warnings about the log, or the source of a clip, may have in the columns of page 2."""
 _WARNING_CHARACTERS: Final = 300
-_LABEL_SHARE: Final = 0.1
-"""Size of the plan view's labels as a share of its height; at the least height (`sheet.css`) they are 6 pt or more."""
-_RECORDS_ROOM: Final = 1300
+_RECORDS_ROOM: Final = 1050
 """The characters that the lists of missing records take in the columns of page 2, if page 1 has no space for them."""
 _MOST_CONTACTS: Final = 2
 
@@ -103,6 +96,8 @@ def content(case: Case) -> dict[str, Any]:
         "surroundings": surroundings(finding.drive),
         "hand": inferred_side(finding.drive),
         "contact": finding.is_contact,
+        "near": finding.is_near_miss,
+        "near_margin": amount(finding.rule["near_margin"], row["unit"]),
         "delta_v_s": WINDOW_S,
         "peak": "deepest" if row["unit"] == "m" else "hardest",
         "before": None if before_s is None else f"{-before_s:.2f} s before",
@@ -113,7 +108,7 @@ def content(case: Case) -> dict[str, Any]:
         "least": _least_gap(motion, finding),
         "contacts": Fitting((hits := _told_contacts(case))[:_MOST_CONTACTS], max(len(hits) - _MOST_CONTACTS, 0)),
         "overlap": contact(row, finding.rule),
-        **_plan(case),
+        **plan_at_moment(case),
         "cameras": cameras_by_moment(case.result.pictures).get((row["drive_id"], row["t_worst_ns"]), []),
         "pictured_at": seconds(row["t_worst_ns"], finding.start_ns),
         "strips": strips(motion, _names(finding), *_courses(case), finding.moment_ns),
@@ -131,9 +126,11 @@ def content(case: Case) -> dict[str, Any]:
         "rests": _rests_on(case, motion),
         "records": held_elements(case.drive.trace.tables, finding.drive, row["ego_id"]),
         "quality": _told_warnings(case),
-        "again": same_finding(case.again.findings, row),
+        "again": same_finding(case.again.verdicts if finding.is_near_miss else case.again.findings, row),
         "source": case.source,
-        "commands": commands(case.run_options, finding, case.result.rules["rule_id"].to_pylist()),
+        "commands": commands(
+            case.run_options, finding, case.result.rules["rule_id"].to_pylist(), named_by_user(case.result.rules)
+        ),
         "log": f"{finding.drive['file_name']} ({finding.drive['format']}), SHA-256",
         "rules_sha256": _rules_hash(case.result),
         "n_rules": case.result.rules.num_rows,
@@ -162,7 +159,8 @@ def _finding_sentence(finding: NamedFinding) -> str:
         return f"{overlap[:1].upper()}{overlap[1:]}."
     observed = measured_text(row, rule)
     if observed and row["margin"] is not None:
-        observed = f"{rule['observes'] or 'measured'}: {observed}; missed by {amount(-row['margin'], row['unit'])}"
+        by = "kept by" if finding.is_near_miss else "missed by"
+        observed = f"{rule['observes'] or 'measured'}: {observed}; {by} {amount(abs(row['margin']), row['unit'])}"
     if row["unit"] == "m/s2" and finding.is_contact:
         observed += " (of the speed alone, not of its direction; from one step to the next)"
     reason = "" if row["reason_measures"] and observed else row["reason"]
@@ -296,8 +294,10 @@ def _conduct(case: Case, span: tuple[int, int], seconds_left: int, used_characte
     beside = sum(len(line) for told in found for line in told.get("beside", ()))
     of_both |= {"in_report": any(told["in_report"] for told in found), "id": found[-1]["id"]}
     lines = used_characters + beside + SHARED_HEAD * bool(of_both["reasons"])
-    fit([*found, of_both], seconds_left, lines + _NOTE_CHARACTERS * (bool(_warnings(case)) + bool(_cut_from(case))))
-    return {"conduct": found, "of_both": of_both}
+    lines += _NOTE_CHARACTERS * (bool(_warnings(case)) + bool(_cut_from(case)))
+    further = fit([*found, of_both], seconds_left, lines)
+    has_kept = any(told[name].texts for told in found for name in ("kept", "excused") if name in told)
+    return {"conduct": found, "of_both": of_both, "further": further, "has_kept": has_kept}
 
 
 def _surest(case: Case) -> dict[str, Any]:
@@ -344,31 +344,6 @@ def _rests_on(case: Case, motion: Motion) -> str:
     return f"It is based on a sudden change of speed: {boxes} ({told}{sizes})."
 
 
-def _plan(case: Case) -> dict[str, Any]:
-    """Return the plan view of the moment, with its lanes and shapes; `plan` is None if the result has no scene of the worst step."""
-    finding = case.finding
-    at = (finding.row["drive_id"], finding.row["ego_id"], finding.row["t_worst_ns"])
-    scene, *_ = [*_at(case.result.scenes, at), None]
-    drawn_at = seconds(finding.moment_ns, finding.start_ns)
-    if scene is None:
-        return {"plan": None, "tiles": [], "shapes": [], "drawn": [], "drawn_at": drawn_at}
-    drawn_scene = scene_at(scene, case.drive.trace.tables["actor_state"], finding.moment_ns)
-    road = DrawnMaps(case.result.lanes)
-    spaces = _at(case.result.spaces, at) if _SPACES in finding.rule["tags"] else []
-    plan = plan_view(drawn_scene, road, set(finding.parties[1:]), spaces)
-    tiles = [tile for tile in road.tiles() if tile["name"] in plan["tiles"]]
-    drawn = others_drawn(plan, drawn_scene)
-    letters = dict(zip(finding.parties, LETTERS, strict=False))
-    plan["texts"] = [{**text, "text": letters.get(text.get("actor"), text["text"])} for text in plan["texts"]]
-    plan["font"] = f"{_LABEL_SHARE * float(plan['height']):.1f}"
-    return {"plan": plan, "tiles": tiles, "shapes": actor_shapes([drawn_scene]), "drawn": drawn, "drawn_at": drawn_at}
-
-
-def _at(table: pa.Table, at: tuple[str, str, int]) -> list[dict[str, Any]]:
-    """Return the rows of a table at one moment of an ego; `at`: drive, ego and time."""
-    return [row for row in table.to_pylist() if (row["drive_id"], row["ego_id"], row["t_ns"]) == at]
-
-
 def _courses(case: Case) -> tuple[list[dict[str, Any]], dict[str, Any] | None]:
     """Return the distances that rules required between the two parties over time, and the finding's own measured values.
 
@@ -376,16 +351,20 @@ def _courses(case: Case) -> tuple[list[dict[str, Any]], dict[str, Any] | None]:
     """
     rules = {rule["rule_id"]: rule for rule in case.result.rules.to_pylist()}
     units = {row["finding_id"]: row["unit"] for row in case.result.findings.to_pylist()}
-    about = case.finding.row
+    about, near_miss_keys = case.finding.row, ("rule_id", "profile", "occurrence")
+    if case.finding.is_near_miss:
+        units[None] = about["unit"]  # the courses of near misses have no finding
     gaps, own = [], None
     for row in case.result.courses.to_pylist():
         rule, unit = rules[row["rule_id"]], units.get(row["finding_id"])
+        if row["finding_id"] is None and any(row[key] != about[key] for key in near_miss_keys):
+            continue
         if unit is None or any(row[key] != about[key] for key in ("drive_id", "ego_id", "object_id")):
             continue
         title = f"\u201c{rule['title']}\u201d"
         if unit == "m" and any((value or 0.0) > 0.0 for value in row["required"]):
             gaps.append({**row, "title": title, "planned": profile(row["profile"])})
-        elif row["finding_id"] == about["finding_id"] and not (unit == "m" and case.finding.is_contact):
+        elif row["finding_id"] in {None, about["finding_id"]} and not (unit == "m" and CONTACT_TAG in rule["tags"]):
             own = {**row, "title": f"{rule['observes'] or title}, {told_unit(unit)}"}
     return gaps, own if own and any(value is not None for value in own["observed"]) else None
 

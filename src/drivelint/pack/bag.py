@@ -26,11 +26,33 @@ _REFUSED_CHARACTER: Final = re.compile(r"[\r\n%\\\ud800-\udfff]")
 """A path with such a character cannot be packed."""
 
 
+OTHER_BYTES: Final = "file changed since the statement about it"
+"""The kind of problem of a file whose hash differs from that in the statement."""
+_EXPLANATIONS: Final = {
+    "file changed": "its bytes are not those that the manifest lists",
+    "manifest changed": f"its bytes are not those that {TAG_MANIFEST} lists",
+    "file added": "nothing in the pack lists it",
+    "file removed": "it is listed, and not there",
+}
+"""What is wrong with the file of a problem, by kind."""
+
+
 class Problem(NamedTuple):
     """A problem of a pack: its kind and its subject, such as a file."""
 
     kind: str
     subject: str
+
+
+def explanation(problem: Problem) -> str:
+    """Return in words what is wrong with a file that is a problem, after a colon; '' for problems that their kinds explain."""
+    if problem.kind == OTHER_BYTES:
+        said = "its bytes are not those that the statement lists"
+        if problem.subject == MANIFEST:
+            said += f", so a file in {DATA}/ was changed, added or removed, and the manifest was written again"
+    else:
+        said = _EXPLANATIONS.get(problem.kind, "")
+    return f": {said}" if said else ""
 
 
 def sha256_of(path: Path) -> str:

@@ -12,15 +12,17 @@ import pyarrow.parquet as pq
 from drivelint import __version__, catalogue
 from drivelint.engine.profiles import DEFAULT_PROFILES
 from drivelint.errors import DriveLintError
+from drivelint.incident import sheet_ids
 from drivelint.pack import again, finding_rows, finding_sql, sheets, signature
 from drivelint.pack.bag import DATA, Problem
 from drivelint.pack.contents import EVIDENCE, FINDINGS, FORM, OUTPUTS, RESULT, SAID_OF_FINDINGS, facts, summary_of
-from drivelint.pack.statement import ENVELOPE, FILE, differences, statement
+from drivelint.pack.statement import ENVELOPE, FILE, altered_files, differences, statement
 from drivelint.phrases import plural
 from drivelint.report import summary
 from drivelint.report.outputs import REPORT_FORMATS
 from drivelint.result import collect
 from drivelint.result import request as run_request
+from drivelint.result.counts import one_finding_per_event
 from drivelint.result.load import load_result
 
 if TYPE_CHECKING:
@@ -60,8 +62,18 @@ def of_statement(folder: Path) -> tuple[list[Problem], Stated | None]:
         content = (folder / name).read_bytes()
         said = signature.payload_of(content) if name == ENVELOPE else content
     except (DriveLintError, *UNREADABLE) as error:
-        return [Problem("result not readable", str(error))], None
+        return [*_altered(folder), Problem("result not readable", str(error))], None
     return differences(said, due) + wrong, stated
+
+
+def _altered(folder: Path) -> list[Problem]:
+    """Return the files whose hashes are not those in the statement; [] if the statement cannot be read."""
+    try:
+        sealed = (folder / ENVELOPE).is_file()
+        content = (folder / (ENVELOPE if sealed else FILE)).read_bytes()
+        return altered_files(signature.payload_of(content) if sealed else content, folder)
+    except (DriveLintError, *UNREADABLE):
+        return []
 
 
 def evidence_of(folder: Path) -> dict[str, Any]:
@@ -85,7 +97,7 @@ def _of_evidence(folder: Path, result: Result, evidence: dict[str, Any]) -> list
     keys = differing(evidence, due, result.findings.select(SAID_OF_FINDINGS).to_pylist(), result.rules.to_pylist())
     keys += sorted(evidence.keys() - due.keys() - set(_NOT_FACTS))
     keys += _misplaced(json.loads((folder / RESULT / "run.json").read_text("utf-8")), evidence)
-    keys += sheets.invalid_sheets(folder, evidence, result.findings["finding_id"].to_pylist())
+    keys += sheets.invalid_sheets(folder, evidence, sheet_ids(result))
     wrong = [Problem("evidence.json does not match the result", key) for key in keys]
     said, counted = summary_of(folder), json.loads(summary.render(result))
     keys = sorted(key for key in counted.keys() | said.keys() if key != "tool" and said.get(key) != counted.get(key))
@@ -196,14 +208,14 @@ def unlike_rules(rules: list[Rule], table: pa.Table, check_request: RunRequest) 
 def of_sql(
     folder: Path, findings: Mapping[str, finding_sql.Row], rules: Mapping[str, Rule], check_request: RunRequest
 ) -> tuple[list[Problem], int]:
-    """Return the findings whose SQL returns other numbers, and how many findings were run. `findings`: folder -> finding."""
+    """Return the findings whose SQL returns other numbers, and how many findings were run, one per event. `findings`: folder -> finding."""
     params = again.params_of(rules.values(), check_request)
-    wrong, n = [], 0
+    wrong, run = [], []
     for inner, row in findings.items():
         place = folder / inner
         if not (place / finding_rows.SQL_FILE).is_file():
             continue
-        n += 1
+        run.append(row)
         rule = rules[row["rule_id"]]
         text = (place / finding_rows.SQL_FILE).read_text("utf-8", "replace")
         reference = _REFERENCE.search(text)
@@ -216,4 +228,4 @@ def of_sql(
             same = False
         if not same:
             wrong.append(Problem("finding does not give its numbers", inner))
-    return wrong, n
+    return wrong, len(one_finding_per_event(run))

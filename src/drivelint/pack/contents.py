@@ -13,11 +13,13 @@ from drivelint import __version__
 from drivelint.drive.trace import DriveInput
 from drivelint.pack.bag import sha256_of
 from drivelint.pack.inputs import judged_drives
+from drivelint.phrases import plural
 from drivelint.result import request as run_request
+from drivelint.result.counts import extra_rows_sentence, one_finding_per_event
 from drivelint.result.names import MANIFEST, RESULT_FILE_GLOBS
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from drivelint.pack.again import Evidence
     from drivelint.pack.finding_sql import Row
@@ -104,6 +106,19 @@ def inside(folder: Path, path: str) -> Path:
     if not found.resolve().is_relative_to(folder.resolve()):
         raise ValueError(f"{EVIDENCE} leads out of the pack: {path}")
     return found
+
+
+def told_findings(rows: Sequence[Row], entries: Iterable[Mapping[str, Any]]) -> str:
+    """Return in words how many findings of a check have SQL, one per event, as its reports count them.
+
+    `rows`: the table `finding`; `entries`: the entries of `findings`.
+    """
+    with_sql = {entry["finding_id"] for entry in entries if entry["sql"]}
+    counted = one_finding_per_event(rows)
+    n = sum(row["finding_id"] in with_sql for row in counted)
+    said = f"{n} of {plural(len(counted), 'finding')} {'has' if n == 1 else 'have'} SQL that computes the margin"
+    more = extra_rows_sentence(rows, counted)
+    return f"{said} ({more})" if more else said
 
 
 def findings(rows: Iterable[Row], evidence: Evidence, place: str = FINDINGS) -> list[dict[str, Any]]:

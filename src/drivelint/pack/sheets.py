@@ -20,11 +20,11 @@ _PDF: Final = ".pdf"
 
 
 def of_result(folder: Path, result: Result, check_request: RunRequest) -> dict[str, bytes]:
-    """Return path in the pack -> content of the incident sheets in a result folder that belong to its findings.
+    """Return path in the pack -> content of the incident sheets in a result folder that belong to its findings or near misses.
 
     `check_request` has the paths of the logs. A PDF is included only if the HTML page beside it equals the page that is written again.
     """
-    ids = set(result.findings["finding_id"].to_pylist())
+    ids = incident.sheet_ids(result)
     found = {}
     for page in sorted((folder / incident.FOLDER).glob(f"*{_PAGE}")):
         if page.stem in ids:
@@ -53,9 +53,9 @@ def has_pdf(evidence: Mapping[str, Any]) -> bool:
     return any(name.endswith(_PDF) for name in sheet_files(evidence))
 
 
-def invalid_sheets(folder: Path, evidence: Mapping[str, Any], finding_ids: Iterable[str]) -> list[str]:
-    """Return the files of incident sheets in `evidence.json` that belong to no finding, do not exist, or are a PDF without its page."""
-    pages = {f"{SHEETS}/{finding_id}{_PAGE}" for finding_id in finding_ids}
+def invalid_sheets(folder: Path, evidence: Mapping[str, Any], sheet_ids: Iterable[str]) -> list[str]:
+    """Return the files of sheets in `evidence.json` that belong to no finding or near miss, do not exist, or are a PDF without its page."""
+    pages = {f"{SHEETS}/{sheet_id}{_PAGE}" for sheet_id in sheet_ids}
     named = sheet_files(evidence)
     due = pages | {name.removesuffix(_PAGE) + _PDF for name in pages & set(named)}
     return [name for name in named if name not in due or not (folder / name).is_file()]

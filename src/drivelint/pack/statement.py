@@ -73,14 +73,33 @@ def differences(statement: bytes, due: bytes) -> list[bag.Problem]:
         return [bag.Problem("statement not readable", ENVELOPE)]
     problems = [bag.Problem("statement about another log", "subject")] if logs else []
     for key in found:
-        kind = {
-            "configuration": "statement about another map, rule or parameter",
-            "drivelint_pack": "statement about another pack",
-        }.get(key, "statement says another result")
-        problems.append(bag.Problem(kind, key))
+        if key == "drivelint_pack":
+            problems += [
+                bag.Problem(bag.OTHER_BYTES, name)
+                for name in _other_files(a["predicate"].get(key), b["predicate"][key])
+            ]
+            continue
+        kinds = {"configuration": "statement about another map, rule or parameter"}
+        problems.append(bag.Problem(kinds.get(key, "statement says another result"), key))
     if not problems and statement != due:
         problems.append(bag.Problem("statement says another result", "fields in excess"))
     return problems
+
+
+def altered_files(statement: bytes, folder: Path) -> list[bag.Problem]:
+    """Return the files of a pack whose hashes are not those in its statement; the result in the pack may be unreadable."""
+    try:
+        listed = json.loads(statement)["predicate"]["drivelint_pack"]
+    except (ValueError, KeyError, TypeError):
+        return []
+    there = [resource_descriptor(name, bag.sha256_of(folder / name)) for name in SEALED if (folder / name).is_file()]
+    return [bag.Problem(bag.OTHER_BYTES, file["name"]) for file in there if file not in listed]
+
+
+def _other_files(listed: Any, due: list[dict[str, Any]]) -> list[str]:
+    """Return the names of the files in `due` that the statement does not list with this hash; all if it lists more, or no files."""
+    wrong = [file["name"] for file in due if not isinstance(listed, list) or file not in listed]
+    return wrong or [file["name"] for file in due]
 
 
 def resource_descriptor(name: str, digest: str) -> dict[str, Any]:

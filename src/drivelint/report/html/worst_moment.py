@@ -82,14 +82,14 @@ def finding_key(row: Row) -> tuple[Any, ...]:
 
 
 def _explain_argument(row: Row) -> str:
-    """Return the argument that the command `explain` accepts for a finding or near miss."""
+    """Return the argument that `explain` and `report --incident` accept for a finding or near miss."""
     return row.get("finding_id") or f"{row['rule_id']}@{row['drive_id']}"
 
 
 def _commands(row: Row) -> list[list[str]]:
-    """Return the commands that explain a finding, each in parts, for the folder of a result."""
+    """Return the commands that explain and document a finding or near miss, each in parts, for the folder of a result."""
     explain = ["drivelint explain", shlex.quote(_explain_argument(row)), "--in ."]
-    return [explain, ["drivelint report .", f"--incident {row['finding_id']}"]] if "finding_id" in row else [explain]
+    return [explain, ["drivelint report .", f"--incident {shlex.quote(_explain_argument(row))}"]]
 
 
 def _links_to_files(row: Row, folder: Path | None) -> list[tuple[str, str]]:
