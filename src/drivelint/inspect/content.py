@@ -11,14 +11,14 @@ from drivelint.formats.film import mapping as video_mapping
 from drivelint.formats.folders import drive_files
 from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.bag_folder import is_bag
-from drivelint.formats.mcap.reader import Container
+from drivelint.formats.mcap.storage import file_index, recorded_file
 from drivelint.formats.mcap.resume import MAGIC
-from drivelint.formats.mcap.summary import Summary, read_index
 from drivelint.formats.osi.decode import FIELD_TREES
 from drivelint.formats.osi.metadata import EVENT_MESSAGE
 from drivelint.formats.osi.schema import OPEN_DRIVE
 from drivelint.formats.ros2.types import message_kind
 from drivelint.formats.search import is_pipe_or_device
+from drivelint.formats.sqlite_bag.database import MAGIC as SQLITE_MAGIC
 from drivelint.formats.tables import ipc, parquet
 from drivelint.formats.tables import mapping as mappings
 from drivelint.formats.tables.mapped_table import open_sheet
@@ -35,6 +35,8 @@ if TYPE_CHECKING:
     from mcap import records
 
     from drivelint.formats.film.mapping import VideoMapping
+    from drivelint.formats.mcap.reader import Container
+    from drivelint.formats.mcap.summary import Summary
 
 _HEAD_BYTES: Final = 4096
 _OSI: Final = {(name, "protobuf"): "ground truth" for name in FIELD_TREES} | {
@@ -54,7 +56,7 @@ def size_bytes(path: Path) -> int:
     """Return the size in bytes of a file, or of all files of a folder that is read as one drive."""
     files = drive_files(path)
     if is_bag(path):
-        files = [file for file in path.iterdir() if file.suffix.lower() == ".mcap"]
+        files = [file for file in path.iterdir() if file.suffix.lower() in bag.STORAGE_SUFFIXES.values()]
     return sum(file.stat().st_size for file in files if file.is_file())
 
 
@@ -71,7 +73,7 @@ def content(path: Path, mapping: str | None, notes: list[str], *, has_reader: bo
         return Content(notes=notes)  # the reader of drives reports the fault
     with path.open("rb") as file:
         head = file.read(_HEAD_BYTES)
-    if head.startswith(MAGIC[:5]):
+    if head.startswith((MAGIC[:5], SQLITE_MAGIC)):
         return Content(channels=_channels(path), notes=notes)
     return _table_content(path, head, mapping, notes, has_reader=has_reader)
 
@@ -175,8 +177,8 @@ def _channels(path: Path) -> list[Channel]:
     """Return every channel with its number of messages: over all parts of a bag, and the readable messages of a damaged file."""
     counts: dict[tuple[str, str, str, str], _Count] = {}
     try:
-        for file in bag.mcap_files(path):
-            container = Container(file, salvage=True)
+        for file in bag.bag_files(path):
+            container = recorded_file(file)
             try:
                 for log_message in container.messages():
                     count = counts.setdefault(
@@ -188,7 +190,7 @@ def _channels(path: Path) -> list[Channel]:
                     count.last_ns = max(count.last_ns, log_message.log_time_ns)
             finally:
                 # a channel without messages may occur only in the index
-                for part in (container, read_index(file)):
+                for part in (container, file_index(file)):
                     for channel in part.channels.values():
                         counts.setdefault(_key(part, channel), _Count())
     except TraceError:

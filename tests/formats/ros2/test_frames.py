@@ -21,7 +21,7 @@ from rosbags.typesys import Stores, get_typestore
 
 from drivelint.errors import TraceError
 from drivelint.formats import expand_traces
-from drivelint.formats.mcap.bag import mcap_files
+from drivelint.formats.mcap.bag import bag_files
 from drivelint.inspect.content import content, size_bytes
 from tests.formats.logs import at, log, quality, read, states
 from tests.formats.ros2 import ros_log as ros
@@ -278,7 +278,7 @@ def test_a_bag_of_compressed_files_is_read_when_they_are_unpacked(tmp_path: Path
     assert shlex.split(str(error.value).split(" with ")[-1]) == ["zstd", "-d", str(packed)]
     with packed.open("rb") as source, packed.with_suffix("").open("wb") as target:
         zstandard.ZstdDecompressor().copy_stream(source, target)
-    assert [file.name for file in mcap_files(folder)] == ["my bag.mcap"]
+    assert [file.name for file in bag_files(folder)] == ["my bag.mcap"]
 
 
 def test_a_bag_of_compressed_messages_and_a_bag_of_ros_1_name_the_command_that_converts_them(tmp_path: Path) -> None:
@@ -291,7 +291,7 @@ def test_a_bag_of_compressed_messages_and_a_bag_of_ros_1_name_the_command_that_c
             read(path)
         command = shlex.split(re.search(r"rosbags-convert.*-dst-storage mcap", str(error.value))[0])  # type: ignore[index]
         subprocess.run([Path(sys.executable).with_name(command[0]), *command[1:]], check=True)
-        assert mcap_files(Path(command[command.index("--dst") + 1]))
+        assert bag_files(Path(command[command.index("--dst") + 1]))
 
 
 def test_the_description_of_a_bag_is_not_a_log(tmp_path: Path) -> None:

@@ -31,7 +31,8 @@ from drivelint.formats.foxglove.entity_lifetime import with_persisted
 from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.losses import times_of_parts
 from drivelint.formats.mcap.malformed import decode_readable
-from drivelint.formats.mcap.reader import Container, message_batches
+from drivelint.formats.mcap.reader import message_batches
+from drivelint.formats.mcap.storage import recorded_file
 from drivelint.formats.mcap.silent import silent_topics
 from drivelint.formats.mcap.unread import UnreadTopics
 from drivelint.formats.protobuf.descriptors import list_items, struct_field
@@ -79,8 +80,8 @@ def read(path: Path, topic: str | None) -> Recording:
     findings: list[QualityFinding] = []
     parts: list[Container] = []
     unread = UnreadTopics()
-    for file in bag.mcap_files(path):
-        container = Container(file, salvage=True)
+    for file in bag.bag_files(path):
+        container = recorded_file(file)
         for name, log_messages in message_batches(container, partial(_kind, topic, unread)):
             channel = log_messages[0].channel
             schema = container.schemas[channel.schema_id]
@@ -123,7 +124,7 @@ def _scene_topic(path: Path, scenes: dict[str, _Scene], topic: str | None, unrea
     unread.refuse(path, {SCENE}, names)
     if len(names) != 1:
         several = f"on {len(names)} topics ({', '.join(names)}): choose one with --topic"
-        silent = "" if names else silent_topics(bag.mcap_files(path), SCENE.__eq__)
+        silent = "" if names else silent_topics(bag.bag_files(path), SCENE.__eq__)
         raise TraceError(f"{path}: {SCENE} {several if names else 'in none of its messages'}{silent and f': {silent}'}")
     return names[0]
 

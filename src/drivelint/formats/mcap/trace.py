@@ -1,4 +1,4 @@
-"""The trace format MCAP, a file or a rosbag2 folder, with ASAM OSI ground truth, ROS 2 messages or Foxglove scenes.
+"""The trace formats MCAP and SQLite, a file or a rosbag2 folder, with ASAM OSI ground truth, ROS 2 messages or Foxglove scenes.
 
 The reader of each message type states its reference point; all return box centres.
 """
@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import TraceError
 from drivelint.formats.folders import folder_kind
+from drivelint.formats.sqlite_bag.database import MAGIC as SQLITE_MAGIC
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 formats: Final[dict[str, tuple[str, str]]] = {
     "osi-mcap": ("ASAM OSI in MCAP", "the log's host vehicle"),
     "ros2-mcap": ("ROS 2 in MCAP", "the odometry's vehicle"),
+    "ros2-sqlite": ("ROS 2 in SQLite", "the odometry's vehicle"),
     "foxglove-mcap": ("Foxglove scene in MCAP", "named with --ego"),
 }
 takes_mapping: Final = False
@@ -28,7 +30,9 @@ _MAX_TOPICS: Final = 8
 
 
 def accepts(probe: Probe) -> bool:
-    """Return whether the file has MCAP's magic bytes, or the folder is a bag."""
+    """Return whether the file has the magic bytes of MCAP, or of SQLite and a bag's suffix, or the folder is a bag."""
+    if probe.head.startswith(SQLITE_MAGIC):
+        return probe.path.suffix.lower() == ".db3"
     return probe.head.startswith(b"\x89MCAP") or folder_kind(probe.path) == "bag"
 
 

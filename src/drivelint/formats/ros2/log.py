@@ -11,14 +11,16 @@ from drivelint.errors import TraceError
 from drivelint.formats.mcap.bag import missing_messages
 from drivelint.formats.mcap.losses import times_of_parts
 from drivelint.formats.mcap.malformed import decode_readable
-from drivelint.formats.mcap.reader import Container, message_batches
+from drivelint.formats.mcap.reader import message_batches
+from drivelint.formats.mcap.storage import recorded_file
 from drivelint.formats.mcap.unread import UnreadTopics
 from drivelint.formats.ros2 import traffic_lights
 from drivelint.formats.ros2.cdr import Decoder
-from drivelint.formats.ros2.messages import DETECTED, EGO_SIZE, LIGHT_GROUPS, MESSAGES, ODOMETRY, OLD_LIGHT_GROUPS
+from drivelint.formats.ros2.messages import DETECTED, EGO_SIZE, LIGHT_GROUPS, MESSAGES, ODOMETRY, OLD_LIGHT_GROUPS, TRANSFORMS
 from drivelint.formats.ros2.objects import OBJECT_ROWS, SAME_BODIES, stamps
 from drivelint.formats.ros2.silence import SENT_WHERE_NOBODY_IS, silences
 from drivelint.formats.ros2.types import message_kind
+from drivelint.formats.sqlite_bag.reader import REMEDY, SqliteFile
 from drivelint.phrases import listed
 
 if TYPE_CHECKING:
@@ -50,13 +52,14 @@ class Log:
         self.lost_times: list[LostTime] = []
         self.unread = UnreadTopics()
         self.carla = False
+        self.is_sqlite = False
         self._times: dict[str, list[tuple[Times, Mask, Times]]] = {}
 
     def read(self, files: Iterable[Path]) -> None:
         """Read the files of a drive. Errors: `TraceError` for damaged files and invalid message definitions."""
         parts: list[Container] = []
         for file in files:
-            container = Container(file, salvage=True)
+            container = recorded_file(file)
             decoders: dict[int, Decoder] = {}
             for kind, log_messages in message_batches(container, partial(self._kind, file, decoders)):
                 channel = log_messages[0].channel
@@ -71,6 +74,9 @@ class Log:
                     self._times.setdefault(channel.topic, []).append((*stamps(table, "header.stamp"), log_ns))
             self.carla |= any(schema.name.startswith(_CARLA) for schema in container.schemas.values())
             self.findings += container.findings
+            self.is_sqlite |= isinstance(container, SqliteFile)
+            if isinstance(container, SqliteFile) and (kinds := sorted(container.assumed & {container.schemas[number].name for number in decoders})):
+                self.notes.append(f"{file.name} has no message definitions: those of drivelint are used for {listed(kinds)}")
             parts.append(container)
         self.findings += [*missing_messages(self.path, parts, MESSAGES.__contains__), *self.unread.findings()]
         self.lost_times = times_of_parts([(part.path, part.losses) for part in parts])
@@ -90,6 +96,15 @@ class Log:
                 self.unread.add(channel, kind)
             return None
         if channel.schema_id not in decoders:
+            if not schema.encoding and kind not in {*OBJECT_ROWS, ODOMETRY, TRANSFORMS}:
+                self.unread.add_undefined(channel, schema.name)
+                return None
+            if not schema.encoding and self.requested_topics and channel.topic not in self.requested_topics:
+                return None
+            if not schema.encoding:
+                raise TraceError(
+                    f"{path}: the log has no message definition of {schema.name} on {channel.topic!r}, and none is known: {REMEDY}"
+                )
             if schema.encoding != "ros2msg":
                 raise TraceError(
                     f"{path}: {schema.name} has a definition of the kind {schema.encoding or 'none'}, but only "

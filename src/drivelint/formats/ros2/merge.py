@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 FORMAT = "ros2-mcap"
+SQLITE_FORMAT = "ros2-sqlite"
 DEFAULT_EGO_ID = "ego"
 """The id of the vehicle with the odometry, if no message gives its id."""
 

@@ -1,4 +1,4 @@
-"""Reads ROS 2 logs in MCAP. Messages are recognised by the names of their schemas, not by topics.
+"""Reads ROS 2 logs in MCAP or SQLite. Messages are recognised by the names of their schemas, not by topics.
 
 Positions are box centres: of Autoware's tracks and of vision_msgs' detections by their definition, of the CARLA bridge's objects by
 assumption (see `merge`). The odometry gives the position of its child frame; `--ego-size` states how far ahead of that frame, for example
@@ -22,7 +22,7 @@ from drivelint.formats.mcap.silent import silent_topics
 from drivelint.formats.ros2 import ego as ros_ego
 from drivelint.formats.ros2 import traffic_lights
 from drivelint.formats.ros2.log import LIGHTS, Log
-from drivelint.formats.ros2.merge import merge_ego
+from drivelint.formats.ros2.merge import FORMAT, SQLITE_FORMAT, merge_ego
 from drivelint.formats.ros2.messages import (
     CARLA_OBJECTS,
     CONTROL_MODE,
@@ -72,7 +72,7 @@ def read(path: Path, options: IngestOptions) -> Recording:
     """Read a file or a bag. Errors: `TraceError` if it is damaged, has no usable poses, or has several topics without a choice."""
     requested_topics = [] if options.topic is None else [part.strip() for part in options.topic.split(",")]
     log = Log(path, requested_topics)
-    log.read(bag.mcap_files(path))
+    log.read(bag.bag_files(path))
     log.refuse_unknown_topics()
     objects = log.select_topic(OBJECT_ROWS, "road users")
     odometry = log.select_topic([ODOMETRY], "odometry")
@@ -81,7 +81,7 @@ def read(path: Path, options: IngestOptions) -> Recording:
     own_rows, is_centre = _ego_rows(log, odometry, options.ego_size)
     parts |= own_rows
     if not sum(map(len, parts.values())):
-        silent = silent_topics(bag.mcap_files(path), lambda name: message_kind(name) in {*OBJECT_ROWS, ODOMETRY})
+        silent = silent_topics(bag.bag_files(path), lambda name: message_kind(name) in {*OBJECT_ROWS, ODOMETRY})
         raise TraceError(
             f"{path}: no road users and no odometry in this ROS log: "
             + (silent or f"{', '.join(sorted(OBJECT_ROWS))} are read")
@@ -111,6 +111,7 @@ def read(path: Path, options: IngestOptions) -> Recording:
     # topic of the CARLA bridge's ego info -> the ego's id in its last message
     infos = {topic: str(number) for topic, (table, _) in log.parts(EGO_INFO) for number in table.column("id").tolist()}
     recording = merge_ego(object_states, odometry_states, infos, findings, carla=carla, is_centre=is_centre)
+    recording.format = SQLITE_FORMAT if log.is_sqlite else FORMAT
     reports = _reports(log, own_times=own_times)
     for ego in recording.ego_ids[:1]:
         all_states = recording.states
