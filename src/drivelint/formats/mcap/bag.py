@@ -11,8 +11,9 @@ from drivelint.drive.trace import QualityFinding
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.bag_folder import METADATA_FILE, METADATA_ROOT, is_bag
 from drivelint.formats.mcap.storage import file_index, recorded_file
-from drivelint.formats.ros2.messages import DETECTIONS, MESSAGES, ODOMETRY_ROLE, ROAD_USERS
+from drivelint.formats.ros2.messages import DETECTIONS, MESSAGES, ODOMETRY_ROLE, ROAD_USERS, TRANSFORMS
 from drivelint.formats.ros2.types import message_kind
+from drivelint.phrases import listed
 from drivelint.receipts.events import looked_for
 
 if TYPE_CHECKING:
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
 
 PACKED_SUFFIX: Final = ".zstd"
 """The end of the names of a bag's files that `ros2 bag record --compression-mode file` has compressed."""
+_MAX_TOPICS: Final = 8
+"""An error lists at most this many topics, and counts the others."""
 STORAGE_SUFFIXES: Final = {"mcap": ".mcap", "sqlite3": ".db3"}
 """Storage of a bag that is read -> the suffix of its files."""
 OSI_SCHEMAS: Final = frozenset({"osi3.GroundTruth", "osi3.SensorView"})
@@ -160,7 +163,15 @@ def message_family(path: Path) -> str:
         for name, roles in (("ros2", ROS_ROLES), ("foxglove", FOXGLOVE_ROLES)):
             if {roles.get(schema) for schema in found} & {ROAD_USERS, DETECTIONS, ODOMETRY_ROLE}:
                 return name
+        if TRANSFORMS in found:
+            return "ros2"  # they may place the ego
     return "none"
+
+
+def topics_text(path: Path) -> str:
+    """Return a clause that lists the topics of a drive's log, and names the guide for messages of other types."""
+    has = listed([f"{kind} on {topic}" for topic, kind in sorted(topics(path).items())], _MAX_TOPICS) or "no topic"
+    return f"the log has {has}; drivelint docs mapping shows how messages of other types become a table"
 
 
 def topics(path: Path) -> dict[str, str]:

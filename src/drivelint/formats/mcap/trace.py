@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Final
 from drivelint.errors import TraceError
 from drivelint.formats.folders import folder_kind
 from drivelint.formats.sqlite_bag.database import MAGIC as SQLITE_MAGIC
-from drivelint.phrases import listed
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -25,8 +24,6 @@ formats: Final[dict[str, tuple[str, str]]] = {
     "foxglove-mcap": ("Foxglove scene in MCAP", "named with --ego"),
 }
 takes_mapping: Final = False
-_MAX_TOPICS: Final = 8
-"""An error lists at most this many topics, and counts the others."""
 
 
 def accepts(probe: Probe) -> bool:
@@ -63,8 +60,4 @@ def _refuse_other_messages(path: Path) -> None:
 
     kinds = bag.topics(path)
     if path.is_dir() or any("/" in kind or kind.startswith("foxglove.") for kind in kinds.values()):
-        has = listed([f"{kind} on {topic}" for topic, kind in sorted(kinds.items())], _MAX_TOPICS) or "no topic"
-        raise TraceError(
-            f"{path}: no nav_msgs/Odometry and no road users: the log has {has}; "
-            "drivelint docs mapping shows how messages of other types become a table"
-        )
+        raise TraceError(f"{path}: no nav_msgs/Odometry and no road users: {bag.topics_text(path)}")

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from drivelint.arrays import Mask, Times
     from drivelint.drive.trace import LostTime, QualityFinding
     from drivelint.formats.ros2.cdr import Table
+    from drivelint.formats.ros2.recorded_poses import RecordedPoses
 
 LIGHTS: Final = (LIGHT_GROUPS, OLD_LIGHT_GROUPS)
 _CARLA = "carla_msgs/"
@@ -53,6 +54,7 @@ class Log:
         self.unread = UnreadTopics()
         self.carla = False
         self.is_sqlite = False
+        self.no_ego = ""  # why neither odometry nor transforms place the ego
         self._times: dict[str, list[tuple[Times, Mask, Times]]] = {}
 
     def read(self, files: Iterable[Path]) -> None:
@@ -136,6 +138,10 @@ class Log:
         parts = [part for topic in topics for part in self._times.get(topic, ())]
         times = [stamp_ns[stamped & (stamp_ns != 0)] if own_times else log_ns for stamp_ns, stamped, log_ns in parts]
         return np.concatenate([np.zeros(0, np.int64), *times])
+
+    def add_times(self, topic: str, rows: RecordedPoses) -> None:
+        """Count rows that are not messages of their own, such as transforms of the ego, as messages of a topic."""
+        self._times.setdefault(topic, []).append((rows.stamp_ns, rows.stamped, rows.log_ns))
 
     def silences(self, objects: Iterable[str], odometry: Iterable[str]) -> Iterator[LostTime]:
         """Yield the times in which a topic of road users has no messages, if its sender also sends messages without objects."""

@@ -49,7 +49,7 @@ def merge_ego(
         ego.ids = ids_in_objects[:1] or [_free_id(names[0] if names else DEFAULT_EGO_ID, object_states.ids)]
     if not carla and not is_centre:
         message = (
-            f"{odometry[0]}: the origin of the odometry's child frame is used as the centre of the ego's box: if "
+            f"{odometry[0]}: the origin of the ego's frame is used as the centre of the ego's box: if "
             "this frame is at the rear axle, set the distance from it to the centre: --ego-size LENGTH,WIDTH,AHEAD"
         )
         first = int(ego.t_ns.min())

@@ -21,6 +21,7 @@ from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.silent import silent_topics
 from drivelint.formats.ros2 import ego as ros_ego
 from drivelint.formats.ros2 import traffic_lights
+from drivelint.formats.ros2.ego_frame import ego_rows
 from drivelint.formats.ros2.log import LIGHTS, Log
 from drivelint.formats.ros2.merge import FORMAT, SQLITE_FORMAT, merge_ego
 from drivelint.formats.ros2.messages import (
@@ -79,13 +80,10 @@ def read(path: Path, options: IngestOptions) -> Recording:
     log.unread.refuse(path, OBJECT_ROWS, objects or odometry)
     parts = {topic: join_batches(batches) for topic, batches in objects.items()}
     own_rows, is_centre = _ego_rows(log, odometry, options.ego_size)
+    odometry = dict.fromkeys(own_rows, [])
     parts |= own_rows
     if not sum(map(len, parts.values())):
-        silent = silent_topics(bag.bag_files(path), lambda name: message_kind(name) in {*OBJECT_ROWS, ODOMETRY})
-        raise TraceError(
-            f"{path}: no road users and no odometry in this ROS log: "
-            + (silent or f"{', '.join(sorted(OBJECT_ROWS))} are read")
-        )
+        raise _nothing_to_read(path, log)
     findings = log.findings
     findings += [] if objects else [_no_road_users(log)]
     own_times = choose_clock(parts, findings)
@@ -130,16 +128,25 @@ def read(path: Path, options: IngestOptions) -> Recording:
     recording.embedded_map, trouble = single_map(_maps(log))
     recording.findings += trouble
     recording.frame_times, recording.utc_start_ns = message_times(list(parts.values()))
-    recording.notes += [*log.notes, *_own_vehicle_missing(log, odometry), f"positions are in the frame {fixed!r}"]
+    recording.notes += [*log.notes, *_own_vehicle_missing(log), f"positions are in the frame {fixed!r}"]
     return recording
 
 
-def _own_vehicle_missing(log: Log, odometry: Topics) -> list[str]:
-    """Return a note if a bag of Autoware's road users has no odometry."""
-    if odometry or log.topics.keys().isdisjoint(SAME_BODIES):
+def _nothing_to_read(path: Path, log: Log) -> TraceError:
+    """Return the error for a log without poses of road users or of the ego."""
+    silent = silent_topics(bag.bag_files(path), lambda name: message_kind(name) in {*OBJECT_ROWS, ODOMETRY})
+    if silent or log.detections or not log.topics.keys().isdisjoint(OBJECT_ROWS):
+        why = silent or f"{', '.join(sorted(OBJECT_ROWS))} are read"
+        return TraceError(f"{path}: no road users and no odometry in this ROS log: {why}")
+    return TraceError(f"{path}: no {ODOMETRY} and no road users: {bag.topics_text(path)}; {log.no_ego}")
+
+
+def _own_vehicle_missing(log: Log) -> list[str]:
+    """Return a note if a bag of Autoware's road users has neither odometry nor transforms of its own vehicle."""
+    if not log.no_ego or log.topics.keys().isdisjoint(SAME_BODIES):
         return []
     note = (
-        f"no {ODOMETRY}: the vehicle that recorded the bag is not among the actors, even if its frame is in the transforms: "
+        f"no {ODOMETRY}, and {log.no_ego}: the vehicle that recorded the bag is not among the actors: "
         f"record {MESSAGES[ODOMETRY].topic} too"
     )
     return [note]
@@ -172,9 +179,23 @@ def _ego_rows(log: Log, odometry: Topics, option: EgoSize | None) -> tuple[dict[
         if box is not None and all(at_axle(table.column("child_frame_id")).all() for table, _ in batches):
             log.findings += _other_centre(box, ahead_m)
             is_centre = True
+    if not odometry:
+        rows = _rows_of_transforms(log, box, ahead_m)
+        is_centre = is_centre or (box is not None and bool(rows))
     if box is not None and rows:
         log.notes.append(f"the ego's box is taken from {box.source}: {box.described()}")
     return rows, is_centre
+
+
+def _rows_of_transforms(log: Log, box: VehicleBox | None, ahead_m: float) -> dict[str, RecordedPoses]:
+    """Return the ego's rows by the transforms of its frame; none if there is no chain to that frame."""
+    found = ego_rows(log.parts(TRANSFORMS), box, ahead_m, STATIC_TOPIC_SUFFIX)
+    if isinstance(found, str):
+        log.no_ego = found
+        return {}
+    log.notes.append(f"no {ODOMETRY}: the ego is placed by the transforms of {found.frame!r} on {found.topic}")
+    log.add_times(found.topic, found.rows)
+    return {found.topic: found.rows}
 
 
 def _other_centre(box: VehicleBox, ahead_m: float) -> list[QualityFinding]:
