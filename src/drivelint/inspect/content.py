@@ -11,8 +11,8 @@ from drivelint.formats.film import mapping as video_mapping
 from drivelint.formats.folders import drive_files
 from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.bag_folder import is_bag
-from drivelint.formats.mcap.storage import file_index, recorded_file
 from drivelint.formats.mcap.resume import MAGIC
+from drivelint.formats.mcap.storage import file_index, recorded_file
 from drivelint.formats.osi.decode import FIELD_TREES
 from drivelint.formats.osi.metadata import EVENT_MESSAGE
 from drivelint.formats.osi.schema import OPEN_DRIVE

@@ -12,7 +12,7 @@ from drivelint.errors import TraceError
 from tests.formats.logs import quality, read
 from tests.formats.ros2 import autoware_log
 from tests.formats.ros2 import ros_log as ros
-from tests.formats.ros2.ros_drive import N, T0, TURN, along, ego, others, seen, ticks
+from tests.formats.ros2.ros_drive import T0, TURN, N, along, ego, others, seen, ticks
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -62,6 +62,8 @@ def bag(folder: Path, parts: list[list[ros.Message]], *, definitions: bool = Tru
             ros.write(folder / name, part)
     listed = "".join(f"    - {name}\n" for name in names)
     storage = "sqlite3" if suffix == ".db3" else "mcap"
-    text = f"rosbag2_bagfile_information:\n  version: 5\n  storage_identifier: {storage}\n  relative_file_paths:\n{listed}"
+    text = (
+        f"rosbag2_bagfile_information:\n  version: 5\n  storage_identifier: {storage}\n  relative_file_paths:\n{listed}"
+    )
     (folder / "metadata.yaml").write_text(text, encoding="utf-8")
     return folder

@@ -81,7 +81,9 @@ def test_messages_that_the_metadata_counts_and_the_file_lacks_are_lost(tmp_path:
         "  topics_with_message_count:\n    - topic_metadata: {name: /carla/objects, type: derived_object_msgs/msg/ObjectArray}\n"
         "      message_count: 41\n"
     )
-    (folder / "metadata.yaml").write_text((folder / "metadata.yaml").read_text(encoding="utf-8") + more, encoding="utf-8")
+    (folder / "metadata.yaml").write_text(
+        (folder / "metadata.yaml").read_text(encoding="utf-8") + more, encoding="utf-8"
+    )
     checks = read(folder).tables["quality"].to_pylist()
     assert any(row["check_id"] == "index_mismatch" and "1 are lost" in row["message"] for row in checks)
 

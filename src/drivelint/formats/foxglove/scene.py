@@ -32,8 +32,8 @@ from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.losses import times_of_parts
 from drivelint.formats.mcap.malformed import decode_readable
 from drivelint.formats.mcap.reader import message_batches
-from drivelint.formats.mcap.storage import recorded_file
 from drivelint.formats.mcap.silent import silent_topics
+from drivelint.formats.mcap.storage import recorded_file
 from drivelint.formats.mcap.unread import UnreadTopics
 from drivelint.formats.protobuf.descriptors import list_items, struct_field
 from drivelint.formats.ros2.objects import class_code
@@ -55,6 +55,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from drivelint.arrays import Codes, Mask, Times
+    from drivelint.formats.mcap.reader import Container
 
 KIND_KEYS: Final = ("class", "type", "classification", "category", "label", "object_class", "object_type")
 """Keys of an entity's metadata whose value can be its class."""

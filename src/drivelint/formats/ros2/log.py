@@ -16,7 +16,15 @@ from drivelint.formats.mcap.storage import recorded_file
 from drivelint.formats.mcap.unread import UnreadTopics
 from drivelint.formats.ros2 import traffic_lights
 from drivelint.formats.ros2.cdr import Decoder
-from drivelint.formats.ros2.messages import DETECTED, EGO_SIZE, LIGHT_GROUPS, MESSAGES, ODOMETRY, OLD_LIGHT_GROUPS, TRANSFORMS
+from drivelint.formats.ros2.messages import (
+    DETECTED,
+    EGO_SIZE,
+    LIGHT_GROUPS,
+    MESSAGES,
+    ODOMETRY,
+    OLD_LIGHT_GROUPS,
+    TRANSFORMS,
+)
 from drivelint.formats.ros2.objects import OBJECT_ROWS, SAME_BODIES, stamps
 from drivelint.formats.ros2.silence import SENT_WHERE_NOBODY_IS, silences
 from drivelint.formats.ros2.types import message_kind
@@ -31,6 +39,7 @@ if TYPE_CHECKING:
 
     from drivelint.arrays import Mask, Times
     from drivelint.drive.trace import LostTime, QualityFinding
+    from drivelint.formats.mcap.reader import Container
     from drivelint.formats.ros2.cdr import Table
     from drivelint.formats.ros2.recorded_poses import RecordedPoses
 
@@ -76,9 +85,13 @@ class Log:
                     self._times.setdefault(channel.topic, []).append((*stamps(table, "header.stamp"), log_ns))
             self.carla |= any(schema.name.startswith(_CARLA) for schema in container.schemas.values())
             self.findings += container.findings
-            self.is_sqlite |= isinstance(container, SqliteFile)
-            if isinstance(container, SqliteFile) and (kinds := sorted(container.assumed & {container.schemas[number].name for number in decoders})):
-                self.notes.append(f"{file.name} has no message definitions: those of drivelint are used for {listed(kinds)}")
+            if isinstance(container, SqliteFile):
+                self.is_sqlite = True
+                read_kinds = {container.schemas[number].name for number in decoders}
+                if kinds := sorted(container.assumed & read_kinds):
+                    self.notes.append(
+                        f"{file.name} has no message definitions: those of drivelint are used for {listed(kinds)}"
+                    )
             parts.append(container)
         self.findings += [*missing_messages(self.path, parts, MESSAGES.__contains__), *self.unread.findings()]
         self.lost_times = times_of_parts([(part.path, part.losses) for part in parts])
@@ -98,22 +111,27 @@ class Log:
                 self.unread.add(channel, kind)
             return None
         if channel.schema_id not in decoders:
-            if not schema.encoding and kind not in {*OBJECT_ROWS, ODOMETRY, TRANSFORMS}:
-                self.unread.add_undefined(channel, schema.name)
+            if not self._is_defined(path, channel, schema, kind):
                 return None
-            if not schema.encoding and self.requested_topics and channel.topic not in self.requested_topics:
-                return None
-            if not schema.encoding:
-                raise TraceError(
-                    f"{path}: the log has no message definition of {schema.name} on {channel.topic!r}, and none is known: {REMEDY}"
-                )
-            if schema.encoding != "ros2msg":
-                raise TraceError(
-                    f"{path}: {schema.name} has a definition of the kind {schema.encoding or 'none'}, but only "
-                    "ros2msg is supported: record or convert the log with message definitions"
-                )
             decoders[channel.schema_id] = Decoder(path, schema, MESSAGES[kind].fields)
         return kind
+
+    def _is_defined(self, path: Path, channel: Channel, schema: Schema, kind: str) -> bool:
+        """Return whether a channel that is read has a message definition; without it, road users and poses of the ego are an error."""
+        if schema.encoding:
+            if schema.encoding != "ros2msg":
+                raise TraceError(
+                    f"{path}: {schema.name} has a definition of the kind {schema.encoding}, but only "
+                    "ros2msg is supported: record or convert the log with message definitions"
+                )
+            return True
+        if kind not in {*OBJECT_ROWS, ODOMETRY, TRANSFORMS}:
+            self.unread.add_undefined(channel, schema.name)
+        elif not self.requested_topics or channel.topic in self.requested_topics:
+            raise TraceError(
+                f"{path}: the log has no message definition of {schema.name} on {channel.topic!r}, and none is known: {REMEDY}"
+            )
+        return False
 
     def refuse_unknown_topics(self) -> None:
         """Raise `TraceError` if a topic that the user chose is not read."""

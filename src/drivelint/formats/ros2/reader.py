@@ -58,7 +58,6 @@ if TYPE_CHECKING:
 
     from drivelint.arrays import Times
     from drivelint.drive.trace import EgoSize, IngestOptions
-    from drivelint.formats.ros2.log import Topics
     from drivelint.formats.ros2.vehicle import VehicleBox
 
 STATIC_TOPIC_SUFFIX = "tf_static"
@@ -76,12 +75,10 @@ def read(path: Path, options: IngestOptions) -> Recording:
     log.read(bag.bag_files(path))
     log.refuse_unknown_topics()
     objects = log.select_topic(OBJECT_ROWS, "road users")
-    odometry = log.select_topic([ODOMETRY], "odometry")
-    log.unread.refuse(path, OBJECT_ROWS, objects or odometry)
+    log.unread.refuse(path, OBJECT_ROWS, objects or log.topics.get(ODOMETRY, ()))
     parts = {topic: join_batches(batches) for topic, batches in objects.items()}
-    own_rows, is_centre = _ego_rows(log, odometry, options.ego_size)
-    odometry = dict.fromkeys(own_rows, [])
-    parts |= own_rows
+    odometry, is_centre = _ego_rows(log, options.ego_size)
+    parts |= odometry
     if not sum(map(len, parts.values())):
         raise _nothing_to_read(path, log)
     findings = log.findings
@@ -161,7 +158,7 @@ def _maps(log: Log) -> dict[bytes, str]:
     return maps
 
 
-def _ego_rows(log: Log, odometry: Topics, option: EgoSize | None) -> tuple[dict[str, RecordedPoses], bool]:
+def _ego_rows(log: Log, option: EgoSize | None) -> tuple[dict[str, RecordedPoses], bool]:
     """Return the ego's rows by topic, and whether their positions are known to be box centres.
 
     In the axle's frame, the log's own vehicle box gives the centre, if there is one; otherwise `option` does.
@@ -174,6 +171,7 @@ def _ego_rows(log: Log, odometry: Topics, option: EgoSize | None) -> tuple[dict[
     ahead_m = 0.0 if option is None else option.forward_m
     rows: dict[str, RecordedPoses] = {}
     is_centre = ahead_m != 0.0
+    odometry = log.select_topic([ODOMETRY], "odometry")
     for topic, batches in odometry.items():
         rows[topic] = join_batches([ros_ego.odometry(table, log_ns, box, ahead_m) for table, log_ns in batches])
         if box is not None and all(at_axle(table.column("child_frame_id")).all() for table, _ in batches):

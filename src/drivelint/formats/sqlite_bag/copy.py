@@ -69,6 +69,8 @@ def _channels(file: SqliteFile, sink: Sink) -> dict[int, int]:
         )
         there = next(known, None)
         numbers[number] = (
-            sink.add_channel(channel.topic, channel.message_encoding, schema, channel.metadata) if there is None else there
+            sink.add_channel(channel.topic, channel.message_encoding, schema, channel.metadata)
+            if there is None
+            else there
         )
     return numbers

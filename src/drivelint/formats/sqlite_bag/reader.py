@@ -50,7 +50,7 @@ class AssumedMessage(RowMessage):
 
 
 REMEDY: Final = (
-    "where ROS and its packages are installed, convert it with ros2 bag convert and storage_id: mcap, which adds the definitions"
+    "convert it where ROS and its packages are installed, with ros2 bag convert and storage_id: mcap: that adds them"
 )
 
 
@@ -104,7 +104,7 @@ class SqliteFile(Container):
         written = self._written_definitions(connection)
         names = {name for _, name, *_ in connection.execute("PRAGMA table_xinfo(topics)")}
         qos = "offered_qos_profiles" if "offered_qos_profiles" in names else "''"
-        rows = connection.execute(f"SELECT id, name, type, serialization_format, {qos} FROM topics ORDER BY id")  # noqa: S608 (a column)
+        rows = connection.execute(f"SELECT id, name, type, serialization_format, {qos} FROM topics ORDER BY id")
         of_kind: dict[str, int] = {}
         for key, topic, kind, encoding, profiles in rows:
             if not all(isinstance(each, str) for each in (topic, kind, encoding)) or len(self._numbers) >= MOST_TOPICS:
@@ -122,7 +122,7 @@ class SqliteFile(Container):
             return {}
         found: dict[str, tuple[str, bytes]] = {}
         rows = connection.execute(
-            f"SELECT topic_type, encoding, encoded_message_definition FROM {DEFINITIONS} ORDER BY rowid"  # noqa: S608 (a constant)
+            f"SELECT topic_type, encoding, encoded_message_definition FROM {DEFINITIONS} ORDER BY rowid"
         )
         n_bytes, size = 0, self.path.stat().st_size
         for kind, encoding, text in rows:
