@@ -27,6 +27,7 @@ READERS: Final = (
     "film.reader",
     "tables.canonical",
     "d123.reader",
+    "ros2.own_reader",
     "mcap.trace",
     "osi.reader",
     "scenarionet.reader",

@@ -32,13 +32,19 @@ def camera_topics(files: Sequence[Path]) -> tuple[str, ...]:
 
 
 class SqliteCameraLog:
-    """The SQLite files of one drive, open for reading frames. Errors of all methods: `FrameError` for damaged data."""
+    """The SQLite files of one drive, open for reading frames.
+
+    Errors: `OSError` if they can no longer be opened; of all methods `FrameError` for damaged data.
+    """
 
     def __init__(self, files: Sequence[Path]) -> None:
         self._stack = ExitStack()
         self._paths = list(files)
-        self._indexes = [SqliteFile(path).index() for path in files]
-        self._open: list[sqlite3.Connection] = [self._stack.enter_context(database(path)) for path in files]
+        try:
+            self._indexes = [SqliteFile(path).index() for path in files]
+            self._open: list[sqlite3.Connection] = [self._stack.enter_context(database(path)) for path in files]
+        except TraceError as error:  # it was readable when the drive was judged
+            raise OSError(str(error)) from error
 
     def __enter__(self) -> Self:
         return self
