@@ -88,11 +88,11 @@ def test_relayed_transforms_count_once(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("messages", "why"),
     [
-        (moving(child="camera"), r"no transform leads to base_link or base_footprint \(child frames: camera\)"),
+        (moving(child="camera"), r"no transform leads to base_link or base_footprint \(child frames: camera; --ego FRAME"),
         ([still("map", "base_link")], "the chain from it ends at 'map'"),
         ([still("base_footprint", "base_link")], "the chain from it ends at 'base_footprint'"),
         ([*moving("a"), *moving("b")], "several frames have the child frame 'base_link'"),
-        ([*moving("map", "one/base_link"), *moving("map", "two/base_link")], "several frames may be the ego's: one/base_link"),
+        ([*moving("map", "one/base_link"), *moving("map", "two/base_link")], "and --ego FRAME chooses one: one/base_link"),
         (moving("lidar"), "ends at 'lidar', without map or world or odom"),
         ([*moving("a", "base_link"), *moving("base_link", "a")], "ends at '(a|base_link)', without map"),
     ],
@@ -122,3 +122,22 @@ def test_a_hole_of_the_transforms_is_lost_time(tmp_path: Path) -> None:
     trace = seen(tmp_path, [*kept, *others()])
     assert "ego_absent" in quality(trace)
     assert np.isfinite(track(trace)["x_m"]).sum() == N - 20
+
+
+@pytest.mark.parametrize("frame", ["chassis", "two/base_link"])
+def test_the_option_chooses_the_frame_of_the_ego(tmp_path: Path, frame: str) -> None:
+    far = [ros.transform(t_s, "map", "one/base_link", 5000.0) for t_s in ticks()]
+    trace = seen(tmp_path, [*far, *moving(child=frame), *others()], ego=frame)
+    assert egos(trace) == [frame]
+    rows = [row for row in trace.tables["actor_state"].to_pylist() if row["actor_id"] == frame]
+    assert [row["x_m"] for row in rows] == pytest.approx([along(t_s)[0] for t_s in ticks()])
+
+
+def test_ends_at_which_the_map_is_not_known_are_no_loss(tmp_path: Path) -> None:
+    """`odom` in `map` is sent at 5 Hz: at the end its last transform is older than that of the ego."""
+    local = [ros.transform(t_s, "map", "odom", 100.0) for t_s in np.arange(T0 + 0.1, T0 + 1.8, 0.2).tolist()]
+    trace = seen(tmp_path, [*local, *moving("odom"), *others()])
+    assert "frame_unresolved" not in quality(trace)
+    assert "ego_absent" not in quality(trace)
+    late = [message for message in local if message[2] > T0 + 1.2]
+    assert "frame_unresolved" in quality(seen(tmp_path, [*late, *moving("odom"), *others()]))

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
 formats: Final[dict[str, tuple[str, str]]] = {
     "osi-mcap": ("ASAM OSI in MCAP", "the log's host vehicle"),
-    "ros2-mcap": ("ROS 2 in MCAP", "the odometry's vehicle"),
-    "ros2-sqlite": ("ROS 2 in SQLite", "the odometry's vehicle"),
+    "ros2-mcap": ("ROS 2 in MCAP", "the vehicle of the odometry, or of the frame base_link"),
+    "ros2-sqlite": ("ROS 2 in SQLite", "the vehicle of the odometry, or of the frame base_link"),
     "foxglove-mcap": ("Foxglove scene in MCAP", "named with --ego"),
 }
 takes_mapping: Final = False

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from drivelint.arrays import Mask, Times
+    from drivelint.formats.coordinate_frames import TransformTree
     from drivelint.formats.ros2.cdr import Table
     from drivelint.formats.ros2.recorded_poses import RecordedPoses
     from drivelint.formats.ros2.vehicle import VehicleBox
@@ -47,21 +48,29 @@ class _Transforms(NamedTuple):
 
 
 def ego_rows(
-    tables: Iterable[tuple[str, tuple[Table, Times]]], box: VehicleBox | None, option_ahead_m: float, static_suffix: str
+    tables: Iterable[tuple[str, tuple[Table, Times]]],
+    box: VehicleBox | None,
+    option_ahead_m: float,
+    static_suffix: str,
+    wanted: str | None,
 ) -> EgoRows | str:
     """Return the ego's rows, moved to the centre of its box, or why there are none.
 
     `tables`: topic -> transforms and log times of each batch. Only static transforms lie between the ego's frame and the moving frame
     whose transforms give the times; transforms above that frame place it later. `box`, `option_ahead_m`: as for odometry.
+    `wanted`: the frame that the user chose; one that the log does not have is the id of another actor.
     """
     found, ambiguous = _of_frames(tables, static_suffix)
-    names = [name for last in EGO_FRAMES for name in sorted(found) if _last(name) == last]
+    chosen = None if wanted is None else clean_frame_name(wanted)
+    names = (
+        [chosen] if chosen in found else [name for last in EGO_FRAMES for name in sorted(found) if _last(name) == last]
+    )
     if not names:
         seen = listed(sorted(found), _SHOWN) or "none"
-        return f"no transform leads to {' or '.join(EGO_FRAMES)} (child frames: {seen})"
+        return f"no transform leads to {' or '.join(EGO_FRAMES)} (child frames: {seen}; --ego FRAME chooses one)"
     frame = names[0]
     if sum(_last(name) == _last(frame) for name in names) > 1:
-        return f"several frames may be the ego's: {listed(names, _SHOWN)}"
+        return f"several frames may be the ego's, and --ego FRAME chooses one: {listed(names, _SHOWN)}"
     chain: list[_Transforms] = []
     at = frame
     while True:
@@ -80,6 +89,27 @@ def ego_rows(
     if not {_last(name) for name in above} & set(FIXED_FRAMES):
         return f"the chain from {frame!r} ends at {above[-1]!r}, without {' or '.join(FIXED_FRAMES)}"
     return EgoRows(chain[-1].topic, frame, _rows(frame, chain, box, option_ahead_m))
+
+
+def within_chain(rows: RecordedPoses, frames: TransformTree, fixed: str, most_ns: int) -> RecordedPoses:
+    """Return the rows without those at the ends for which a transform above is not recorded yet or any more, for up to `most_ns`.
+
+    The transforms of a chain are sent at different rates, so that their recordings begin and end at different times.
+    """
+    if not len(rows):
+        return rows
+    frame = clean_frame_name(rows.frames[0].decode("utf-8", "replace"))
+    t_ns = rows.t_ns
+    placed = t_ns[np.isfinite(frames.frame_poses(fixed, frame, t_ns).place[:, 0])]
+    if not len(placed):
+        return rows
+    first, last = placed.min(), placed.max()
+    kept = np.ones(len(rows), np.bool_)
+    if first - t_ns.min() <= most_ns:
+        kept &= t_ns >= first
+    if t_ns.max() - last <= most_ns:
+        kept &= t_ns <= last
+    return rows.take(kept)
 
 
 def _rows(frame: str, chain: list[_Transforms], box: VehicleBox | None, option_ahead_m: float) -> RecordedPoses:

@@ -63,6 +63,7 @@ class Log:
         self.unread = UnreadTopics()
         self.carla = False
         self.is_sqlite = False
+        self.ego_frame = ""  # the frame that places the ego, in a log without odometry
         self.no_ego = ""  # why neither odometry nor transforms place the ego
         self._times: dict[str, list[tuple[Times, Mask, Times]]] = {}
 

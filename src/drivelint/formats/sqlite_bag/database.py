@@ -68,7 +68,7 @@ def damaged(path: Path, problem: str) -> TraceError:
     """Return the error for a file that cannot be read."""
     return TraceError(
         f"{path}: a SQLite file that is damaged or cut off ({' '.join(problem.split())}): copy it again, or repair it with "
-        f"sqlite3 {quote(str(path))} .recover"
+        f"sqlite3 {quote(str(path))} .recover | sqlite3 {quote(str(path.with_name(f'repaired-{path.name}')))}"
     )
 
 
