@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+import sqlite3
 import subprocess
 import sys
+from contextlib import closing
 from typing import TYPE_CHECKING
 
 import pytest
@@ -17,6 +19,7 @@ from drivelint.formats import read_trace
 from drivelint.guide import FOLDER
 from drivelint.inspect import InspectRequest, inspect
 from tests.formats.logs import actors, put, read, states
+from tests.formats.sqlite_bag.sqlite_log import OLD_TABLES
 from tests.guide.blocks import blocks
 
 if TYPE_CHECKING:
@@ -81,6 +84,7 @@ def test_the_mapping_of_the_guide_reads_messages_of_other_types(tmp_path: Path) 
         ("/acme/ego", "/acme/egg", r"no message on topic '/acme/egg', which the mapping names: .*/acme/ego"),
         ('items = "tracks"', 'items = "trucks"', r"a message on '/acme/fused_tracks' has no list 'trucks' \(items\)"),
         ('x = "position.x"', 'x = "place.x"', "no column 'place.x', which mapping 'acme' needs"),
+        ('"speed_kmh"', '"speed_kph"', "no column 'speed_kph', which mapping 'acme' needs: .*speed_kmh"),
         ('items = "tracks"', 'item = "tracks"', "unknown key 'ros.item'.*items"),
         ('unit = "km/h"', 'unit = "furlong"', "unknown unit 'furlong'"),
         ("/acme/ego", "/acme/fused_tracks", r"each \[\[ros\]\] needs a topic of its own"),
@@ -94,6 +98,38 @@ def test_a_mapping_that_does_not_fit_is_refused(tmp_path: Path, old: str, new: s
     with pytest.raises((TraceError, UsageError), match=why) as error:
         read_trace(bag(tmp_path / "bag"), IngestOptions(mapping=path))
     assert "\n" not in str(error.value)
+
+
+def test_a_bag_without_definitions_is_read_with_the_files_of_its_messages(tmp_path: Path) -> None:
+    """As Humble writes it into SQLite."""
+    source, old = bag(tmp_path / "bag"), tmp_path / "old.db3"
+    with closing(sqlite3.connect(old)) as file, rosbag2.Reader(source) as reader:
+        file.executescript(OLD_TABLES)
+        for each in reader.connections:
+            file.execute("INSERT INTO topics VALUES (?, ?, ?, 'cdr', '')", (each.id, each.topic, each.msgtype))
+        for each, t_ns, data in reader.messages():
+            file.execute("INSERT INTO messages VALUES (NULL, ?, ?, ?)", (each.id, t_ns, data))
+        file.commit()
+    path = guide_mapping(tmp_path)
+    with pytest.raises(TraceError, match="set message_files in the mapping"):
+        read_trace(old, IngestOptions(mapping=path))
+    text = 'message_files = "msgs"\n' + (tmp_path / "acme.toml").read_text(encoding="utf-8")
+    put(tmp_path / "acme.toml", text)
+    with pytest.raises(
+        UsageError, match=r"msgs/acme_msgs/msg/EgoState.msg: the definition of acme_msgs/EgoState cannot be read"
+    ):
+        read_trace(old, IngestOptions(mapping=path))
+    folder = tmp_path / "msgs" / "acme_msgs" / "msg"
+    folder.mkdir(parents=True)
+    for name, definition in DEFINITIONS.items():
+        put(
+            folder / f"{name.rsplit('/', maxsplit=1)[-1]}.msg",
+            f"# a comment of three words\nuint8 LIMIT=3\n{definition}",
+        )
+    trace, wanted = (read_trace(each, IngestOptions(mapping=path)) for each in (old, source))
+    for table in ("actor_state", "actor"):
+        rows, others = ([{**row, "drive_id": ""} for row in each.tables[table].to_pylist()] for each in (trace, wanted))
+        assert rows == others
 
 
 def test_an_ego_that_is_absent_is_lost_time(tmp_path: Path) -> None:

@@ -108,7 +108,7 @@ def test_verdicts_pictures_and_the_annotated_log_are_those_of_the_bag_in_mcap(tm
         verify(annotated)
     assert found["SQLITE3"] == found["MCAP"]
     assert {row["camera"] for row in found["SQLITE3"]["pictures"]} == {FRONT, LEFT}
-    assert any(row["verdict"] == "violated" for row in found["SQLITE3"]["verdicts"])
+    assert any(row["verdict"] == "fail" for row in found["SQLITE3"]["verdicts"])
 
 
 def test_every_message_of_a_split_bag_is_copied_in_its_order(tmp_path: Path) -> None:

@@ -45,9 +45,13 @@ class OwnTopic(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class OwnMessages(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
-    """A whole mapping file."""
+    """A whole mapping file.
+
+    `message_files`: a folder, relative to the mapping, with files `PACKAGE/msg/NAME.msg`, for logs without message definitions.
+    """
 
     ros: list[OwnTopic]
+    message_files: str | None = None
     description: str = ""
     frame: Frame = Frame()
     ego: EgoChoice = EgoChoice()

@@ -5,6 +5,8 @@ The mapping states the reference point of each topic's positions, as for tables.
 
 from __future__ import annotations
 
+from dataclasses import replace
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -21,13 +23,15 @@ from drivelint.formats.ros2 import own_mapping
 from drivelint.formats.ros2.cdr import Decoder
 from drivelint.formats.ros2.merge import concatenate_states
 from drivelint.formats.ros2.objects import stamps
+from drivelint.formats.ros2.types import parse, short_type_name
+from drivelint.formats.sqlite_bag.definitions import definition_in_files
 from drivelint.formats.tables import mapping as mappings
 from drivelint.formats.tables.mapped_table import read_sheet
 from drivelint.formats.tables.sheets import ParquetSheet
 from drivelint.phrases import hint
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
     from mcap.records import Channel, Schema
     from numpy.typing import NDArray
@@ -38,18 +42,20 @@ if TYPE_CHECKING:
     from drivelint.formats.protobuf.descriptors import FieldTree
     from drivelint.formats.ros2.cdr import Table
     from drivelint.formats.ros2.own_mapping import OwnMessages, OwnTopic
+    from drivelint.formats.ros2.types import Types
 
 _TOPICS_APART_NS: Final = 1_000_000_000
+_MOST_FIELDS: Final = 500
 _STAMP: Final = ("sec", "nanosec", "nsec")
 
 
 class MessageSheet(ParquetSheet):
     """The messages of a topic as a table: one row per message, or per item of its list."""
 
-    def __init__(self, path: Path, table: pa.Table) -> None:
-        """Take over a table."""
+    def __init__(self, path: Path, table: pa.Table, other_names: Iterable[str]) -> None:
+        """Take over a table. `other_names`: fields that are not read, which an error may propose."""
         self._path, self._table = path, table
-        self.names = list(table.column_names)
+        self.names = [*table.column_names, *other_names]
         self.bad_lines, self.zeros_at, self.has_zeros_within = [], None, False
         self.metadata = {}
 
@@ -62,12 +68,12 @@ def read(probe: Probe) -> Recording:
     """Read the topics of the mapping. Errors: `TraceError` for a topic or a field that the log lacks; `UsageError` for the mapping."""
     path, file = probe.path, Path(probe.options.mapping or "")
     own = own_mapping.load(file)
-    messages = _Messages(path, own)
+    messages = _Messages(path, own, file.parent)
     for part in bag.bag_files(path):
         messages.read(part)
     recordings = []
     for topic in own.ros:
-        sheet = MessageSheet(path, messages.table(topic))
+        sheet = MessageSheet(path, messages.table(topic), messages.other_fields(topic))
         recordings.append(read_sheet(path, file.stem, own.of_topic(topic), sheet))
     recording = recordings[0]
     for other in recordings[1:]:
@@ -89,11 +95,13 @@ def read(probe: Probe) -> Recording:
 class _Messages:
     """The decoded fields of the topics of a mapping."""
 
-    def __init__(self, path: Path, own: OwnMessages) -> None:
-        self._path = path
+    def __init__(self, path: Path, own: OwnMessages, folder: Path) -> None:
+        self._path, self._own = path, own
+        self._definitions = None if own.message_files is None else folder / own.message_files
         self._topics = {topic.topic: topic for topic in own.ros}
         self._trees = {topic.topic: _tree(topic, own) for topic in own.ros}
         self._parts: dict[str, list[tuple[Table, Times]]] = {}
+        self._fields: dict[str, list[str]] = {}
         self.findings: list[QualityFinding] = []
         self.lost_times: list[LostTime] = []
 
@@ -125,17 +133,30 @@ class _Messages:
             raise TraceError(f"{self._path}: no message on topic {topic.topic!r}, which the mapping names: {known}")
         return pa.concat_tables([_rows(self._path, topic, table, t_ns) for table, t_ns in self._parts[topic.topic]])
 
+    def other_fields(self, topic: OwnTopic) -> list[str]:
+        """Return the fields of a topic's actors that the mapping does not name."""
+        prefix = f"{topic.items}." if topic.items else ""
+        of_actor = [name.removeprefix(prefix) for name in self._fields[topic.topic] if name.startswith(prefix)]
+        named = set(mappings.needed_columns(self._own.of_topic(topic)))
+        return [name for name in of_actor if name not in named]
+
     def times(self) -> Times:
         """Return the times of all messages, also of those without actors."""
         return np.concatenate([t_ns for parts in self._parts.values() for _, t_ns in parts])
 
     def _decoder(self, file: Path, channel: Channel, schema: Schema) -> Decoder:
+        if not schema.encoding and self._definitions is not None:
+            text = definition_in_files(self._definitions, short_type_name(schema.name))
+            schema = replace(schema, encoding="ros2msg", data=text.encode())
         if (channel.message_encoding, schema.encoding) != ("cdr", "ros2msg"):
             what = f"{channel.message_encoding or 'none'} with definitions in {schema.encoding or 'no language'}"
             raise TraceError(
-                f"{file}: topic {channel.topic!r} ({schema.name}) is in {what}: a mapping reads cdr with ros2msg: convert the "
-                "log where ROS and its packages are installed, with ros2 bag convert and storage_id: mcap"
+                f"{file}: topic {channel.topic!r} ({schema.name}) is in {what}: a mapping reads cdr with ros2msg: set "
+                "message_files in the mapping, the folder of PACKAGE/msg/NAME.msg, or convert the log with ros2 bag convert "
+                "and storage_id: mcap where ROS and its packages are installed"
             )
+        types = parse(file, schema.name, schema.data)
+        self._fields[channel.topic] = list(islice(_fields(types, short_type_name(schema.name), ""), _MOST_FIELDS))
         return Decoder(file, schema, self._trees[channel.topic])
 
     def _add_losses(self, container: Container) -> None:
@@ -143,6 +164,15 @@ class _Messages:
         self.findings += container.findings
         for lost in container.losses.times(container.path):
             self.lost_times.append(lost._replace(since_ns=None, until_ns=None))
+
+
+def _fields(types: Types, kind: str, prefix: str) -> Iterator[str]:
+    """Yield the paths of the fields of a message and of the messages in it."""
+    for member in types[kind]:
+        if member.kind in types:
+            yield from _fields(types, member.kind, f"{prefix}{member.name}.")
+        elif member.count is None:
+            yield f"{prefix}{member.name}"
 
 
 def _tree(topic: OwnTopic, own: OwnMessages) -> FieldTree:
