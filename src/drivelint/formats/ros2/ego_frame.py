@@ -163,9 +163,12 @@ def _of_frames(
 def _joined(parts: list[_Transforms]) -> _Transforms:
     moving = [part for part in parts if not part.static] or parts
     first = moving[0]
-    columns = (np.concatenate([part[k] for part in moving]) for k in (3, 4, 5))
-    poses = Poses(*(np.concatenate([part.poses[k] for part in moving]) for k in (0, 1)))
-    return _Transforms(first.topic, first.parent, first.static, *columns, poses)
+    return first._replace(
+        stamp_ns=np.concatenate([part.stamp_ns for part in moving]),
+        stamped=np.concatenate([part.stamped for part in moving]),
+        log_ns=np.concatenate([part.log_ns for part in moving]),
+        poses=Poses(*(np.concatenate([part.poses[k] for part in moving]) for k in (0, 1))),
+    )
 
 
 def _last(name: str) -> str:
