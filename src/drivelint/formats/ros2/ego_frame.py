@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 EGO_FRAMES: Final = ("base_link", "base_footprint")
 """The names of the vehicle's own frame by REP 105, best first; a prefix such as `ego/` may precede them."""
-_SHOWN: Final = 4
+_MOST_NAMES: Final = 4
 
 
 class EgoRows(NamedTuple):
@@ -52,25 +52,25 @@ def ego_rows(
     box: VehicleBox | None,
     option_ahead_m: float,
     static_suffix: str,
-    wanted: str | None,
+    ego_name: str | None,
 ) -> EgoRows | str:
     """Return the ego's rows, moved to the centre of its box, or why there are none.
 
     `tables`: topic -> transforms and log times of each batch. Only static transforms lie between the ego's frame and the moving frame
     whose transforms give the times; transforms above that frame place it later. `box`, `option_ahead_m`: as for odometry.
-    `wanted`: the frame that the user chose; one that the log does not have is the id of another actor.
+    `ego_name`: the frame that the user chose; one that the log does not have is the id of another actor.
     """
     found, ambiguous = _of_frames(tables, static_suffix)
-    chosen = None if wanted is None else clean_frame_name(wanted)
+    chosen = None if ego_name is None else clean_frame_name(ego_name)
     names = (
         [chosen] if chosen in found else [name for last in EGO_FRAMES for name in sorted(found) if _last(name) == last]
     )
     if not names:
-        seen = listed(sorted(found), _SHOWN) or "none"
+        seen = listed(sorted(found), _MOST_NAMES) or "none"
         return f"no transform leads to {' or '.join(EGO_FRAMES)} (child frames: {seen}; --ego FRAME chooses one)"
     frame = names[0]
     if sum(_last(name) == _last(frame) for name in names) > 1:
-        return f"several frames may be the ego's, and --ego FRAME chooses one: {listed(names, _SHOWN)}"
+        return f"several frames may be the ego's, and --ego FRAME chooses one: {listed(names, _MOST_NAMES)}"
     chain: list[_Transforms] = []
     at = frame
     while True:
@@ -157,10 +157,10 @@ def _of_frames(
                 )  # fmt: skip
                 parts.setdefault(_name(child), []).append(each)
     ambiguous = {child for child, of_child in parts.items() if len({each.parent for each in of_child}) > 1}
-    return {child: _joined(of_child) for child, of_child in parts.items()}, ambiguous
+    return {child: _all_batches(of_child) for child, of_child in parts.items()}, ambiguous
 
 
-def _joined(parts: list[_Transforms]) -> _Transforms:
+def _all_batches(parts: list[_Transforms]) -> _Transforms:
     moving = [part for part in parts if not part.static] or parts
     first = moving[0]
     return first._replace(

@@ -67,21 +67,23 @@ class MessageSheet(ParquetSheet):
 def read(probe: Probe) -> Recording:
     """Read the topics of the mapping. Errors: `TraceError` for a topic or a field that the log lacks; `UsageError` for the mapping."""
     path, file = probe.path, Path(probe.options.mapping or "")
-    own = own_mapping.load(file)
-    messages = _Messages(path, own, file.parent)
+    message_mapping = own_mapping.load(file)
+    messages = _Messages(path, message_mapping, file.parent)
     for part in bag.bag_files(path):
         messages.read(part)
     recordings = []
-    for topic in own.ros:
+    for topic in message_mapping.ros:
         sheet = MessageSheet(path, messages.table(topic), messages.other_fields(topic))
-        recordings.append(read_sheet(path, file.stem, own.of_topic(topic), sheet))
+        recordings.append(read_sheet(path, file.stem, message_mapping.of_topic(topic), sheet))
     recording = recordings[0]
     for other in recordings[1:]:
         recording.states = concatenate_states(*_with_same_columns(recording.states, other.states))
         recording.findings += [each for each in other.findings if each not in recording.findings]
         recording.lost_times += other.lost_times
     if not len(recording.states):
-        raise TraceError(f"{path}: no actor on {', '.join(topic.topic for topic in own.ros)}: nothing can be judged")
+        raise TraceError(
+            f"{path}: no actor on {', '.join(topic.topic for topic in message_mapping.ros)}: nothing can be judged"
+        )
     recording.findings += messages.findings
     recording.lost_times += messages.lost_times
     recording.frames_ns, recording.ends_apart_ns = messages.times(), _TOPICS_APART_NS
@@ -95,11 +97,11 @@ def read(probe: Probe) -> Recording:
 class _Messages:
     """The decoded fields of the topics of a mapping."""
 
-    def __init__(self, path: Path, own: OwnMessages, folder: Path) -> None:
-        self._path, self._own = path, own
-        self._definitions = None if own.message_files is None else folder / own.message_files
-        self._topics = {topic.topic: topic for topic in own.ros}
-        self._trees = {topic.topic: _tree(topic, own) for topic in own.ros}
+    def __init__(self, path: Path, message_mapping: OwnMessages, folder: Path) -> None:
+        self._path, self._message_mapping = path, message_mapping
+        self._definitions = None if message_mapping.message_files is None else folder / message_mapping.message_files
+        self._topics = {topic.topic: topic for topic in message_mapping.ros}
+        self._trees = {topic.topic: _tree(topic, message_mapping) for topic in message_mapping.ros}
         self._parts: dict[str, list[tuple[Table, Times]]] = {}
         self._fields: dict[str, list[str]] = {}
         self.findings: list[QualityFinding] = []
@@ -137,7 +139,7 @@ class _Messages:
         """Return the fields of a topic's actors that the mapping does not name."""
         prefix = f"{topic.items}." if topic.items else ""
         of_actor = [name.removeprefix(prefix) for name in self._fields[topic.topic] if name.startswith(prefix)]
-        named = set(mappings.needed_columns(self._own.of_topic(topic)))
+        named = set(mappings.needed_columns(self._message_mapping.of_topic(topic)))
         return [name for name in of_actor if name not in named]
 
     def times(self) -> Times:
@@ -175,9 +177,9 @@ def _fields(types: Types, kind: str, prefix: str) -> Iterator[str]:
             yield f"{prefix}{member.name}"
 
 
-def _tree(topic: OwnTopic, own: OwnMessages) -> FieldTree:
+def _tree(topic: OwnTopic, message_mapping: OwnMessages) -> FieldTree:
     """Return the fields of a message that are decoded."""
-    names = [name for name in mappings.needed_columns(own.of_topic(topic)) if name != own_mapping.TIME]
+    names = [name for name in mappings.needed_columns(message_mapping.of_topic(topic)) if name != own_mapping.TIME]
     prefix = f"{topic.items}." if topic.items else ""
     tree: dict[str, Any] = {}
     for path in (*(f"{topic.time}.{part}" for part in _STAMP), *(f"{prefix}{name}" for name in names)):

@@ -196,10 +196,10 @@ def _ego_rows(log: Log, options: IngestOptions) -> tuple[dict[str, RecordedPoses
 
 
 def _rows_of_transforms(
-    log: Log, box: VehicleBox | None, ahead_m: float, wanted: str | None
+    log: Log, box: VehicleBox | None, ahead_m: float, ego_name: str | None
 ) -> dict[str, RecordedPoses]:
     """Return the ego's rows by the transforms of its frame; none if there is no chain to that frame."""
-    found = ego_rows(log.parts(TRANSFORMS), box, ahead_m, STATIC_TOPIC_SUFFIX, wanted)
+    found = ego_rows(log.parts(TRANSFORMS), box, ahead_m, STATIC_TOPIC_SUFFIX, ego_name)
     if isinstance(found, str):
         log.no_ego = found
         return {}

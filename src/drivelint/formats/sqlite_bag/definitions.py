@@ -24,7 +24,7 @@ _RULE: Final = "=" * 80
 
 def candidates(kind: str) -> list[str]:
     """Return the definitions that a message type may have, each with all messages that it contains; [] for a type that is not known."""
-    messages, variants = _known()
+    messages, variants = _definition_tables()
     if kind not in messages:
         return []
     newest = messages | variants
@@ -44,7 +44,7 @@ def definition_in_files(folder: Path, kind: str) -> str:
             inner = _full_name(word, container)
             if inner is None or inner in messages:
                 continue
-            known = _known()[0].get(inner)
+            known = _definition_tables()[0].get(inner)
             messages[inner] = known if known is not None else _text(folder, inner)
             waiting.append(inner)
             if len(messages) > _MOST_MESSAGES:
@@ -77,7 +77,7 @@ def _text(folder: Path, kind: str) -> str:
 
 
 @cache
-def _known() -> tuple[dict[str, str], dict[str, str]]:
+def _definition_tables() -> tuple[dict[str, str], dict[str, str]]:
     tables = tomllib.loads(files(__package__).joinpath("definitions.toml").read_text(encoding="utf-8"))
     return tables["messages"], tables["variants"]
 

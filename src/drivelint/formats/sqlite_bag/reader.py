@@ -101,7 +101,7 @@ class SqliteFile(Container):
         return found[0]
 
     def _read_topics(self, connection: sqlite3.Connection) -> None:
-        written = self._written_definitions(connection)
+        definitions = self._written_definitions(connection)
         names = {name for _, name, *_ in connection.execute("PRAGMA table_xinfo(topics)")}
         qos = "offered_qos_profiles" if "offered_qos_profiles" in names else "''"
         rows = connection.execute(f"SELECT id, name, type, serialization_format, {qos} FROM topics ORDER BY id")
@@ -111,7 +111,7 @@ class SqliteFile(Container):
                 raise damaged(self.path, f"row {key} of topics is not as rosbag2 writes it")
             if kind not in of_kind:
                 of_kind[kind] = len(of_kind) + 1
-                self.schemas[of_kind[kind]] = self._schema(connection, of_kind[kind], kind, written)
+                self.schemas[of_kind[kind]] = self._schema(connection, of_kind[kind], kind, definitions)
             number = self._numbers.setdefault(key, len(self._numbers))
             metadata = {"offered_qos_profiles": profiles} if isinstance(profiles, str) and profiles else {}
             self.channels[number] = Channel(number, topic, encoding, metadata, of_kind[kind])
@@ -136,11 +136,11 @@ class SqliteFile(Container):
         return found
 
     def _schema(
-        self, connection: sqlite3.Connection, number: int, kind: str, written: dict[str, tuple[str, bytes]]
+        self, connection: sqlite3.Connection, number: int, kind: str, definitions: dict[str, tuple[str, bytes]]
     ) -> Schema:
         """Return the schema of a type: the file's own, else the one that is known, else one without a definition."""
-        if kind in written:
-            encoding, text = written[kind]
+        if kind in definitions:
+            encoding, text = definitions[kind]
             return Schema(id=number, name=kind, encoding=encoding, data=text)
         known = [
             Schema(id=number, name=kind, encoding="ros2msg", data=text.encode())
