@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from drivelint.errors import TraceError
+from drivelint.errors import TraceError, UsageError
 from drivelint.formats.film import mapping as video_mapping
 from drivelint.formats.folders import drive_files
 from drivelint.formats.mcap import bag
@@ -16,6 +17,7 @@ from drivelint.formats.mcap.storage import file_index, recorded_file
 from drivelint.formats.osi.decode import FIELD_TREES
 from drivelint.formats.osi.metadata import EVENT_MESSAGE
 from drivelint.formats.osi.schema import OPEN_DRIVE
+from drivelint.formats.ros2 import own_mapping
 from drivelint.formats.ros2.types import message_kind
 from drivelint.formats.search import is_pipe_or_device
 from drivelint.formats.sqlite_bag.database import MAGIC as SQLITE_MAGIC
@@ -30,7 +32,6 @@ from drivelint.pictures.frames import has_pictures
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
-    from pathlib import Path
 
     from mcap import records
 
@@ -67,14 +68,14 @@ def content(path: Path, mapping: str | None, notes: list[str], *, has_reader: bo
     """
     if path.is_dir():
         if is_bag(path):
-            return Content(channels=_channels(path), notes=notes)
+            return Content(channels=_channels(path, mapping), notes=notes)
         return Content(sheets=[sheet for file in drive_files(path) if (sheet := _table_file(file))], notes=notes)
     if is_pipe_or_device(path):
         return Content(notes=notes)  # the reader of drives reports the fault
     with path.open("rb") as file:
         head = file.read(_HEAD_BYTES)
     if head.startswith((MAGIC[:5], SQLITE_MAGIC)):
-        return Content(channels=_channels(path), notes=notes)
+        return Content(channels=_channels(path, mapping), notes=notes)
     return _table_content(path, head, mapping, notes, has_reader=has_reader)
 
 
@@ -173,7 +174,7 @@ class _Count:
     last_ns: int = 0
 
 
-def _channels(path: Path) -> list[Channel]:
+def _channels(path: Path, mapping: str | None) -> list[Channel]:
     """Return every channel with its number of messages: over all parts of a bag, and the readable messages of a damaged file."""
     counts: dict[tuple[str, str, str, str], _Count] = {}
     try:
@@ -195,8 +196,19 @@ def _channels(path: Path) -> list[Channel]:
                         counts.setdefault(_key(part, channel), _Count())
     except TraceError:
         pass  # reading the drive fails for the same reason, and reports it
-    roles = _roles(path)
-    return [_channel(key, counts[key], roles) for key in sorted(counts)]
+    mapped = _mapped_topics(mapping)
+    roles = {} if mapped else _roles(path)
+    return [_channel(key, counts[key], roles, mapped) for key in sorted(counts)]
+
+
+def _mapped_topics(mapping: str | None) -> set[str]:
+    """Return the topics that a mapping of messages reads; none for another mapping."""
+    if mapping is None or not own_mapping.is_for_messages(mapping):
+        return set()
+    try:
+        return {each.topic for each in own_mapping.load(Path(mapping)).ros}
+    except UsageError:
+        return set()  # reading the drive reports it
 
 
 def _key(container: Container | Summary, channel: records.Channel) -> tuple[str, str, str, str]:
@@ -205,7 +217,9 @@ def _key(container: Container | Summary, channel: records.Channel) -> tuple[str,
     return channel.topic, schema.name if schema else "", channel.message_encoding, schema.encoding if schema else ""
 
 
-def _channel(key: tuple[str, str, str, str], count: _Count, roles: dict[tuple[str, str], str]) -> Channel:
+def _channel(
+    key: tuple[str, str, str, str], count: _Count, roles: dict[tuple[str, str], str], mapped: set[str]
+) -> Channel:
     topic, schema, encoding, schema_encoding = key
     span_s = (count.last_ns - count.first_ns) / 1e9
     return Channel(
@@ -216,7 +230,7 @@ def _channel(key: tuple[str, str, str, str], count: _Count, roles: dict[tuple[st
         messages=count.messages,
         bytes=count.size,
         rate_hz=(count.messages - 1) / span_s if span_s > 0 else None,
-        read_as=roles.get((message_kind(schema), encoding))
+        read_as=("actors, by the mapping" if topic in mapped else roles.get((message_kind(schema), encoding)))
         or ("pictures" if has_pictures(topic, schema, encoding) else None),
     )
 

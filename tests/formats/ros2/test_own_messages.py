@@ -132,6 +132,14 @@ def test_a_bag_without_definitions_is_read_with_the_files_of_its_messages(tmp_pa
         assert rows == others
 
 
+def test_inspect_says_which_topics_the_mapping_reads(tmp_path: Path) -> None:
+    path = str(bag(tmp_path / "bag"))
+    found = inspect(InspectRequest(trace=path, mapping=guide_mapping(tmp_path)))
+    assert {each.topic: each.read_as for each in found.content.channels} == {
+        "/acme/ego": "actors, by the mapping", "/acme/fused_tracks": "actors, by the mapping",
+    }  # fmt: skip
+
+
 def test_an_ego_that_is_absent_is_lost_time(tmp_path: Path) -> None:
     path = bag(tmp_path / "bag", ego_steps=range(40))
     checks = read_trace(path, IngestOptions(mapping=guide_mapping(tmp_path))).tables["quality"]["check_id"].to_pylist()
