@@ -12,6 +12,7 @@ from tests.faults.drives import Car, Frame
 from tests.formats import logs
 from tests.formats.osi import osi_log
 from tests.formats.ros2 import ros_log
+from tests.formats.sqlite_bag import sqlite_log
 from tests.formats.sumo import fcd_text
 
 if TYPE_CHECKING:
@@ -107,12 +108,33 @@ def osi_file_with_host(path: Path, frames: list[Frame], missing: range, host: in
 
 def odometry(path: Path, frames: list[Frame]) -> Path:
     """Write a ROS 2 log in which the ego is an odometry and the others are objects, beside each other."""
+    return ros_log.write(path.with_suffix(".mcap"), _with_odometry(frames))
+
+
+def odometry_in_sqlite(path: Path, frames: list[Frame]) -> Path:
+    """Write the same log as a bag before Iron does."""
+    return sqlite_log.write(path.with_suffix(".db3"), _with_odometry(frames), definitions=False)
+
+
+def transforms(path: Path, frames: list[Frame]) -> Path:
+    """Write a ROS 2 log in which the ego is a frame that moves in the map."""
     messages = []
+    for topic, name, t_s, content in _with_odometry(frames):
+        if name == "nav_msgs/Odometry":
+            place = content["pose"]["pose"]["position"]
+            messages.append(ros_log.transform(t_s, "map", "base_link", place["x"], place["y"]))
+        else:
+            messages.append((topic, name, t_s, content))
+    return ros_log.write(path.with_suffix(".mcap"), messages)
+
+
+def _with_odometry(frames: list[Frame]) -> list[ros_log.Message]:
+    messages: list[ros_log.Message] = []
     for t_s, cars in frames:
         others = [ros_log.thing(int(car.name), car.x, car.y, car.yaw, car.vx) for car in cars if car.name != EGO]
         messages.append(ros_log.things(t_s, *others, topic="/objects"))
         messages += [ros_log.odometry(t_s, car.x, car.y, car.yaw, car.vx) for car in cars if car.name == EGO]
-    return ros_log.write(path.with_suffix(".mcap"), messages)
+    return messages
 
 
 def carla(path: Path, frames: list[Frame]) -> Path:
@@ -215,6 +237,8 @@ FORMATS: Final = {
     "osi-mcap": Format(drives.osi_mcap, has_empty_frames=True),
     "osi-file": Format(drives.osi_file, has_empty_frames=True),
     "ros odometry": Format(odometry, has_empty_frames=True, ego="ego", ego_size="4.5,1.8"),
+    "ros sqlite": Format(odometry_in_sqlite, has_empty_frames=True, ego="ego", ego_size="4.5,1.8"),
+    "ros transforms": Format(transforms, has_empty_frames=True, ego="ego", ego_size="4.5,1.8"),
     "ros carla": Format(carla, has_empty_frames=True),
     "canonical": Format(canonical, has_empty_frames=True),
     "flagged parquet": Format(flagged_parquet),

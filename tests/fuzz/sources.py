@@ -19,6 +19,7 @@ from tests.formats.foxglove import foxglove_log as fox
 from tests.formats.logs import LONG, cars
 from tests.formats.osi import osi_log
 from tests.formats.ros2 import autoware_log, ros_drive, ros_log
+from tests.formats.sqlite_bag import sqlite_log
 from tests.formats.sumo import fcd_text
 from tests.shared_data import ROOT
 
@@ -168,6 +169,19 @@ def ros(folder: Path) -> list[Source]:
     text = f"rosbag2_bagfile_information:\n  version: 9\n  storage_identifier: mcap\n  relative_file_paths:\n{listed}"
     # its description has no checksum, but names files and no data
     return [one, autoware, predictions, Source("bag", {**files, "metadata.yaml": text.encode()}, "")]
+
+
+def sqlite(folder: Path) -> list[Source]:
+    """Return bags of ROS 2 in SQLite: with message definitions and without, in one file and split, and with transforms for odometry."""
+    messages = sorted([*ros_drive.ego(n=20), *ros_drive.others()[:20]], key=lambda message: message[2])
+    moving = [
+        ros_log.transform(t_s, "map", "base_link", *ros_drive.along(t_s), yaw=ros_drive.TURN)
+        for t_s in ros_drive.ticks(20)
+    ]
+    one = _single(sqlite_log.write(folder / "sqlite.db3", messages))
+    old = _single(sqlite_log.write(folder / "old.db3", [*moving, *ros_drive.others()[:20]], definitions=False))
+    split = sqlite_log.bag(folder / "split", [messages[:20], messages[20:]])
+    return [one, old, Source("split", {file.name: file.read_bytes() for file in sorted(split.iterdir())}, "")]
 
 
 def parquet(folder: Path) -> list[Source]:

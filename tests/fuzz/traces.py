@@ -223,6 +223,7 @@ DAMAGED: Final[dict[str, Callable[[Path], list[Source]]]] = {
     "osi-mcap": sources.osi_mcap,
     "foxglove": sources.foxglove,
     "ros": sources.ros,
+    "sqlite": sources.sqlite,
     "osi-file": sources.osi_file,
     "parquet": sources.parquet,
     "csv": sources.csv,

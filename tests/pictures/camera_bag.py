@@ -58,8 +58,9 @@ def jpeg(pixels: NDArray[np.uint8], form: str = "JPEG") -> bytes:
 
 
 def write_bag(
-    folder: Path, *, cameras: bool = True, noise: bool = False, contacts: int = 1, damaged: Container[int] = ()
-) -> Path:
+    folder: Path, *, cameras: bool = True, noise: bool = False, contacts: int = 1, damaged: Container[int] = (),
+    storage: StoragePlugin = StoragePlugin.MCAP,
+) -> Path:  # fmt: skip
     """Write the bag. `noise`: the frames are of random pixels, which no encoder makes small; `contacts`: people in the way, 3 m apart.
 
     `damaged`: numbers of frames of the front camera that are no image.
@@ -79,7 +80,8 @@ def write_bag(
             pixels = rng.integers(0, 256, (360, 640, 3), np.uint8) if noise else bars(n)
             kind, data = _image(store, topic, T0 + t_s, pixels, is_damaged=topic == FRONT and n in damaged)
             messages.append((T0 + t_s + LATE_S[topic], topic, kind, data))
-    with Writer(folder, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with Writer(folder, version=9, storage_plugin=storage) as writer:
         topics: dict[str, Any] = {}
         for t_s, topic, kind, data in sorted(messages, key=lambda each: each[0]):
             if topic not in topics:

@@ -1,4 +1,4 @@
-"""Writes one annotated log: a copy of the log, if it is an undamaged MCAP file, with scenes, verdicts and evidence added."""
+"""Writes one annotated log: a copy of the log, if it is an undamaged bag or MCAP file, with scenes, verdicts and evidence added."""
 
 from __future__ import annotations
 
@@ -16,8 +16,9 @@ from drivelint.drive.lost_time import LOST_TIME_CHECK
 from drivelint.errors import ChangedLogError
 from drivelint.formats.files import identify
 from drivelint.formats.foxglove import messages as foxglove
-from drivelint.formats.mcap.copy import copy_log, is_mcap
+from drivelint.formats.mcap.copy import copy_log, has_messages
 from drivelint.formats.mcap.writer import Sink
+from drivelint.formats.sqlite_bag.database import is_sqlite
 from drivelint.report import summary
 from drivelint.result.schemas import OUTPUT_VERSION
 
@@ -64,10 +65,10 @@ def write_log(file: BinaryIO, drive: AnnotatedDrive) -> None:
     """
     sink = Sink(file)
     log = drive.trace.tables["data_log"].to_pylist()[0]
-    if is_mcap(drive.trace.path) and not _is_damaged(drive.trace):
+    if has_messages(drive.trace.path) and not _is_damaged(drive.trace):
         path, sha256 = drive.trace.path, log["sha256"]
         copy_log(path, sha256, sink)
-        if path.is_dir() and identify(path).sha256 != sha256:
+        if (path.is_dir() or is_sqlite(path)) and identify(path).sha256 != sha256:
             raise ChangedLogError(f"{path}: the log changed while it was judged: check it again when it is complete")
     else:
         sink.begin(f"drivelint {__version__}")

@@ -20,7 +20,7 @@ from drivelint.phrases import escape_invisible
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-TRACE_SUFFIXES = frozenset({".mcap", ".parquet", ".csv", ".osi", ".pkl"})
+TRACE_SUFFIXES = frozenset({".mcap", ".db3", ".parquet", ".csv", ".osi", ".pkl"})
 """The suffixes of traces for which a folder is searched. XML files are opened instead, because maps and routes are XML, too.
 
 A pickle can contain anything: it counts only if its name is one that ScenarioNet gives to scenarios.

@@ -83,11 +83,11 @@ def drive_files(path: Path) -> list[Path]:
         return [path]
     kind = folder_kind(path)
     if kind == "bag":
-        from drivelint.formats.mcap.bag import mcap_files
+        from drivelint.formats.mcap.bag import bag_files
 
         return [
             path / METADATA_FILE,
-            *(path / file.name for file in mcap_files(path) if (path / file.name).is_file()),
+            *(path / file.name for file in bag_files(path) if (path / file.name).is_file()),
         ]
     patterns = next((known.files for known in FOLDER_KINDS if known.name == kind), ())
     return [file for pattern in patterns for file in _matching_files(path, pattern)]

@@ -27,6 +27,7 @@ READER_MODULES: Final = (
     "film.reader",
     "tables.canonical",
     "d123.reader",
+    "ros2.own_reader",
     "mcap.trace",
     "osi.reader",
     "scenarionet.reader",
@@ -37,7 +38,12 @@ READER_MODULES: Final = (
     "tables.mapped_table",  # last: it accepts any text without markup
 )
 """The modules of the readers. The first that accepts a file reads it; the later ones are not imported."""
-FIRST_BYTES_BY_SUFFIX: Final = {".mcap": b"\x89MCAP", ".parquet": b"PAR1", ".pkl": b"\x80"}
+FIRST_BYTES_BY_SUFFIX: Final = {
+    ".mcap": b"\x89MCAP",
+    ".db3": b"SQLite format 3\0",
+    ".parquet": b"PAR1",
+    ".pkl": b"\x80",
+}
 """Suffix -> the first bytes that a file with this suffix must have, after any byte order mark. Other files are refused as damaged."""
 UNPROTECTED_FINDING: Final = QualityFinding(
     "unprotected", "info", "checksums do not cover the whole log: damage may remain undetected"
@@ -93,16 +99,12 @@ def _read_unchanged_log(probe: Probe, before: list[tuple[str, int, int]]) -> Tra
         raise TraceError(
             f"{path}: an Arrow table is read only as part of a log of Argoverse 2 or 123D: give the folder of the log"
         )
-    if probe.head.startswith(b"SQLite format 3") and path.suffix.lower() == ".db3":
-        from drivelint.formats.mcap.bag import not_mcap
-
-        raise not_mcap(path, "sqlite3")
     if probe.head.startswith(b"#ROSBAG V"):
         from drivelint.formats.mcap.bag import conversion
 
         raise TraceError(f"{path}: a ROS 1 bag: convert it with {conversion(path)}, and give that")
     raise TraceError(
-        f"{path}: no reader for this file, which begins with {probe.head[:16]!r}: give MCAP, OSI, Parquet, CSV, "
+        f"{path}: no reader for this file, which begins with {probe.head[:16]!r}: give MCAP, a bag of ROS 2, OSI, Parquet, CSV, "
         "SUMO's floating car data, a CommonRoad scenario, a ScenarioNet pickle, or the folder of a log of Argoverse 2 or 123D"
     )
 

@@ -4,21 +4,23 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from drivelint.errors import TraceError
+from drivelint.errors import TraceError, UsageError
 from drivelint.formats.film import mapping as video_mapping
 from drivelint.formats.folders import drive_files
 from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.bag_folder import is_bag
-from drivelint.formats.mcap.reader import Container
 from drivelint.formats.mcap.resume import MAGIC
-from drivelint.formats.mcap.summary import Summary, read_index
+from drivelint.formats.mcap.storage import file_index, recorded_file
 from drivelint.formats.osi.decode import FIELD_TREES
 from drivelint.formats.osi.metadata import EVENT_MESSAGE
 from drivelint.formats.osi.schema import OPEN_DRIVE
+from drivelint.formats.ros2 import own_mapping
 from drivelint.formats.ros2.types import message_kind
 from drivelint.formats.search import is_pipe_or_device
+from drivelint.formats.sqlite_bag.database import MAGIC as SQLITE_MAGIC
 from drivelint.formats.tables import ipc, parquet
 from drivelint.formats.tables import mapping as mappings
 from drivelint.formats.tables.mapped_table import open_sheet
@@ -30,11 +32,12 @@ from drivelint.pictures.frames import has_pictures
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
-    from pathlib import Path
 
     from mcap import records
 
     from drivelint.formats.film.mapping import VideoMapping
+    from drivelint.formats.mcap.reader import Container
+    from drivelint.formats.mcap.summary import Summary
 
 _HEAD_BYTES: Final = 4096
 _OSI_ROLES: Final = {(name, "protobuf"): "ground truth" for name in FIELD_TREES} | {
@@ -54,7 +57,7 @@ def size_bytes(path: Path) -> int:
     """Return the size in bytes of a file, or of all files of a folder that is read as one drive."""
     files = drive_files(path)
     if is_bag(path):
-        files = [file for file in path.iterdir() if file.suffix.lower() == ".mcap"]
+        files = [file for file in path.iterdir() if file.suffix.lower() in bag.STORAGE_SUFFIXES.values()]
     return sum(file.stat().st_size for file in files if file.is_file())
 
 
@@ -65,7 +68,7 @@ def file_content(path: Path, mapping: str | None, notes: list[str], *, has_reade
     """
     if path.is_dir():
         if is_bag(path):
-            return Content(channels=_channels(path), notes=notes)
+            return Content(channels=_channels(path, mapping), notes=notes)
         return Content(
             sheets=[sheet for file in drive_files(path) if (sheet := _sheet_of_table_file(file))], notes=notes
         )
@@ -73,8 +76,8 @@ def file_content(path: Path, mapping: str | None, notes: list[str], *, has_reade
         return Content(notes=notes)  # the reader of drives reports the fault
     with path.open("rb") as file:
         head = file.read(_HEAD_BYTES)
-    if head.startswith(MAGIC[:5]):
-        return Content(channels=_channels(path), notes=notes)
+    if head.startswith((MAGIC[:5], SQLITE_MAGIC)):
+        return Content(channels=_channels(path, mapping), notes=notes)
     return _table_content(path, head, mapping, notes, has_reader=has_reader)
 
 
@@ -173,12 +176,12 @@ class _ChannelCount:
     last_ns: int = 0
 
 
-def _channels(path: Path) -> list[Channel]:
+def _channels(path: Path, mapping: str | None) -> list[Channel]:
     """Return every channel with its number of messages: over all parts of a bag, and the readable messages of a damaged file."""
     counts: dict[tuple[str, str, str, str], _ChannelCount] = {}
     try:
-        for file in bag.mcap_files(path):
-            container = Container(file, salvage=True)
+        for file in bag.bag_files(path):
+            container = recorded_file(file)
             try:
                 for log_message in container.messages():
                     count = counts.setdefault(
@@ -190,13 +193,24 @@ def _channels(path: Path) -> list[Channel]:
                     count.last_ns = max(count.last_ns, log_message.log_time_ns)
             finally:
                 # a channel without messages may occur only in the index
-                for part in (container, read_index(file)):
+                for part in (container, file_index(file)):
                     for channel in part.channels.values():
                         counts.setdefault(_channel_key(part, channel), _ChannelCount())
     except TraceError:
         pass  # reading the drive fails for the same reason, and reports it
-    roles = _message_roles(path)
-    return [_channel(key, counts[key], roles) for key in sorted(counts)]
+    mapped = _mapped_topics(mapping)
+    roles = {} if mapped else _message_roles(path)
+    return [_channel(key, counts[key], roles, mapped) for key in sorted(counts)]
+
+
+def _mapped_topics(mapping: str | None) -> set[str]:
+    """Return the topics that a mapping of messages reads; none for another mapping."""
+    if mapping is None or not own_mapping.is_for_messages(mapping):
+        return set()
+    try:
+        return {each.topic for each in own_mapping.load(Path(mapping)).ros}
+    except UsageError:
+        return set()  # reading the drive reports it
 
 
 def _channel_key(container: Container | Summary, channel: records.Channel) -> tuple[str, str, str, str]:
@@ -205,7 +219,9 @@ def _channel_key(container: Container | Summary, channel: records.Channel) -> tu
     return channel.topic, schema.name if schema else "", channel.message_encoding, schema.encoding if schema else ""
 
 
-def _channel(key: tuple[str, str, str, str], count: _ChannelCount, roles: dict[tuple[str, str], str]) -> Channel:
+def _channel(
+    key: tuple[str, str, str, str], count: _ChannelCount, roles: dict[tuple[str, str], str], mapped: set[str]
+) -> Channel:
     topic, schema, encoding, schema_encoding = key
     span_s = (count.last_ns - count.first_ns) / 1e9
     return Channel(
@@ -216,7 +232,7 @@ def _channel(key: tuple[str, str, str, str], count: _ChannelCount, roles: dict[t
         messages=count.messages,
         bytes=count.size,
         rate_hz=(count.messages - 1) / span_s if span_s > 0 else None,
-        read_as=roles.get((message_kind(schema), encoding))
+        read_as=("actors, by the mapping" if topic in mapped else roles.get((message_kind(schema), encoding)))
         or ("pictures" if has_pictures(topic, schema, encoding) else None),
     )
 

@@ -9,7 +9,8 @@ import pyarrow as pa
 
 from drivelint.drive.trace import FrameTimes
 from drivelint.formats.mcap import trace as mcap
-from drivelint.formats.mcap.bag import mcap_files
+from drivelint.formats.mcap.bag import bag_files
+from drivelint.formats.ros2.merge import SQLITE_FORMAT
 from drivelint.pictures.camera_log import McapFrameSource, camera_topics
 from drivelint.pictures.clock import DriveClock, nearest_frame
 from drivelint.pictures.frames import FrameError
@@ -92,8 +93,15 @@ class PictureTaker:
 def _drive_cameras(trace: Trace, format_: str) -> DriveCameras | None:
     """Return the cameras of a log; None: it has none."""
     if format_ in mcap.formats:
-        files = tuple(mcap_files(trace.path))
-        if topics := camera_topics(files):
+        files = tuple(bag_files(trace.path))
+        if format_ == SQLITE_FORMAT:
+            from drivelint.pictures import sqlite_log
+
+            if topics := sqlite_log.camera_topics(files):
+                return DriveCameras(
+                    trace.path, lambda: sqlite_log.SqliteFrameSource(files), DriveClock(trace.frame_times), topics
+                )
+        elif topics := camera_topics(files):
             return DriveCameras(trace.path, lambda: McapFrameSource(files), DriveClock(trace.frame_times), topics)
     elif format_ == D123_FORMAT:
         from drivelint.formats.d123.reader import log_clock

@@ -42,9 +42,10 @@ def test_tracks(tmp_path: Path) -> None:
 
 
 def test_without_odometry_the_bag_s_own_vehicle_is_missed(tmp_path: Path) -> None:
-    transforms = [ros.transform(t_s, "map", "base_link", *along(t_s)) for t_s in ticks()]
+    transforms = [ros.transform(t_s, "map", "camera", *along(t_s)) for t_s in ticks()]
     (told,) = (note for note in seen(tmp_path, [*cars(), *transforms], ego=ONE).notes if "nav_msgs/Odometry" in note)
-    assert told.endswith("even if its frame is in the transforms: record /localization/kinematic_state too")
+    assert "no transform leads to base_link" in told
+    assert told.endswith("is not among the actors: record /localization/kinematic_state too")
     assert not any("nav_msgs/Odometry" in note for note in seen(tmp_path, [*ego(), *cars()]).notes)
 
 

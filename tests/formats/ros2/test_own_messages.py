@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+import sqlite3
 import subprocess
 import sys
+from contextlib import closing
 from typing import TYPE_CHECKING
 
 import pytest
@@ -12,11 +14,12 @@ from rosbags import rosbag2
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from drivelint.drive.trace import IngestOptions
-from drivelint.errors import TraceError
+from drivelint.errors import TraceError, UsageError
 from drivelint.formats import read_trace
 from drivelint.guide import FOLDER
 from drivelint.inspect import InspectRequest, inspect
 from tests.formats.logs import actors, put, read, states
+from tests.formats.sqlite_bag.sqlite_log import OLD_TABLES
 from tests.guide.blocks import blocks
 
 if TYPE_CHECKING:
@@ -33,7 +36,7 @@ DEFINITIONS = {
 }
 
 
-def bag(folder: Path) -> Path:
+def bag(folder: Path, ego_steps: range = range(101)) -> Path:
     """Return a bag of two seconds: the ego at 50 Hz and 10 m/s to the north, and a car 30 m ahead at 10 Hz and 8 m/s."""
     store = get_typestore(Stores.ROS2_HUMBLE)
     for name, text in DEFINITIONS.items():
@@ -49,7 +52,7 @@ def bag(folder: Path) -> Path:
             t_ns = 1_700_000_000_000_000_000 + i * 20_000_000
             stamp = types["builtin_interfaces/msg/Time"](*divmod(t_ns, 10**9))
             header = types["std_msgs/msg/Header"](stamp, "map")
-            messages = {EGO: types[EGO](header, 5.0, 0.2 * i, math.pi / 2, 10.0)}
+            messages = {EGO: types[EGO](header, 5.0, 0.2 * i, math.pi / 2, 10.0)} if i in ego_steps else {}
             if i % 5 == 0:
                 place, size = point(5.0, 30.0 + 0.16 * i, 0.0), vector(4.5, 1.8, 1.5)
                 track = types["acme_msgs/msg/FusedTrack"](7, 1, place, 90.0, 28.8, size)
@@ -57,6 +60,90 @@ def bag(folder: Path) -> Path:
             for kind, message in messages.items():
                 writer.write(to[kind], t_ns, store.serialize_cdr(message, kind))
     return folder
+
+
+def guide_mapping(folder: Path) -> str:
+    (block,) = (block.body for block in blocks(FOLDER / "mapping.md") if "[[ros]]" in block.body)
+    return str(put(folder / "acme.toml", block))
+
+
+def test_the_mapping_of_the_guide_reads_messages_of_other_types(tmp_path: Path) -> None:
+    trace = read_trace(bag(tmp_path / "bag"), IngestOptions(mapping=guide_mapping(tmp_path)))
+    assert {name: (row["actor_class"], row["is_ego"], row["length_m"]) for name, row in actors(trace).items()} == {
+        "7": ("car", False, 4.5), "ego": ("car", True, 4.9),
+    }  # fmt: skip
+    row, mine = states(trace, "7")[50], states(trace, "ego")[50]
+    assert (row["x_m"], row["y_m"], row["yaw_rad"], row["vy_mps"]) == pytest.approx((5.0, 38.0, math.pi / 2, 8.0))
+    assert (mine["x_m"], mine["y_m"], mine["vy_mps"]) == pytest.approx((5.0, 10.0, 10.0))
+    assert trace.tables["data_log"]["format"].to_pylist() == ["acme"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "why"),
+    [
+        ("/acme/ego", "/acme/egg", r"no message on topic '/acme/egg', which the mapping names: .*/acme/ego"),
+        ('items = "tracks"', 'items = "trucks"', r"a message on '/acme/fused_tracks' has no list 'trucks' \(items\)"),
+        ('x = "position.x"', 'x = "place.x"', "no column 'place.x', which mapping 'acme' needs"),
+        ('"speed_kmh"', '"speed_kph"', "no column 'speed_kph', which mapping 'acme' needs: .*speed_kmh"),
+        ('items = "tracks"', 'item = "tracks"', "unknown key 'ros.item'.*items"),
+        ('unit = "km/h"', 'unit = "furlong"', "unknown unit 'furlong'"),
+        ("/acme/ego", "/acme/fused_tracks", r"each \[\[ros\]\] needs a topic of its own"),
+        ('items = "tracks"', 'items = "tracks"\ntime = "stamp"', "topic '/acme/fused_tracks' has no time 'stamp'"),
+    ],
+)
+def test_a_mapping_that_does_not_fit_is_refused(tmp_path: Path, old: str, new: str, why: str) -> None:
+    path = guide_mapping(tmp_path)
+    text = put(tmp_path / "acme.toml", (tmp_path / "acme.toml").read_text(encoding="utf-8").replace(old, new))
+    assert str(text) == path
+    with pytest.raises((TraceError, UsageError), match=why) as error:
+        read_trace(bag(tmp_path / "bag"), IngestOptions(mapping=path))
+    assert "\n" not in str(error.value)
+
+
+def test_a_bag_without_definitions_is_read_with_the_files_of_its_messages(tmp_path: Path) -> None:
+    """As Humble writes it into SQLite."""
+    source, old = bag(tmp_path / "bag"), tmp_path / "old.db3"
+    with closing(sqlite3.connect(old)) as file, rosbag2.Reader(source) as reader:
+        file.executescript(OLD_TABLES)
+        for each in reader.connections:
+            file.execute("INSERT INTO topics VALUES (?, ?, ?, 'cdr', '')", (each.id, each.topic, each.msgtype))
+        for each, t_ns, data in reader.messages():
+            file.execute("INSERT INTO messages VALUES (NULL, ?, ?, ?)", (each.id, t_ns, data))
+        file.commit()
+    path = guide_mapping(tmp_path)
+    with pytest.raises(TraceError, match="set message_files in the mapping"):
+        read_trace(old, IngestOptions(mapping=path))
+    text = 'message_files = "msgs"\n' + (tmp_path / "acme.toml").read_text(encoding="utf-8")
+    put(tmp_path / "acme.toml", text)
+    with pytest.raises(
+        UsageError, match=r"msgs/acme_msgs/msg/EgoState.msg: the definition of acme_msgs/EgoState cannot be read"
+    ):
+        read_trace(old, IngestOptions(mapping=path))
+    folder = tmp_path / "msgs" / "acme_msgs" / "msg"
+    folder.mkdir(parents=True)
+    for name, definition in DEFINITIONS.items():
+        put(
+            folder / f"{name.rsplit('/', maxsplit=1)[-1]}.msg",
+            f"# a comment of three words\nuint8 LIMIT=3\n{definition}",
+        )
+    trace, wanted = (read_trace(each, IngestOptions(mapping=path)) for each in (old, source))
+    for table in ("actor_state", "actor"):
+        rows, others = ([{**row, "drive_id": ""} for row in each.tables[table].to_pylist()] for each in (trace, wanted))
+        assert rows == others
+
+
+def test_inspect_says_which_topics_the_mapping_reads(tmp_path: Path) -> None:
+    path = str(bag(tmp_path / "bag"))
+    found = inspect(InspectRequest(trace=path, mapping=guide_mapping(tmp_path)))
+    assert {each.topic: each.read_as for each in found.content.channels} == {
+        "/acme/ego": "actors, by the mapping", "/acme/fused_tracks": "actors, by the mapping",
+    }  # fmt: skip
+
+
+def test_an_ego_that_is_absent_is_lost_time(tmp_path: Path) -> None:
+    path = bag(tmp_path / "bag", ego_steps=range(40))
+    checks = read_trace(path, IngestOptions(mapping=guide_mapping(tmp_path))).tables["quality"]["check_id"].to_pylist()
+    assert "ego_absent" in checks
 
 
 def test_the_guides_script_makes_a_table_of_messages_of_other_types(tmp_path: Path) -> None:

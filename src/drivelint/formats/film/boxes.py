@@ -11,7 +11,8 @@ import numpy as np
 
 from drivelint.errors import TraceError, UsageError
 from drivelint.formats.mcap import bag
-from drivelint.formats.mcap.reader import Container, message_batches
+from drivelint.formats.mcap.reader import message_batches
+from drivelint.formats.mcap.storage import recorded_file
 from drivelint.formats.ros2 import cdr
 from drivelint.formats.ros2.messages import HEADER
 from drivelint.formats.ros2.objects import stamps
@@ -51,8 +52,8 @@ def read(path: Path, film: VideoMapping) -> DistancesAhead:
         raise UsageError(f"mapping: actor {unsaid[0]} has no 'box', the id of its detections")
     times: list[Times] = []
     boxes: list[tuple[Times, list[str], Floats]] = []
-    for file in bag.mcap_files(path):
-        container = Container(file)
+    for file in bag.bag_files(path):
+        container = recorded_file(file, salvage=False)
         for _, log_messages in message_batches(container, _boxes_message_type):
             table = cdr.Decoder(file, container.schemas[log_messages[0].channel.schema_id], _FIELD_TREE).table(
                 log_messages

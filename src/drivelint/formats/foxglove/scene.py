@@ -31,8 +31,9 @@ from drivelint.formats.foxglove.entity_lifetime import with_states_between_updat
 from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.losses import times_of_parts
 from drivelint.formats.mcap.malformed import decode_readable
-from drivelint.formats.mcap.reader import Container, message_batches
+from drivelint.formats.mcap.reader import message_batches
 from drivelint.formats.mcap.silent import silent_topics
+from drivelint.formats.mcap.storage import recorded_file
 from drivelint.formats.mcap.unread import UnreadTopics
 from drivelint.formats.protobuf.descriptors import list_items_and_row_indices, struct_field
 from drivelint.formats.ros2.objects import class_code
@@ -54,6 +55,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from drivelint.arrays import Codes, Mask, Times
+    from drivelint.formats.mcap.reader import Container
 
 CLASS_KEYS: Final = ("class", "type", "classification", "category", "label", "object_class", "object_type")
 """Keys of an entity's metadata whose value can be its class."""
@@ -79,8 +81,8 @@ def read(path: Path, topic: str | None) -> Recording:
     findings: list[QualityFinding] = []
     parts: list[Container] = []
     unread = UnreadTopics()
-    for file in bag.mcap_files(path):
-        container = Container(file, salvage=True)
+    for file in bag.bag_files(path):
+        container = recorded_file(file)
         for name, log_messages in message_batches(container, partial(_readable_message_type, topic, unread)):
             channel = log_messages[0].channel
             schema = container.schemas[channel.schema_id]
@@ -123,7 +125,7 @@ def _choose_scene_topic(path: Path, scenes: dict[str, _TopicContent], topic: str
     unread.refuse(path, {SCENE}, names)
     if len(names) != 1:
         several = f"on {len(names)} topics ({', '.join(names)}): choose one with --topic"
-        silent = "" if names else silent_topics(bag.mcap_files(path), SCENE.__eq__)
+        silent = "" if names else silent_topics(bag.bag_files(path), SCENE.__eq__)
         raise TraceError(f"{path}: {SCENE} {several if names else 'in none of its messages'}{silent and f': {silent}'}")
     return names[0]
 

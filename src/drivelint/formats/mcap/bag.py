@@ -1,4 +1,4 @@
-"""The MCAP log of one drive: one file, or a folder of the files into which `ros2 bag record` splits a log."""
+"""The log of one drive in MCAP or SQLite: one file, or a folder of the files into which `ros2 bag record` splits a log."""
 
 from __future__ import annotations
 
@@ -10,17 +10,24 @@ from typing import TYPE_CHECKING, Any, Final
 from drivelint.drive.trace import QualityFinding
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.bag_folder import METADATA_FILE, METADATA_ROOT, is_bag
-from drivelint.formats.mcap.reader import Container
-from drivelint.formats.mcap.summary import Summary, read_index
-from drivelint.formats.ros2.messages import DETECTIONS, MESSAGES, ODOMETRY_ROLE, ROAD_USERS
+from drivelint.formats.mcap.storage import file_index, recorded_file
+from drivelint.formats.ros2.messages import DETECTIONS, MESSAGES, ODOMETRY_ROLE, ROAD_USERS, TRANSFORMS
 from drivelint.formats.ros2.types import message_kind
+from drivelint.phrases import name_list
 from drivelint.receipts.events import report_searched_path
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
+    from drivelint.formats.mcap.reader import Container
+    from drivelint.formats.mcap.summary import Summary
+
 PACKED_SUFFIX: Final = ".zstd"
 """The end of the names of a bag's files that `ros2 bag record --compression-mode file` has compressed."""
+_MAX_TOPICS: Final = 8
+"""An error lists at most this many topics, and counts the others."""
+STORAGE_SUFFIXES: Final = {"mcap": ".mcap", "sqlite3": ".db3"}
+"""Storage of a bag that is read -> the suffix of its files."""
 OSI_SCHEMAS: Final = frozenset({"osi3.GroundTruth", "osi3.SensorView"})
 ROS_ROLES: Final = {name: message.role for name, message in MESSAGES.items()}
 FOXGLOVE_ROLES: Final = {
@@ -31,10 +38,10 @@ FOXGLOVE_ROLES: Final = {
 """Schema -> the role of its messages. Schemas of ROS have the names that `message_kind` returns."""
 
 
-def mcap_files(path: Path) -> list[Path]:
-    """Return the MCAP files of a drive in the order of recording.
+def bag_files(path: Path) -> list[Path]:
+    """Return the files of a drive in the order of recording.
 
-    Errors: `TraceError` if a bag's `metadata.yaml` cannot be read, the bag is not in MCAP, or a file is missing, empty or not listed.
+    Errors: `TraceError` if a bag's `metadata.yaml` cannot be read, its storage is another, or a file is missing, empty or not name_list.
     """
     if not path.is_dir():
         return [path]
@@ -45,8 +52,8 @@ def mcap_files(path: Path) -> list[Path]:
         raise _unreadable(path, error) from error
     if not isinstance(names, list) or not names or not all(isinstance(name, str) for name in names):
         raise TraceError(f"{path}: its {METADATA_FILE} lists no files: reindex the bag")
-    if storage not in {None, "mcap"}:
-        raise not_mcap(path, str(storage))
+    if storage is not None and storage not in STORAGE_SUFFIXES:
+        raise _other_storage(path, str(storage))
     if str(information.get("compression_mode")).lower() == "message":
         raise TraceError(
             f"{path}: a bag whose messages are each compressed: convert it with {conversion(path)}, and give that"
@@ -65,7 +72,8 @@ def mcap_files(path: Path) -> list[Path]:
                 f"{path}: {name}, a part of this bag, is empty (0 bytes): copy it again, or reindex the bag"
             )
         files.append(file)
-    if unlisted := sorted(each.name for each in path.glob("*.mcap") if each not in files):
+    suffix = STORAGE_SUFFIXES.get(storage, ".mcap")
+    if unlisted := sorted(each.name for each in path.glob(f"*{suffix}") if each not in files):
         raise TraceError(
             f"{path}: its {METADATA_FILE} does not list {unlisted[0]}: reindex the bag, or remove the file from its folder"
         )
@@ -81,11 +89,8 @@ def _part(folder: Path, name: str) -> Path | None:
     )
 
 
-def not_mcap(path: Path, storage: str) -> TraceError:
-    """Return the error for a bag in a storage other than MCAP, with the command that converts it.
-
-    `path`: the bag's folder, or one of its files.
-    """
+def _other_storage(path: Path, storage: str) -> TraceError:
+    """Return the error for a bag, given as its folder, in a storage that is not read, with the command that converts it."""
     return TraceError(
         f"{path}: a bag in {storage}: convert it to MCAP with {conversion(path)}, "
         "or with ros2 bag convert and storage_id: mcap, and give the converted bag"
@@ -151,7 +156,7 @@ def message_family(path: Path) -> str:
     The indexes of the files are searched first. Only if they name no usable schema are the whole files read.
     If a log has several kinds, OSI wins, because it is ground truth.
     """
-    parts = mcap_files(path)
+    parts = bag_files(path)
     for schemas in (_indexed, _recorded):
         found = {message_kind(name) for file in parts for name in schemas(file)}
         if found & OSI_SCHEMAS:
@@ -159,7 +164,15 @@ def message_family(path: Path) -> str:
         for name, roles in (("ros2", ROS_ROLES), ("foxglove", FOXGLOVE_ROLES)):
             if {roles.get(schema) for schema in found} & {ROAD_USERS, DETECTIONS, ODOMETRY_ROLE}:
                 return name
+        if TRANSFORMS in found:
+            return "ros2"  # they may place the ego
     return "none"
+
+
+def topics_text(path: Path) -> str:
+    """Return a clause that lists the topics of a drive's log, and names the guide for messages of other types."""
+    has = name_list([f"{kind} on {topic}" for topic, kind in sorted(topics(path).items())], _MAX_TOPICS) or "no topic"
+    return f"the log has {has}; drivelint docs mapping shows how messages of other types become a table"
 
 
 def topics(path: Path) -> dict[str, str]:
@@ -168,10 +181,10 @@ def topics(path: Path) -> dict[str, str]:
     Errors: `TraceError` for a damaged file.
     """
     found = {}
-    for file in mcap_files(path):
-        part: Summary | Container = read_index(file)
+    for file in bag_files(path):
+        part: Summary | Container = file_index(file)
         if not part.channels:
-            part = whole = Container(file, salvage=True)
+            part = whole = recorded_file(file)
             for _ in whole.messages():
                 pass
         for channel in part.channels.values():
@@ -182,12 +195,12 @@ def topics(path: Path) -> dict[str, str]:
 
 def _indexed(file: Path) -> set[str]:
     """Return the names of the schemas in the file's index; an empty set if the index is missing or damaged."""
-    return {schema.name for schema in read_index(file).schemas.values()}
+    return {schema.name for schema in file_index(file).schemas.values()}
 
 
 def _recorded(file: Path) -> set[str]:
     """Return the names of the schemas in the file's data section. Errors: `TraceError` for a damaged file."""
-    container = Container(file, salvage=True)
+    container = recorded_file(file)
     for _ in container.messages():
         pass
     return {schema.name for schema in container.schemas.values()}

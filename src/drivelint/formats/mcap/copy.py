@@ -1,4 +1,4 @@
-"""Copies a recorded log, an MCAP file or a bag of several, into an annotated log."""
+"""Copies a recorded log, an MCAP or SQLite file or a bag of several, into an annotated log."""
 
 from __future__ import annotations
 
@@ -6,11 +6,13 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING
 
 from drivelint.errors import ChangedLogError
-from drivelint.formats.mcap.bag import mcap_files
+from drivelint.formats.mcap.bag import bag_files
 from drivelint.formats.mcap.bag_folder import is_bag
 from drivelint.formats.mcap.original import Original, open_log
 from drivelint.formats.mcap.part_copy import PartCopy
 from drivelint.formats.mcap.resume import MAGIC
+from drivelint.formats.sqlite_bag.database import MAGIC as SQLITE_MAGIC
+from drivelint.formats.sqlite_bag.database import is_sqlite
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -36,15 +38,23 @@ def copy_original(original: Original, sink: Sink) -> None:
 
 
 def copy_log(path: Path, sha256: str, sink: Sink) -> None:
-    """Copy an MCAP file, or all files of a bag in their order, into an empty sink. Errors: those of `copy_original`."""
-    for part in mcap_files(path):
+    """Copy a file, or all files of a bag in their order, into an empty sink. Errors: those of `copy_original`.
+
+    Messages in SQLite become an MCAP file; the caller compares the hash of the whole log then.
+    """
+    for part in bag_files(path):
+        if is_sqlite(part):
+            from drivelint.formats.sqlite_bag.copy import copy_messages
+
+            copy_messages(part, sink)
+            continue
         with Original(part, None if path.is_dir() else sha256) as original:
             copy_original(original, sink)
 
 
-def is_mcap(path: Path) -> bool:
-    """Return whether a trace is a bag, or begins with MCAP's magic bytes."""
+def has_messages(path: Path) -> bool:
+    """Return whether a trace is a bag, or begins as files of MCAP or SQLite do."""
     if path.is_dir():
         return is_bag(path)
     with open_log(path) as file:
-        return file.read(len(MAGIC)) == MAGIC
+        return file.read(len(SQLITE_MAGIC)).startswith((MAGIC, SQLITE_MAGIC))

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from drivelint.formats.mcap.reader import Container
-from drivelint.formats.mcap.summary import read_index
+from drivelint.formats.mcap.storage import file_index, recorded_file
 from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
@@ -22,10 +21,10 @@ def silent_topics(files: Iterable[Path], is_wanted: Callable[[str], bool]) -> st
     spoken: set[str] = set()
     lossy = False
     for file in files:
-        container = Container(file, salvage=True)
+        container = recorded_file(file)
         spoken |= {log_message.channel.topic for log_message in container.messages()}
         lossy |= bool(container.losses)
-        for part in (container, read_index(file)):
+        for part in (container, file_index(file)):
             schemas = part.schemas
             announced |= {
                 channel.topic

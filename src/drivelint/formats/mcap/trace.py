@@ -1,4 +1,4 @@
-"""The trace format MCAP, a file or a rosbag2 folder, with ASAM OSI ground truth, ROS 2 messages or Foxglove scenes.
+"""The trace formats MCAP and SQLite, a file or a rosbag2 folder, with ASAM OSI ground truth, ROS 2 messages or Foxglove scenes.
 
 The reader of each message type states its reference point; all return box centres.
 """
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import TraceError
 from drivelint.formats.folders import folder_kind
-from drivelint.phrases import name_list
+from drivelint.formats.sqlite_bag.database import MAGIC as SQLITE_MAGIC
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -19,16 +19,17 @@ if TYPE_CHECKING:
 
 formats: Final[dict[str, tuple[str, str]]] = {
     "osi-mcap": ("ASAM OSI in MCAP", "the log's host vehicle"),
-    "ros2-mcap": ("ROS 2 in MCAP", "the odometry's vehicle"),
+    "ros2-mcap": ("ROS 2 in MCAP", "the vehicle of the odometry, or of the frame base_link"),
+    "ros2-sqlite": ("ROS 2 in SQLite", "the vehicle of the odometry, or of the frame base_link"),
     "foxglove-mcap": ("Foxglove scene in MCAP", "named with --ego"),
 }
 takes_mapping: Final = False
-_MAX_TOPICS: Final = 8
-"""An error lists at most this many topics, and counts the others."""
 
 
 def accepts(probe: Probe) -> bool:
-    """Return whether the file has MCAP's magic bytes, or the folder is a bag."""
+    """Return whether the file has the magic bytes of MCAP, or of SQLite and a bag's suffix, or the folder is a bag."""
+    if probe.head.startswith(SQLITE_MAGIC):
+        return probe.path.suffix.lower() == ".db3"
     return probe.head.startswith(b"\x89MCAP") or folder_kind(probe.path) == "bag"
 
 
@@ -59,8 +60,4 @@ def _refuse_other_messages(path: Path) -> None:
 
     kinds = bag.topics(path)
     if path.is_dir() or any("/" in kind or kind.startswith("foxglove.") for kind in kinds.values()):
-        has = name_list([f"{kind} on {topic}" for topic, kind in sorted(kinds.items())], _MAX_TOPICS) or "no topic"
-        raise TraceError(
-            f"{path}: no nav_msgs/Odometry and no road users: the log has {has}; "
-            "drivelint docs mapping shows how messages of other types become a table"
-        )
+        raise TraceError(f"{path}: no nav_msgs/Odometry and no road users: {bag.topics_text(path)}")

@@ -17,14 +17,21 @@ if TYPE_CHECKING:
 
 @dataclass
 class UnreadTopics:
-    """Topics whose messages are skipped: topic -> kind, encoding and number of its messages."""
+    """Topics whose messages are skipped: topic -> kind, why, and number of its messages."""
 
     topics: dict[str, tuple[str, str, int]] = field(default_factory=dict)
 
     def add(self, channel: Channel, kind: str) -> None:
         """Count a message that would be read if its encoding were supported."""
+        self._count(channel, kind, f"is in {channel.message_encoding or 'no encoding'!r}, which is not read")
+
+    def add_undefined(self, channel: Channel, kind: str) -> None:
+        """Count a message that would be read if its definition were known."""
+        self._count(channel, kind, "has no message definitions in the log, and none is known for it")
+
+    def _count(self, channel: Channel, kind: str, why: str) -> None:
         n = self.topics.get(channel.topic, ("", "", 0))[2]
-        self.topics[channel.topic] = kind, channel.message_encoding, n + 1
+        self.topics[channel.topic] = kind, why, n + 1
 
     def findings(self) -> list[QualityFinding]:
         """Return a finding for each topic."""
@@ -44,6 +51,6 @@ class UnreadTopics:
                 raise TraceError(f"{path}: {_topic_text(topic, *what)}: its actors are unknown: convert it{choice}")
 
 
-def _topic_text(topic: str, kind: str, encoding: str, n: int) -> str:
+def _topic_text(topic: str, kind: str, why: str, n: int) -> str:
     messages = "1 message" if n == 1 else f"{n} messages"
-    return f"topic {topic!r} ({messages} of {kind}) is in {encoding or 'no encoding'!r}, which is not read"
+    return f"topic {topic!r} ({messages} of {kind}) {why}"

@@ -58,7 +58,9 @@ class Sink:
         self.write(MAGIC)
         self._record(records.Header(profile="", library=library))
 
-    def add_channel(self, topic: str, encoding: str, schema: records.Schema) -> int:
+    def add_channel(
+        self, topic: str, encoding: str, schema: records.Schema, metadata: Mapping[str, str] | None = None
+    ) -> int:
         """Write a channel with a free id, and return the id. The schema is written first, unless the file already has it.
 
         `schema` has the id 0, as its id is chosen here. Errors: `DriveLintError` if no id is free.
@@ -72,7 +74,7 @@ class Sink:
             id=free_id(self.channels, 0, "channel"),
             topic=topic,
             message_encoding=encoding,
-            metadata={},
+            metadata=dict(metadata or {}),
             schema_id=number,
         )
         self.channels[channel.id] = channel

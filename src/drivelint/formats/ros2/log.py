@@ -11,14 +11,24 @@ from drivelint.errors import TraceError
 from drivelint.formats.mcap.bag import missing_messages
 from drivelint.formats.mcap.losses import times_of_parts
 from drivelint.formats.mcap.malformed import decode_readable
-from drivelint.formats.mcap.reader import Container, message_batches
+from drivelint.formats.mcap.reader import message_batches
+from drivelint.formats.mcap.storage import recorded_file
 from drivelint.formats.mcap.unread import UnreadTopics
 from drivelint.formats.ros2 import traffic_lights
 from drivelint.formats.ros2.cdr import Decoder
-from drivelint.formats.ros2.messages import DETECTED, EGO_SIZE, LIGHT_GROUPS, MESSAGES, ODOMETRY, OLD_LIGHT_GROUPS
+from drivelint.formats.ros2.messages import (
+    DETECTED,
+    EGO_SIZE,
+    LIGHT_GROUPS,
+    MESSAGES,
+    ODOMETRY,
+    OLD_LIGHT_GROUPS,
+    TRANSFORMS,
+)
 from drivelint.formats.ros2.objects import OBJECT_ROWS, SAME_BODIES, stamps
 from drivelint.formats.ros2.silence import SENT_WHERE_NOBODY_IS, silences
 from drivelint.formats.ros2.types import message_kind
+from drivelint.formats.sqlite_bag.reader import REMEDY, SqliteFile
 from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
@@ -29,7 +39,9 @@ if TYPE_CHECKING:
 
     from drivelint.arrays import Mask, Times
     from drivelint.drive.trace import LostTime, QualityFinding
+    from drivelint.formats.mcap.reader import Container
     from drivelint.formats.ros2.cdr import Table
+    from drivelint.formats.ros2.recorded_poses import RecordedPoses
 
 LIGHTS: Final = (LIGHT_GROUPS, OLD_LIGHT_GROUPS)
 _CARLA = "carla_msgs/"
@@ -50,13 +62,16 @@ class Log:
         self.lost_times: list[LostTime] = []
         self.unread = UnreadTopics()
         self.carla = False
+        self.is_sqlite = False
+        self.ego_frame = ""  # the frame that places the ego, in a log without odometry
+        self.no_ego = ""  # why neither odometry nor transforms place the ego
         self._times: dict[str, list[tuple[Times, Mask, Times]]] = {}
 
     def read(self, files: Iterable[Path]) -> None:
         """Read the files of a drive. Errors: `TraceError` for damaged files and invalid message definitions."""
         parts: list[Container] = []
         for file in files:
-            container = Container(file, salvage=True)
+            container = recorded_file(file)
             decoders: dict[int, Decoder] = {}
             for kind, log_messages in message_batches(container, partial(self._kind, file, decoders)):
                 channel = log_messages[0].channel
@@ -71,6 +86,13 @@ class Log:
                     self._times.setdefault(channel.topic, []).append((*stamps(table, "header.stamp"), log_ns))
             self.carla |= any(schema.name.startswith(_CARLA) for schema in container.schemas.values())
             self.findings += container.findings
+            if isinstance(container, SqliteFile):
+                self.is_sqlite = True
+                read_kinds = {container.schemas[number].name for number in decoders}
+                if kinds := sorted(container.assumed & read_kinds):
+                    self.notes.append(
+                        f"{file.name} has no message definitions: those of drivelint are used for {name_list(kinds)}"
+                    )
             parts.append(container)
         self.findings += [*missing_messages(self.path, parts, MESSAGES.__contains__), *self.unread.findings()]
         self.lost_times = times_of_parts([(part.path, part.losses) for part in parts])
@@ -90,13 +112,27 @@ class Log:
                 self.unread.add(channel, kind)
             return None
         if channel.schema_id not in decoders:
-            if schema.encoding != "ros2msg":
-                raise TraceError(
-                    f"{path}: {schema.name} has a definition of the kind {schema.encoding or 'none'}, but only "
-                    "ros2msg is supported: record or convert the log with message definitions"
-                )
+            if not self._is_defined(path, channel, schema, kind):
+                return None
             decoders[channel.schema_id] = Decoder(path, schema, MESSAGES[kind].fields)
         return kind
+
+    def _is_defined(self, path: Path, channel: Channel, schema: Schema, kind: str) -> bool:
+        """Return whether a channel that is read has a message definition; without it, road users and poses of the ego are an error."""
+        if schema.encoding:
+            if schema.encoding != "ros2msg":
+                raise TraceError(
+                    f"{path}: {schema.name} has a definition of the kind {schema.encoding}, but only "
+                    "ros2msg is supported: record or convert the log with message definitions"
+                )
+            return True
+        if kind not in {*OBJECT_ROWS, ODOMETRY, TRANSFORMS}:
+            self.unread.add_undefined(channel, schema.name)
+        elif not self.requested_topics or channel.topic in self.requested_topics:
+            raise TraceError(
+                f"{path}: the log has no message definition of {schema.name} on {channel.topic!r}, and none is known: {REMEDY}"
+            )
+        return False
 
     def refuse_unknown_topics(self) -> None:
         """Raise `TraceError` if a topic that the user chose is not read."""
@@ -121,6 +157,10 @@ class Log:
         parts = [part for topic in topics for part in self._times.get(topic, ())]
         times = [stamp_ns[stamped & (stamp_ns != 0)] if own_times else log_ns for stamp_ns, stamped, log_ns in parts]
         return np.concatenate([np.zeros(0, np.int64), *times])
+
+    def add_times(self, topic: str, rows: RecordedPoses) -> None:
+        """Count rows that are not messages of their own, such as transforms of the ego, as messages of a topic."""
+        self._times.setdefault(topic, []).append((rows.stamp_ns, rows.stamped, rows.log_ns))
 
     def silences(self, objects: Iterable[str], odometry: Iterable[str]) -> Iterator[LostTime]:
         """Yield the times in which a topic of road users has no messages, if its sender also sends messages without objects."""

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 FORMAT = "ros2-mcap"
+SQLITE_FORMAT = "ros2-sqlite"
 DEFAULT_EGO_ID = "ego"
 """The id of the vehicle with the odometry, if no message gives its id."""
 
@@ -26,11 +27,12 @@ def merge_ego(
     *,
     carla: bool,
     is_centre: bool,
+    ego_id: str = DEFAULT_EGO_ID,
 ) -> Recording:
     """Merge objects and odometry, each given with its topic, into one recording with one track of the ego.
 
     `infos`: topic of the CARLA bridge's ego info -> the ego's id; `carla`: whether the objects come from the CARLA bridge;
-    `is_centre`: whether the odometry's positions are known to be box centres.
+    `is_centre`: whether the odometry's positions are known to be box centres; `ego_id`: the ego's id if no message gives it.
     """
     names = _carla_ego_ids(infos, odometry)
     if carla and objects is not None:
@@ -41,14 +43,14 @@ def merge_ego(
     ego = odometry[1]
     ids_in_objects: list[str] = []
     if objects is None:
-        ego.ids = names[:1] or [DEFAULT_EGO_ID]
+        ego.ids = names[:1] or [ego_id]
     else:
         object_states = objects[1]
         ids_in_objects = [name for name in names if name in object_states.ids] or ids_at_ego(ego, object_states)
-        ego.ids = ids_in_objects[:1] or [_free_id(names[0] if names else DEFAULT_EGO_ID, object_states.ids)]
+        ego.ids = ids_in_objects[:1] or [_free_id(names[0] if names else ego_id, object_states.ids)]
     if not carla and not is_centre:
         message = (
-            f"{odometry[0]}: the origin of the odometry's child frame is used as the centre of the ego's box: if "
+            f"{odometry[0]}: the origin of the ego's frame is used as the centre of the ego's box: if "
             "this frame is at the rear axle, set the distance from it to the centre: --ego-size LENGTH,WIDTH,AHEAD"
         )
         first = int(ego.t_ns.min())

@@ -1,4 +1,4 @@
-"""Reads ROS 2 logs in MCAP. Messages are recognised by the names of their schemas, not by topics.
+"""Reads ROS 2 logs in MCAP or SQLite. Messages are recognised by the names of their schemas, not by topics.
 
 Positions are box centres: of Autoware's tracks and of vision_msgs' detections by their definition, of the CARLA bridge's objects by
 assumption (see `merge`). The odometry gives the position of its child frame; `--ego-size` states how far ahead of that frame, for example
@@ -21,8 +21,9 @@ from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.silent import silent_topics
 from drivelint.formats.ros2 import ego as ros_ego
 from drivelint.formats.ros2 import traffic_lights
+from drivelint.formats.ros2.ego_frame import ego_rows, within_chain
 from drivelint.formats.ros2.log import LIGHTS, Log
-from drivelint.formats.ros2.merge import merge_ego
+from drivelint.formats.ros2.merge import DEFAULT_EGO_ID, FORMAT, SQLITE_FORMAT, merge_ego
 from drivelint.formats.ros2.messages import (
     CARLA_OBJECTS,
     CONTROL_MODE,
@@ -56,8 +57,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from drivelint.arrays import Times
-    from drivelint.drive.trace import EgoSize, IngestOptions
-    from drivelint.formats.ros2.log import Topics
+    from drivelint.drive.trace import IngestOptions
     from drivelint.formats.ros2.vehicle import VehicleBox
 
 STATIC_TOPIC_SUFFIX = "tf_static"
@@ -72,32 +72,26 @@ def read(path: Path, options: IngestOptions) -> Recording:
     """Read a file or a bag. Errors: `TraceError` if it is damaged, has no usable poses, or has several topics without a choice."""
     requested_topics = [] if options.topic is None else [part.strip() for part in options.topic.split(",")]
     log = Log(path, requested_topics)
-    log.read(bag.mcap_files(path))
+    log.read(bag.bag_files(path))
     log.refuse_unknown_topics()
     objects = log.select_topic(OBJECT_ROWS, "road users")
-    odometry = log.select_topic([ODOMETRY], "odometry")
-    log.unread.refuse(path, OBJECT_ROWS, objects or odometry)
+    log.unread.refuse(path, OBJECT_ROWS, objects or log.topics.get(ODOMETRY, ()))
     parts = {topic: join_batches(batches) for topic, batches in objects.items()}
-    own_rows, is_centre = _ego_rows(log, odometry, options.ego_size)
-    parts |= own_rows
+    odometry, is_centre = _ego_rows(log, options)
+    parts |= odometry
     if not sum(map(len, parts.values())):
-        silent = silent_topics(bag.mcap_files(path), lambda name: message_kind(name) in {*OBJECT_ROWS, ODOMETRY})
-        raise TraceError(
-            f"{path}: no road users and no odometry in this ROS log: "
-            + (silent or f"{', '.join(sorted(OBJECT_ROWS))} are read")
-        )
+        raise _nothing_to_read(path, log)
     findings = log.findings
     findings += [] if objects else [_no_road_users(log)]
     own_times = choose_clock(parts, findings)
-    frames = TransformTree()
-    for topic, (table, log_ns) in log.parts(TRANSFORMS):
-        static = topic.endswith(STATIC_TOPIC_SUFFIX)
-        ros_ego.add_transforms(frames, table, log_ns, static=static, own_times=own_times)
+    frames = _transform_tree(log, own_times=own_times)
     for topic in objects:
         parts[topic] = _rows_with_ids(parts[topic], topic, log)
         findings += _outlined(parts[topic], topic)
     used = [sorted(distinct(parts[topic].frames)[0]) for topic in (*odometry, *objects)]
     fixed = fixed_frame(frames, chain.from_iterable(used))
+    if log.ego_frame:
+        parts |= {topic: within_chain(parts[topic], frames, fixed, TOPICS_APART_NS) for topic in odometry}
     states: dict[str, States] = {}
     for topic in (*objects, *odometry):
         states[topic], new_findings = states_in_fixed_frame(parts[topic], frames, fixed, topic)
@@ -110,7 +104,11 @@ def read(path: Path, options: IngestOptions) -> Recording:
     carla = log.carla and not objects.keys().isdisjoint(log.topics.get(CARLA_OBJECTS, ()))
     # topic of the CARLA bridge's ego info -> the ego's id in its last message
     infos = {topic: str(number) for topic, (table, _) in log.parts(EGO_INFO) for number in table.column("id").tolist()}
-    recording = merge_ego(object_states, odometry_states, infos, findings, carla=carla, is_centre=is_centre)
+    ego_id = options.ego if log.ego_frame and options.ego == log.ego_frame else DEFAULT_EGO_ID
+    recording = merge_ego(
+        object_states, odometry_states, infos, findings, carla=carla, is_centre=is_centre, ego_id=ego_id
+    )
+    recording.format = SQLITE_FORMAT if log.is_sqlite else FORMAT
     reports = _reports(log, own_times=own_times)
     for ego in recording.ego_ids[:1]:
         all_states = recording.states
@@ -129,16 +127,33 @@ def read(path: Path, options: IngestOptions) -> Recording:
     recording.embedded_map, trouble = single_map(_maps(log))
     recording.findings += trouble
     recording.frame_times, recording.utc_start_ns = message_times(list(parts.values()))
-    recording.notes += [*log.notes, *_own_vehicle_missing(log, odometry), f"positions are in the frame {fixed!r}"]
+    recording.notes += [*log.notes, *_own_vehicle_missing(log), f"positions are in the frame {fixed!r}"]
     return recording
 
 
-def _own_vehicle_missing(log: Log, odometry: Topics) -> list[str]:
-    """Return a note if a bag of Autoware's road users has no odometry."""
-    if odometry or log.topics.keys().isdisjoint(SAME_BODIES):
+def _transform_tree(log: Log, *, own_times: bool) -> TransformTree:
+    frames = TransformTree()
+    for topic, (table, log_ns) in log.parts(TRANSFORMS):
+        static = topic.endswith(STATIC_TOPIC_SUFFIX)
+        ros_ego.add_transforms(frames, table, log_ns, static=static, own_times=own_times)
+    return frames
+
+
+def _nothing_to_read(path: Path, log: Log) -> TraceError:
+    """Return the error for a log without poses of road users or of the ego."""
+    silent = silent_topics(bag.bag_files(path), lambda name: message_kind(name) in {*OBJECT_ROWS, ODOMETRY})
+    if silent or log.detections or not log.topics.keys().isdisjoint(OBJECT_ROWS):
+        why = silent or f"{', '.join(sorted(OBJECT_ROWS))} are read"
+        return TraceError(f"{path}: no road users and no odometry in this ROS log: {why}")
+    return TraceError(f"{path}: no {ODOMETRY} and no road users: {bag.topics_text(path)}; {log.no_ego}")
+
+
+def _own_vehicle_missing(log: Log) -> list[str]:
+    """Return a note if a bag of Autoware's road users has neither odometry nor transforms of its own vehicle."""
+    if not log.no_ego or log.topics.keys().isdisjoint(SAME_BODIES):
         return []
     note = (
-        f"no {ODOMETRY}: the vehicle that recorded the bag is not among the actors, even if its frame is in the transforms: "
+        f"no {ODOMETRY}, and {log.no_ego}: the vehicle that recorded the bag is not among the actors: "
         f"record {MESSAGES[ODOMETRY].topic} too"
     )
     return [note]
@@ -153,27 +168,45 @@ def _maps(log: Log) -> dict[bytes, str]:
     return maps
 
 
-def _ego_rows(log: Log, odometry: Topics, option: EgoSize | None) -> tuple[dict[str, RecordedPoses], bool]:
+def _ego_rows(log: Log, options: IngestOptions) -> tuple[dict[str, RecordedPoses], bool]:
     """Return the ego's rows by topic, and whether their positions are known to be box centres.
 
-    In the axle's frame, the log's own vehicle box gives the centre, if there is one; otherwise `option` does.
+    In the axle's frame, the log's own vehicle box gives the centre, if there is one; otherwise the option `ego_size` does.
     """
     box, found = vehicle_box(
         (table for _, (table, _) in log.parts(PARAMETERS)),
         ((topic, table) for topic, (table, _) in log.parts(DIMENSIONS)),
     )
     log.findings += found
-    ahead_m = 0.0 if option is None else option.forward_m
+    ahead_m = 0.0 if options.ego_size is None else options.ego_size.forward_m
     rows: dict[str, RecordedPoses] = {}
     is_centre = ahead_m != 0.0
+    odometry = log.select_topic([ODOMETRY], "odometry")
     for topic, batches in odometry.items():
         rows[topic] = join_batches([ros_ego.odometry(table, log_ns, box, ahead_m) for table, log_ns in batches])
         if box is not None and all(at_axle(table.column("child_frame_id")).all() for table, _ in batches):
             log.findings += _other_centre(box, ahead_m)
             is_centre = True
+    if not odometry:
+        rows = _rows_of_transforms(log, box, ahead_m, options.ego)
+        is_centre = is_centre or (box is not None and bool(rows))
     if box is not None and rows:
         log.notes.append(f"the ego's box is taken from {box.source}: {box.described()}")
     return rows, is_centre
+
+
+def _rows_of_transforms(
+    log: Log, box: VehicleBox | None, ahead_m: float, ego_name: str | None
+) -> dict[str, RecordedPoses]:
+    """Return the ego's rows by the transforms of its frame; none if there is no chain to that frame."""
+    found = ego_rows(log.parts(TRANSFORMS), box, ahead_m, STATIC_TOPIC_SUFFIX, ego_name)
+    if isinstance(found, str):
+        log.no_ego = found
+        return {}
+    log.notes.append(f"no {ODOMETRY}: the ego is placed by the transforms of {found.frame!r} on {found.topic}")
+    log.add_times(found.topic, found.rows)
+    log.ego_frame = found.frame
+    return {found.topic: found.rows}
 
 
 def _other_centre(box: VehicleBox, ahead_m: float) -> list[QualityFinding]:

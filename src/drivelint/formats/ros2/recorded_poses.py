@@ -169,10 +169,7 @@ def _unresolved_frame(topic: str, frame: str, fixed: str, frames: TransformTree,
     else:
         why = f"the transform from {frame!r} to {fixed!r} is not recorded at their time"
     first = int(t_ns.min())
-    message = (
-        f"{topic}: {len(t_ns)} poses from {first / 1e9:g} s on cannot be placed, because {why}: "
-        "the actors are present, but not placed"
-    )
+    message = f"{topic}: {len(t_ns)} poses cannot be placed, because {why}: the actors are present, but not placed"
     return QualityFinding("frame_unresolved", "error", message, len(t_ns), first)
 
 

@@ -74,11 +74,17 @@ def read(probe: Probe) -> Recording:
         name, mapping = mappings.load(name)
         sheet = open_sheet(path, mapping)
         notes = []
+    recording = read_sheet(path, name, mapping, sheet)
+    recording.notes = notes + recording.notes
+    return recording
+
+
+def read_sheet(path: Path, name: str, mapping: Mapping, sheet: Sheet) -> Recording:
+    """Read a table through a mapping. Errors: `TraceError` for a table that does not fit the mapping."""
     recording = _MappedTable(path, mapping, sheet, _column_group_numbers(path, name, mapping, sheet)).read()
     _refuse_if_most_rows_unread(path, name, recording)
     recording.format = name
     recording.findings += _assumption_findings(name, mapping)
-    recording.notes = notes
     if mapping.frame.map_offset_m is not None:
         dx, dy = recording.map_offset = mapping.frame.map_offset_m
         recording.notes.append(f"mapping {name!r} moves the map by ({dx:+g}, {dy:+g}) m")
@@ -237,7 +243,7 @@ class _MappedTable:
                 not_finite |= odd
                 numbers[name] = values[keep]
         codes = {
-            name: self._word_codes(spec, allowed, group)[keep]
+            name: self._word_codes(spec, allowed, group, n_rows)[keep]
             for name, (spec, allowed) in mappings.word_mappings(self.mapping).items()
         }
         return States([], np.zeros(0, np.int32), t_ns[keep], numbers, codes, not_finite[keep])
@@ -270,8 +276,10 @@ class _MappedTable:
                 'give a mapping with --mapping in which the unit is "deg"; drivelint inspect drafts one'
             )
 
-    def _word_codes(self, spec: WordMapping, words: tuple[str, ...], group: str) -> Codes:
+    def _word_codes(self, spec: WordMapping, words: tuple[str, ...], group: str, n: int) -> Codes:
         """Return the column's texts as indices in `words`; -1: unknown. Each distinct text is translated only once."""
+        if not spec.columns:
+            return np.full(n, -1 if spec.default is None else words.index(spec.default), np.int8)
         texts = [self.sheet.text_column(column.replace(GROUP_PLACEHOLDER, group)) for column in spec.columns]
         if len(texts) > 1:
             texts = [pc.binary_join_element_wise(*texts, "/", null_handling="emit_null")]

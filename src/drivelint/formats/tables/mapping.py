@@ -126,10 +126,10 @@ class Pattern(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
 class WordMapping(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     """The translation of a column's text to one of drivelint's words: by `values` first, then `patterns`, then `default`.
 
-    The texts of several columns are joined by `/` before the translation.
+    The texts of several columns are joined by `/` before the translation. Without a column, every row has the word `default`.
     """
 
-    column: str | list[str]
+    column: str | list[str] = []
     values: dict[str, str] = {}
     patterns: list[Pattern] = []
     default: str | None = None
@@ -196,12 +196,12 @@ def load(name: str) -> tuple[str, Mapping]:
         refuse_unknown_mapping(name)
         path = MAPPINGS_FOLDER / f"{name}.toml"
     raw = read_toml(path)
-    _refuse_unknown_keys(path, raw, Mapping, "")
+    refuse_unknown_keys(path, raw, Mapping, "")
     try:
         mapping = msgspec.convert(raw, Mapping)
     except msgspec.ValidationError as error:
         raise UsageError(f"mapping {path}: {error}") from error
-    _validate(path, mapping)
+    validate(path, mapping)
     return path.stem, mapping
 
 
@@ -245,7 +245,8 @@ def needed_columns(mapping: Mapping) -> list[str]:
     return list(dict.fromkeys(names))
 
 
-def _refuse_unknown_keys(path: Path, raw: Any, kind: Any, key_prefix: str) -> None:
+def refuse_unknown_keys(path: Path, raw: Any, kind: Any, key_prefix: str) -> None:
+    """Raise `UsageError` for a key that a struct does not have. `where`: the keys above, each with a dot."""
     parts = _component_types(kind)
     struct = next((part for part in parts if isinstance(part, type) and issubclass(part, msgspec.Struct)), None)
     if struct is None or isinstance(raw, list) != any(get_origin(part) is list for part in parts):
@@ -255,14 +256,14 @@ def _refuse_unknown_keys(path: Path, raw: Any, kind: Any, key_prefix: str) -> No
         for key, value in table.items() if isinstance(table, dict) else ():
             if key not in known:
                 raise UsageError(f"mapping {path}: unknown key {key_prefix + key!r}: {hint(key, known, cutoff=0.5)}")
-            _refuse_unknown_keys(path, value, known[key].type, f"{key_prefix}{key}.")
+            refuse_unknown_keys(path, value, known[key].type, f"{key_prefix}{key}.")
 
 
 def _component_types(kind: Any) -> tuple[Any, ...]:
     return (kind, *(part for item in get_args(kind) for part in _component_types(item)))
 
 
-def _validate(path: Path, mapping: Mapping) -> None:
+def validate(path: Path, mapping: Mapping) -> None:
     """Raise `UsageError` for mistakes that the types do not detect."""
     if len(mapping.table.separator) != 1 or mapping.table.skip_rows < 0:
         raise UsageError(f"mapping {path}: table.separator must be one character and table.skip_rows not negative")

@@ -1,0 +1,179 @@
+"""Finds the ego in a log without odometry: by the transforms of its frame, at the transforms' own times."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from drivelint.drive.trace import ACTOR_CLASSES
+from drivelint.formats.coordinate_frames import FIXED_FRAME_NAMES, Poses, clean_frame_name, unit_quaternions
+from drivelint.formats.ros2.objects import stamps, vectors
+from drivelint.formats.ros2.recorded_poses import recorded_poses
+from drivelint.formats.ros2.vehicle import at_axle
+from drivelint.phrases import name_list
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from drivelint.arrays import Mask, Times
+    from drivelint.formats.coordinate_frames import TransformTree
+    from drivelint.formats.ros2.cdr import Table
+    from drivelint.formats.ros2.recorded_poses import RecordedPoses
+    from drivelint.formats.ros2.vehicle import VehicleBox
+
+EGO_FRAMES: Final = ("base_link", "base_footprint")
+"""The names of the vehicle's own frame by REP 105, best first; a prefix such as `ego/` may precede them."""
+_MOST_NAMES: Final = 4
+
+
+class EgoRows(NamedTuple):
+    """The ego's poses: the topic of their transforms, the ego's frame, and the rows, each in the parent of the moving frame."""
+
+    topic: str
+    frame: str
+    rows: RecordedPoses
+
+
+class _Transforms(NamedTuple):
+    """All transforms to one frame, in the order of the log."""
+
+    topic: str
+    parent: str
+    static: bool
+    stamp_ns: Times
+    stamped: Mask
+    log_ns: Times
+    poses: Poses
+
+
+def ego_rows(
+    tables: Iterable[tuple[str, tuple[Table, Times]]],
+    box: VehicleBox | None,
+    option_ahead_m: float,
+    static_suffix: str,
+    ego_name: str | None,
+) -> EgoRows | str:
+    """Return the ego's rows, moved to the centre of its box, or why there are none.
+
+    `tables`: topic -> transforms and log times of each batch. Only static transforms lie between the ego's frame and the moving frame
+    whose transforms give the times; transforms above that frame place it later. `box`, `option_ahead_m`: as for odometry.
+    `ego_name`: the frame that the user chose; one that the log does not have is the id of another actor.
+    """
+    found, ambiguous = _of_frames(tables, static_suffix)
+    chosen = None if ego_name is None else clean_frame_name(ego_name)
+    names = (
+        [chosen] if chosen in found else [name for last in EGO_FRAMES for name in sorted(found) if _last(name) == last]
+    )
+    if not names:
+        seen = name_list(sorted(found), _MOST_NAMES) or "none"
+        return f"no transform leads to {' or '.join(EGO_FRAMES)} (child frames: {seen}; --ego FRAME chooses one)"
+    frame = names[0]
+    if sum(_last(name) == _last(frame) for name in names) > 1:
+        return f"several frames may be the ego's, and --ego FRAME chooses one: {name_list(names, _MOST_NAMES)}"
+    chain: list[_Transforms] = []
+    at = frame
+    while True:
+        if at in ambiguous:
+            return f"several frames have the child frame {at!r}"
+        if at not in found or len(chain) > len(found):
+            way = "" if at == frame else f" (the chain from it ends at {at!r})"
+            return f"no transform that changes leads to {frame!r}{way}"
+        chain.append(found[at])
+        if not found[at].static:
+            break
+        at = found[at].parent
+    above = [chain[-1].parent]
+    while above[-1] in found and found[above[-1]].parent not in above:
+        above.append(found[above[-1]].parent)
+    if not {_last(name) for name in above} & set(FIXED_FRAME_NAMES):
+        return f"the chain from {frame!r} ends at {above[-1]!r}, without {' or '.join(FIXED_FRAME_NAMES)}"
+    return EgoRows(chain[-1].topic, frame, _rows(frame, chain, box, option_ahead_m))
+
+
+def within_chain(rows: RecordedPoses, frames: TransformTree, fixed: str, most_ns: int) -> RecordedPoses:
+    """Return the rows without those at the ends for which a transform above is not recorded yet or any more, for up to `most_ns`.
+
+    The transforms of a chain are sent at different rates, so that their recordings begin and end at different times.
+    """
+    if not len(rows):
+        return rows
+    frame = clean_frame_name(rows.frames[0].decode("utf-8", "replace"))
+    t_ns = rows.t_ns
+    placed = t_ns[np.isfinite(frames.frame_poses(fixed, frame, t_ns).place[:, 0])]
+    if not len(placed):
+        return rows
+    first, last = placed.min(), placed.max()
+    kept = np.ones(len(rows), np.bool_)
+    if first - t_ns.min() <= most_ns:
+        kept &= t_ns >= first
+    if t_ns.max() - last <= most_ns:
+        kept &= t_ns <= last
+    return rows.take(kept)
+
+
+def _rows(frame: str, chain: list[_Transforms], box: VehicleBox | None, option_ahead_m: float) -> RecordedPoses:
+    moving = chain[-1]
+    _, last = np.unique(moving.stamp_ns[::-1], return_index=True)  # relays repeat transforms
+    kept = np.sort(len(moving.stamp_ns) - 1 - last) if len(last) > 1 else np.arange(len(moving.stamp_ns))
+    n = len(kept)
+    poses = Poses(*(column[kept] for column in moving.poses))
+    for each in reversed(chain[:-1]):
+        poses = poses.compose(Poses(*(np.repeat(column[-1:], n, axis=0) for column in each.poses)))
+    is_axle = box is not None and bool(at_axle(np.array([frame.encode()]))[0])
+    centre = box.centre if box is not None and is_axle else (option_ahead_m, 0.0, 0.0)
+    placed = poses.compose(Poses(np.tile(centre, (n, 1)), np.tile([0.0, 0.0, 0.0, 1.0], (n, 1))))
+    rows = recorded_poses(
+        (moving.stamp_ns[kept], moving.stamped[kept]), (placed.place, poses.turn), log_ns=moving.log_ns[kept],
+        ids=np.full(n, b"ego"), frames=np.full(n, moving.parent.encode()), classes=np.full(n, ACTOR_CLASSES.index("vehicle"), np.int8),
+    )  # fmt: skip
+    if box is not None:
+        rows.size[:] = box.size
+    return rows
+
+
+def _of_frames(
+    tables: Iterable[tuple[str, tuple[Table, Times]]], static_suffix: str
+) -> tuple[dict[str, _Transforms], set[str]]:
+    """Return child frame -> its transforms, and the child frames with several parents."""
+    parts: dict[str, list[_Transforms]] = {}
+    for topic, (table, log_ns) in tables:
+        items = table.items("transforms")
+        if not items.n:
+            continue
+        stamp_ns, stamped = stamps(items, "header.stamp")
+        places, turns = (
+            vectors(items, "transform.translation"),
+            unit_quaternions(vectors(items, "transform.rotation", "xyzw")),
+        )
+        children, parents = items.column("child_frame_id"), items.column("header.frame_id")
+        for child in np.unique(children).tolist():
+            here = np.flatnonzero(children == child)
+            for parent in np.unique(parents[here]).tolist():
+                rows = here[parents[here] == parent]
+                each = _Transforms(
+                    topic, _name(parent), topic.endswith(static_suffix), stamp_ns[rows], stamped[rows],
+                    log_ns[items.parent[rows]], Poses(places[rows], turns[rows]),
+                )  # fmt: skip
+                parts.setdefault(_name(child), []).append(each)
+    ambiguous = {child for child, of_child in parts.items() if len({each.parent for each in of_child}) > 1}
+    return {child: _all_batches(of_child) for child, of_child in parts.items()}, ambiguous
+
+
+def _all_batches(parts: list[_Transforms]) -> _Transforms:
+    moving = [part for part in parts if not part.static] or parts
+    first = moving[0]
+    return first._replace(
+        stamp_ns=np.concatenate([part.stamp_ns for part in moving]),
+        stamped=np.concatenate([part.stamped for part in moving]),
+        log_ns=np.concatenate([part.log_ns for part in moving]),
+        poses=Poses(*(np.concatenate([part.poses[k] for part in moving]) for k in (0, 1))),
+    )
+
+
+def _last(name: str) -> str:
+    return name.rsplit("/", maxsplit=1)[-1]
+
+
+def _name(recorded: bytes) -> str:
+    return clean_frame_name(recorded.decode("utf-8", "replace"))

@@ -1,0 +1,124 @@
+"""Opens a SQLite file of a bag without trusting it: it is checked before it is read, never written to, and runs no code.
+
+Format: https://www.sqlite.org/fileformat2.html; tables: rosbag2_storage_sqlite3.
+"""
+
+from __future__ import annotations
+
+import sqlite3
+import struct
+from contextlib import contextmanager
+from shlex import quote
+from typing import TYPE_CHECKING, Final
+
+from drivelint.errors import TraceError
+from drivelint.formats.mcap.chunk import MAX_CHUNK_BYTES
+from drivelint.receipts.events import report_searched_path
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+MAGIC: Final = b"SQLite format 3\0"
+COLUMNS: Final = {
+    "topics": {"id", "name", "type", "serialization_format"},
+    "messages": {"topic_id", "timestamp", "data"},
+}
+"""Table -> the columns that are read."""
+DEFINITIONS: Final = "message_definitions"
+_DEFINITION_COLUMNS: Final = {"topic_type", "encoding", "encoded_message_definition"}
+_HEAD_BYTES: Final = 100
+_STEPS: Final = 100_000
+"""SQLite returns to Python after so many of its steps, so that reading can be interrupted."""
+
+
+def is_sqlite(path: Path) -> bool:
+    """Return whether a file begins as SQLite files do. Errors: `OSError`."""
+    with path.open("rb") as file:
+        return file.read(len(MAGIC)) == MAGIC
+
+
+@contextmanager
+def database(path: Path) -> Iterator[sqlite3.Connection]:
+    """Open a file of a bag whose tables have been checked. Errors: `TraceError` if it is damaged, not closed, or no bag."""
+    _refuse_unfinished(path)
+    with reading(path):
+        connection = sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro&immutable=1", uri=True)
+        try:
+            connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MAX_CHUNK_BYTES)
+            connection.set_progress_handler(lambda: 0, _STEPS)
+            connection.execute("PRAGMA trusted_schema = OFF")
+            connection.execute("PRAGMA cell_size_check = ON")
+            _check_tables(path, connection)
+            yield connection
+        finally:
+            connection.close()
+
+
+@contextmanager
+def reading(path: Path) -> Iterator[None]:
+    """Convert errors of SQLite about a file to `TraceError`."""
+    try:
+        yield
+    except (sqlite3.Error, UnicodeError, OverflowError) as error:
+        raise damaged(path, str(error)) from error
+
+
+def damaged(path: Path, problem: str) -> TraceError:
+    """Return the error for a file that cannot be read."""
+    return TraceError(
+        f"{path}: a SQLite file that is damaged or cut off ({' '.join(problem.split())}): copy it again, or repair it with "
+        f"sqlite3 {quote(str(path))} .recover | sqlite3 {quote(str(path.with_name(f'repaired-{path.name}')))}"
+    )
+
+
+def check_pages(path: Path, connection: sqlite3.Connection) -> None:
+    """Raise `TraceError` if the pages of the file contradict each other: rows could be missing without an error."""
+    found = connection.execute("PRAGMA quick_check(1)").fetchone()
+    if found is None or found[0] != "ok":
+        raise damaged(path, "its check failed" if found is None else str(found[0])[:200])
+
+
+def has_definitions(path: Path, connection: sqlite3.Connection) -> bool:
+    """Return whether the file has message definitions. Errors: `TraceError` if their table is not as rosbag2 writes it."""
+    found = connection.execute("SELECT 1 FROM sqlite_master WHERE name = ?", (DEFINITIONS,)).fetchone()
+    if found is not None:
+        _check_table(path, connection, DEFINITIONS, _DEFINITION_COLUMNS)
+    return found is not None
+
+
+def _refuse_unfinished(path: Path) -> None:
+    """Raise `TraceError` for a file that is shorter than it says, or whose last changes are in another file."""
+    with path.open("rb") as file:
+        head = file.read(_HEAD_BYTES)
+    size = path.stat().st_size
+    if len(head) < _HEAD_BYTES:
+        raise damaged(path, f"{size} bytes")
+    (page,), (pages,) = struct.unpack_from(">H", head, 16), struct.unpack_from(">I", head, 28)
+    said = pages * (65536 if page == 1 else page)
+    if size < said:
+        raise damaged(path, f"{size} of {said} bytes")
+    for suffix in ("-wal", "-journal"):
+        beside = path.with_name(path.name + suffix)
+        if report_searched_path(beside).is_file() and beside.stat().st_size:
+            raise TraceError(
+                f"{path}: its recorder did not close it, and {beside.name} has messages that are not in it: close it with "
+                f"sqlite3 {quote(str(path))} 'PRAGMA journal_mode = DELETE'"
+            )
+
+
+def _check_tables(path: Path, connection: sqlite3.Connection) -> None:
+    for table, columns in COLUMNS.items():
+        _check_table(path, connection, table, columns)
+
+
+def _check_table(path: Path, connection: sqlite3.Connection, table: str, columns: set[str]) -> None:
+    """Raise `TraceError` unless the table is stored in the file with these columns: a view, for example, can have endless rows."""
+    found = connection.execute("SELECT type, rootpage FROM sqlite_master WHERE name = ?", (table,)).fetchall()
+    if not found:
+        raise TraceError(f"{path}: a SQLite file without the table {table!r}: no bag of ROS 2: check the path")
+    stored = {name for _, name, _, _, _, _, hidden in connection.execute(f"PRAGMA table_xinfo({table})") if not hidden}
+    if len(found) != 1 or found[0][0] != "table" or not found[0][1] or not columns <= stored:
+        raise TraceError(
+            f"{path}: its table {table!r} is not as rosbag2 writes it: record the log again, or convert it with ros2 bag convert"
+        )
