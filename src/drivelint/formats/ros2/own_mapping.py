@@ -19,6 +19,7 @@ from drivelint.formats.tables.mapping import (
     TimeColumn,
     WordMapping,
     read_toml,
+    refuse_unknown_keys,
     validate,
 )
 
