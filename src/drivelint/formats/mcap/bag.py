@@ -41,7 +41,7 @@ FOXGLOVE_ROLES: Final = {
 def bag_files(path: Path) -> list[Path]:
     """Return the files of a drive in the order of recording.
 
-    Errors: `TraceError` if a bag's `metadata.yaml` cannot be read, its storage is another, or a file is missing, empty or not name_list.
+    Errors: `TraceError` if a bag's `metadata.yaml` cannot be read, its storage is another, or a file is missing, empty or not listed.
     """
     if not path.is_dir():
         return [path]
