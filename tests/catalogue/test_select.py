@@ -122,6 +122,7 @@ def test_a_selector_that_matches_nothing_is_refused_with_the_nearest(
             "'clause:R10,status:draft': each part alone selects some; for any of them, repeat --rules",
         ),
         ("pack,", "no rule, pack or glob matches ''"),
+        ("[" * 60_000, "has 60000 characters: use at most 1000"),
     ],
 )
 def test_what_a_selector_asks_for_must_exist(rules: dict[str, Rule], selector: str, says: str) -> None:

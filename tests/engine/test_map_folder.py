@@ -105,6 +105,7 @@ def test_a_map_that_cannot_be_read_is_passed_over_where_another_is_of_the_place(
     [
         ("name,map\na,b\n", "write the columns log,map"),
         ("log,map\na.mcap,gone.xodr\n", r"maps\.csv:2: there is no map 'gone\.xodr'"),
+        ("log,map\n" + "[" * 60_000 + ",a.xml\n", r"maps\.csv:2: the glob in the column log has 60000 characters"),
     ],
 )
 def test_a_manifest_that_cannot_be_understood(tmp_path: Path, manifest: str, why: str) -> None:

@@ -25,6 +25,7 @@ import msgspec
 
 from drivelint.drive import conditions
 from drivelint.errors import UsageError
+from drivelint.globs import glob_length_problem
 from drivelint.phrases import hint, name_list
 
 if TYPE_CHECKING:
@@ -123,6 +124,8 @@ def _rules_matching_part(rules: Mapping[str, Rule], part: str) -> list[Rule]:
             for rule in _rules_with_property(rules, method, word)
             if rule.status != "deprecated" or word == rule.status
         ]
+    if problem := glob_length_problem(part):
+        raise UsageError(f"the selector of rules {part[:40]!r}... has {problem}")
     found = [rule for rule in rules.values() if part in {"all", rule.pack} or fnmatchcase(rule.id, part)]
     if not found:
         known = [*rules, *(rule.pack for rule in rules.values())]

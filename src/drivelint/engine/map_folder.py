@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 from drivelint.errors import MapError
 from drivelint.formats.map_registry import READERS_BY_ROOT, read_source, root_element_name
+from drivelint.globs import glob_length_problem
 from drivelint.phrases import name_list
 from drivelint.road.geo_reference import is_same_reference, opendrive_geo_reference
 
@@ -73,7 +74,9 @@ class MapFolder:
             if not {"log", "map"} <= set(rows.fieldnames or ()):
                 raise MapError(f"{file}: write the columns log,map: a file name (or a glob) and the map it belongs to")
             found = [(row["log"] or "", row["map"] or "") for row in rows]
-        for n, (_, name) in enumerate(found, 2):
+        for n, (pattern, name) in enumerate(found, 2):
+            if problem := glob_length_problem(pattern):
+                raise MapError(f"{file}:{n}: the glob in the column log has {problem}")
             if name not in self._files:
                 raise MapError(
                     f"{file}:{n}: there is no map {name!r} in {self.folder}; it has {name_list(list(self._files))}"

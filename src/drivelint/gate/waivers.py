@@ -31,13 +31,14 @@ from typing import TYPE_CHECKING, Any, Final
 from drivelint.catalogue.load import load_rules
 from drivelint.errors import UsageError
 from drivelint.gate.match import seconds_since_start
+from drivelint.globs import glob_length_problem
 from drivelint.phrases import hint
 from drivelint.result.gate import Waiver
 from drivelint.settings import settings_table
 from drivelint.toml_text import parse_toml
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
     from drivelint.result.model import Result
@@ -143,9 +144,7 @@ def _parse_waiver(table: Row, file: Path, lines_of_head_and_keys: tuple[int, Map
             raise error_at_key(key, f"unknown key {key!r}; {hint(key, known)}")
     if missing := [key for key in _REQUIRED_KEYS if key not in table]:
         raise error_at_key("", f"{' and '.join(missing)} missing: a waiver needs an owner, a reason and a date")
-    for key in ("rule", "reason", "owner", *_PATTERN_KEYS):
-        if key in table and not (isinstance(table[key], str) and table[key].strip()):
-            raise error_at_key(key, f"{key} = {table[key]!r}: must be a text, and not an empty one")
+    _refuse_wrong_texts(table, error_at_key)
     for key in _TIME_KEYS:
         if key in table and (
             isinstance(table[key], bool) or not isinstance(table[key], int | float) or not isfinite(table[key])
@@ -159,6 +158,15 @@ def _parse_waiver(table: Row, file: Path, lines_of_head_and_keys: tuple[int, Map
         raise error_at_key("expires", f"expires = {table['expires']!r}: must be a day such as 2027-03-31") from error
     words = {key: table[key] for key in ("rule", "reason", "owner", *_PATTERN_KEYS, *_TIME_KEYS) if key in table}
     return Waiver(where=f"{file}:{head}", expires=expires.isoformat(), **words)
+
+
+def _refuse_wrong_texts(table: Row, error_at_key: Callable[[str, str], UsageError]) -> None:
+    for key in ("rule", "reason", "owner", *_PATTERN_KEYS):
+        if key in table and not (isinstance(table[key], str) and table[key].strip()):
+            raise error_at_key(key, f"{key} = {table[key]!r}: must be a text, and not an empty one")
+    for key in ("rule", *_PATTERN_KEYS):
+        if problem := glob_length_problem(table.get(key, "")):
+            raise error_at_key(key, f"{key}: {problem}")
 
 
 def parse_date(value: object) -> date:
