@@ -56,7 +56,7 @@ class MessageSheet(ParquetSheet):
         """Take over a table. `other_names`: fields that are not read, which an error may propose."""
         self._path, self._table = path, table
         self.names = [*table.column_names, *other_names]
-        self.bad_lines, self.zeros_at, self.has_zeros_within = [], None, False
+        self.bad_lines, self.zeros_at, self.has_content_after_zeros = [], None, False
         self.metadata = {}
 
     def load(self, names: Iterable[str]) -> int:  # noqa: ARG002 (all columns are loaded)
