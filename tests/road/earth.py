@@ -52,7 +52,7 @@ def add(con: Any, table: str, row: dict[str, object]) -> None:
 
 def geo_of(environment: MapTables, **log: Any) -> GeoFrame:
     """Return the frame of a drive on the map."""
-    library = SimpleNamespace(find=lambda log: (environment, log), doubts=lambda *_: {})
+    library = SimpleNamespace(find=lambda log: (environment, log), doubts_on_map=lambda *_: {})
     geo = drive_with_map(log_of(states(5.0), **log), library).geo  # type: ignore[arg-type]
     assert geo is not None
     return geo

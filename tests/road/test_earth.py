@@ -111,7 +111,7 @@ def test_a_map_without_positions_says_why(reference: str, offset: str, told: str
     assert row["severity"] == "info"
     assert told in row["message"]
     assert not row_of(environment)["geo_usable"]
-    library = SimpleNamespace(find=lambda log: (environment, log), doubts=lambda *_: {})
+    library = SimpleNamespace(find=lambda log: (environment, log), doubts_on_map=lambda *_: {})
     assert drive_with_map(log_of(states(5.0)), library).geo is None  # type: ignore[arg-type]
     log = log_of(states(5.0), reference=KARLSRUHE)
     assert drive_with_map(log, library).geo == GeoFrame(KARLSRUHE)  # type: ignore[arg-type]

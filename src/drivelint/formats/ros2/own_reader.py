@@ -1,4 +1,7 @@
-"""The trace format ROS 2 with messages of other types, which a mapping with `[[ros]]` makes a table."""
+"""The trace format ROS 2 with messages of other types, which a mapping with `[[ros]]` makes a table.
+
+The mapping states whether positions are those of the box centre, the front bumper or the rear axle.
+"""
 
 from __future__ import annotations
 
