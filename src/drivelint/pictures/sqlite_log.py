@@ -6,7 +6,7 @@ from contextlib import ExitStack
 from typing import TYPE_CHECKING, Self
 
 from drivelint.errors import TraceError
-from drivelint.formats.sqlite_bag.open_database import convert_errors, open_database
+from drivelint.formats.sqlite_bag.database import convert_errors, open_database
 from drivelint.formats.sqlite_bag.reader import SqliteFile
 from drivelint.pictures.frames import (
     FrameError,

@@ -14,14 +14,14 @@ from drivelint.formats.mcap.summary import Summary
 from drivelint.formats.ros2.cdr import Decoder
 from drivelint.formats.ros2.messages import MESSAGE_TYPES
 from drivelint.formats.ros2.types import short_type_name
-from drivelint.formats.sqlite_bag.definitions import candidate_definitions
-from drivelint.formats.sqlite_bag.open_database import (
+from drivelint.formats.sqlite_bag.database import (
     DEFINITIONS_TABLE,
     check_pages,
     damage_error,
     has_definitions,
     open_database,
 )
+from drivelint.formats.sqlite_bag.definitions import candidate_definitions
 
 if TYPE_CHECKING:
     import sqlite3
