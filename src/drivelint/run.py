@@ -122,8 +122,8 @@ def check(
     """Judge every drive by every selected rule.
 
     `unstoppable_rule_handler`: which rules are known to continue after an interrupt, and what to do about another such rule.
-    `on_nothing_judged`: called with the result if no drive could be judged, before the error is raised; an earlier result left in `out` would look like that of this
-    run.
+    `on_nothing_judged`: called with the result if no drive could be judged, before the error is raised; an earlier result left in `out`
+    would look like that of this run.
 
     After an interruption, the result contains the remaining drives as not judged. If no drive was judged before it, the error is
     `NothingJudgedError`, a `KeyboardInterrupt`.

@@ -60,8 +60,8 @@ class UnstoppableRuleHandler(Protocol):
 class RuleLimits:
     """The limits of every rule of a run, and the rules that must not run again.
 
-    `seconds`: CPU seconds per rule and batch, None: no limit. `unstoppable_rule_handler`: handles a rule that has not reacted to an interrupt
-    for another `seconds`; None: the interrupt is repeated until the rule ends.
+    `seconds`: CPU seconds per rule and batch, None: no limit. `unstoppable_rule_handler`: handles a rule that has not reacted to an
+    interrupt for another `seconds`; None: the interrupt is repeated until the rule ends.
     """
 
     def __init__(
