@@ -35,7 +35,7 @@ def decode_readable(
 
     decoded, malformed = decode_without_malformed(log_messages, decode_credible_times)
     for k, why in malformed.items():
-        container.losses.add_message(log_messages[k].offset, str(why), log_messages[k].log_time_ns)
+        container.losses.add_undecodable_message(log_messages[k].offset, str(why), log_messages[k].log_time_ns)
     return decoded, [log_message for k, log_message in enumerate(log_messages) if k not in malformed]
 
 

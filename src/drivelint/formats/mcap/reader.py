@@ -265,7 +265,7 @@ class Container:
         self.counts.begin_chunk()
         while place < len(view):
             opcode, start, stop = self._opcode_and_range_in_chunk(view, place, at, end)
-            self._unpacking_limit.record(where)
+            self._unpacking_limit.count_record(where)
             try:
                 yield from self._message_of_data_record(opcode, view[start:stop], at, end)
             except DamageError as error:
