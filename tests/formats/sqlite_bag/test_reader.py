@@ -187,4 +187,4 @@ def test_data_of_topics_that_are_not_read_are_not_loaded(tmp_path: Path) -> None
             sizes.append(len(message.data))
     assert sizes[0] > 9000
     assert set(sizes[1:]) == {0}
-    assert bags.topics(path)["/lidar"] == "rcl_interfaces/ParameterValue"
+    assert bags.kinds_by_topic(path)["/lidar"] == "rcl_interfaces/ParameterValue"

@@ -200,7 +200,7 @@ def read(probe: Probe) -> Recording:
                     end = log_message.offset + trace_file.LENGTH_FIELD_BYTES + len(log_message.data)
                     losses.add(log_message.offset, end, "a message that cannot be decoded")
                 else:
-                    losses.message(next(times))
+                    losses.bound_by_message(next(times))
             if frames is not None:
                 batches.append(frames)
     if not batches:
