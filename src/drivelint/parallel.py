@@ -36,13 +36,13 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from multiprocessing.connection import Connection
 
-    from drivelint.evaluate.limits import DeafRules, Excess
+    from drivelint.evaluate.limits import Excess, UnstoppableRuleHandler
     from drivelint.receipts.inputs import Inputs, IsOutput
     from drivelint.report.log_notes import LogNote
     from drivelint.result.model import Result
     from drivelint.run import CheckOptions, JudgedLogs
 
-_POLL_S: Final = 0.2
+_CHECK_PERIOD_S: Final = 0.2
 _GRACE_PERIOD_S: Final = 5.0
 """How long a process may take to end by itself before it is killed."""
 
@@ -56,15 +56,15 @@ class WorkerLostError(DriveLintError):
 class _PartOfLogs(NamedTuple):
     """The logs that one process judges. `n_logs`: the number of logs of the whole run.
 
-    `is_output`: needed to record the inputs; None: they are not recorded. `limits_of_deaf_rules`: task -> rule -> exceeded limit, for
-    rules that could not be interrupted in an earlier process.
+    `is_output`: needed to record the inputs; None: they are not recorded. `limits_of_unstoppable_rules`: task -> rule -> exceeded limit,
+    for rules that could not be interrupted in an earlier process.
     """
 
     settings: CheckOptions
     paths: Sequence[Path]
     n_logs: int
     is_output: IsOutput | None
-    limits_of_deaf_rules: dict[str, dict[str, Excess]]
+    limits_of_unstoppable_rules: dict[str, dict[str, Excess]]
 
 
 class _PartOutcome(NamedTuple):
@@ -74,7 +74,7 @@ class _PartOutcome(NamedTuple):
     inputs: Inputs | None
 
 
-class _DeafRule(NamedTuple):
+class _UnstoppableRule(NamedTuple):
     """A rule that continues although it was interrupted."""
 
     task: str
@@ -95,7 +95,7 @@ def check(
     progress: Progress,
     *,
     interruption: Interruption | None = None,
-    deaf_rules: DeafRules | None = None,
+    unstoppable_rule_handler: UnstoppableRuleHandler | None = None,
     on_nothing_judged: Callable[[Result], object] | None = None,
 ) -> Result:
     """Judge every drive as `run.check` does, in at most `jobs` processes; in one if margins are written or a database is kept.
@@ -109,7 +109,7 @@ def check(
         if len(parts := _cut_into_parts(paths, jobs)) > 1:
             joined = _judge_in_workers(settings, paths, parts, progress, interruption or Interruption())
             return run.join_parts(paths, joined, on_nothing_judged)
-    return run.check(settings, progress, interruption, deaf_rules, on_nothing_judged)
+    return run.check(settings, progress, interruption, unstoppable_rule_handler, on_nothing_judged)
 
 
 def _judge_in_workers(
@@ -134,7 +134,7 @@ def _judge_in_workers(
             if interruption.requested:
                 for worker in running.values():
                     worker.interrupt()
-            for pipe in wait(list(running), timeout=_POLL_S):
+            for pipe in wait(list(running), timeout=_CHECK_PERIOD_S):
                 running[pipe].receive_message()  # type: ignore[index]
     finally:
         for worker in workers:
@@ -245,26 +245,26 @@ class _Worker:
             self.ended = message
         elif isinstance(message, BaseException):
             raise message
-        elif isinstance(message, _DeafRule):
+        elif isinstance(message, _UnstoppableRule):
             self._restart_without_rule(message)
         else:
             self._n_done += message.arguments[0] if message.method == "advance" else 0
             self._listener.forward_call(message)
 
-    def _restart_without_rule(self, deaf_rule: _DeafRule) -> None:
+    def _restart_without_rule(self, unstoppable_rule: _UnstoppableRule) -> None:
         """Start the process again without a rule that cannot be interrupted."""
         self.stop()
         self._listener.progress.note(
-            f"rule {deaf_rule.rule_id} cannot be stopped: {plural(len(self._part.paths), 'log')} judged again without it"
+            f"rule {unstoppable_rule.rule_id} cannot be stopped: {plural(len(self._part.paths), 'log')} judged again without it"
         )
         self._listener.progress.advance(-self._n_done)
         self._n_done = 0
-        task, limits_of_deaf_rules = deaf_rule.task, self._part.limits_of_deaf_rules
-        limits_of_deaf_rules = {
-            **limits_of_deaf_rules,
-            task: {**limits_of_deaf_rules.get(task, {}), deaf_rule.rule_id: deaf_rule.excess},
+        task, limits_of_unstoppable_rules = unstoppable_rule.task, self._part.limits_of_unstoppable_rules
+        limits_of_unstoppable_rules = {
+            **limits_of_unstoppable_rules,
+            task: {**limits_of_unstoppable_rules.get(task, {}), unstoppable_rule.rule_id: unstoppable_rule.excess},
         }
-        self._part = self._part._replace(limits_of_deaf_rules=limits_of_deaf_rules)
+        self._part = self._part._replace(limits_of_unstoppable_rules=limits_of_unstoppable_rules)
         self.start()
 
     def stop(self) -> None:
@@ -320,21 +320,23 @@ class _NotesSender(LogNotes):
         self._sender.send(_ProgressCall("add", (note,)))
 
 
-class _DeafRulesOfWorker:
-    """The `DeafRules` of a worker: reports a rule that cannot be interrupted to the parent, and ends the worker."""
+class _UnstoppableRulesOfWorker:
+    """The `UnstoppableRuleHandler` of a worker: reports a rule that cannot be interrupted to the parent, and ends the worker."""
 
-    def __init__(self, limits_of_deaf_rules: Mapping[str, Mapping[str, Excess]], sender: _ProgressSender) -> None:
-        self._limits_of_deaf_rules = limits_of_deaf_rules
+    def __init__(
+        self, limits_of_unstoppable_rules: Mapping[str, Mapping[str, Excess]], sender: _ProgressSender
+    ) -> None:
+        self._limits_of_unstoppable_rules = limits_of_unstoppable_rules
         self._sender = sender
 
     def exceeded_limits(self, task: str) -> Mapping[str, Excess]:
-        """See `DeafRules`."""
-        return self._limits_of_deaf_rules.get(task, {})
+        """See `UnstoppableRuleHandler`."""
+        return self._limits_of_unstoppable_rules.get(task, {})
 
     def restart_without(self, task: str, rule_id: str, excess: Excess) -> NoReturn:
-        """See `DeafRules`."""
+        """See `UnstoppableRuleHandler`."""
         temporary.remove_all()
-        self._sender.send(_DeafRule(task, rule_id, excess))
+        self._sender.send(_UnstoppableRule(task, rule_id, excess))
         os._exit(0)
 
 
@@ -353,7 +355,10 @@ def _run_worker(part: _PartOfLogs, pipe: Connection, parent: int) -> None:
 
 
 def _judge_part(part: _PartOfLogs, sender: _ProgressSender, interruption: Interruption) -> _PartOutcome:
-    notes, deaf = _NotesSender(sender, part.n_logs), _DeafRulesOfWorker(part.limits_of_deaf_rules, sender)
+    notes, handler = (
+        _NotesSender(sender, part.n_logs),
+        _UnstoppableRulesOfWorker(part.limits_of_unstoppable_rules, sender),
+    )
     with nullcontext() if part.is_output is None else recorder.record_inputs(part.is_output, []) as recording:
         run_rules = run.RunRules.from_options(part.settings)
         judged = run.judge_logs(
@@ -364,9 +369,9 @@ def _judge_part(part: _PartOfLogs, sender: _ProgressSender, interruption: Interr
             progress=sender,
             notes=notes,
             interruption=interruption,
-            deaf_rules=deaf,
+            unstoppable_rule_handler=handler,
         )
-    return _PartOutcome(judged, None if recording is None or part.limits_of_deaf_rules else recording.inputs())
+    return _PartOutcome(judged, None if recording is None or part.limits_of_unstoppable_rules else recording.inputs())
 
 
 def _obey_parent(pipe: Connection, interruption: Interruption) -> None:

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from drivelint.catalogue import Rule
     from drivelint.drive.trace import DriveInput
     from drivelint.engine.session import BatchObserver
-    from drivelint.evaluate.limits import DeafRules
+    from drivelint.evaluate.limits import UnstoppableRuleHandler
     from drivelint.report.progress import Progress
 
 CHECKING_STAGE: Final = "checking"
@@ -116,14 +116,14 @@ def check(
     settings: CheckOptions,
     progress: Progress,
     interruption: Interruption | None = None,
-    deaf_rules: DeafRules | None = None,
+    unstoppable_rule_handler: UnstoppableRuleHandler | None = None,
     on_nothing_judged: Callable[[Result], object] | None = None,
 ) -> Result:
     """Judge every drive by every selected rule.
 
-    `deaf_rules`: which rules are known to continue after an interrupt, and what to do about another such rule. `on_nothing_judged`: called
-    with the result if no drive could be judged, before the error is raised; an earlier result left in `out` would look like that of this
-    run.
+    `unstoppable_rule_handler`: which rules are known to continue after an interrupt, and what to do about another such rule.
+    `on_nothing_judged`: called with the result if no drive could be judged, before the error is raised; an earlier result left in `out`
+    would look like that of this run.
 
     After an interruption, the result contains the remaining drives as not judged. If no drive was judged before it, the error is
     `NothingJudgedError`, a `KeyboardInterrupt`.
@@ -143,7 +143,7 @@ def check(
         progress=progress,
         notes=LogNotes(progress, len(paths)),
         interruption=interruption,
-        deaf_rules=deaf_rules,
+        unstoppable_rule_handler=unstoppable_rule_handler,
         library=library,
     )
     return join_parts(paths, [judged], on_nothing_judged)
@@ -158,7 +158,7 @@ def judge_logs(
     progress: Progress,
     notes: LogNotes,
     interruption: Interruption | None = None,
-    deaf_rules: DeafRules | None = None,
+    unstoppable_rule_handler: UnstoppableRuleHandler | None = None,
     library: MapLibrary | None = None,
 ) -> JudgedLogs:
     """Judge logs in one database, in their order; add logs that could not be judged to `refused_logs`.
@@ -193,7 +193,13 @@ def judge_logs(
                     release_memory=memory.release,
                 )
             )
-        limits = ReportingRuleLimits(progress, len(rules), settings.rule_timeout, task="drives", deaf_rules=deaf_rules)
+        limits = ReportingRuleLimits(
+            progress,
+            len(rules),
+            settings.rule_timeout,
+            task="drives",
+            unstoppable_rule_handler=unstoppable_rule_handler,
+        )
         session = JudgingSession(
             con,
             rules,
@@ -207,7 +213,9 @@ def judge_logs(
             errors=None if settings.robustness is False else MeasurementErrors(),
             copies_of_all=settings.robustness is True,
             limits=limits,
-            limits_of_copies=RuleLimits(settings.rule_timeout, task="copies", deaf_rules=deaf_rules),
+            limits_of_copies=RuleLimits(
+                settings.rule_timeout, task="copies", unstoppable_rule_handler=unstoppable_rule_handler
+            ),
         )
         ids: dict[Path, str] = {}
         read = _with_reading_progress(_read_logs(paths, settings, library), len(paths), progress)

@@ -162,9 +162,9 @@ def test_a_rule_that_takes_much_more_after_its_interrupt_is_not_waited_for(
 
     monkeypatch.setattr(computing.ProcessorClock, "seconds", lambda _work: now)
     monkeypatch.setattr(limits, "resident_bytes", lambda: next(bytes_now))
-    monkeypatch.setattr(limits, "_WATCH_PERIOD_S", 0.001)
+    monkeypatch.setattr(limits, "_CHECK_PERIOD_S", 0.001)
     monkeypatch.setattr(limits, "_MEMORY_GRACE_S", 60.0)
-    held_to = limits.RuleLimits(60.0, deaf_rules=cast("limits.DeafRules", Deaf))
+    held_to = limits.RuleLimits(60.0, unstoppable_rule_handler=cast("limits.UnstoppableRuleHandler", Deaf))
     held_to.memory = lambda: 1_000
     with duckdb.connect() as con, held_to.limit_statements(con, "mine.grows", alone=True) as held:
         assert ended.wait(30.0)

@@ -17,7 +17,7 @@ from drivelint.catalogue.header import Conditions, Header
 from drivelint.drive.conditions import CONDITION_VALUES, DRIVE_CONDITION_VALUES
 from drivelint.drive.declared_events import ON_OFF_EVENTS
 from drivelint.formats.osi.metadata import Event
-from drivelint.formats.ros2.messages import MESSAGES
+from drivelint.formats.ros2.messages import MESSAGE_TYPES
 from drivelint.guide import dictionary
 from drivelint.reasons.signals import REMEDIES, SIGNALS
 from drivelint.result.geometry import GEOMETRIES_OF_TABLE
@@ -173,9 +173,9 @@ def test_the_guide_of_traces_has_the_messages_of_ros_that_are_read() -> None:
         .partition("\n\n")[0]
     )
     rows = [[cell.strip() for cell in line.strip("|").split(" | ")] for line in table.splitlines()[2:]]
-    assert [name.strip("`| ") for name, *_ in rows] == list(MESSAGES)
+    assert [name.strip("`| ") for name, *_ in rows] == list(MESSAGE_TYPES)
     for name, topic, role, fields in rows:
-        message = MESSAGES[name.strip("`| ")]
+        message = MESSAGE_TYPES[name.strip("`| ")]
         assert (topic.strip("`"), role) == (message.topic, message.role), name
         told: set[str] = set()
         for part in fields.strip(" |").split("; "):

@@ -16,7 +16,7 @@ from drivelint.drive.lost_time import LOST_TIME_CHECK
 from drivelint.errors import ChangedLogError
 from drivelint.formats.files import identify
 from drivelint.formats.foxglove import messages as foxglove
-from drivelint.formats.mcap.copy import copy_log, has_messages
+from drivelint.formats.mcap.copy import copy_log, is_message_log
 from drivelint.formats.mcap.writer import Sink
 from drivelint.formats.sqlite_bag.database import is_sqlite
 from drivelint.report import summary
@@ -65,7 +65,7 @@ def write_log(file: BinaryIO, drive: AnnotatedDrive) -> None:
     """
     sink = Sink(file)
     log = drive.trace.tables["data_log"].to_pylist()[0]
-    if has_messages(drive.trace.path) and not _is_damaged(drive.trace):
+    if is_message_log(drive.trace.path) and not _is_damaged(drive.trace):
         path, sha256 = drive.trace.path, log["sha256"]
         copy_log(path, sha256, sink)
         if (path.is_dir() or is_sqlite(path)) and identify(path).sha256 != sha256:

@@ -202,7 +202,7 @@ def check(
     )
     interruption = Interruption()
     with name_earlier_result_on_failure(out), working_folder(out, overwrite=overwrite) as work, bar(quiet) as progress:
-        deaf_rules = Restart.if_possible(progress, work)
+        unstoppable_rule_handler = Restart.if_possible(progress, work)
         grown: tuple[str, ...] = ()
 
         def gate_and_write(result: Result) -> Result:
@@ -219,7 +219,12 @@ def check(
                 gate_inputs = GateInputs.from_files(baseline, waivers, settings_file, day, out, confidence=confidence)
                 judged = run_interruptible(
                     lambda: _judge(
-                        settings, jobs, progress, interruption=interruption, deaf_rules=deaf_rules, keep=gate_and_write
+                        settings,
+                        jobs,
+                        progress,
+                        interruption=interruption,
+                        unstoppable_rule_handler=unstoppable_rule_handler,
+                        keep=gate_and_write,
                     ),
                     interruption.request,
                 )
@@ -272,7 +277,7 @@ def _judge(
     progress: Progress,
     *,
     interruption: Interruption,
-    deaf_rules: Restart | None,
+    unstoppable_rule_handler: Restart | None,
     keep: Callable[[Result], Result],
 ) -> Result:
     """Judge the logs in this process, or in several processes."""
@@ -280,11 +285,16 @@ def _judge(
         from drivelint import parallel
 
         return parallel.check(
-            settings, jobs, progress, interruption=interruption, deaf_rules=deaf_rules, on_nothing_judged=keep
+            settings,
+            jobs,
+            progress,
+            interruption=interruption,
+            unstoppable_rule_handler=unstoppable_rule_handler,
+            on_nothing_judged=keep,
         )
     from drivelint import run
 
-    return run.check(settings, progress, interruption, deaf_rules, keep)
+    return run.check(settings, progress, interruption, unstoppable_rule_handler, keep)
 
 
 def _stdout_text(result: Result, format_: options.Format, out: Path | None, *, verbose: bool) -> str:

@@ -11,7 +11,7 @@ from contextlib import contextmanager, suppress
 from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING, Any, Final
 
-from drivelint.cli.restart import DEAF_RULES_VARIABLE
+from drivelint.cli.restart import UNSTOPPABLE_RULES_VARIABLE
 from drivelint.memo import cache_folder
 from drivelint.own_files import written_files
 from drivelint.receipts import store
@@ -81,7 +81,7 @@ class StoredRunOfCheck:
         self._is_output = OutputPathTest(self._out)
         self._recorder: InputRecorder | None = None
         self._key: str | None = None
-        elsewhere = options["keep_db"] or options["evidence"] is not None or DEAF_RULES_VARIABLE in os.environ
+        elsewhere = options["keep_db"] or options["evidence"] is not None or UNSTOPPABLE_RULES_VARIABLE in os.environ
         if (
             options["cache"]
             and not elsewhere

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from drivelint.evaluate.limits import Excess
     from drivelint.report.progress import Progress
 
-DEAF_RULES_VARIABLE: Final = "DRIVELINT_DEAF_RULES"
+UNSTOPPABLE_RULES_VARIABLE: Final = "DRIVELINT_DEAF_RULES"
 """The environment variable that passes the rules that cannot be interrupted to the next process: JSON, task -> rule -> limit."""
 _EXCESS_TEXTS: Final[dict[Excess, str]] = {
     "rule_timeout": "takes longer than --rule-timeout",
@@ -35,7 +35,7 @@ class Restart:
     """
 
     def __init__(self, progress: Progress, work: Path | None) -> None:
-        self._known: dict[str, dict[str, Excess]] = json.loads(os.environ.get(DEAF_RULES_VARIABLE, "{}"))
+        self._known: dict[str, dict[str, Excess]] = json.loads(os.environ.get(UNSTOPPABLE_RULES_VARIABLE, "{}"))
         self._progress = progress
         self._work = work
 
@@ -60,5 +60,7 @@ class Restart:
         self._progress.release_terminal()
         sys.stderr.flush()
         os.execve(  # noqa: S606 - the same command
-            sys.executable, [sys.executable, *sys.orig_argv[1:]], {**os.environ, DEAF_RULES_VARIABLE: json.dumps(known)}
+            sys.executable,
+            [sys.executable, *sys.orig_argv[1:]],
+            {**os.environ, UNSTOPPABLE_RULES_VARIABLE: json.dumps(known)},
         )

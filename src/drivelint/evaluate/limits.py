@@ -1,8 +1,8 @@
 """Limits the computing time and the memory of each rule.
 
 The time is CPU time, so that verdicts do not depend on other programs of the machine. A statement that exceeds its limit is interrupted.
-DuckDB reacts to an interrupt only between two vectors of rows: a function that works on huge values continues. `DeafRules` decides what
-to do about such a deaf rule.
+DuckDB reacts to an interrupt only between two vectors of rows: a function that works on huge values continues.
+`UnstoppableRuleHandler` decides what to do about such an unstoppable rule.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ DEFAULT_TIMEOUT_S: Final = 30.0
 """The default limit of CPU seconds per rule and batch."""
 EXCESSES_BEFORE_REFUSAL: Final = 3
 """A rule that exceeded its limits this many times does not run again; else it would run for each drive of a failed batch."""
-_WATCH_PERIOD_S: Final = 0.1
+_CHECK_PERIOD_S: Final = 0.1
 _MEMORY_GRACE_S: Final = 0.5
 """CPU seconds within which a rule must react to an interrupt because of its memory, unless `_MOST_MEMORY_SHARE` is reached before."""
 _MOST_MEMORY_SHARE: Final = 1.25
@@ -45,11 +45,11 @@ class RunningRule:
         """Locked while the rule is interrupted, because an interrupt after its end would hit the next rule."""
 
 
-class DeafRules(Protocol):
-    """The interface to handle deaf rules: rules that do not react to an interrupt. `task`: whether drives or copies are judged."""
+class UnstoppableRuleHandler(Protocol):
+    """The interface to handle unstoppable rules: rules that do not react to an interrupt. `task`: whether drives or copies are judged."""
 
     def exceeded_limits(self, task: str) -> Mapping[str, Excess]:
-        """Return rule id -> exceeded limit, for the deaf rules of a task. They must not run."""
+        """Return rule id -> exceeded limit, for the unstoppable rules of a task. They must not run."""
         ...
 
     def restart_without(self, task: str, rule_id: str, excess: Excess) -> NoReturn:
@@ -60,8 +60,8 @@ class DeafRules(Protocol):
 class RuleLimits:
     """The limits of every rule of a run, and the rules that must not run again.
 
-    `seconds`: CPU seconds per rule and batch, None: no limit. `deaf_rules`: handles a rule that has not reacted to an interrupt for
-    another `seconds`; None: the interrupt is repeated until the rule ends.
+    `seconds`: CPU seconds per rule and batch, None: no limit. `unstoppable_rule_handler`: handles a rule that has not reacted to an
+    interrupt for another `seconds`; None: the interrupt is repeated until the rule ends.
     """
 
     def __init__(
@@ -69,7 +69,7 @@ class RuleLimits:
         seconds: float | None = DEFAULT_TIMEOUT_S,
         *,
         task: str = "drives",
-        deaf_rules: DeafRules | None = None,
+        unstoppable_rule_handler: UnstoppableRuleHandler | None = None,
     ) -> None:
         self.seconds = seconds
         self.batches = 1.0
@@ -77,7 +77,7 @@ class RuleLimits:
         self.memory: Callable[[], int | None] = lambda: None
         """Returns by how many bytes the process may grow while a rule runs alone; None: no limit."""
         self._task = task
-        self._deaf = deaf_rules
+        self._unstoppable_rule_handler = unstoppable_rule_handler
         self._lost: dict[str, Excess] = {}
         self._excesses: Counter[str] = Counter()
         self.forget_excesses()
@@ -92,8 +92,12 @@ class RuleLimits:
         return self._lost.get(rule_id)
 
     def forget_excesses(self) -> None:
-        """Allow every rule to run again, except the deaf ones."""
-        self._lost = {} if self._deaf is None else dict(self._deaf.exceeded_limits(self._task))
+        """Allow every rule to run again, except the unstoppable ones."""
+        self._lost = (
+            {}
+            if self._unstoppable_rule_handler is None
+            else dict(self._unstoppable_rule_handler.exceeded_limits(self._task))
+        )
         self._excesses.clear()
 
     @contextmanager
@@ -126,7 +130,7 @@ class RuleLimits:
         work, before = ProcessorClock(thread), resident_bytes()
         patience = 0.0
         most: int | None = None  # the memory of the process above which the rule gets no more time to react
-        while not rule_run.end_event.wait(min(_WATCH_PERIOD_S, seconds)):
+        while not rule_run.end_event.wait(min(_CHECK_PERIOD_S, seconds)):
             now, resident = work.seconds(), resident_bytes()
             excess = rule_run.excess
             if excess is None:
@@ -148,5 +152,5 @@ class RuleLimits:
                 rule_run.excess = excess
                 report_not_repeatable(f"rule {rule_id} exceeded its limits")
                 con.interrupt()
-                if now >= patience and self._deaf is not None:
-                    self._deaf.restart_without(self._task, rule_id, excess)
+                if now >= patience and self._unstoppable_rule_handler is not None:
+                    self._unstoppable_rule_handler.restart_without(self._task, rule_id, excess)

@@ -29,7 +29,7 @@ the slowest readers for real files."""
 BASE_MEMORY_BYTES: Final = 2 << 30
 MEMORY_BYTES_PER_FILE_BYTE: Final = 64
 """The limit of memory in bytes is `BASE_MEMORY_BYTES` plus this per byte of the file."""
-_LOOK_INTERVAL_S: Final = 0.1
+_CHECK_PERIOD_S: Final = 0.1
 _PACKAGE: Final = Path(__file__).parents[1]
 
 
@@ -67,7 +67,7 @@ class _ReadingWatch:
         _raise_pending_interrupt()
 
     def _watch_until_end(self) -> None:
-        while not self._over.wait(_LOOK_INTERVAL_S):
+        while not self._over.wait(_CHECK_PERIOD_S):
             if self._work.seconds() > self.seconds:
                 excess = f"more than {self.seconds:.0f} s of computing"
             elif resident_bytes() - self._before > self.bytes:

@@ -100,9 +100,9 @@ def _read_unchanged_log(probe: Probe, before: list[tuple[str, int, int]]) -> Tra
             f"{path}: an Arrow table is read only as part of a log of Argoverse 2 or 123D: give the folder of the log"
         )
     if probe.head.startswith(b"#ROSBAG V"):
-        from drivelint.formats.mcap.bag import conversion
+        from drivelint.formats.mcap.bag import conversion_command
 
-        raise TraceError(f"{path}: a ROS 1 bag: convert it with {conversion(path)}, and give that")
+        raise TraceError(f"{path}: a ROS 1 bag: convert it with {conversion_command(path)}, and give that")
     raise TraceError(
         f"{path}: no reader for this file, which begins with {probe.head[:16]!r}: give MCAP, a bag of ROS 2, OSI, Parquet, CSV, "
         "SUMO's floating car data, a CommonRoad scenario, a ScenarioNet pickle, or the folder of a log of Argoverse 2 or 123D"

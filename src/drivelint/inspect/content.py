@@ -47,8 +47,10 @@ _OSI_ROLES: Final = {(name, "protobuf"): "ground truth" for name in FIELD_TREES}
 _ROLES_BY_FAMILY: Final[dict[str, dict[tuple[str, str], str]]] = {
     "osi": _OSI_ROLES,
     "none": _OSI_ROLES,
-    "ros2": {(name, "cdr"): role for name, role in bag.ROS_ROLES.items()},
-    "foxglove": {(name, kind): role for name, role in bag.FOXGLOVE_ROLES.items() for kind in ("protobuf", "json")},
+    "ros2": {(name, "cdr"): role for name, role in bag.ROS_ROLE_BY_SCHEMA.items()},
+    "foxglove": {
+        (name, kind): role for name, role in bag.FOXGLOVE_ROLE_BY_SCHEMA.items() for kind in ("protobuf", "json")
+    },
 }
 """Message family -> (schema, encoding) -> how drivelint reads these messages."""
 
@@ -57,7 +59,7 @@ def size_bytes(path: Path) -> int:
     """Return the size in bytes of a file, or of all files of a folder that is read as one drive."""
     files = drive_files(path)
     if is_bag(path):
-        files = [file for file in path.iterdir() if file.suffix.lower() in bag.STORAGE_SUFFIXES.values()]
+        files = [file for file in path.iterdir() if file.suffix.lower() in bag.SUFFIX_BY_STORAGE.values()]
     return sum(file.stat().st_size for file in files if file.is_file())
 
 
@@ -205,7 +207,7 @@ def _channels(path: Path, mapping: str | None) -> list[Channel]:
 
 def _mapped_topics(mapping: str | None) -> set[str]:
     """Return the topics that a mapping of messages reads; none for another mapping."""
-    if mapping is None or not own_mapping.is_for_messages(mapping):
+    if mapping is None or not own_mapping.is_message_mapping(mapping):
         return set()
     try:
         return {each.topic for each in own_mapping.load(Path(mapping)).ros}

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Final, Self
 import numpy as np
 
 from drivelint.errors import TraceError
-from drivelint.formats.mcap.chunk import ChunkError, chunk_head, chunk_records
-from drivelint.formats.mcap.counts import MESSAGE_INDEX_HEAD
+from drivelint.formats.mcap.chunk import ChunkError, chunk_records, parse_chunk
+from drivelint.formats.mcap.counts import MESSAGE_INDEX_HEADER
 from drivelint.formats.mcap.summary import Summary, read_index, read_summary
 from drivelint.pictures.frames import (
     FrameError,
@@ -62,7 +62,7 @@ class McapFrameSource:
         for path in files:
             file = self._stack.enter_context(path.open("rb"))
             self._views.append(memoryview(mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)))
-            self._summaries.append(read_summary(self._views[-1], unprotected=True))
+            self._summaries.append(read_summary(self._views[-1], may_lack_crc=True))
         self._chunk = lru_cache(maxsize=_MOST_CACHED_CHUNKS)(self._unpacked_chunk)
         self._index = lru_cache(maxsize=4096)(self._message_index)
 
@@ -121,13 +121,13 @@ class McapFrameSource:
             return []
         try:
             _, length = _RECORD_HEAD.unpack_from(view, at)
-            number, n_bytes = MESSAGE_INDEX_HEAD.unpack_from(view, at + _RECORD_HEAD.size)
+            number, n_bytes = MESSAGE_INDEX_HEADER.unpack_from(view, at + _RECORD_HEAD.size)
         except struct.error as error:
             raise FrameError("a damaged index of messages") from error
-        start = at + _RECORD_HEAD.size + MESSAGE_INDEX_HEAD.size
+        start = at + _RECORD_HEAD.size + MESSAGE_INDEX_HEADER.size
         if (
             number != channel
-            or n_bytes != length - MESSAGE_INDEX_HEAD.size
+            or n_bytes != length - MESSAGE_INDEX_HEADER.size
             or n_bytes % 16
             or start + n_bytes > len(view)
         ):
@@ -141,7 +141,7 @@ class McapFrameSource:
         try:
             _, length = _RECORD_HEAD.unpack_from(view, chunk)
             body = view[chunk + _RECORD_HEAD.size : chunk + _RECORD_HEAD.size + length]
-            return chunk_records(chunk_head(body), f"byte {chunk}")
+            return chunk_records(parse_chunk(body), f"byte {chunk}")
         except (struct.error, ChunkError, TraceError) as error:
             raise FrameError(str(error)) from error
 

@@ -6,7 +6,7 @@ from contextlib import ExitStack
 from typing import TYPE_CHECKING, Self
 
 from drivelint.errors import TraceError
-from drivelint.formats.sqlite_bag.database import database, reading
+from drivelint.formats.sqlite_bag.database import convert_errors, open_database
 from drivelint.formats.sqlite_bag.reader import SqliteFile
 from drivelint.pictures.frames import (
     FrameError,
@@ -50,7 +50,7 @@ class SqliteFrameSource:
         self._paths = list(files)
         try:
             self._indexes = [SqliteFile(path).index() for path in files]
-            self._open: list[sqlite3.Connection] = [self._stack.enter_context(database(path)) for path in files]
+            self._open: list[sqlite3.Connection] = [self._stack.enter_context(open_database(path)) for path in files]
         except TraceError as error:  # it was readable when the drive was judged
             raise OSError(str(error)) from error
 
@@ -71,13 +71,13 @@ class SqliteFrameSource:
                 "SELECT messages.rowid, timestamp FROM messages JOIN topics ON topics.id = topic_id "
                 "WHERE name = ? AND timestamp BETWEEN ? AND ?"
             )
-            for row, t_ns in self._rows(no, query, topic, since_ns, until_ns):
+            for row, t_ns in self._query_rows(no, query, topic, since_ns, until_ns):
                 places.append(FramePlace(int(t_ns), no, number, 0, int(row)))
         return sorted(places)
 
     def frame(self, place: FramePlace) -> Frame:
         """Return the frame at a place."""
-        rows = self._rows(place.file, "SELECT data FROM messages WHERE rowid = ?", place.at)
+        rows = self._query_rows(place.file, "SELECT data FROM messages WHERE rowid = ?", place.at)
         if not rows or not isinstance(rows[0][0], bytes):
             raise FrameError(f"row {place.at} of messages, which has no data")
         index = self._indexes[place.file]
@@ -97,9 +97,9 @@ class SqliteFrameSource:
 
         return video_image(self, topic, place)
 
-    def _rows(self, file: int, query: str, *values: str | int) -> list[tuple[int | bytes, ...]]:
+    def _query_rows(self, file: int, query: str, *values: str | int) -> list[tuple[int | bytes, ...]]:
         try:
-            with reading(self._paths[file]):
+            with convert_errors(self._paths[file]):
                 return self._open[file].execute(query, values).fetchall()
         except TraceError as error:
             raise FrameError(str(error)) from error

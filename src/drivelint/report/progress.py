@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 TELL_EVERY_S: Final = 60.0
-_CHECK_EVERY_S: Final = 1.0
+_CHECK_PERIOD_S: Final = 1.0
 _LEAST_DONE_SHARE: Final = 0.1
 """The remaining time is estimated after this share of the work."""
 _RESUMED_WITHIN_S: Final = 0.5
@@ -113,7 +113,7 @@ def note_printer() -> Iterator[NotePrinter]:
     printer, over = NotePrinter(), Event()
 
     def tell() -> None:
-        while not over.wait(_CHECK_EVERY_S):
+        while not over.wait(_CHECK_PERIOD_S):
             printer.print_progress_if_due()
 
     teller = Thread(target=tell, daemon=True, name="tells how far it is")

@@ -10,7 +10,7 @@ from mcap.records import Schema
 
 import drivelint
 from drivelint.formats.mcap.copy import copy_log, copy_original
-from drivelint.formats.mcap.original import Original
+from drivelint.formats.mcap.original import OriginalFile
 from drivelint.formats.mcap.writer import Sink
 from tests.annotate.files import KINDS, log, seeking, streaming, verify
 from tests.pictures.camera_bag import write_bag
@@ -34,10 +34,10 @@ def one_log(path: Path, out: Path) -> Path:
 def other_numbers(path: Path) -> Path:
     """Rewrite a log so that its topics and schema have other numbers, some of which are those of other topics in another part."""
     out = path.with_name(f"turned-{path.name}")
-    with out.open("wb") as file, Original(path) as original:
+    with out.open("wb") as file, OriginalFile(path) as original:
         sink = Sink(file)
         sink.begin("another recorder")
-        sink.announce_schema(Schema(1, b"", "jsonschema", "some.Other"))
+        sink.write_schema(Schema(1, b"", "jsonschema", "some.Other"))
         for channel in reversed(list(original.channels.values())):
             sink.add_channel(f"{channel.topic}/x", "json", Schema(0, b"{}", "jsonschema", "some.Type"))
         copy_original(original, sink)
@@ -65,7 +65,7 @@ def test_one_topic_of_all_parts_is_one_channel(tmp_path: Path) -> None:
     parts = [log(tmp_path / f"part_{n}.mcap") for n in range(2)]
     parts[1] = other_numbers(parts[1])
     out = one_log(bag(tmp_path, parts), tmp_path / "out")
-    with Original(out) as copied:
+    with OriginalFile(out) as copied:
         topics = [
             (channel.topic, tuple(channel.metadata.items()), channel.schema_id) for channel in copied.channels.values()
         ]

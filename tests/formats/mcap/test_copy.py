@@ -15,7 +15,7 @@ from mcap.records import Channel, Schema
 
 from drivelint.errors import DriveLintError, TraceError
 from drivelint.formats.mcap.copy import copy_original
-from drivelint.formats.mcap.original import Original
+from drivelint.formats.mcap.original import OriginalFile
 from drivelint.formats.mcap.writer import Sink
 from tests.annotate import files
 from tests.annotate.files import KINDS, MAGIC, log, records, seeking, streaming, verify
@@ -30,7 +30,7 @@ OURS = "/ours"
 def annotated(path: Path, *, n: int = 5, prepare: Any = None) -> Path:
     """Copy a log and add `n` messages of our own, one per 7 ms from 0 on."""
     out = path.with_suffix(".annotated.mcap")
-    with out.open("wb") as file, Original(path, hashlib.sha256(path.read_bytes()).hexdigest()) as original:
+    with out.open("wb") as file, OriginalFile(path, hashlib.sha256(path.read_bytes()).hexdigest()) as original:
         sink = Sink(file)
         copy_original(original, sink)
         if prepare:
@@ -238,7 +238,7 @@ def test_a_schema_that_the_log_has_is_used_again(tmp_path: Path) -> None:
 def test_a_log_that_changed_meanwhile_is_refused(tmp_path: Path) -> None:
     path = log(tmp_path / "log.mcap")
     changed = pytest.raises(TraceError, match="changed while it was judged")
-    with (tmp_path / "out").open("wb") as file, Original(path, "0" * 64) as original, changed:
+    with (tmp_path / "out").open("wb") as file, OriginalFile(path, "0" * 64) as original, changed:
         copy_original(original, Sink(file))
 
 
@@ -246,7 +246,7 @@ def test_a_log_that_was_cut_meanwhile_is_refused(tmp_path: Path) -> None:
     path = log(tmp_path / "log.mcap")
     path.write_bytes(path.read_bytes()[:-200])
     with pytest.raises(TraceError, match=r"changed or is damaged at byte \d+"):
-        Original(path, "")
+        OriginalFile(path, "")
 
 
 def test_unknown_records_are_copied(tmp_path: Path) -> None:

@@ -108,7 +108,7 @@ def test_a_chunk_of_zeros_is_no_chunk_of_empty_records(tmp_path: Path) -> None:
 def test_more_records_than_a_file_of_its_size_can_have_are_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(chunk, "FREE_RECORDS", 1_000)
+    monkeypatch.setattr(chunk, "BASE_RECORDS", 1_000)
     path = tmp_path / "many.mcap"
     message = record(5, struct.pack("<HIQQ", 1, 0, 0, 0))
     path.write_bytes(chunks_of(message * 900, 1))
@@ -121,7 +121,7 @@ def test_more_records_than_a_file_of_its_size_can_have_are_refused(
 def test_chunks_that_together_grow_too_much_are_refused_before_they_are_unpacked(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(chunk, "FREE_BYTES", 100_000)
+    monkeypatch.setattr(chunk, "BASE_UNPACKED_BYTES", 100_000)
     path = tmp_path / "grows.mcap"
     empty = record(0x80, bytes(50_000))
     path.write_bytes(chunks_of(empty, 1))

@@ -8,7 +8,7 @@ import pytest
 from mcap.writer import CompressionType, Writer
 
 from drivelint.errors import TraceError
-from drivelint.formats.mcap.silent import silent_topics
+from drivelint.formats.mcap.silent import silent_topics_text
 from drivelint.inspect.content import file_content
 from tests.formats.logs import read
 
@@ -67,9 +67,9 @@ def test_of_a_damaged_file_it_is_what_is_left(tmp_path: Path) -> None:
     path = write(tmp_path / "a.mcap", "osi3.GroundTruth", "/truth", other=True, chunks=False)
     whole = path.read_bytes()
     path.write_bytes(whole[: whole.rindex(b"{}") - 5])
-    assert silent_topics([path], "osi3.GroundTruth".__eq__) == "topic '/truth' has no message that is left"
+    assert silent_topics_text([path], "osi3.GroundTruth".__eq__) == "topic '/truth' has no message that is left"
 
 
 def test_topics_with_messages_are_not_named(tmp_path: Path) -> None:
     path = write(tmp_path / "a.mcap", "osi3.GroundTruth", "/truth", other=True)
-    assert not silent_topics([path], "text".__eq__)
+    assert not silent_topics_text([path], "text".__eq__)

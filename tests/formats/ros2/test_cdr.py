@@ -215,15 +215,15 @@ def test_a_changed_byte_is_read_or_named(place: int, value: int) -> None:
 )
 def test_definitions_that_cannot_be_used(text: str, message: str) -> None:
     with pytest.raises(TraceError, match=message):
-        ros_types.parse(LOG, "p/msg/Top", text.encode())
+        ros_types.parse_definition(LOG, "p/msg/Top", text.encode())
     with pytest.raises(TraceError, match="is not text"):
-        ros_types.parse(LOG, "p/msg/Top", b"\xff\xfe")
+        ros_types.parse_definition(LOG, "p/msg/Top", b"\xff\xfe")
 
 
 def test_what_definitions_may_hold() -> None:
     text = '# comment\nuint8 A=1\nstring NAME="a = b # c"\nstring<=10 name "x"\nfloat64[<=3] d\nHeader header\ntime t\nuint8[8388608] two'
     body = f"{text}\n{'=' * 80}\nMSG: std_msgs/Header\nstring frame_id"
-    members = ros_types.parse(LOG, "p/msg/Top", body.encode())["p/Top"]
+    members = ros_types.parse_definition(LOG, "p/msg/Top", body.encode())["p/Top"]
     assert [(each.name, each.kind, each.count) for each in members] == [
         ("name", "string", None), ("d", "float64", -1), ("header", "std_msgs/Header", None), ("t", "time", None), ("two", "uint8", 8388608),
     ]  # fmt: skip

@@ -12,8 +12,8 @@ from drivelint.drive.trace import IngestOptions
 from drivelint.errors import TraceError
 from drivelint.formats import read_trace
 from drivelint.formats.mcap import bag as bags
-from drivelint.formats.ros2.messages import MESSAGES
-from drivelint.formats.sqlite_bag.definitions import candidates
+from drivelint.formats.ros2.messages import MESSAGE_TYPES
+from drivelint.formats.sqlite_bag.definitions import candidate_definitions
 from drivelint.formats.sqlite_bag.reader import SqliteFile
 from drivelint.inspect.content import file_content, size_bytes
 from drivelint.result.load import load_result
@@ -164,14 +164,14 @@ def test_lights_without_a_known_definition_are_reported(tmp_path: Path) -> None:
     assert "no message definitions in the log" in unread[0]["message"]
 
 
-@pytest.mark.parametrize("kind", [*MESSAGES, "sensor_msgs/Image", "sensor_msgs/CompressedImage"])
+@pytest.mark.parametrize("kind", [*MESSAGE_TYPES, "sensor_msgs/Image", "sensor_msgs/CompressedImage"])
 def test_known_definitions_are_those_of_ros_in_every_distribution(kind: str) -> None:
     typesys = pytest.importorskip("rosbags.typesys", reason="rosbags is not installed: pip install rosbags")
     for name in ("FOXY", "GALACTIC", "HUMBLE", "IRON", "JAZZY"):
         store = typesys.get_typestore(typesys.Stores[f"ROS2_{name}"])
         full = kind.replace("/", "/msg/")
         if full in store.fielddefs:
-            for text in candidates(kind):
+            for text in candidate_definitions(kind):
                 found = typesys.get_types_from_msg(text, full)
                 assert {each: store.fielddefs[each][1] for each in found} == {each: found[each][1] for each in found}
 
@@ -183,8 +183,8 @@ def test_data_of_topics_that_are_not_read_are_not_loaded(tmp_path: Path) -> None
     sizes = []
     for message in file.messages():
         if message.channel.topic == "/lidar":
-            file.counts.unused.add(message.channel.id)
+            file.counts.unread_channels.add(message.channel.id)
             sizes.append(len(message.data))
     assert sizes[0] > 9000
     assert set(sizes[1:]) == {0}
-    assert bags.topics(path)["/lidar"] == "rcl_interfaces/ParameterValue"
+    assert bags.kinds_by_topic(path)["/lidar"] == "rcl_interfaces/ParameterValue"

@@ -19,7 +19,7 @@ ANSWER_S = 30.0
 """Seconds in which a scheduler must answer."""
 WORKERLESS_S = 120.0
 """Seconds for which an audit waits for a worker if the cluster has none."""
-_POLL_S: Final = 5.0
+_CHECK_PERIOD_S: Final = 5.0
 """Seconds between checks whether the scheduler and workers are still there."""
 _END_STATUSES: Final = frozenset({"finished", "error"})
 
@@ -62,7 +62,9 @@ class DaskCluster:
         """See `Executor.wait`."""
         while self._running:
             try:
-                ended = distributed.wait(list(self._running), timeout=_POLL_S, return_when="FIRST_COMPLETED").done
+                ended = distributed.wait(
+                    list(self._running), timeout=_CHECK_PERIOD_S, return_when="FIRST_COMPLETED"
+                ).done
             except TimeoutError:
                 ended = set()
             except CancelledError as error:  # our message replaces the original text, which lists all tasks
@@ -101,7 +103,7 @@ class DaskCluster:
 
     def _require_workers(self) -> None:
         try:
-            workers = self._client.nthreads(callback_timeout=_POLL_S)
+            workers = self._client.nthreads(callback_timeout=_CHECK_PERIOD_S)
         except OSError:  # Dask itself detects a lost connection, and then cancels the tasks
             return
         now = time.monotonic()

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 TASKS_PER_WORKER: Final = 500
 """A worker is replaced after this many tasks, so that leaks in libraries cannot accumulate."""
-_POLL_S: Final = 0.1
+_CHECK_PERIOD_S: Final = 0.1
 _BEGUN_MESSAGE: Final = "begun"
 """The message of a worker that has opened its database. Its computing time counts from then on."""
 
@@ -60,7 +60,7 @@ class LocalPool:
     def wait(self) -> list[TaskOutcome]:
         """See `Executor.wait`."""
         while busy := [worker for worker in self._workers if worker.task is not None]:
-            heard = wait([worker.pipe for worker in busy], timeout=_POLL_S)
+            heard = wait([worker.pipe for worker in busy], timeout=_CHECK_PERIOD_S)
             found = [
                 worker.receive_message() if worker.pipe in heard else worker.kill_if_over_limit() for worker in busy
             ]

@@ -14,7 +14,7 @@ from drivelint.formats.mcap import bag
 from drivelint.formats.mcap.reader import message_batches
 from drivelint.formats.mcap.storage import recorded_file
 from drivelint.formats.ros2 import cdr
-from drivelint.formats.ros2.messages import HEADER
+from drivelint.formats.ros2.messages import HEADER_FIELDS
 from drivelint.formats.ros2.objects import stamps
 from drivelint.formats.ros2.types import short_type_name
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 BOXES_MESSAGE_TYPE: Final = "vision_msgs/Detection2DArray"
 _FIELD_TREE: Final[FieldTree] = {
-    "header": HEADER,
+    "header": HEADER_FIELDS,
     "detections": {"bbox": {"size_x": None, "size_y": None}, "id": None, "tracking_id": None},
 }
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from drivelint.drive.trace import QualityFinding
 from drivelint.errors import TraceError
-from drivelint.formats.ros2.recorded_poses import RecordedPoses, distinct, join_batches
+from drivelint.formats.ros2.recorded_poses import RecordedPoses, distinct_values, join_batches
 from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ def with_states_between_updates(
 
     `deletions`: times, and the ids that are deleted (None: all). A deletion does not affect updates at the same time or later.
     """
-    unique, actor = distinct(rows.ids)
+    unique, actor = distinct_values(rows.ids)
     number = {name: i for i, name in enumerate(unique)}
     whom = np.array([-1 if name is None else number.get(name, len(unique)) for name in deletions[1]], np.int32)
     new = np.r_[True, rows.t_ns[1:] != rows.t_ns[:-1]]

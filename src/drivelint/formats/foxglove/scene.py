@@ -29,10 +29,10 @@ from drivelint.formats.foxglove.decode import (
 )
 from drivelint.formats.foxglove.entity_lifetime import with_states_between_updates
 from drivelint.formats.mcap import bag
-from drivelint.formats.mcap.losses import times_of_parts
+from drivelint.formats.mcap.losses import lost_times_of_parts
 from drivelint.formats.mcap.malformed import decode_readable
 from drivelint.formats.mcap.reader import message_batches
-from drivelint.formats.mcap.silent import silent_topics
+from drivelint.formats.mcap.silent import silent_topics_text
 from drivelint.formats.mcap.storage import recorded_file
 from drivelint.formats.mcap.unread import UnreadTopics
 from drivelint.formats.protobuf.descriptors import list_items_and_row_indices, struct_field
@@ -40,9 +40,9 @@ from drivelint.formats.ros2.objects import class_code
 from drivelint.formats.ros2.recorded_poses import (
     RecordedPoses,
     choose_clock,
-    distinct,
+    distinct_values,
+    frame_times_and_start,
     join_batches,
-    message_times,
     recorded_poses,
     states_in_fixed_frame,
 )
@@ -99,10 +99,10 @@ def read(path: Path, topic: str | None) -> Recording:
                 transforms.append((inner, log_ns[parent]))
         findings += container.findings
         parts.append(container)
-    findings += bag.missing_messages(path, parts, FIELD_TREES.__contains__)
+    findings += bag.missing_message_findings(path, parts, FIELD_TREES.__contains__)
     name = _choose_scene_topic(path, scenes, topic, unread)
     recording = _recording(path, name, scenes[name], transforms, [*findings, *unread.findings()])
-    recording.lost_times += times_of_parts([(part.path, part.losses) for part in parts])
+    recording.lost_times += lost_times_of_parts([(part.path, part.losses) for part in parts])
     return recording
 
 
@@ -122,10 +122,10 @@ def _choose_scene_topic(path: Path, scenes: dict[str, _TopicContent], topic: str
         if topic not in scenes:
             raise TraceError(f"{path}: no scene on topic {topic!r}: {SCENE} is on {name_list(names) or 'none'}")
         return topic
-    unread.refuse(path, {SCENE}, names)
+    unread.refuse_kinds(path, {SCENE}, names)
     if len(names) != 1:
         several = f"on {len(names)} topics ({', '.join(names)}): choose one with --topic"
-        silent = "" if names else silent_topics(bag.bag_files(path), SCENE.__eq__)
+        silent = "" if names else silent_topics_text(bag.bag_files(path), SCENE.__eq__)
         raise TraceError(f"{path}: {SCENE} {several if names else 'in none of its messages'}{silent and f': {silent}'}")
     return names[0]
 
@@ -210,14 +210,14 @@ def _recording(
     own_times = choose_clock({topic: rows}, findings)
     frames = _transform_tree(transforms, own_times=own_times)
     rows = with_states_between_updates(rows, _deletions(scene, rows, own_times=own_times), findings, topic)
-    fixed = fixed_frame(frames, sorted(distinct(rows.frames)[0]))
+    fixed = fixed_frame(frames, sorted(distinct_values(rows.frames)[0]))
     states, found = states_in_fixed_frame(rows, frames, fixed, topic)
     findings += found
     if not np.isfinite(states.numbers["x_m"]).any():
         raise TraceError(f"{path}: nothing can be placed: {found[-1].message if found else 'no positions'}")
     recording = Recording("foxglove-mcap", states, findings=findings, lost_times=lost_times)
     recording.notes = [f"positions are in the frame {fixed!r}"]
-    recording.frame_times, recording.utc_start_ns = message_times([rows])
+    recording.frame_times, recording.utc_start_ns = frame_times_and_start([rows])
     return recording
 
 

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 from drivelint.drive.trace import QualityFinding
 from drivelint.errors import TraceError
-from drivelint.formats.mcap.bag_folder import METADATA_FILE, METADATA_ROOT, is_bag
+from drivelint.formats.mcap.bag_folder import METADATA_FILE, METADATA_ROOT_KEY, is_bag
 from drivelint.formats.mcap.storage import file_index, recorded_file
-from drivelint.formats.ros2.messages import DETECTIONS, MESSAGES, ODOMETRY_ROLE, ROAD_USERS, TRANSFORMS
+from drivelint.formats.ros2.messages import DETECTIONS_ROLE, MESSAGE_TYPES, ODOMETRY_ROLE, ROAD_USERS_ROLE, TRANSFORMS
 from drivelint.formats.ros2.types import message_kind
 from drivelint.phrases import name_list
 from drivelint.receipts.events import report_searched_path
@@ -22,16 +22,16 @@ if TYPE_CHECKING:
     from drivelint.formats.mcap.reader import Container
     from drivelint.formats.mcap.summary import Summary
 
-PACKED_SUFFIX: Final = ".zstd"
+COMPRESSED_SUFFIX: Final = ".zstd"
 """The end of the names of a bag's files that `ros2 bag record --compression-mode file` has compressed."""
-_MAX_TOPICS: Final = 8
+_MOST_LISTED_TOPICS: Final = 8
 """An error lists at most this many topics, and counts the others."""
-STORAGE_SUFFIXES: Final = {"mcap": ".mcap", "sqlite3": ".db3"}
+SUFFIX_BY_STORAGE: Final = {"mcap": ".mcap", "sqlite3": ".db3"}
 """Storage of a bag that is read -> the suffix of its files."""
 OSI_SCHEMAS: Final = frozenset({"osi3.GroundTruth", "osi3.SensorView"})
-ROS_ROLES: Final = {name: message.role for name, message in MESSAGES.items()}
-FOXGLOVE_ROLES: Final = {
-    "foxglove.SceneUpdate": ROAD_USERS,
+ROS_ROLE_BY_SCHEMA: Final = {name: message.role for name, message in MESSAGE_TYPES.items()}
+FOXGLOVE_ROLE_BY_SCHEMA: Final = {
+    "foxglove.SceneUpdate": ROAD_USERS_ROLE,
     "foxglove.FrameTransform": "frames",
     "foxglove.FrameTransforms": "frames",
 }
@@ -46,24 +46,24 @@ def bag_files(path: Path) -> list[Path]:
     if not path.is_dir():
         return [path]
     try:
-        information = _information(path)
+        information = _bag_metadata(path)
         storage, names = information.get("storage_identifier"), information["relative_file_paths"]
     except (KeyError, TypeError, AttributeError) as error:
-        raise _unreadable(path, error) from error
+        raise _metadata_error(path, error) from error
     if not isinstance(names, list) or not names or not all(isinstance(name, str) for name in names):
         raise TraceError(f"{path}: its {METADATA_FILE} lists no files: reindex the bag")
-    if storage is not None and storage not in STORAGE_SUFFIXES:
-        raise _other_storage(path, str(storage))
+    if storage is not None and storage not in SUFFIX_BY_STORAGE:
+        raise _unread_storage_error(path, str(storage))
     if str(information.get("compression_mode")).lower() == "message":
         raise TraceError(
-            f"{path}: a bag whose messages are each compressed: convert it with {conversion(path)}, and give that"
+            f"{path}: a bag whose messages are each compressed: convert it with {conversion_command(path)}, and give that"
         )
     files = []
     for name in names:
-        file = _part(path, name.removesuffix(PACKED_SUFFIX)) or _part(path, name)
+        file = _bag_file(path, name.removesuffix(COMPRESSED_SUFFIX)) or _bag_file(path, name)
         if file is None:
             raise TraceError(f"{path}: {name}, a part of this bag, is missing: copy the whole folder")
-        if file.suffix == PACKED_SUFFIX:
+        if file.suffix == COMPRESSED_SUFFIX:
             raise TraceError(
                 f"{path}: a bag whose files are compressed: unpack them in its folder with zstd -d {quote(str(file))}"
             )
@@ -72,7 +72,7 @@ def bag_files(path: Path) -> list[Path]:
                 f"{path}: {name}, a part of this bag, is empty (0 bytes): copy it again, or reindex the bag"
             )
         files.append(file)
-    suffix = STORAGE_SUFFIXES.get(storage, ".mcap")
+    suffix = SUFFIX_BY_STORAGE.get(storage, ".mcap")
     if unlisted := sorted(each.name for each in path.glob(f"*{suffix}") if each not in files):
         raise TraceError(
             f"{path}: its {METADATA_FILE} does not list {unlisted[0]}: reindex the bag, or remove the file from its folder"
@@ -80,7 +80,7 @@ def bag_files(path: Path) -> list[Path]:
     return files
 
 
-def _part(folder: Path, name: str) -> Path | None:
+def _bag_file(folder: Path, name: str) -> Path | None:
     """Return the file of a bag, or None if it is missing."""
     # older recorders list only a file's name, or prefix it with the folder's name
     return next(
@@ -89,15 +89,15 @@ def _part(folder: Path, name: str) -> Path | None:
     )
 
 
-def _other_storage(path: Path, storage: str) -> TraceError:
+def _unread_storage_error(path: Path, storage: str) -> TraceError:
     """Return the error for a bag, given as its folder, in a storage that is not read, with the command that converts it."""
     return TraceError(
-        f"{path}: a bag in {storage}: convert it to MCAP with {conversion(path)}, "
+        f"{path}: a bag in {storage}: convert it to MCAP with {conversion_command(path)}, "
         "or with ros2 bag convert and storage_id: mcap, and give the converted bag"
     )
 
 
-def conversion(path: Path) -> str:
+def conversion_command(path: Path) -> str:
     """Return the command that converts a bag, given as its folder or as one of its files, to MCAP without compression."""
     whole = path if path.is_dir() or not is_bag(path.parent) else path.parent
     name = (whole.name if whole.is_dir() else whole.stem) or "bag"
@@ -106,21 +106,23 @@ def conversion(path: Path) -> str:
     return f"{command} (of PyPI's package rosbags)"
 
 
-def _information(path: Path) -> Any:
+def _bag_metadata(path: Path) -> Any:
     """Return the content of a bag's `metadata.yaml`. Errors: `TraceError` if it cannot be read."""
     import yaml  # imported here, because only bags need it
 
     try:
-        return yaml.safe_load((path / METADATA_FILE).read_bytes())[METADATA_ROOT]
+        return yaml.safe_load((path / METADATA_FILE).read_bytes())[METADATA_ROOT_KEY]
     except (OSError, yaml.YAMLError, KeyError, TypeError, ValueError, RecursionError) as error:
-        raise _unreadable(path, error) from error
+        raise _metadata_error(path, error) from error
 
 
-def _unreadable(path: Path, error: Exception) -> TraceError:
+def _metadata_error(path: Path, error: Exception) -> TraceError:
     return TraceError(f"{path}: its {METADATA_FILE} cannot be read ({type(error).__name__}: {error}): reindex the bag")
 
 
-def missing_messages(path: Path, parts: Sequence[Container], is_read: Callable[[str], bool]) -> list[QualityFinding]:
+def missing_message_findings(
+    path: Path, parts: Sequence[Container], is_read: Callable[[str], bool]
+) -> list[QualityFinding]:
     """Return a finding for each topic of which the bag's `metadata.yaml` counts more messages than its files contain.
 
     `parts`: the bag's files, read to their ends. `is_read`: whether messages of a kind, as `message_kind` returns it, are read.
@@ -130,10 +132,10 @@ def missing_messages(path: Path, parts: Sequence[Container], is_read: Callable[[
         return []
     counts: Counter[str] = Counter()
     for part in parts:
-        for number, n in part.counts.of_channels.items():
+        for number, n in part.counts.by_channel.items():
             counts[part.channels[number].topic] += n
     findings = []
-    for topic, kind, counted in _counted_topics(_information(path)):
+    for topic, kind, counted in _topics_with_counts(_bag_metadata(path)):
         if counted > counts[topic] and is_read(message_kind(kind)):
             n = counted - counts[topic]
             message = f"{METADATA_FILE} counts {counted} messages of topic {topic!r}, the bag has {counts[topic]}: {n} are lost"
@@ -141,9 +143,9 @@ def missing_messages(path: Path, parts: Sequence[Container], is_read: Callable[[
     return findings
 
 
-def _counted_topics(information: Any) -> Iterator[tuple[str, str, int]]:
+def _topics_with_counts(metadata: Any) -> Iterator[tuple[str, str, int]]:
     """Yield name, type and number of messages of each topic in a bag's description; skip entries that are not as rosbag2 writes them."""
-    topics = information.get("topics_with_message_count")
+    topics = metadata.get("topics_with_message_count")
     for each in topics if isinstance(topics, list) else ():
         match each:
             case {"topic_metadata": {"name": str(name), "type": str(kind)}, "message_count": int(n)}:
@@ -157,12 +159,12 @@ def message_family(path: Path) -> str:
     If a log has several kinds, OSI wins, because it is ground truth.
     """
     parts = bag_files(path)
-    for schemas in (_indexed, _recorded):
+    for schemas in (_schema_names_in_index, _schema_names_in_data):
         found = {message_kind(name) for file in parts for name in schemas(file)}
         if found & OSI_SCHEMAS:
             return "osi"
-        for name, roles in (("ros2", ROS_ROLES), ("foxglove", FOXGLOVE_ROLES)):
-            if {roles.get(schema) for schema in found} & {ROAD_USERS, DETECTIONS, ODOMETRY_ROLE}:
+        for name, roles in (("ros2", ROS_ROLE_BY_SCHEMA), ("foxglove", FOXGLOVE_ROLE_BY_SCHEMA)):
+            if {roles.get(schema) for schema in found} & {ROAD_USERS_ROLE, DETECTIONS_ROLE, ODOMETRY_ROLE}:
                 return name
         if TRANSFORMS in found:
             return "ros2"  # they may place the ego
@@ -171,11 +173,14 @@ def message_family(path: Path) -> str:
 
 def topics_text(path: Path) -> str:
     """Return a clause that lists the topics of a drive's log, and names the guide for messages of other types."""
-    has = name_list([f"{kind} on {topic}" for topic, kind in sorted(topics(path).items())], _MAX_TOPICS) or "no topic"
+    has = (
+        name_list([f"{kind} on {topic}" for topic, kind in sorted(kinds_by_topic(path).items())], _MOST_LISTED_TOPICS)
+        or "no topic"
+    )
     return f"the log has {has}; drivelint docs mapping shows how messages of other types become a table"
 
 
-def topics(path: Path) -> dict[str, str]:
+def kinds_by_topic(path: Path) -> dict[str, str]:
     """Return topic -> kind of its messages, as `message_kind` returns it, for a drive's log.
 
     Errors: `TraceError` for a damaged file.
@@ -193,12 +198,12 @@ def topics(path: Path) -> dict[str, str]:
     return found
 
 
-def _indexed(file: Path) -> set[str]:
+def _schema_names_in_index(file: Path) -> set[str]:
     """Return the names of the schemas in the file's index; an empty set if the index is missing or damaged."""
     return {schema.name for schema in file_index(file).schemas.values()}
 
 
-def _recorded(file: Path) -> set[str]:
+def _schema_names_in_data(file: Path) -> set[str]:
     """Return the names of the schemas in the file's data section. Errors: `TraceError` for a damaged file."""
     container = recorded_file(file)
     for _ in container.messages():

@@ -10,25 +10,25 @@ from drivelint.errors import TraceError
 
 MAX_CHUNK_BYTES = 512 * 1024 * 1024
 """A chunk that declares a larger unpacked size is refused before memory is allocated. Recorders write chunks of a few MB."""
-FREE_BYTES = 1 << 30
+BASE_UNPACKED_BYTES = 1 << 30
 MOST_UNPACKED_PER_PACKED_BYTE = 250
-"""All chunks of a file may unpack to `FREE_BYTES` plus this many times their packed size. Real logs grew at most thirtyfold."""
-FREE_RECORDS = 500_000
-LEAST_RECORD_BYTES = 4
-"""A file may have `FREE_RECORDS` records, plus one per this many packed bytes: even well packed, a message's time needs as many."""
+"""All chunks of a file may unpack to `BASE_UNPACKED_BYTES` plus this many times their packed size. Real logs grew at most thirtyfold."""
+BASE_RECORDS = 500_000
+PACKED_BYTES_PER_RECORD = 4
+"""A file may have `BASE_RECORDS` records, plus one per this many packed bytes: even well packed, a message's time needs as many."""
 COMPRESSIONS = frozenset({"", "zstd", "lz4"})
-_CHUNK = struct.Struct("<QQQII")
+_CHUNK_HEADER = struct.Struct("<QQQII")
 
 
 class ChunkError(Exception):
-    """The error for a damaged chunk. `framed`: the length of its record is still right, so that the next record can be found."""
+    """The error for a damaged chunk. `has_valid_length`: the length of its record is still right, so that the next record can be found."""
 
-    def __init__(self, message: str, *, framed: bool = True) -> None:
+    def __init__(self, message: str, *, has_valid_length: bool = True) -> None:
         super().__init__(message)
-        self.framed = framed
+        self.has_valid_length = has_valid_length
 
 
-class ChunkHead(NamedTuple):
+class PackedChunk(NamedTuple):
     """The header of a chunk record, and its packed bytes. `size`: the declared unpacked size in bytes."""
 
     size: int
@@ -37,76 +37,76 @@ class ChunkHead(NamedTuple):
     packed: memoryview
 
 
-class Work:
+class UnpackingLimit:
     """Limits the unpacked bytes and records of a file relative to its size, because a small malicious file could take hours to read."""
 
     def __init__(self) -> None:
         self._packed = self._unpacked = self._records = 0
 
-    def unpacked(self, head: ChunkHead, where: str) -> bytes:
+    def unpack(self, chunk: PackedChunk, where: str) -> bytes:
         """Return the unpacked records of a chunk. Errors: those of `chunk_records`; `TraceError` beyond the limit."""
-        packed, size = self._packed + len(head.packed), self._unpacked + head.size
-        if head.size <= MAX_CHUNK_BYTES and size > FREE_BYTES + MOST_UNPACKED_PER_PACKED_BYTE * packed:
+        packed, size = self._packed + len(chunk.packed), self._unpacked + chunk.size
+        if chunk.size <= MAX_CHUNK_BYTES and size > BASE_UNPACKED_BYTES + MOST_UNPACKED_PER_PACKED_BYTE * packed:
             raise TraceError(
                 f"{where}: chunks of {packed} bytes that say they unpack to {size}: no recorder writes such a log: record or copy it again"
             )
-        records = chunk_records(head, where)
+        records = chunk_records(chunk, where)
         self._packed, self._unpacked = packed, size
         return records
 
-    def record(self, where: str) -> None:
+    def count_record(self, where: str) -> None:
         """Count a record of a chunk. Errors: `TraceError` beyond the limit."""
         self._records += 1
-        if self._records > FREE_RECORDS + self._packed // LEAST_RECORD_BYTES:
+        if self._records > BASE_RECORDS + self._packed // PACKED_BYTES_PER_RECORD:
             raise TraceError(
                 f"{where}: more than {self._records - 1} records in chunks of {self._packed} bytes: no recorder "
                 "writes such a log: record or copy it again"
             )
 
 
-def chunk_head(body: memoryview) -> ChunkHead:
+def parse_chunk(body: memoryview) -> PackedChunk:
     """Return the header of a chunk record. Errors: `ChunkError` if its lengths contradict each other."""
-    if len(body) < _CHUNK.size:
-        raise ChunkError("a chunk record without its header", framed=False)
-    _, _, size, crc, name_length = _CHUNK.unpack_from(body)
-    name_end = _CHUNK.size + name_length
+    if len(body) < _CHUNK_HEADER.size:
+        raise ChunkError("a chunk record without its header", has_valid_length=False)
+    _, _, size, crc, name_length = _CHUNK_HEADER.unpack_from(body)
+    name_end = _CHUNK_HEADER.size + name_length
     if name_end + 8 > len(body):
-        raise ChunkError("a chunk record whose lengths do not fit", framed=False)
-    compression = bytes(body[_CHUNK.size : name_end]).decode("utf-8", "replace")
+        raise ChunkError("a chunk record whose lengths do not fit", has_valid_length=False)
+    compression = bytes(body[_CHUNK_HEADER.size : name_end]).decode("utf-8", "replace")
     (packed_length,) = struct.unpack_from("<Q", body, name_end)
     packed = body[name_end + 8 :]
     if packed_length != len(packed):
-        raise ChunkError("a chunk record whose lengths do not fit", framed=False)
-    return ChunkHead(size, crc, compression, packed)
+        raise ChunkError("a chunk record whose lengths do not fit", has_valid_length=False)
+    return PackedChunk(size, crc, compression, packed)
 
 
-def chunk_records(head: ChunkHead, where: str) -> bytes:
+def chunk_records(chunk: PackedChunk, where: str) -> bytes:
     """Return the unpacked records of a chunk. `where`: file and byte, for the error.
 
     Errors: `ChunkError` if the chunk is damaged; `TraceError` if it is too large, or its compression is unknown.
     """
-    if head.size > MAX_CHUNK_BYTES:
+    if chunk.size > MAX_CHUNK_BYTES:
         raise TraceError(
-            f"{where}: a chunk of {len(head.packed)} bytes whose header states an unpacked size of {head.size}, beyond "
+            f"{where}: a chunk of {len(chunk.packed)} bytes whose header states an unpacked size of {chunk.size}, beyond "
             f"{MAX_CHUNK_BYTES // 2**20} MiB: record or copy the log again"
         )
-    if head.compression not in COMPRESSIONS:
-        raise TraceError(f"{where}: a chunk is compressed by {head.compression!r}: zstd, lz4 or none is needed")
-    records = _unpacked(head)
-    if head.crc and zlib.crc32(records) != head.crc:
+    if chunk.compression not in COMPRESSIONS:
+        raise TraceError(f"{where}: a chunk is compressed by {chunk.compression!r}: zstd, lz4 or none is needed")
+    records = _decompressed_records(chunk)
+    if chunk.crc and zlib.crc32(records) != chunk.crc:
         raise ChunkError("a chunk with a wrong CRC (its content changed)")
     return records
 
 
-def _unpacked(head: ChunkHead) -> bytes:
+def _decompressed_records(chunk: PackedChunk) -> bytes:
     """Return the decompressed records. Errors: `ChunkError` if their size is not the declared size."""
     import zstandard
 
-    size, packed = head.size, head.packed
+    size, packed = chunk.size, chunk.packed
     try:
-        if head.compression == "":
+        if chunk.compression == "":
             records = bytes(packed) if len(packed) == size else b""
-        elif head.compression == "zstd":
+        elif chunk.compression == "zstd":
             declared = zstandard.get_frame_parameters(packed).content_size
             # the library uses the size in the frame instead of the limit given to it
             if declared not in {size, zstandard.CONTENTSIZE_UNKNOWN}:
@@ -121,6 +121,6 @@ def _unpacked(head: ChunkHead) -> bytes:
     except (zstandard.ZstdError, RuntimeError, EOFError) as error:
         raise ChunkError(f"a chunk that cannot be unpacked ({error})") from error
     if len(records) != size:
-        found = len(records) if head.compression else len(packed)
+        found = len(records) if chunk.compression else len(packed)
         raise ChunkError(f"a chunk whose header states an unpacked size of {size} bytes, but which unpacks to {found}")
     return records

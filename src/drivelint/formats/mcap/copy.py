@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from drivelint.errors import ChangedLogError
 from drivelint.formats.mcap.bag import bag_files
 from drivelint.formats.mcap.bag_folder import is_bag
-from drivelint.formats.mcap.original import Original, open_log
+from drivelint.formats.mcap.original import OriginalFile, open_log
 from drivelint.formats.mcap.part_copy import PartCopy
 from drivelint.formats.mcap.resume import MAGIC
 from drivelint.formats.sqlite_bag.database import MAGIC as SQLITE_MAGIC
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from drivelint.formats.mcap.writer import Sink
 
 
-def copy_original(original: Original, sink: Sink) -> None:
+def copy_original(original: OriginalFile, sink: Sink) -> None:
     """Append the data of one file to a sink, and add the copied records to the sink's index.
 
     Errors: `TraceError` for a damaged file; `ChangedLogError` if the file changed after ingest had read it.
@@ -29,7 +29,7 @@ def copy_original(original: Original, sink: Sink) -> None:
         PartCopy(original, sink).run()
         return
     with ThreadPoolExecutor(max_workers=1) as pool:
-        digest = pool.submit(original.digest)
+        digest = pool.submit(original.current_sha256)
         PartCopy(original, sink).run()
         if digest.result() != original.sha256:
             raise ChangedLogError(
@@ -48,11 +48,11 @@ def copy_log(path: Path, sha256: str, sink: Sink) -> None:
 
             copy_messages(part, sink)
             continue
-        with Original(part, None if path.is_dir() else sha256) as original:
+        with OriginalFile(part, None if path.is_dir() else sha256) as original:
             copy_original(original, sink)
 
 
-def has_messages(path: Path) -> bool:
+def is_message_log(path: Path) -> bool:
     """Return whether a trace is a bag, or begins as files of MCAP or SQLite do."""
     if path.is_dir():
         return is_bag(path)

@@ -12,18 +12,18 @@ if TYPE_CHECKING:
 
     from mcap.records import Channel, Statistics
 
-MESSAGE_INDEX_HEAD: Final = struct.Struct("<HI")
+MESSAGE_INDEX_HEADER: Final = struct.Struct("<HI")
 """The header of a message index: channel id, and length in bytes of the entries that follow."""
-_ENTRY: Final = struct.Struct("<QQ")
-_MOST_CONTRADICTIONS: Final = 3
+_INDEX_ENTRY: Final = struct.Struct("<QQ")
+_MOST_LISTED_CONTRADICTIONS: Final = 3
 
 
 @dataclass
 class MessageCounts:
-    """The number of messages per channel id. `unused`: channels that are not read, so that missing messages are no loss."""
+    """The number of messages per channel id. `unread_channels`: channels that are not read, so that missing messages are no loss."""
 
-    of_channels: Counter[int] = field(default_factory=Counter)
-    unused: set[int] = field(default_factory=set)
+    by_channel: Counter[int] = field(default_factory=Counter)
+    unread_channels: set[int] = field(default_factory=set)
     _open_chunk: dict[int, list[int]] | None = (
         None  # channel -> log times of its messages in the chunk that is being read
     )
@@ -31,7 +31,7 @@ class MessageCounts:
 
     def add(self, channel: int, log_ns: int) -> None:
         """Count a message."""
-        self.of_channels[channel] += 1
+        self.by_channel[channel] += 1
         if self._open_chunk is not None:
             self._open_chunk.setdefault(channel, []).append(log_ns)
 
@@ -43,36 +43,38 @@ class MessageCounts:
         """End the chunk, after all its messages were read."""
         self._open_chunk, self._last_chunk = None, self._open_chunk
 
-    def missing_from_chunk(self, index: memoryview) -> list[int]:
+    def missing_times_of_chunk(self, index: memoryview) -> list[int]:
         """Return the log times of messages that are in the message index after a chunk, but not in the chunk.
 
         These messages are added to the counts, because the caller reports them as lost.
         """
-        channel, length = MESSAGE_INDEX_HEAD.unpack_from(index)
+        channel, length = MESSAGE_INDEX_HEADER.unpack_from(index)
         found = None if self._last_chunk is None else self._last_chunk.get(channel, [])
-        if found is None or length <= _ENTRY.size * len(found) or channel in self.unused:
+        if found is None or length <= _INDEX_ENTRY.size * len(found) or channel in self.unread_channels:
             return []
-        named = Counter(log_ns for log_ns, _ in _ENTRY.iter_unpack(index[MESSAGE_INDEX_HEAD.size :]))
+        named = Counter(log_ns for log_ns, _ in _INDEX_ENTRY.iter_unpack(index[MESSAGE_INDEX_HEADER.size :]))
         missing = sorted((named - Counter(found)).elements())
-        self.of_channels[channel] += len(missing)
+        self.by_channel[channel] += len(missing)
         return missing
 
-    def contradiction(self, index: Statistics, channels: Mapping[int, Channel], *, is_damaged: bool) -> str | None:
+    def contradiction_text(
+        self, statistics: Statistics, channels: Mapping[int, Channel], *, is_damaged: bool
+    ) -> str | None:
         """Return, in words, the counts of the index that differ from those of the messages; None if all are equal.
 
         An index with a wrong CRC (`is_damaged`) is compared only if its counts per channel sum up to its total:
         the same damage may have removed messages.
         """
-        index_counts, total = index.channel_message_counts, self.of_channels.total()
-        agrees = not index_counts or sum(index_counts.values()) == index.message_count
+        index_counts, total = statistics.channel_message_counts, self.by_channel.total()
+        agrees = not index_counts or sum(index_counts.values()) == statistics.message_count
         if is_damaged and not agrees:
             return None
         names = {number: f"topic {channel.topic!r}" for number, channel in channels.items()}
         contradictions = [
-            f"{n} messages of {names.get(number, f'channel {number}')}, the file has {self.of_channels[number]}"
+            f"{n} messages of {names.get(number, f'channel {number}')}, the file has {self.by_channel[number]}"
             for number, n in sorted(index_counts.items())
-            if number not in self.unused and n != self.of_channels[number]
+            if number not in self.unread_channels and n != self.by_channel[number]
         ]
-        if not contradictions and not (index_counts and agrees) and index.message_count != total:
-            contradictions = [f"{index.message_count} messages, the file has {total}"]
-        return "; ".join(contradictions[:_MOST_CONTRADICTIONS]) or None
+        if not contradictions and not (index_counts and agrees) and statistics.message_count != total:
+            contradictions = [f"{statistics.message_count} messages, the file has {total}"]
+        return "; ".join(contradictions[:_MOST_LISTED_CONTRADICTIONS]) or None

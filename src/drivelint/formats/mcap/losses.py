@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-MOST_BACKWARD_NS: Final = 1_000_000_000
+MOST_BACKWARD_STEP_NS: Final = 1_000_000_000
 """If log times go back by more, messages are not in the order of time, and lost bytes between two messages may be of any time."""
 
 
@@ -58,7 +58,7 @@ class Losses:
         """The lost bytes that were found last."""
         return self.lost_bytes[-1]
 
-    def message(self, log_ns: int) -> None:
+    def bound_by_message(self, log_ns: int) -> None:
         """Record the log time of a message that was read: it bounds the lost bytes before and after it."""
         if self.first_ns is None:
             self.first_ns = log_ns
@@ -66,19 +66,19 @@ class Losses:
             if not self.lost_bytes[k].timed:
                 self.lost_bytes[k] = replace(self.lost_bytes[k], until_ns=log_ns)
         self._open = len(self.lost_bytes)
-        self._backward = self._backward or log_ns < self._latest_ns - MOST_BACKWARD_NS
+        self._backward = self._backward or log_ns < self._latest_ns - MOST_BACKWARD_STEP_NS
         self._latest_ns = max(self._latest_ns, log_ns)
         self.last_ns = log_ns
 
-    def add(self, start: int, end: int, cause: str, since: int | None = None, until: int | None = None) -> None:
-        """Add lost bytes; `since` and `until`: the log times of their first and last message, if the index has them."""
-        if since is None or until is None:
+    def add(self, start: int, end: int, cause: str, since_ns: int | None = None, until_ns: int | None = None) -> None:
+        """Add lost bytes; `since_ns` and `until_ns`: the log times of their first and last message, if the index has them."""
+        if since_ns is None or until_ns is None:
             self.lost_bytes.append(LostBytes(start, end, cause, self.last_ns))
         else:
-            self.lost_bytes.append(LostBytes(start, end, cause, since - 1, until + 1, timed=True))
+            self.lost_bytes.append(LostBytes(start, end, cause, since_ns - 1, until_ns + 1, timed=True))
             self._open = len(self.lost_bytes)
 
-    def add_message(self, offset: int, cause: str, log_ns: int) -> None:
+    def add_undecodable_message(self, offset: int, cause: str, log_ns: int) -> None:
         """Add a message that cannot be decoded."""
         self.lost_bytes.append(LostBytes(offset, offset, cause, log_ns - 1, log_ns + 1, timed=True))
 
@@ -91,7 +91,7 @@ class Losses:
         """Return whether the byte at `offset` is lost."""
         return any(each.start <= offset < each.end for each in self.lost_bytes)
 
-    def narrow(self, chunks: Mapping[int, tuple[int, int, int]]) -> None:
+    def bound_by_chunks(self, chunks: Mapping[int, tuple[int, int, int]]) -> None:
         """Bound the times of lost bytes by the times that the index has for the chunks in them.
 
         `chunks`: offset of a chunk -> its length, first and last log time.
@@ -102,7 +102,7 @@ class Losses:
                 since, until = min(a for a, _ in inside) - 1, max(b for _, b in inside) + 1
                 self.lost_bytes[k] = replace(each, since_ns=since, until_ns=until, timed=True)
 
-    def times(self, path: Path) -> list[LostTime]:
+    def lost_times(self, path: Path) -> list[LostTime]:
         """Return the losses as ranges of log time, each with a text for the user."""
         lost_times = []
         for loss in self.lost_bytes:
@@ -119,7 +119,7 @@ class Losses:
         return lost_times
 
 
-def times_of_parts(parts: Sequence[tuple[Path, Losses]]) -> list[LostTime]:
+def lost_times_of_parts(parts: Sequence[tuple[Path, Losses]]) -> list[LostTime]:
     """Return the losses of a log in several files, given in their order.
 
     If a loss has no bound, it gets the time of the last message in earlier files, or of the first in later files.
@@ -128,7 +128,7 @@ def times_of_parts(parts: Sequence[tuple[Path, Losses]]) -> list[LostTime]:
     for k, (path, losses) in enumerate(parts):
         before = max((each.last_ns for _, each in parts[:k] if each.last_ns is not None), default=None)
         after = min((each.first_ns for _, each in parts[k + 1 :] if each.first_ns is not None), default=None)
-        for lost in losses.times(path):
+        for lost in losses.lost_times(path):
             since = before if lost.since_ns is None else lost.since_ns
             lost_times.append(lost._replace(since_ns=since, until_ns=after if lost.until_ns is None else lost.until_ns))
     return lost_times

@@ -27,19 +27,19 @@ def decode_readable(
     Errors: the error of the first malformed message, if more than a tenth of the batch is malformed.
     """
 
-    def decode_timed(some: list[LogMessage]) -> T:
-        if max(log_message.log_time_ns for log_message in some) > LATEST_CREDIBLE_NS:
-            late = next(log_message for log_message in some if log_message.log_time_ns > LATEST_CREDIBLE_NS)
+    def decode_credible_times(batch: list[LogMessage]) -> T:
+        if max(log_message.log_time_ns for log_message in batch) > LATEST_CREDIBLE_NS:
+            late = next(log_message for log_message in batch if log_message.log_time_ns > LATEST_CREDIBLE_NS)
             raise late.error(container.path, "its log time is not in this or the next century")
-        return decode(some)
+        return decode(batch)
 
-    decoded, malformed = decode_others(log_messages, decode_timed)
+    decoded, malformed = decode_without_malformed(log_messages, decode_credible_times)
     for k, why in malformed.items():
-        container.losses.add_message(log_messages[k].offset, str(why), log_messages[k].log_time_ns)
+        container.losses.add_undecodable_message(log_messages[k].offset, str(why), log_messages[k].log_time_ns)
     return decoded, [log_message for k, log_message in enumerate(log_messages) if k not in malformed]
 
 
-def decode_others(
+def decode_without_malformed(
     log_messages: list[LogMessage], decode: Callable[[list[LogMessage]], T]
 ) -> tuple[T | None, dict[int, MessageError]]:
     """Decode a batch without its malformed messages.
@@ -51,14 +51,14 @@ def decode_others(
         return decode(log_messages), {}
     except MessageError as error:
         first = error
-    malformed = dict(_malformed(log_messages, decode))
+    malformed = dict(_malformed_places_and_errors(log_messages, decode))
     if len(malformed) > max(1, MOST_MALFORMED_SHARE * len(log_messages)):
         raise first
     readable = [log_message for k, log_message in enumerate(log_messages) if k not in malformed]
     return (decode(readable) if readable else None), malformed
 
 
-def _malformed(
+def _malformed_places_and_errors(
     log_messages: list[LogMessage], decode: Callable[[list[LogMessage]], object]
 ) -> list[tuple[int, MessageError]]:
     """Return place and error of each message that cannot be decoded, found by bisection."""

@@ -19,7 +19,7 @@ from mcap.stream_reader import get_chunk_data_stream
 
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.resume import MAGIC
-from drivelint.formats.mcap.summary import summary_is_whole
+from drivelint.formats.mcap.summary import is_summary_intact
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -30,26 +30,26 @@ if TYPE_CHECKING:
 
 ChunkMessageIndex = dict[int, "NDArray[np.uint64]"]
 
-_HEAD: Final = struct.Struct("<BQ")
-_MESSAGE: Final = struct.Struct("<HIQ")
-_INDEX: Final = struct.Struct("<HI")
-_BLOCK: Final = 4 << 20
+_RECORD_HEADER: Final = struct.Struct("<BQ")
+_MESSAGE_HEADER: Final = struct.Struct("<HIQ")
+_MESSAGE_INDEX_HEADER: Final = struct.Struct("<HI")
+_BLOCK_BYTES: Final = 4 << 20
 
 
 class Record(NamedTuple):
-    """A record: its opcode, and the bytes at which its header begins (`at`), its body begins (`body`) and it ends."""
+    """A record: its opcode, and the bytes at which its header begins (`at`), its body begins (`body_at`) and it ends."""
 
     opcode: int
     at: int
-    body: int
+    body_at: int
     end: int
 
 
-class Original:
+class OriginalFile:
     """A mapped MCAP file. Only its record headers are read, wherever they are enough.
 
     `sha256`: the hash when the file was read and checked; None: the caller compares the hash of the whole log instead.
-    `indexed`: whether the message indexes of its chunks are complete.
+    `has_complete_indexes`: whether the message indexes of its chunks are complete.
     Errors: `TraceError` if the file is damaged, or was changed after it was checked.
     """
 
@@ -61,7 +61,7 @@ class Original:
         self._view = memoryview(mmap.mmap(self._file.fileno(), 0, access=mmap.ACCESS_READ))
         self.schemas: dict[int, Schema] = {}
         self.channels: dict[int, Channel] = {}
-        self.indexed = self._survey()
+        self.has_complete_indexes = self._read_schemas_and_channels()
 
     def __enter__(self) -> Self:
         return self
@@ -73,9 +73,9 @@ class Original:
     def records(self, at: int = len(MAGIC)) -> Iterator[Record]:
         """Yield the records from byte `at` up to and including the footer."""
         size = len(self._view)
-        while at + _HEAD.size <= size:
-            opcode, length = _HEAD.unpack_from(self._view, at)
-            record = Record(opcode, at, at + _HEAD.size, at + _HEAD.size + length)
+        while at + _RECORD_HEADER.size <= size:
+            opcode, length = _RECORD_HEADER.unpack_from(self._view, at)
+            record = Record(opcode, at, at + _RECORD_HEADER.size, at + _RECORD_HEADER.size + length)
             if record.end > size:
                 break
             yield record
@@ -89,7 +89,7 @@ class Original:
         return TraceError(f"{self.path}: the log changed or is damaged at byte {at}: check it again")
 
     @contextmanager
-    def parsing(self, record: Record) -> Iterator[None]:
+    def convert_errors(self, record: Record) -> Iterator[None]:
         """Convert errors of the MCAP library about this record to `TraceError`."""
         try:
             yield
@@ -101,43 +101,43 @@ class Original:
         try:
             content = os.pread(self._file.fileno(), end - start, start)
         except OSError as error:
-            raise _unreadable(self.path, error) from error
+            raise _unreadable_log_error(self.path, error) from error
         if len(content) != end - start:
             raise self.damage_error(start)
         return content
 
-    def stream(self, record: Record, most_bytes: int | None = None) -> ReadDataStream:
+    def body_stream(self, record: Record, most_bytes: int | None = None) -> ReadDataStream:
         """Return a stream of a record's body; with `most_bytes`, only of its first bytes, which contain the fields before the data."""
-        end = record.end if most_bytes is None else min(record.end, record.body + most_bytes)
-        return ReadDataStream(io.BytesIO(self.read(record.body, end)))
+        end = record.end if most_bytes is None else min(record.end, record.body_at + most_bytes)
+        return ReadDataStream(io.BytesIO(self.read(record.body_at, end)))
 
     def chunk_records(self, record: Record) -> Iterator[tuple[int, int, memoryview]]:
         """Yield opcode, offset within the chunk and body of every record of a chunk."""
-        with self.parsing(record):
-            stream, size = get_chunk_data_stream(Chunk.read(self.stream(record)), validate_crc=True)
+        with self.convert_errors(record):
+            stream, size = get_chunk_data_stream(Chunk.read(self.body_stream(record)), validate_crc=True)
             view = memoryview(stream.read(size))
         at = 0
         while at < len(view):
-            opcode, length = _HEAD.unpack_from(view, at)
-            yield opcode, at, view[at + _HEAD.size : at + _HEAD.size + length]
-            at += _HEAD.size + length
+            opcode, length = _RECORD_HEADER.unpack_from(view, at)
+            yield opcode, at, view[at + _RECORD_HEADER.size : at + _RECORD_HEADER.size + length]
+            at += _RECORD_HEADER.size + length
 
     def chunk_message_index(self, record: Record) -> ChunkMessageIndex:
         """Return the message index of a chunk, made by unpacking the chunk."""
         inside = (each for each in self.chunk_records(record) if each[0] == Opcode.MESSAGE)
-        return index_arrays((*_MESSAGE.unpack_from(body), at) for _, at, body in inside)
+        return message_index((*_MESSAGE_HEADER.unpack_from(body), at) for _, at, body in inside)
 
     def message_index_header(self, record: Record) -> tuple[int, int]:
         """Return channel and number of entries of a message index record."""
-        channel, length = _INDEX.unpack_from(self._view, record.body)
+        channel, length = _MESSAGE_INDEX_HEADER.unpack_from(self._view, record.body_at)
         return channel, length // 16
 
     def message_header(self, record: Record) -> tuple[int, int, int]:
         """Return channel, sequence number and log time of a message record."""
-        channel, sequence, log_time = _MESSAGE.unpack_from(self._view, record.body)
+        channel, sequence, log_time = _MESSAGE_HEADER.unpack_from(self._view, record.body_at)
         return channel, sequence, log_time
 
-    def _survey(self) -> bool:
+    def _read_schemas_and_channels(self) -> bool:
         """Set schemas and channels; return whether the indexes are complete. If not, the chunks are unpacked for schemas and channels."""
         indexed_channels: set[int] = set()
         chunks: list[Record] = []
@@ -158,40 +158,42 @@ class Original:
                 messages += n
             else:
                 part.append(record)
-        self.schemas, self.channels, _ = self._announced(data)
+        self.schemas, self.channels, _ = self._schemas_channels_statistics(data)
         counts: Statistics | None = None
         with suppress(TraceError):  # a damaged summary is not needed
-            schemas, channels, counts = self._announced(summary)
+            schemas, channels, counts = self._schemas_channels_statistics(summary)
             self.schemas, self.channels = schemas | self.schemas, channels | self.channels
-        if not chunks or self._agrees(counts, messages, indexed_channels):
+        if not chunks or self._are_indexes_complete(counts, messages, indexed_channels):
             return True
-        self._look_inside(chunks)
+        self._read_channels_in_chunks(chunks)
         return False
 
-    def _announced(self, records: list[Record]) -> tuple[dict[int, Schema], dict[int, Channel], Statistics | None]:
+    def _schemas_channels_statistics(
+        self, records: list[Record]
+    ) -> tuple[dict[int, Schema], dict[int, Channel], Statistics | None]:
         """Return the schemas, channels and statistics among `records`. Errors: `TraceError` for a damaged record."""
         schemas: dict[int, Schema] = {}
         channels: dict[int, Channel] = {}
         counts: Statistics | None = None
         for record in records:
-            with self.parsing(record):
+            with self.convert_errors(record):
                 if record.opcode == Opcode.SCHEMA:
-                    schema = Schema.read(self.stream(record))
+                    schema = Schema.read(self.body_stream(record))
                     schemas.setdefault(schema.id, schema)
                 elif record.opcode == Opcode.CHANNEL:
-                    channel = Channel.read(self.stream(record))
+                    channel = Channel.read(self.body_stream(record))
                     channels.setdefault(channel.id, channel)
                 elif record.opcode == Opcode.STATISTICS:
-                    counts = Statistics.read(self.stream(record))
-                elif record.opcode == Opcode.FOOTER and not summary_is_whole(
-                    Footer.read(self.stream(record)), self._view, record.at, record.end
+                    counts = Statistics.read(self.body_stream(record))
+                elif record.opcode == Opcode.FOOTER and not is_summary_intact(
+                    Footer.read(self.body_stream(record)), self._view, record.at, record.end
                 ):
                     raise self.damage_error(record.at)
         return schemas, channels, counts
 
-    def _look_inside(self, chunks: list[Record]) -> None:
+    def _read_channels_in_chunks(self, chunks: list[Record]) -> None:
         for chunk in chunks:
-            with self.parsing(chunk):
+            with self.convert_errors(chunk):
                 for opcode, _, body in self.chunk_records(chunk):
                     if opcode == Opcode.SCHEMA:
                         schema = Schema.read(ReadDataStream(io.BytesIO(body)))
@@ -200,22 +202,22 @@ class Original:
                         channel = Channel.read(ReadDataStream(io.BytesIO(body)))
                         self.channels[channel.id] = channel
 
-    def _agrees(self, counts: Statistics | None, messages: int, indexed_channels: set[int]) -> bool:
+    def _are_indexes_complete(self, statistics: Statistics | None, n_messages: int, indexed_channels: set[int]) -> bool:
         """Return whether the summary lists every channel and schema, and the message indexes list every message."""
         return (
-            counts is not None
-            and counts.message_count == messages
-            and counts.channel_count == len(self.channels)
-            and counts.schema_count == len(self.schemas)
+            statistics is not None
+            and statistics.message_count == n_messages
+            and statistics.channel_count == len(self.channels)
+            and statistics.schema_count == len(self.schemas)
             and indexed_channels <= self.channels.keys()
             and all(c.schema_id == 0 or c.schema_id in self.schemas for c in self.channels.values())
         )
 
-    def digest(self) -> str:
+    def current_sha256(self) -> str:
         """Return the SHA-256 of the file's present content."""
         digest = hashlib.sha256()
-        for start in range(0, len(self._view), _BLOCK):
-            digest.update(self.read(start, min(start + _BLOCK, len(self._view))))
+        for start in range(0, len(self._view), _BLOCK_BYTES):
+            digest.update(self.read(start, min(start + _BLOCK_BYTES, len(self._view))))
         return digest.hexdigest()
 
 
@@ -224,16 +226,16 @@ def open_log(path: Path) -> BinaryIO:
     try:
         return path.open("rb")
     except OSError as error:
-        raise _unreadable(path, error) from error
+        raise _unreadable_log_error(path, error) from error
 
 
-def _unreadable(path: Path, error: OSError) -> TraceError:
+def _unreadable_log_error(path: Path, error: OSError) -> TraceError:
     return TraceError(
         f"{path}: the log can no longer be read ({error.strerror or error}): make it readable and check it again"
     )
 
 
-def index_arrays(messages: Iterable[tuple[int, int, int, int]]) -> ChunkMessageIndex:
+def message_index(messages: Iterable[tuple[int, int, int, int]]) -> ChunkMessageIndex:
     """Return channel id -> (n, 2) array of log time and offset, for messages (channel id, sequence number, log time, offset)."""
     entries: dict[int, list[tuple[int, int]]] = {}
     for channel, _, log_time, at in messages:

@@ -22,11 +22,11 @@ from mcap.records import Channel, DataEnd, Footer, Header, Metadata, Schema, Sta
 
 from drivelint.drive.trace import QualityFinding
 from drivelint.errors import TraceError
-from drivelint.formats.mcap.chunk import ChunkError, Work, chunk_head
-from drivelint.formats.mcap.counts import MESSAGE_INDEX_HEAD, MessageCounts
+from drivelint.formats.mcap.chunk import ChunkError, UnpackingLimit, parse_chunk
+from drivelint.formats.mcap.counts import MESSAGE_INDEX_HEADER, MessageCounts
 from drivelint.formats.mcap.losses import Losses
-from drivelint.formats.mcap.resume import MAGIC, next_record
-from drivelint.formats.mcap.summary import Summary, read_summary, summary_is_whole
+from drivelint.formats.mcap.resume import MAGIC, next_record_offset
+from drivelint.formats.mcap.summary import Summary, is_summary_intact, read_summary
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -38,14 +38,14 @@ BATCH_BYTES = 32 * 1024 * 1024
 """Messages are decoded in batches of about this size, which bounds the memory that a long log needs."""
 MOST_RECORD_BYTES = 1 << 48
 """No file is so large: a known record that declares more bytes is not merely cut off, and the file is refused."""
-_RECORD = struct.Struct("<BQ")
-_MESSAGE = struct.Struct("<HIQQ")
-_LENGTHS = {Opcode.FOOTER: 20, Opcode.DATA_END: 4, Opcode.SUMMARY_OFFSET: 17}
+_RECORD_HEADER = struct.Struct("<BQ")
+_MESSAGE_HEADER = struct.Struct("<HIQQ")
+_LENGTH_BY_OPCODE = {Opcode.FOOTER: 20, Opcode.DATA_END: 4, Opcode.SUMMARY_OFFSET: 17}
 """Opcode -> length in bytes of the records with a fixed length."""
 _OPCODES = frozenset(Opcode)
-_PRIVATE = 0x80
+_LEAST_PRIVATE_OPCODE = 0x80
 """Opcodes from this one on are reserved for applications; records with them are ignored."""
-_MAGIC = re.compile(re.escape(MAGIC))
+_MAGIC_PATTERN = re.compile(re.escape(MAGIC))
 
 
 class MessageError(TraceError):
@@ -90,14 +90,14 @@ class Container:
     losses: Losses = field(default_factory=Losses)
     library: str = ""
     counts: MessageCounts = field(default_factory=MessageCounts)
-    _messages: int = 0
-    _loose: int = 0
-    _unprotected: int = 0
+    _n_messages: int = 0
+    _n_loose: int = 0
+    _n_unprotected: int = 0
     _in_data: bool = True
     _data_crc: int = 0
     _statistics: Statistics | None = None
-    _places: set[int] = field(default_factory=set)
-    _work: Work = field(default_factory=Work)
+    _read_offsets: set[int] = field(default_factory=set)
+    _unpacking_limit: UnpackingLimit = field(default_factory=UnpackingLimit)
 
     def messages(self) -> Iterator[LogMessage]:
         """Yield every message in the order of the file.
@@ -107,40 +107,40 @@ class Container:
         """
         with self.path.open("rb") as file:
             if not self.path.stat().st_size:
-                raise self._damaged(0, "the file is empty")
+                raise self._damage_error(0, "the file is empty")
             # not closed here: a raised error may still refer to views of the map, which is freed after the last view
             data = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
-        yield from self._file(memoryview(data))
+        yield from self._messages_in_file(memoryview(data))
 
-    def _damaged(self, offset: int, problem: str, resume: int | None = None) -> DamageError:
+    def _damage_error(self, offset: int, problem: str, resume: int | None = None) -> DamageError:
         error = DamageError(
             f"{self.path}: {problem} at byte {offset}: the log is damaged or cut off: copy it again, or repair it"
         )
         error.resume = resume
         return error
 
-    def _file(self, view: memoryview) -> Iterator[LogMessage]:
+    def _messages_in_file(self, view: memoryview) -> Iterator[LogMessage]:
         if bytes(view[: len(MAGIC)]) != MAGIC:
-            raise self._damaged(0, f"not an MCAP file: it begins with {bytes(view[:16])!r}")
+            raise self._damage_error(0, f"not an MCAP file: it begins with {bytes(view[:16])!r}")
         at, footer, index = len(MAGIC), None, None
         while footer is None and at < len(view):
             try:
-                opcode, start, end = self._record(view, at)
+                opcode, start, end = self._opcode_and_range(view, at)
                 if opcode == Opcode.FOOTER:
                     footer = at, start, end
                 else:
-                    yield from self._take(view, opcode, at, start, end)
+                    yield from self._messages_in_record(view, opcode, at, start, end)
                 at = end
             except DamageError as error:
                 if index is None:
-                    index = self._index_of_damaged(view, error)
-                if error.resume is None and not self._messages and not index.chunks:
+                    index = self._index_of_damaged_file(view, error)
+                if error.resume is None and not self._n_messages and not index.chunks:
                     raise  # schemas and channels may be lost, and there is no index that has them
-                resume = error.resume or self._resume(view, at)
+                resume = error.resume or self._resume_offset(view, at)
                 self._refuse_second_file_within(view, at + 1, resume)
                 self.losses.add(at, resume, str(error))
                 at = resume
-        if self.losses and not self._messages:
+        if self.losses and not self._n_messages:
             raise DamageError(self.losses.first.cause)
         if footer is not None:
             self._check_footer(view, *footer)
@@ -148,41 +148,41 @@ class Container:
             index = read_summary(view) if footer is not None else Summary()
         self._check_data_end(len(view), has_footer=footer is not None, has_index=bool(index.chunks))
         self._check_index(index)
-        self._report()
+        self._report_counts_and_crcs()
 
-    def _record(self, view: memoryview, at: int) -> tuple[int, int, int]:
+    def _opcode_and_range(self, view: memoryview, at: int) -> tuple[int, int, int]:
         """Return the opcode, and the start and end of the body, of the record at byte `at`. Errors: `DamageError` if it is invalid."""
-        if at + _RECORD.size > len(view):
-            raise self._damaged(at, "the file ends without a footer")
-        opcode, length = _RECORD.unpack_from(view, at)
-        start = at + _RECORD.size
+        if at + _RECORD_HEADER.size > len(view):
+            raise self._damage_error(at, "the file ends without a footer")
+        opcode, length = _RECORD_HEADER.unpack_from(view, at)
+        start = at + _RECORD_HEADER.size
         if opcode == 0:
-            raise self._damaged(at, "no record (zero bytes)")
+            raise self._damage_error(at, "no record (zero bytes)")
         self._refuse_second_file(view, at)
         if length > len(view) - start:
-            what = f"a {_name(opcode)} record of {length} bytes, of which {len(view) - start} are present,"
+            what = f"a {_record_name(opcode)} record of {length} bytes, of which {len(view) - start} are present,"
             if length >= MOST_RECORD_BYTES and opcode in _OPCODES:
-                raise TraceError(str(self._damaged(at, what)))
-            raise self._damaged(at, what)
+                raise TraceError(str(self._damage_error(at, what)))
+            raise self._damage_error(at, what)
         end = start + length
-        wrong = length != _LENGTHS.get(opcode, length)
+        wrong = length != _LENGTH_BY_OPCODE.get(opcode, length)
         if opcode == Opcode.MESSAGE_INDEX:
-            head = MESSAGE_INDEX_HEAD
+            head = MESSAGE_INDEX_HEADER
             wrong = length < head.size or head.unpack_from(view, start)[1] != length - head.size
         elif opcode == Opcode.FOOTER:
             tail = bytes(view[end : end + len(MAGIC)])
             wrong = wrong or not MAGIC.startswith(tail)
             if not wrong and len(tail) < len(MAGIC) and not self.salvage:
-                raise self._damaged(end, "no closing magic bytes after the footer")
+                raise self._damage_error(end, "no closing magic bytes after the footer")
         if wrong:
-            raise self._damaged(at, f"a {_name(opcode)} record that is none")
+            raise self._damage_error(at, f"a {_record_name(opcode)} record that is none")
         if self._in_data and opcode not in _OPCODES and self._may_be_lost_data(view, opcode, end):
-            raise self._damaged(at, f"a {_name(opcode)} record", end)
+            raise self._damage_error(at, f"a {_record_name(opcode)} record", end)
         return opcode, start, end
 
     def _may_be_lost_data(self, view: memoryview, opcode: int, end: int) -> bool:
         """Return whether a record with an unknown opcode may be a damaged record: a message index after it means that it was a chunk."""
-        return opcode < _PRIVATE or (end < len(view) and view[end] == Opcode.MESSAGE_INDEX)
+        return opcode < _LEAST_PRIVATE_OPCODE or (end < len(view) and view[end] == Opcode.MESSAGE_INDEX)
 
     def _refuse_second_file(self, view: memoryview, at: int) -> None:
         if bytes(view[at : at + len(MAGIC)]) == MAGIC:
@@ -190,84 +190,84 @@ class Container:
 
     def _refuse_second_file_within(self, view: memoryview, start: int, end: int) -> None:
         """Raise `TraceError` if lost bytes contain the beginning of another file: the data after it may be of another drive."""
-        match = _MAGIC.search(view[: end + len(MAGIC)], start)
+        match = _MAGIC_PATTERN.search(view[: end + len(MAGIC)], start)
         if match and match.start() < len(view) - len(MAGIC):
             self._refuse_second_file(view, match.start())
 
-    def _take(self, view: memoryview, opcode: int, at: int, start: int, end: int) -> Iterator[LogMessage]:
+    def _messages_in_record(self, view: memoryview, opcode: int, at: int, start: int, end: int) -> Iterator[LogMessage]:
         body = view[start:end]
         if opcode in {Opcode.CHUNK, Opcode.METADATA}:
-            self._places.add(at)
+            self._read_offsets.add(at)
         if opcode == Opcode.DATA_END:
             self._in_data = False
-            crc = self._parsed(DataEnd.read, body, at).data_section_crc
+            crc = self._parse_record(DataEnd.read, body, at).data_section_crc
             self._data_crc = 0 if self.losses.has_lost_bytes else crc  # after a loss, the CRC cannot be checked
             if self._data_crc and zlib.crc32(view[:at]) != crc:
-                self._data_changed(at)
+                self._report_changed_data(at)
         elif opcode == Opcode.HEADER:
-            self.library = self._parsed(Header.read, body, at).library
+            self.library = self._parse_record(Header.read, body, at).library
         elif opcode == Opcode.STATISTICS:
-            self._statistics = self._parsed(Statistics.read, body, at)
+            self._statistics = self._parse_record(Statistics.read, body, at)
         elif opcode == Opcode.CHUNK:
-            yield from self._chunk(body, at, end)
+            yield from self._messages_in_chunk(body, at, end)
         elif opcode == Opcode.MESSAGE_INDEX:
             self._check_message_index(body, at)
         elif opcode == Opcode.METADATA:
-            record = self._parsed(Metadata.read, body, at)
+            record = self._parse_record(Metadata.read, body, at)
             self.metadata.setdefault(record.name, record.metadata)
         elif self._in_data:  # the index repeats schemas and channels: only those in the data section are used
-            self._loose += opcode == Opcode.MESSAGE
-            yield from self._content(opcode, body, at, end)
+            self._n_loose += opcode == Opcode.MESSAGE
+            yield from self._message_of_data_record(opcode, body, at, end)
 
-    def _data_changed(self, at: int) -> None:
+    def _report_changed_data(self, at: int) -> None:
         """Report a wrong CRC of the data section if all messages came from chunks with right CRCs; otherwise raise `TraceError`."""
-        error = self._damaged(at, "a data section with a wrong CRC (its content changed), ending")
-        if not self.salvage or self._loose or self._unprotected or self.metadata:
+        error = self._damage_error(at, "a data section with a wrong CRC (its content changed), ending")
+        if not self.salvage or self._n_loose or self._n_unprotected or self.metadata:
             raise TraceError(str(error))
         self.findings.append(QualityFinding("data_changed", "error", str(error)))
 
-    def _parsed(self, parse: Callable[[ReadDataStream], T], body: memoryview, at: int) -> T:
+    def _parse_record(self, parse: Callable[[ReadDataStream], T], body: memoryview, at: int) -> T:
         try:
             return parse(ReadDataStream(io.BytesIO(body)))
         except (struct.error, McapError, ValueError) as error:
-            raise self._damaged(at, f"a record that cannot be read ({error})") from error
+            raise self._damage_error(at, f"a record that cannot be read ({error})") from error
 
-    def _content(self, opcode: int, body: memoryview, at: int, end: int) -> Iterator[LogMessage]:
+    def _message_of_data_record(self, opcode: int, body: memoryview, at: int, end: int) -> Iterator[LogMessage]:
         """Store a schema or channel, or yield a message; ignore other records."""
         if opcode == Opcode.MESSAGE:
-            if len(body) < _MESSAGE.size:
-                raise self._damaged(at, "a message record without its header", end)
-            number, _, log_time, _ = _MESSAGE.unpack_from(body)
+            if len(body) < _MESSAGE_HEADER.size:
+                raise self._damage_error(at, "a message record without its header", end)
+            number, _, log_time, _ = _MESSAGE_HEADER.unpack_from(body)
             if number not in self.channels:
-                raise self._damaged(at, f"a message on channel {number}, which was never declared,", end)
-            self._messages += 1
+                raise self._damage_error(at, f"a message on channel {number}, which was never declared,", end)
+            self._n_messages += 1
             self.counts.add(number, log_time)
-            self.losses.message(log_time)
-            yield LogMessage(self.channels[number], log_time, bytes(body[_MESSAGE.size :]), at)
+            self.losses.bound_by_message(log_time)
+            yield LogMessage(self.channels[number], log_time, bytes(body[_MESSAGE_HEADER.size :]), at)
         elif opcode == Opcode.SCHEMA:
-            schema = self._parsed(Schema.read, body, at)
+            schema = self._parse_record(Schema.read, body, at)
             self.schemas[schema.id] = schema
         elif opcode == Opcode.CHANNEL:
-            channel = self._parsed(Channel.read, body, at)
+            channel = self._parse_record(Channel.read, body, at)
             if channel.schema_id and channel.schema_id not in self.schemas:
-                raise self._damaged(at, f"channel {channel.topic!r} with a schema that was never declared,", end)
+                raise self._damage_error(at, f"channel {channel.topic!r} with a schema that was never declared,", end)
             self.channels[channel.id] = channel
 
-    def _chunk(self, body: memoryview, at: int, end: int) -> Iterator[LogMessage]:
+    def _messages_in_chunk(self, body: memoryview, at: int, end: int) -> Iterator[LogMessage]:
         where = f"{self.path}: byte {at}"
         try:
-            head = chunk_head(body)
-            records = self._work.unpacked(head, where)
+            head = parse_chunk(body)
+            records = self._unpacking_limit.unpack(head, where)
         except ChunkError as error:
-            raise self._damaged(at, str(error), end if error.framed else None) from error
-        self._unprotected += head.crc == 0
+            raise self._damage_error(at, str(error), end if error.has_valid_length else None) from error
+        self._n_unprotected += head.crc == 0
         view, place = memoryview(records), 0
         self.counts.begin_chunk()
         while place < len(view):
-            opcode, start, stop = self._inner(view, place, at, end)
-            self._work.record(where)
+            opcode, start, stop = self._opcode_and_range_in_chunk(view, place, at, end)
+            self._unpacking_limit.count_record(where)
             try:
-                yield from self._content(opcode, view[start:stop], at, end)
+                yield from self._message_of_data_record(opcode, view[start:stop], at, end)
             except DamageError as error:
                 error.resume = end
                 raise
@@ -275,23 +275,23 @@ class Container:
         self.counts.end_chunk()
 
     def _check_message_index(self, body: memoryview, at: int) -> None:
-        for log_ns in self.counts.missing_from_chunk(body):
-            error = self._damaged(at, "a message is missing from the chunk before its index")
+        for log_ns in self.counts.missing_times_of_chunk(body):
+            error = self._damage_error(at, "a message is missing from the chunk before its index")
             if not self.salvage:
                 raise error
-            self.losses.add_message(at, str(error), log_ns)
+            self.losses.add_undecodable_message(at, str(error), log_ns)
 
-    def _inner(self, view: memoryview, place: int, at: int, end: int) -> tuple[int, int, int]:
-        start = place + _RECORD.size
+    def _opcode_and_range_in_chunk(self, view: memoryview, place: int, at: int, end: int) -> tuple[int, int, int]:
+        start = place + _RECORD_HEADER.size
         if start <= len(view):
-            opcode, length = _RECORD.unpack_from(view, place)
+            opcode, length = _RECORD_HEADER.unpack_from(view, place)
             if opcode == 0:
-                raise self._damaged(at, "a chunk with zero bytes in place of a record", end)
+                raise self._damage_error(at, "a chunk with zero bytes in place of a record", end)
             if length <= len(view) - start:
                 return opcode, start, start + length
-        raise self._damaged(at, "a chunk that ends within a record", end)
+        raise self._damage_error(at, "a chunk that ends within a record", end)
 
-    def _index_of_damaged(self, view: memoryview, error: DamageError) -> Summary:
+    def _index_of_damaged_file(self, view: memoryview, error: DamageError) -> Summary:
         """Return the index, and add its schemas and channels, as their records may be lost. Without `salvage`, raise `error`."""
         if not self.salvage:
             raise error
@@ -300,35 +300,35 @@ class Container:
         self.channels = {**index.channels, **self.channels}
         return index
 
-    def _resume(self, view: memoryview, at: int) -> int:
+    def _resume_offset(self, view: memoryview, at: int) -> int:
         """Return the byte of the next record that is certainly intact, where reading can go on."""
-        chunked = bool(self._messages - self._loose) or not self._loose
-        return next_record(view, at + 1, channels=None if chunked else self.channels)
+        chunked = bool(self._n_messages - self._n_loose) or not self._n_loose
+        return next_record_offset(view, at + 1, channels=None if chunked else self.channels)
 
     def _check_data_end(self, size: int, *, has_footer: bool, has_index: bool) -> None:
         """Report a missing data end record or footer: as a loss if messages may be missing at the end, otherwise as a finding."""
         if self._in_data and has_footer:
             if has_index:
                 return
-            error = self._damaged(size, "no end of the data before the footer, in a file that ends")
+            error = self._damage_error(size, "no end of the data before the footer, in a file that ends")
             if not self.salvage:
                 raise error
             self.losses.add(size, size, str(error))
         elif self._in_data and (not self.losses or self.losses.last.end < size):
-            error = self._damaged(size, "the file ends without a footer")
+            error = self._damage_error(size, "the file ends without a footer")
             if not self.salvage:
                 raise error
             self.losses.add(size, size, str(error))
         elif not has_footer and not self._in_data:
             if not self.salvage:
-                raise self._damaged(size, "the file ends without a footer")
+                raise self._damage_error(size, "the file ends without a footer")
             message = f"the file ends without a footer at byte {size}, after the end of its data: nothing is lost"
             self.findings.append(QualityFinding("no_footer", "warning", message))
 
     def _check_footer(self, view: memoryview, at: int, start: int, end: int) -> None:
         """Report a wrong CRC of the index, bytes after the file's end, or missing magic bytes; none of these loses messages."""
-        footer = self._parsed(Footer.read, view[start:end], at)
-        if not summary_is_whole(footer, view, at, end):
+        footer = self._parse_record(Footer.read, view[start:end], at)
+        if not is_summary_intact(footer, view, at, end):
             message = f"the index has a wrong CRC (footer at byte {at}): only its message counts are compared"
             self.findings.append(QualityFinding("index_damaged", "warning", message))
         extra = len(view) - end - len(MAGIC)
@@ -343,29 +343,29 @@ class Container:
     def _check_index(self, index: Summary) -> None:
         """Add as losses the chunks that an intact index lists, but the data lack. Errors: `DamageError` for a missing metadata record."""
         for offset, (length, since, until) in sorted(index.chunks.items()):
-            if offset not in self._places and not self.losses.covers(offset):
-                error = self._damaged(offset, "no chunk, where the index has one,")
+            if offset not in self._read_offsets and not self.losses.covers(offset):
+                error = self._damage_error(offset, "no chunk, where the index has one,")
                 if not self.salvage:
                     raise error
                 self.losses.add(offset, offset + length, str(error), since, until)
-        if missing := [at for at in index.metadata if at not in self._places]:
-            raise self._damaged(missing[0], "no metadata record, where the index has one,")
+        if missing := [at for at in index.metadata if at not in self._read_offsets]:
+            raise self._damage_error(missing[0], "no metadata record, where the index has one,")
         if index.chunks:
-            self.losses.narrow(index.chunks)
+            self.losses.bound_by_chunks(index.chunks)
 
-    def _report(self) -> None:
+    def _report_counts_and_crcs(self) -> None:
         if self._statistics is not None and not self.losses.has_lost_bytes:
             is_damaged = any(each.check_id == "index_damaged" for each in self.findings)
-            told = self.counts.contradiction(self._statistics, self.channels, is_damaged=is_damaged)
+            told = self.counts.contradiction_text(self._statistics, self.channels, is_damaged=is_damaged)
             if told is not None:
                 message = f"the index counts {told}: the present messages are read, the missing ones are lost"
                 self.findings.append(QualityFinding("index_mismatch", "error", message))
-        if self._unprotected:
-            message = f"chunks without a CRC: {self._unprotected}: flipped bits in them remain undetected"
-            self.findings.append(QualityFinding("unprotected", "info", message, self._unprotected))
-        elif self._loose and not self._data_crc:
-            message = f"messages outside chunks, without a CRC: {self._loose}: flipped bits in them remain undetected"
-            self.findings.append(QualityFinding("unprotected", "info", message, self._loose))
+        if self._n_unprotected:
+            message = f"chunks without a CRC: {self._n_unprotected}: flipped bits in them remain undetected"
+            self.findings.append(QualityFinding("unprotected", "info", message, self._n_unprotected))
+        elif self._n_loose and not self._data_crc:
+            message = f"messages outside chunks, without a CRC: {self._n_loose}: flipped bits in them remain undetected"
+            self.findings.append(QualityFinding("unprotected", "info", message, self._n_loose))
 
 
 def message_batches(
@@ -381,7 +381,7 @@ def message_batches(
         topic, schema = log_message.channel.topic, container.schemas.get(log_message.channel.schema_id)
         kind = None if schema is None else kind_of(log_message.channel, schema)
         if kind is None:
-            container.counts.unused.add(log_message.channel.id)
+            container.counts.unread_channels.add(log_message.channel.id)
             continue
         changed = topic in waiting and waiting[topic][1][0].channel.schema_id != log_message.channel.schema_id
         if changed or sizes[topic] >= BATCH_BYTES:
@@ -392,7 +392,7 @@ def message_batches(
     yield from waiting.values()
 
 
-def _name(opcode: int) -> str:
+def _record_name(opcode: int) -> str:
     try:
         return Opcode(opcode).name.lower().replace("_", " ")
     except ValueError:

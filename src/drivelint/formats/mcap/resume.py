@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Final
 from mcap.opcode import Opcode
 
 from drivelint.errors import TraceError
-from drivelint.formats.mcap.chunk import ChunkError, chunk_head, chunk_records
+from drivelint.formats.mcap.chunk import ChunkError, chunk_records, parse_chunk
 
 if TYPE_CHECKING:
     from collections.abc import Container
 
 MAGIC = b"\x89MCAP0\r\n"
-_RECORD = struct.Struct("<BQ")
-_RECORD_HEAD_PATTERN: Final = re.compile(rb"[\x02\x05\x06\x0f][\s\S]{5}\x00{3}")
+_RECORD_HEADER = struct.Struct("<BQ")
+_RECORD_HEADER_PATTERN: Final = re.compile(rb"[\x02\x05\x06\x0f][\s\S]{5}\x00{3}")
 """Matches the head of a footer, message, chunk or data end record that is shorter than 1 TiB."""
 _OPCODES_AFTER_DATA_END: Final = frozenset({
     Opcode.SCHEMA, Opcode.CHANNEL, Opcode.STATISTICS, Opcode.CHUNK_INDEX, Opcode.ATTACHMENT_INDEX, Opcode.METADATA_INDEX,
@@ -31,7 +31,7 @@ _LEAST_UNPACKING_LIMIT_BYTES: Final = 64 << 20
 """A search may unpack this many bytes of any file."""
 
 
-def next_record(view: memoryview, at: int, *, channels: Container[int] | None) -> int:
+def next_record_offset(view: memoryview, at: int, *, channels: Container[int] | None) -> int:
     """Return the first byte from `at` on at which reading can go on; the end of the file if there is none.
 
     Reading goes on at an intact chunk, a data end record, or the footer; in a file without chunks also at a message.
@@ -39,17 +39,17 @@ def next_record(view: memoryview, at: int, *, channels: Container[int] | None) -
     """
     bytes_to_unpack = max(_MOST_UNPACKED_FILE_SIZES * len(view), _LEAST_UNPACKING_LIMIT_BYTES)
     place = at
-    while bytes_to_unpack > 0 and (match := _RECORD_HEAD_PATTERN.search(view, place)):
+    while bytes_to_unpack > 0 and (match := _RECORD_HEADER_PATTERN.search(view, place)):
         place = match.start()
-        opcode, length = _RECORD.unpack_from(view, place)
-        start, end = place + _RECORD.size, place + _RECORD.size + length
+        opcode, length = _RECORD_HEADER.unpack_from(view, place)
+        start, end = place + _RECORD_HEADER.size, place + _RECORD_HEADER.size + length
         if end <= len(view):
             if opcode == Opcode.CHUNK:
-                bytes_to_unpack -= length + _declared_size(view[start:end])
-                found = _is_chunk(view[start:end])
+                bytes_to_unpack -= length + _declared_unpacked_bytes(view[start:end])
+                found = _is_intact_chunk(view[start:end])
             else:
-                found = _is_end(view, opcode, start, end) or (
-                    opcode == Opcode.MESSAGE and channels is not None and _is_message(view, place, channels)
+                found = _is_end_of_data(view, opcode, start, end) or (
+                    opcode == Opcode.MESSAGE and channels is not None and _has_message_chain(view, place, channels)
                 )
             if found:
                 return place
@@ -57,39 +57,39 @@ def next_record(view: memoryview, at: int, *, channels: Container[int] | None) -
     return len(view)
 
 
-def _declared_size(body: memoryview) -> int:
+def _declared_unpacked_bytes(body: memoryview) -> int:
     try:
-        return chunk_head(body).size
+        return parse_chunk(body).size
     except ChunkError:
         return 0
 
 
-def _is_chunk(body: memoryview) -> bool:
+def _is_intact_chunk(body: memoryview) -> bool:
     try:
-        head = chunk_head(body)
+        head = parse_chunk(body)
         # without a CRC, only successful decompression shows that the chunk is intact
         return bool(head.crc or head.compression) and len(chunk_records(head, "")) == head.size
     except (ChunkError, TraceError):
         return False
 
 
-def _is_end(view: memoryview, opcode: int, start: int, end: int) -> bool:
+def _is_end_of_data(view: memoryview, opcode: int, start: int, end: int) -> bool:
     if opcode == Opcode.FOOTER:
         return end - start == 20 and bytes(view[end:]) == MAGIC
-    if opcode != Opcode.DATA_END or end - start != 4 or end + _RECORD.size > len(view):
+    if opcode != Opcode.DATA_END or end - start != 4 or end + _RECORD_HEADER.size > len(view):
         return False
-    behind, length = _RECORD.unpack_from(view, end)
-    return behind in _OPCODES_AFTER_DATA_END and end + _RECORD.size + length <= len(view)
+    behind, length = _RECORD_HEADER.unpack_from(view, end)
+    return behind in _OPCODES_AFTER_DATA_END and end + _RECORD_HEADER.size + length <= len(view)
 
 
-def _is_message(view: memoryview, at: int, channels: Container[int]) -> bool:
+def _has_message_chain(view: memoryview, at: int, channels: Container[int]) -> bool:
     """Return whether `_LEAST_CHAIN_MESSAGES` messages on known channels follow from `at` on, or fewer up to the end of the data."""
     for _ in range(_LEAST_CHAIN_MESSAGES):
-        if at + _RECORD.size > len(view):
+        if at + _RECORD_HEADER.size > len(view):
             return False
-        opcode, length = _RECORD.unpack_from(view, at)
-        start, end = at + _RECORD.size, at + _RECORD.size + length
-        if _is_end(view, opcode, start, end):
+        opcode, length = _RECORD_HEADER.unpack_from(view, at)
+        start, end = at + _RECORD_HEADER.size, at + _RECORD_HEADER.size + length
+        if _is_end_of_data(view, opcode, start, end):
             return True
         if opcode != Opcode.MESSAGE or length < _LEAST_MESSAGE_BYTES or end > len(view):
             return False

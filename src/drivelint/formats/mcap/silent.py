@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
-def silent_topics(files: Iterable[Path], is_wanted: Callable[[str], bool]) -> str:
+def silent_topics_text(files: Iterable[Path], is_wanted: Callable[[str], bool]) -> str:
     """Return a clause that names the topics of wanted schemas without a message; '' if there are no such topics.
 
     This reads the whole files again, for the error that nothing usable was found.

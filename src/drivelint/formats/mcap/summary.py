@@ -19,7 +19,7 @@ from drivelint.formats.mcap.resume import MAGIC
 if TYPE_CHECKING:
     from pathlib import Path
 
-_RECORD = struct.Struct("<BQ")
+_RECORD_HEADER = struct.Struct("<BQ")
 _FOOTER_BYTES = 20
 
 
@@ -45,42 +45,46 @@ def read_index(file: Path) -> Summary:
         mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as data,
         memoryview(data) as view,
     ):
-        return read_summary(view, unprotected=True)
+        return read_summary(view, may_lack_crc=True)
 
 
-def read_summary(view: memoryview, *, unprotected: bool = False) -> Summary:
+def read_summary(view: memoryview, *, may_lack_crc: bool = False) -> Summary:
     """Return the index of a mapped file; an empty `Summary` if the index is missing or damaged.
 
-    An index without a CRC is read only if `unprotected`.
+    An index without a CRC is read only if `may_lack_crc`.
     """
     end = len(view) - len(MAGIC)
-    at = end - _FOOTER_BYTES - _RECORD.size
-    if at < len(MAGIC) or bytes(view[end:]) != MAGIC or _RECORD.unpack_from(view, at) != (Opcode.FOOTER, _FOOTER_BYTES):
-        return Summary()
-    footer = Footer.read(_stream(view[at + _RECORD.size : end]))
+    at = end - _FOOTER_BYTES - _RECORD_HEADER.size
     if (
-        not (footer.summary_crc or unprotected)
+        at < len(MAGIC)
+        or bytes(view[end:]) != MAGIC
+        or _RECORD_HEADER.unpack_from(view, at) != (Opcode.FOOTER, _FOOTER_BYTES)
+    ):
+        return Summary()
+    footer = Footer.read(_stream(view[at + _RECORD_HEADER.size : end]))
+    if (
+        not (footer.summary_crc or may_lack_crc)
         or not 0 < footer.summary_start < at
-        or not summary_is_whole(footer, view, at, end)
+        or not is_summary_intact(footer, view, at, end)
     ):
         return Summary()
     try:
-        return _records(view, footer.summary_start, at)
+        return _summary_of_records(view, footer.summary_start, at)
     except (struct.error, McapError, ValueError):
         return Summary()
 
 
-def summary_is_whole(footer: Footer, view: memoryview, at: int, end: int) -> bool:
+def is_summary_intact(footer: Footer, view: memoryview, at: int, end: int) -> bool:
     """Return whether the index matches the CRC in the footer, which is in bytes `at` to `end`; also True without a CRC."""
     begin = min(footer.summary_start or at, at)
     return not footer.summary_crc or zlib.crc32(view[begin : end - 4]) == footer.summary_crc
 
 
-def _records(view: memoryview, at: int, end: int) -> Summary:
+def _summary_of_records(view: memoryview, at: int, end: int) -> Summary:
     summary = Summary()
-    while at + _RECORD.size <= end:
-        opcode, length = _RECORD.unpack_from(view, at)
-        body = view[at + _RECORD.size : min(at + _RECORD.size + length, end)]
+    while at + _RECORD_HEADER.size <= end:
+        opcode, length = _RECORD_HEADER.unpack_from(view, at)
+        body = view[at + _RECORD_HEADER.size : min(at + _RECORD_HEADER.size + length, end)]
         if opcode == Opcode.SCHEMA:
             schema = Schema.read(_stream(body))
             summary.schemas[schema.id] = schema
@@ -94,7 +98,7 @@ def _records(view: memoryview, at: int, end: int) -> Summary:
             summary.message_indexes[chunk.chunk_start_offset] = chunk.message_index_offsets
         elif opcode == Opcode.METADATA_INDEX:
             summary.metadata.append(MetadataIndex.read(_stream(body)).offset)
-        at += _RECORD.size + length
+        at += _RECORD_HEADER.size + length
     return summary
 
 

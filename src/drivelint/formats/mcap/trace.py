@@ -58,6 +58,6 @@ def _refuse_other_messages(path: Path) -> None:
     """Raise `TraceError` for a bag, or a ROS 2 or Foxglove log, without odometry and road users; the error lists the topics."""
     from drivelint.formats.mcap import bag
 
-    kinds = bag.topics(path)
+    kinds = bag.kinds_by_topic(path)
     if path.is_dir() or any("/" in kind or kind.startswith("foxglove.") for kind in kinds.values()):
         raise TraceError(f"{path}: no nav_msgs/Odometry and no road users: {bag.topics_text(path)}")

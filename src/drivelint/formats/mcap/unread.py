@@ -40,7 +40,7 @@ class UnreadTopics:
             for topic, what in sorted(self.topics.items())
         ]
 
-    def refuse(self, path: Path, kinds: Collection[str], read_topics: Collection[str]) -> None:
+    def refuse_kinds(self, path: Path, kinds: Collection[str], read_topics: Collection[str]) -> None:
         """Raise `TraceError` if a skipped topic has messages of these `kinds`, which contain road users: its actors are unknown.
 
         `read_topics`: topics of these kinds in a supported encoding; the error proposes the first.

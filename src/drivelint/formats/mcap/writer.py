@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 ID_LIMIT: Final = 1 << 16  # channel and schema ids have 16 bits; schema id 0 means: no schema
 _ZSTD_LEVEL: Final = 1
-_BLOCK: Final = 4 << 20
+_BLOCK_BYTES: Final = 4 << 20
 
 
 class Sink:
@@ -47,8 +47,8 @@ class Sink:
 
     def write(self, data: bytes | memoryview) -> None:
         """Append bytes unchanged."""
-        for start in range(0, len(data), _BLOCK):
-            block = data[start : start + _BLOCK]
+        for start in range(0, len(data), _BLOCK_BYTES):
+            block = data[start : start + _BLOCK_BYTES]
             self._crc = zlib.crc32(block, self._crc)
             self._file.write(block)
         self.offset += len(data)
@@ -56,7 +56,7 @@ class Sink:
     def begin(self, library: str) -> None:
         """Write magic bytes and header. Not for a copied file, which begins with those of the original."""
         self.write(MAGIC)
-        self._record(records.Header(profile="", library=library))
+        self._write_record(records.Header(profile="", library=library))
 
     def add_channel(
         self, topic: str, encoding: str, schema: records.Schema, metadata: Mapping[str, str] | None = None
@@ -69,7 +69,7 @@ class Sink:
         number = min(same) if same else free_id(self.schemas, 1, "schema")
         if not same:
             self.schemas[number] = replace(schema, id=number)
-            self._record(self.schemas[number])
+            self._write_record(self.schemas[number])
         channel = records.Channel(
             id=free_id(self.channels, 0, "channel"),
             topic=topic,
@@ -78,18 +78,18 @@ class Sink:
             schema_id=number,
         )
         self.channels[channel.id] = channel
-        self._record(channel)
+        self._write_record(channel)
         return channel.id
 
-    def announce_schema(self, schema: records.Schema) -> None:
+    def write_schema(self, schema: records.Schema) -> None:
         """Write a schema, keeping its id."""
         self.schemas[schema.id] = schema
-        self._record(schema)
+        self._write_record(schema)
 
-    def announce_channel(self, channel: records.Channel) -> None:
+    def write_channel(self, channel: records.Channel) -> None:
         """Write a channel, keeping its id."""
         self.channels[channel.id] = channel
-        self._record(channel)
+        self._write_record(channel)
 
     def add_chunk(
         self, content: bytes | memoryview, index: Mapping[int, NDArray[np.uint64]], *, compressed: bool = True
@@ -109,7 +109,7 @@ class Sink:
             uncompressed_size=len(content),
         )
         start = self.offset
-        self._record(chunk)
+        self._write_record(chunk)
         entry = records.ChunkIndex(
             chunk_length=self.offset - start, chunk_start_offset=start, compression=chunk.compression,
             compressed_size=len(data), message_end_time=chunk.message_end_time, message_index_length=0,
@@ -131,7 +131,9 @@ class Sink:
     def add_attachment(self, name: str, media_type: str, data: bytes, log_time: int) -> None:
         """Write an attachment; its creation time is 0, so that equal runs write equal bytes."""
         start = self.offset
-        self._record(records.Attachment(create_time=0, log_time=log_time, name=name, media_type=media_type, data=data))
+        self._write_record(
+            records.Attachment(create_time=0, log_time=log_time, name=name, media_type=media_type, data=data)
+        )
         self.attachments.append(records.AttachmentIndex(
             offset=start, length=self.offset - start, log_time=log_time, create_time=0, data_size=len(data),
             name=name, media_type=media_type,
@@ -140,12 +142,12 @@ class Sink:
     def add_metadata(self, name: str, content: Mapping[str, str]) -> None:
         """Write a metadata record with its keys sorted."""
         start = self.offset
-        self._record(records.Metadata(name=name, metadata=dict(sorted(content.items()))))
+        self._write_record(records.Metadata(name=name, metadata=dict(sorted(content.items()))))
         self.metadata.append(records.MetadataIndex(offset=start, length=self.offset - start, name=name))
 
     def finish(self) -> None:
         """Write the end of the data section, the summary and the footer."""
-        self._record(records.DataEnd(data_section_crc=self._crc))
+        self._write_record(records.DataEnd(data_section_crc=self._crc))
         start = self.offset
         self._crc = 0  # the CRC in the footer covers the bytes from the summary on
         groups: list[tuple[int, Sequence[records.McapRecord]]] = [
@@ -160,20 +162,20 @@ class Sink:
         for opcode, group in groups:
             group_start = self.offset
             for record in group:
-                self._record(record)
+                self._write_record(record)
             if group:
                 length = self.offset - group_start
                 places.append(records.SummaryOffset(group_opcode=opcode, group_start=group_start, group_length=length))
         offsets = self.offset
         for place in places:
-            self._record(place)
+            self._write_record(place)
         head = struct.pack("<BQQQ", Opcode.FOOTER, 20, start, offsets)
-        self._record(
+        self._write_record(
             records.Footer(summary_start=start, summary_offset_start=offsets, summary_crc=zlib.crc32(head, self._crc))
         )
         self.write(MAGIC)
 
-    def _record(self, record: records.McapRecord) -> None:
+    def _write_record(self, record: records.McapRecord) -> None:
         builder = RecordBuilder()
         record.write(builder)
         self.write(builder.end())  # type: ignore[no-untyped-call]

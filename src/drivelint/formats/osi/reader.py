@@ -21,9 +21,9 @@ from drivelint.drive.lost_time import times_of_lost_rows
 from drivelint.drive.trace import EARLIEST_UTC_NS, FrameTimes, QualityFinding, Recording, States, single_map
 from drivelint.errors import TraceError
 from drivelint.formats.mcap.losses import Losses
-from drivelint.formats.mcap.malformed import decode_others, decode_readable
+from drivelint.formats.mcap.malformed import decode_readable, decode_without_malformed
 from drivelint.formats.mcap.reader import Container, LogMessage, message_batches
-from drivelint.formats.mcap.silent import silent_topics
+from drivelint.formats.mcap.silent import silent_topics_text
 from drivelint.formats.mcap.unread import UnreadTopics
 from drivelint.formats.osi import metadata, trace_file
 from drivelint.formats.osi.decode import FIELD_TREES, Decoder, FirstMessageFacts, read_first_message
@@ -90,7 +90,7 @@ def read_mcap(path: Path, topic: str | None) -> Recording:
         else:
             events += [log_message.data for log_message in log_messages]
     _check_topics(container, truth_topics, topic)
-    unread.refuse(path, FIELD_TREES if topic is None else (), truth_topics)
+    unread.refuse_kinds(path, FIELD_TREES if topic is None else (), truth_topics)
     _refuse_converted_log_without_end(container)
     if not batches:
         raise TraceError(f"{path}: no message of its ground truth can be decoded ({container.losses.first.cause})")
@@ -104,7 +104,7 @@ def read_mcap(path: Path, topic: str | None) -> Recording:
         *lost_findings[:1],
         *(several if maps else first_message.findings),
     ]
-    recording.lost_times += container.losses.times(path)
+    recording.lost_times += container.losses.lost_times(path)
     recording.events = metadata.read_declared_events(path, events)
     metadata.apply_metadata(path, container.metadata, recording)
     return recording
@@ -172,7 +172,7 @@ def _foreign_content_text(container: Container) -> str:
     names = {0: "no schema", **{number: schema.name for number, schema in container.schemas.items()}}
     kinds = {f"{names[c.schema_id]} in {c.message_encoding or 'no encoding'}" for c in container.channels.values()}
     needed = f"{GROUND_TRUTH} or {SENSOR_VIEW} in protobuf is needed"
-    if silent := silent_topics([container.path], FIELD_TREES.__contains__):
+    if silent := silent_topics_text([container.path], FIELD_TREES.__contains__):
         return f"{silent}: record it again"
     return f"it has {name_list(sorted(kinds)) if kinds else 'no channel'}; {needed}"
 
@@ -193,14 +193,14 @@ def read(probe: Probe) -> Recording:
                 decoder, name = _fitting_decoder_and_type(path, log_messages)
                 first_message = read_first_message(log_messages[0].data, name)
                 decoder.lights = first_message.lights
-            frames, malformed = decode_others(log_messages, decoder.frames)
+            frames, malformed = decode_without_malformed(log_messages, decoder.frames)
             times = iter(() if frames is None else frames.t_ns.tolist())
             for k, log_message in enumerate(log_messages):
                 if k in malformed:
                     end = log_message.offset + trace_file.LENGTH_FIELD_BYTES + len(log_message.data)
                     losses.add(log_message.offset, end, "a message that cannot be decoded")
                 else:
-                    losses.message(next(times))
+                    losses.bound_by_message(next(times))
             if frames is not None:
                 batches.append(frames)
     if not batches:
@@ -224,10 +224,10 @@ def _fitting_decoder_and_type(path: Path, log_messages: list[LogMessage]) -> tup
 
     Errors: `TraceError` if neither type fits.
     """
-    for some in (log_messages, log_messages[:1]):  # a damaged later message is reported when it is decoded
+    for batch in (log_messages, log_messages[:1]):  # a damaged later message is reported when it is decoded
         for name in (GROUND_TRUTH, SENSOR_VIEW):
             decoder = Decoder(path, 1, name, descriptor_set("read"))
-            if _has_placed_objects(decoder, some):
+            if _has_placed_objects(decoder, batch):
                 return decoder, name
     raise TraceError(
         f"{path}: no moving objects in the first {len(log_messages)} messages, read as {GROUND_TRUTH} or as {SENSOR_VIEW}: "
@@ -237,7 +237,7 @@ def _fitting_decoder_and_type(path: Path, log_messages: list[LogMessage]) -> tup
 
 def _has_placed_objects(decoder: Decoder, log_messages: list[LogMessage]) -> bool:
     try:
-        frames, _ = decode_others(log_messages, decoder.frames)
+        frames, _ = decode_without_malformed(log_messages, decoder.frames)
     except TraceError:
         return False
     return frames is not None and bool(len(frames.ids) and np.isfinite(frames.numbers["x_m"]).any())

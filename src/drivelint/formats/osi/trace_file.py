@@ -107,11 +107,11 @@ def lost_times(path: Path, losses: Losses, t_ns: Times) -> list[LostTime]:
     steps = np.diff(t_ns)
     late = -min(int(steps.min(initial=0)), 0)
     if len(steps) and not steps.any():
-        return [lost_time._replace(since_ns=None, until_ns=None) for lost_time in losses.times(path)]
+        return [lost_time._replace(since_ns=None, until_ns=None) for lost_time in losses.lost_times(path)]
     return [
         lost_time._replace(
             since_ns=None if lost_time.since_ns is None else lost_time.since_ns - late,
             until_ns=None if lost_time.until_ns is None else lost_time.until_ns + late,
         )
-        for lost_time in losses.times(path)
+        for lost_time in losses.lost_times(path)
     ]

@@ -12,7 +12,7 @@ from drivelint.formats.coordinate_frames import Poses, TransformTree, clean_fram
 from drivelint.formats.ros2.messages import CONTROL_MODE, ENGAGE, HAZARD_LIGHTS, TURN_INDICATORS
 from drivelint.formats.ros2.objects import stamps, vectors
 from drivelint.formats.ros2.recorded_poses import RecordedPoses, recorded_poses
-from drivelint.formats.ros2.vehicle import VehicleBox, at_axle
+from drivelint.formats.ros2.vehicle import VehicleBox, is_axle_frame
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -20,15 +20,15 @@ if TYPE_CHECKING:
     from drivelint.arrays import Codes, Times
     from drivelint.formats.ros2.cdr import Table
 
-STALE_NS: Final = 1_000_000_000
+STALE_AFTER_NS: Final = 1_000_000_000
 """A report of lights is valid for at most this time: vehicles send ten or more per second."""
 _AUTONOMOUS = 1
 _HAZARD_ON = 2
 _OFF, _HAZARD = INDICATORS.index("off"), INDICATORS.index("hazard")
-_INDICATOR: Final = {1: _OFF, 2: INDICATORS.index("left"), 3: INDICATORS.index("right")}
+_INDICATOR_CODE_BY_REPORT: Final = {1: _OFF, 2: INDICATORS.index("left"), 3: INDICATORS.index("right")}
 
 
-def odometry(table: Table, log_ns: Times, box: VehicleBox | None, option_ahead_m: float) -> RecordedPoses:
+def odometry_poses(table: Table, log_ns: Times, box: VehicleBox | None, option_ahead_m: float) -> RecordedPoses:
     """Return the poses of odometry messages as rows of one actor, moved to the centre of its box.
 
     `box`: the vehicle's box relative to `AXLE_FRAME`; `option_ahead_m`: the distance of the centre ahead of any other child frame.
@@ -45,7 +45,7 @@ def odometry(table: Table, log_ns: Times, box: VehicleBox | None, option_ahead_m
     place = inside.place
     lever = np.tile([option_ahead_m, 0.0, 0.0], (n, 1))
     if box is not None:
-        lever[at_axle(child)] = box.centre
+        lever[is_axle_frame(child)] = box.centre
     if lever.any():
         place = inside.compose(Poses(lever, np.tile([0.0, 0.0, 0.0, 1.0], (n, 1)))).place
         swing = np.nan_to_num(yaw_rate)[:, None] * np.column_stack([-lever[:, 1], lever[:, 0]])
@@ -84,14 +84,14 @@ def add_transforms(frames: TransformTree, table: Table, log_ns: Times, *, static
         )
 
 
-def indicators(t_ns: Times, reports: dict[str, tuple[Times, NDArray[Any]]]) -> Codes:
-    """Return the ego's indicator at the given times, from the last reports of at most `STALE_NS` before; -1 if unknown.
+def indicator_codes(t_ns: Times, reports: dict[str, tuple[Times, NDArray[Any]]]) -> Codes:
+    """Return the ego's indicator at the given times, from the last reports of at most `STALE_AFTER_NS` before; -1 if unknown.
 
     Hazard lights take precedence over left and right. A report of hazard lights alone does not show that both indicators are off.
     """
-    side, hazard = (_last(t_ns, reports.get(name)) for name in (TURN_INDICATORS, HAZARD_LIGHTS))
+    side, hazard = (_last_fresh_values(t_ns, reports.get(name)) for name in (TURN_INDICATORS, HAZARD_LIGHTS))
     result = np.full(len(t_ns), -1, np.int8)
-    for number, code in _INDICATOR.items():
+    for number, code in _INDICATOR_CODE_BY_REPORT.items():
         result[side == number] = code
     if HAZARD_LIGHTS in reports:  # without a recent report, the hazard lights may be on
         result[hazard < 0] = -1
@@ -99,17 +99,17 @@ def indicators(t_ns: Times, reports: dict[str, tuple[Times, NDArray[Any]]]) -> C
     return result
 
 
-def _last(t_ns: Times, reports: tuple[Times, NDArray[Any]] | None) -> Times:
+def _last_fresh_values(t_ns: Times, reports: tuple[Times, NDArray[Any]] | None) -> Times:
     if reports is None:
         return np.full(len(t_ns), -1, np.int64)
     order = np.argsort(reports[0], kind="stable")
     times, values = reports[0][order], reports[1][order].astype(np.int64)
     at = np.searchsorted(times, t_ns, side="right") - 1
-    fresh = (at >= 0) & (t_ns - times[np.maximum(at, 0)] <= STALE_NS)
+    fresh = (at >= 0) & (t_ns - times[np.maximum(at, 0)] <= STALE_AFTER_NS)
     return np.where(fresh, values[np.maximum(at, 0)], -1)
 
 
-def engagement(reports: dict[str, tuple[Times, NDArray[Any]]], ego: str) -> pa.Table | None:
+def engagement_events(reports: dict[str, tuple[Times, NDArray[Any]]], ego: str) -> pa.Table | None:
     """Return events `engaged` (on or off) at the first report and whenever the automated system starts or stops driving; None: no reports.
 
     The vehicle's report takes precedence over the command to the vehicle. Only full automation is `engaged`.

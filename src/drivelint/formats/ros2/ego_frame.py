@@ -10,7 +10,7 @@ from drivelint.drive.trace import ACTOR_CLASSES
 from drivelint.formats.coordinate_frames import FIXED_FRAME_NAMES, Poses, clean_frame_name, unit_quaternions
 from drivelint.formats.ros2.objects import stamps, vectors
 from drivelint.formats.ros2.recorded_poses import recorded_poses
-from drivelint.formats.ros2.vehicle import at_axle
+from drivelint.formats.ros2.vehicle import is_axle_frame
 from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 EGO_FRAMES: Final = ("base_link", "base_footprint")
 """The names of the vehicle's own frame by REP 105, best first; a prefix such as `ego/` may precede them."""
-_MOST_NAMES: Final = 4
+_MOST_LISTED_NAMES: Final = 4
 
 
 class EgoRows(NamedTuple):
@@ -47,7 +47,7 @@ class _Transforms(NamedTuple):
     poses: Poses
 
 
-def ego_rows(
+def ego_rows_or_reason(
     tables: Iterable[tuple[str, tuple[Table, Times]]],
     box: VehicleBox | None,
     option_ahead_m: float,
@@ -60,17 +60,19 @@ def ego_rows(
     whose transforms give the times; transforms above that frame place it later. `box`, `option_ahead_m`: as for odometry.
     `ego_name`: the frame that the user chose; one that the log does not have is the id of another actor.
     """
-    found, ambiguous = _of_frames(tables, static_suffix)
+    found, ambiguous = _transforms_by_child(tables, static_suffix)
     chosen = None if ego_name is None else clean_frame_name(ego_name)
     names = (
-        [chosen] if chosen in found else [name for last in EGO_FRAMES for name in sorted(found) if _last(name) == last]
+        [chosen]
+        if chosen in found
+        else [name for last in EGO_FRAMES for name in sorted(found) if _name_without_prefix(name) == last]
     )
     if not names:
-        seen = name_list(sorted(found), _MOST_NAMES) or "none"
+        seen = name_list(sorted(found), _MOST_LISTED_NAMES) or "none"
         return f"no transform leads to {' or '.join(EGO_FRAMES)} (child frames: {seen}; --ego FRAME chooses one)"
     frame = names[0]
-    if sum(_last(name) == _last(frame) for name in names) > 1:
-        return f"several frames may be the ego's, and --ego FRAME chooses one: {name_list(names, _MOST_NAMES)}"
+    if sum(_name_without_prefix(name) == _name_without_prefix(frame) for name in names) > 1:
+        return f"several frames may be the ego's, and --ego FRAME chooses one: {name_list(names, _MOST_LISTED_NAMES)}"
     chain: list[_Transforms] = []
     at = frame
     while True:
@@ -86,13 +88,13 @@ def ego_rows(
     above = [chain[-1].parent]
     while above[-1] in found and found[above[-1]].parent not in above:
         above.append(found[above[-1]].parent)
-    if not {_last(name) for name in above} & set(FIXED_FRAME_NAMES):
+    if not {_name_without_prefix(name) for name in above} & set(FIXED_FRAME_NAMES):
         return f"the chain from {frame!r} ends at {above[-1]!r}, without {' or '.join(FIXED_FRAME_NAMES)}"
-    return EgoRows(chain[-1].topic, frame, _rows(frame, chain, box, option_ahead_m))
+    return EgoRows(chain[-1].topic, frame, _rows_of_chain(frame, chain, box, option_ahead_m))
 
 
-def within_chain(rows: RecordedPoses, frames: TransformTree, fixed: str, most_ns: int) -> RecordedPoses:
-    """Return the rows without those at the ends for which a transform above is not recorded yet or any more, for up to `most_ns`.
+def drop_unplaced_ends(rows: RecordedPoses, frames: TransformTree, fixed: str, most_dropped_ns: int) -> RecordedPoses:
+    """Return the rows without those at the ends for which a transform above is not recorded yet or any more, for up to `most_dropped_ns`.
 
     The transforms of a chain are sent at different rates, so that their recordings begin and end at different times.
     """
@@ -105,14 +107,16 @@ def within_chain(rows: RecordedPoses, frames: TransformTree, fixed: str, most_ns
         return rows
     first, last = placed.min(), placed.max()
     kept = np.ones(len(rows), np.bool_)
-    if first - t_ns.min() <= most_ns:
+    if first - t_ns.min() <= most_dropped_ns:
         kept &= t_ns >= first
-    if t_ns.max() - last <= most_ns:
+    if t_ns.max() - last <= most_dropped_ns:
         kept &= t_ns <= last
     return rows.take(kept)
 
 
-def _rows(frame: str, chain: list[_Transforms], box: VehicleBox | None, option_ahead_m: float) -> RecordedPoses:
+def _rows_of_chain(
+    frame: str, chain: list[_Transforms], box: VehicleBox | None, option_ahead_m: float
+) -> RecordedPoses:
     moving = chain[-1]
     _, last = np.unique(moving.stamp_ns[::-1], return_index=True)  # relays repeat transforms
     kept = np.sort(len(moving.stamp_ns) - 1 - last) if len(last) > 1 else np.arange(len(moving.stamp_ns))
@@ -120,7 +124,7 @@ def _rows(frame: str, chain: list[_Transforms], box: VehicleBox | None, option_a
     poses = Poses(*(column[kept] for column in moving.poses))
     for each in reversed(chain[:-1]):
         poses = poses.compose(Poses(*(np.repeat(column[-1:], n, axis=0) for column in each.poses)))
-    is_axle = box is not None and bool(at_axle(np.array([frame.encode()]))[0])
+    is_axle = box is not None and bool(is_axle_frame(np.array([frame.encode()]))[0])
     centre = box.centre if box is not None and is_axle else (option_ahead_m, 0.0, 0.0)
     placed = poses.compose(Poses(np.tile(centre, (n, 1)), np.tile([0.0, 0.0, 0.0, 1.0], (n, 1))))
     rows = recorded_poses(
@@ -132,7 +136,7 @@ def _rows(frame: str, chain: list[_Transforms], box: VehicleBox | None, option_a
     return rows
 
 
-def _of_frames(
+def _transforms_by_child(
     tables: Iterable[tuple[str, tuple[Table, Times]]], static_suffix: str
 ) -> tuple[dict[str, _Transforms], set[str]]:
     """Return child frame -> its transforms, and the child frames with several parents."""
@@ -152,15 +156,15 @@ def _of_frames(
             for parent in np.unique(parents[here]).tolist():
                 rows = here[parents[here] == parent]
                 each = _Transforms(
-                    topic, _name(parent), topic.endswith(static_suffix), stamp_ns[rows], stamped[rows],
+                    topic, _frame_name(parent), topic.endswith(static_suffix), stamp_ns[rows], stamped[rows],
                     log_ns[items.parent[rows]], Poses(places[rows], turns[rows]),
                 )  # fmt: skip
-                parts.setdefault(_name(child), []).append(each)
+                parts.setdefault(_frame_name(child), []).append(each)
     ambiguous = {child for child, of_child in parts.items() if len({each.parent for each in of_child}) > 1}
-    return {child: _all_batches(of_child) for child, of_child in parts.items()}, ambiguous
+    return {child: _join_batches(of_child) for child, of_child in parts.items()}, ambiguous
 
 
-def _all_batches(parts: list[_Transforms]) -> _Transforms:
+def _join_batches(parts: list[_Transforms]) -> _Transforms:
     moving = [part for part in parts if not part.static] or parts
     first = moving[0]
     return first._replace(
@@ -171,9 +175,9 @@ def _all_batches(parts: list[_Transforms]) -> _Transforms:
     )
 
 
-def _last(name: str) -> str:
+def _name_without_prefix(name: str) -> str:
     return name.rsplit("/", maxsplit=1)[-1]
 
 
-def _name(recorded: bytes) -> str:
+def _frame_name(recorded: bytes) -> str:
     return clean_frame_name(recorded.decode("utf-8", "replace"))

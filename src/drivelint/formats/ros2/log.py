@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from drivelint.errors import TraceError
-from drivelint.formats.mcap.bag import missing_messages
-from drivelint.formats.mcap.losses import times_of_parts
+from drivelint.formats.mcap.bag import missing_message_findings
+from drivelint.formats.mcap.losses import lost_times_of_parts
 from drivelint.formats.mcap.malformed import decode_readable
 from drivelint.formats.mcap.reader import message_batches
 from drivelint.formats.mcap.storage import recorded_file
@@ -17,18 +17,18 @@ from drivelint.formats.mcap.unread import UnreadTopics
 from drivelint.formats.ros2 import traffic_lights
 from drivelint.formats.ros2.cdr import Decoder
 from drivelint.formats.ros2.messages import (
-    DETECTED,
-    EGO_SIZE,
+    DETECTED_OBJECTS,
+    EGO_SIZE_ROLE,
     LIGHT_GROUPS,
-    MESSAGES,
+    MESSAGE_TYPES,
     ODOMETRY,
     OLD_LIGHT_GROUPS,
     TRANSFORMS,
 )
-from drivelint.formats.ros2.objects import OBJECT_ROWS, SAME_BODIES, stamps
-from drivelint.formats.ros2.silence import SENT_WHERE_NOBODY_IS, silences
+from drivelint.formats.ros2.objects import KINDS_OF_SAME_OBJECTS, OBJECT_CONVERTERS, stamps
+from drivelint.formats.ros2.silence import KINDS_SENT_WITHOUT_OBJECTS, silences
 from drivelint.formats.ros2.types import message_kind
-from drivelint.formats.sqlite_bag.reader import REMEDY, SqliteFile
+from drivelint.formats.sqlite_bag.reader import CONVERSION_REMEDY, SqliteFile
 from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from drivelint.formats.ros2.cdr import Table
     from drivelint.formats.ros2.recorded_poses import RecordedPoses
 
-LIGHTS: Final = (LIGHT_GROUPS, OLD_LIGHT_GROUPS)
+LIGHT_KINDS: Final = (LIGHT_GROUPS, OLD_LIGHT_GROUPS)
 _CARLA = "carla_msgs/"
 Topics = dict[str, list[Any]]
 """Topic -> the decoded content of each batch of its messages."""
@@ -56,15 +56,15 @@ class Log:
         self.path = path
         self.requested_topics = requested_topics
         self.topics: dict[str, Topics] = {}  # by message type
-        self.detections: dict[str, int] = {}  # topic of detections without ids -> number of messages
+        self.n_detections: dict[str, int] = {}  # topic of detections without ids -> number of messages
         self.findings: list[QualityFinding] = []
         self.notes: list[str] = []
         self.lost_times: list[LostTime] = []
         self.unread = UnreadTopics()
-        self.carla = False
+        self.has_carla_messages = False
         self.is_sqlite = False
         self.ego_frame = ""  # the frame that places the ego, in a log without odometry
-        self.no_ego = ""  # why neither odometry nor transforms place the ego
+        self.why_no_ego = ""  # why neither odometry nor transforms place the ego
         self._times: dict[str, list[tuple[Times, Mask, Times]]] = {}
 
     def read(self, files: Iterable[Path]) -> None:
@@ -73,7 +73,7 @@ class Log:
         for file in files:
             container = recorded_file(file)
             decoders: dict[int, Decoder] = {}
-            for kind, log_messages in message_batches(container, partial(self._kind, file, decoders)):
+            for kind, log_messages in message_batches(container, partial(self._kind_if_read, file, decoders)):
                 channel = log_messages[0].channel
                 decoder = decoders[channel.schema_id]
                 table, readable = decode_readable(container, log_messages, decoder.table)
@@ -81,40 +81,46 @@ class Log:
                     continue
                 log_ns = np.array([log_message.log_time_ns for log_message in readable], np.int64)
                 read = self.topics.setdefault(kind, {}).setdefault(channel.topic, [])
-                read.append(_part(kind, decoder, table, log_ns))
-                if kind in OBJECT_ROWS or kind == ODOMETRY:
+                read.append(_batch_content(kind, decoder, table, log_ns))
+                if kind in OBJECT_CONVERTERS or kind == ODOMETRY:
                     self._times.setdefault(channel.topic, []).append((*stamps(table, "header.stamp"), log_ns))
-            self.carla |= any(schema.name.startswith(_CARLA) for schema in container.schemas.values())
+            self.has_carla_messages |= any(schema.name.startswith(_CARLA) for schema in container.schemas.values())
             self.findings += container.findings
             if isinstance(container, SqliteFile):
                 self.is_sqlite = True
                 read_kinds = {container.schemas[number].name for number in decoders}
-                if kinds := sorted(container.assumed & read_kinds):
+                if kinds := sorted(container.assumed_kinds & read_kinds):
                     self.notes.append(
                         f"{file.name} has no message definitions: those of drivelint are used for {name_list(kinds)}"
                     )
             parts.append(container)
-        self.findings += [*missing_messages(self.path, parts, MESSAGES.__contains__), *self.unread.findings()]
-        self.lost_times = times_of_parts([(part.path, part.losses) for part in parts])
+        self.findings += [
+            *missing_message_findings(self.path, parts, MESSAGE_TYPES.__contains__),
+            *self.unread.findings(),
+        ]
+        self.lost_times = lost_times_of_parts([(part.path, part.losses) for part in parts])
 
-    def _kind(self, path: Path, decoders: dict[int, Decoder], channel: Channel, schema: Schema) -> str | None:
+    def _kind_if_read(self, path: Path, decoders: dict[int, Decoder], channel: Channel, schema: Schema) -> str | None:
         """Return the message type of a channel, and add its decoder to `decoders`; None for a channel that is not read."""
         kind = message_kind(schema.name)
-        if kind == DETECTED:
-            self.detections[channel.topic] = self.detections.get(channel.topic, 0) + 1
+        if kind == DETECTED_OBJECTS:
+            self.n_detections[channel.topic] = self.n_detections.get(channel.topic, 0) + 1
             return None
-        if kind not in MESSAGES:
+        if kind not in MESSAGE_TYPES:
             return None
-        if MESSAGES[kind].role == EGO_SIZE and (channel.message_encoding, schema.encoding) != ("cdr", "ros2msg"):
+        if MESSAGE_TYPES[kind].role == EGO_SIZE_ROLE and (channel.message_encoding, schema.encoding) != (
+            "cdr",
+            "ros2msg",
+        ):
             return None  # without these messages only the ego's size is unknown, so nothing is reported
         if channel.message_encoding != "cdr":
-            if kind not in OBJECT_ROWS or not self.requested_topics or channel.topic in self.requested_topics:
+            if kind not in OBJECT_CONVERTERS or not self.requested_topics or channel.topic in self.requested_topics:
                 self.unread.add(channel, kind)
             return None
         if channel.schema_id not in decoders:
             if not self._is_defined(path, channel, schema, kind):
                 return None
-            decoders[channel.schema_id] = Decoder(path, schema, MESSAGES[kind].fields)
+            decoders[channel.schema_id] = Decoder(path, schema, MESSAGE_TYPES[kind].fields)
         return kind
 
     def _is_defined(self, path: Path, channel: Channel, schema: Schema, kind: str) -> bool:
@@ -126,11 +132,11 @@ class Log:
                     "ros2msg is supported: record or convert the log with message definitions"
                 )
             return True
-        if kind not in {*OBJECT_ROWS, ODOMETRY, TRANSFORMS}:
+        if kind not in {*OBJECT_CONVERTERS, ODOMETRY, TRANSFORMS}:
             self.unread.add_undefined(channel, schema.name)
         elif not self.requested_topics or channel.topic in self.requested_topics:
             raise TraceError(
-                f"{path}: the log has no message definition of {schema.name} on {channel.topic!r}, and none is known: {REMEDY}"
+                f"{path}: the log has no message definition of {schema.name} on {channel.topic!r}, and none is known: {CONVERSION_REMEDY}"
             )
         return False
 
@@ -138,10 +144,10 @@ class Log:
         """Raise `TraceError` if a topic that the user chose is not read."""
         read_topics = {topic for topics in self.topics.values() for topic in topics}
         for topic in self.requested_topics:
-            if topic in self.detections:
+            if topic in self.n_detections:
                 raise TraceError(
                     f"{self.path}: the detections on topic {topic!r} have no ids, so they form no tracks: choose a topic of "
-                    f"{' or '.join(SAME_BODIES)}"
+                    f"{' or '.join(KINDS_OF_SAME_OBJECTS)}"
                 )
             if topic not in read_topics:
                 raise TraceError(
@@ -149,7 +155,7 @@ class Log:
                     f"{name_list(sorted(read_topics)) or 'none'}"
                 )
 
-    def frames(self, topics: Iterable[str], *, own_times: bool) -> Times:
+    def times_of_topics(self, topics: Iterable[str], *, own_times: bool) -> Times:
         """Return the times of all messages on the given topics of road users or odometry, including messages without objects.
 
         `own_times`: the messages' stamps, otherwise log times.
@@ -164,12 +170,12 @@ class Log:
 
     def silences(self, objects: Iterable[str], odometry: Iterable[str]) -> Iterator[LostTime]:
         """Yield the times in which a topic of road users has no messages, if its sender also sends messages without objects."""
-        steady = {topic for kind in SENT_WHERE_NOBODY_IS for topic in self.topics.get(kind, ())}
+        steady = {topic for kind in KINDS_SENT_WITHOUT_OBJECTS for topic in self.topics.get(kind, ())}
         for topic in sorted(steady.intersection(objects)):
-            sent_ns, own_ns = (self.frames(topics, own_times=False) for topics in ([topic], odometry))
+            sent_ns, own_ns = (self.times_of_topics(topics, own_times=False) for topics in ([topic], odometry))
             yield from silences(topic, sent_ns, own_ns)
 
-    def parts(self, kind: str) -> Iterator[tuple[str, Any]]:
+    def batches(self, kind: str) -> Iterator[tuple[str, Any]]:
         """Yield topic and batch content of the messages of a type, sorted by topic."""
         for topic, parts in sorted(self.topics.get(kind, {}).items()):
             yield from ((topic, part) for part in parts)
@@ -180,11 +186,11 @@ class Log:
         Of several topics, the user's choice wins, then the usual topic of the type. Predictions win over tracks of the same objects.
         Errors: `TraceError` if several topics remain.
         """
-        of_kind = {kind: self.topics[kind] for kind in kinds if kind in self.topics}
-        candidates = {topic: parts for topics in of_kind.values() for topic, parts in topics.items()}
+        topics_by_kind = {kind: self.topics[kind] for kind in kinds if kind in self.topics}
+        candidates = {topic: parts for topics in topics_by_kind.values() for topic, parts in topics.items()}
         selection = [topic for topic in self.requested_topics if topic in candidates]
         if not selection:
-            selection = [usual] if (usual := _usual(of_kind)) else sorted(candidates)
+            selection = [usual] if (usual := _default_topic(topics_by_kind)) else sorted(candidates)
             if usual and len(candidates) > 1:
                 left = name_list(sorted(candidates.keys() - {usual}))
                 self.notes.append(
@@ -197,25 +203,25 @@ class Log:
         return {topic: candidates[topic] for topic in selection}
 
 
-def _part(kind: str, decoder: Decoder, table: Table, log_ns: Times) -> Any:
+def _batch_content(kind: str, decoder: Decoder, table: Table, log_ns: Times) -> Any:
     """Return the content of a batch: rows for road users, group states for traffic lights, otherwise fields and log times."""
-    if kind in LIGHTS:
+    if kind in LIGHT_KINDS:
         return traffic_lights.group_states(table, log_ns, decoder.constants)
-    if kind not in OBJECT_ROWS:
+    if kind not in OBJECT_CONVERTERS:
         return table, log_ns
-    rows = OBJECT_ROWS[kind](table)
+    rows = OBJECT_CONVERTERS[kind](table)
     rows.log_ns = log_ns[rows.log_ns]
     return rows
 
 
-def _usual(of_kind: dict[str, Topics]) -> str | None:
+def _default_topic(topics_by_kind: dict[str, Topics]) -> str | None:
     """Return the topic to read by default: the only topic of its type, or the type's usual topic; None if it is not clear."""
-    bodies = len(of_kind.keys() & set(SAME_BODIES))
-    if len(of_kind) > max(bodies, 1):
+    bodies = len(topics_by_kind.keys() & set(KINDS_OF_SAME_OBJECTS))
+    if len(topics_by_kind) > max(bodies, 1):
         return None
-    for kind, topics in of_kind.items():
+    for kind, topics in topics_by_kind.items():
         if len(topics) == 1:
             return next(iter(topics))
-        if MESSAGES[kind].topic in topics:
-            return MESSAGES[kind].topic
+        if MESSAGE_TYPES[kind].topic in topics:
+            return MESSAGE_TYPES[kind].topic
     return None

@@ -22,21 +22,21 @@ DEFAULT_EGO_ID = "ego"
 def merge_ego(
     objects: tuple[str, States] | None,
     odometry: tuple[str, States] | None,
-    infos: Mapping[str, str],
+    ego_ids_by_topic: Mapping[str, str],
     findings: list[QualityFinding],
     *,
-    carla: bool,
+    is_carla: bool,
     is_centre: bool,
     ego_id: str = DEFAULT_EGO_ID,
 ) -> Recording:
     """Merge objects and odometry, each given with its topic, into one recording with one track of the ego.
 
-    `infos`: topic of the CARLA bridge's ego info -> the ego's id; `carla`: whether the objects come from the CARLA bridge;
+    `ego_ids_by_topic`: topic of the CARLA bridge's ego info -> the ego's id; `is_carla`: whether the objects come from the CARLA bridge;
     `is_centre`: whether the odometry's positions are known to be box centres; `ego_id`: the ego's id if no message gives it.
     """
-    names = _carla_ego_ids(infos, odometry)
-    if carla and objects is not None:
-        _carla_origins(*objects, findings)
+    names = _carla_ego_ids(ego_ids_by_topic, odometry)
+    if is_carla and objects is not None:
+        _correct_carla_origins(*objects, findings)
     if odometry is None:
         assert objects is not None  # noqa: S101 (the reader refuses a log with neither)
         return Recording(FORMAT, objects[1], ego_ids=names, findings=findings)
@@ -47,8 +47,8 @@ def merge_ego(
     else:
         object_states = objects[1]
         ids_in_objects = [name for name in names if name in object_states.ids] or ids_at_ego(ego, object_states)
-        ego.ids = ids_in_objects[:1] or [_free_id(names[0] if names else ego_id, object_states.ids)]
-    if not carla and not is_centre:
+        ego.ids = ids_in_objects[:1] or [_unused_actor_id(names[0] if names else ego_id, object_states.ids)]
+    if not is_carla and not is_centre:
         message = (
             f"{odometry[0]}: the origin of the ego's frame is used as the centre of the ego's box: if "
             "this frame is at the rear axle, set the distance from it to the centre: --ego-size LENGTH,WIDTH,AHEAD"
@@ -92,21 +92,23 @@ def concatenate_states(first: States, second: States) -> States:
     return States.concatenate([replace(first, ids=ids), replace(second, ids=ids, actor=moved[second.actor])])
 
 
-def _free_id(name: str, ids: list[str]) -> str:
+def _unused_actor_id(name: str, ids: list[str]) -> str:
     while name in ids:
         name += "_odometry"
     return name
 
 
-def _carla_ego_ids(ego_by_topic: Mapping[str, str], odometry: tuple[str, States] | None) -> list[str]:
+def _carla_ego_ids(ego_ids_by_topic: Mapping[str, str], odometry: tuple[str, States] | None) -> list[str]:
     """Return the ids of the CARLA bridge's egos; of several ids, those from a topic beside the odometry's."""
-    if odometry is not None and len(set(ego_by_topic.values())) > 1:
+    if odometry is not None and len(set(ego_ids_by_topic.values())) > 1:
         beside = odometry[0].rpartition("/")[0]
-        ego_by_topic = {topic: name for topic, name in ego_by_topic.items() if topic.rpartition("/")[0] == beside}
-    return sorted(set(ego_by_topic.values()))
+        ego_ids_by_topic = {
+            topic: name for topic, name in ego_ids_by_topic.items() if topic.rpartition("/")[0] == beside
+        }
+    return sorted(set(ego_ids_by_topic.values()))
 
 
-def _carla_origins(topic: str, states: States, findings: list[QualityFinding]) -> None:
+def _correct_carla_origins(topic: str, states: States, findings: list[QualityFinding]) -> None:
     """Add a finding on CARLA's reference points, and lift vehicles' positions from the ground to the box centre."""
     walks = states.codes["actor_class"] == ACTOR_CLASSES.index("pedestrian")
     lift = np.where(walks, 0.0, np.nan_to_num(0.5 * states.numbers["height_m"]))

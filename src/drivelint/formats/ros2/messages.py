@@ -10,22 +10,22 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 if TYPE_CHECKING:
     from drivelint.formats.protobuf.descriptors import FieldTree
 
-ROAD_USERS: Final = "road users"
+ROAD_USERS_ROLE: Final = "road users"
 ODOMETRY_ROLE: Final = "odometry"
-DETECTIONS: Final = "road users without ids"
-EGO_SIZE: Final = "ego's size"
+DETECTIONS_ROLE: Final = "road users without ids"
+EGO_SIZE_ROLE: Final = "ego's size"
 
 CARLA_OBJECTS: Final = "derived_object_msgs/ObjectArray"
-PREDICTED: Final = "autoware_perception_msgs/PredictedObjects"
-TRACKED: Final = "autoware_perception_msgs/TrackedObjects"
-DETECTED: Final = "autoware_perception_msgs/DetectedObjects"
-VISION: Final = "vision_msgs/Detection3DArray"
+PREDICTED_OBJECTS: Final = "autoware_perception_msgs/PredictedObjects"
+TRACKED_OBJECTS: Final = "autoware_perception_msgs/TrackedObjects"
+DETECTED_OBJECTS: Final = "autoware_perception_msgs/DetectedObjects"
+VISION_DETECTIONS: Final = "vision_msgs/Detection3DArray"
 ODOMETRY: Final = "nav_msgs/Odometry"
 TRANSFORMS: Final = "tf2_msgs/TFMessage"
 EGO_INFO: Final = "carla_msgs/CarlaEgoVehicleInfo"
 WORLD_INFO: Final = "carla_msgs/CarlaWorldInfo"
-PARAMETERS: Final = "rcl_interfaces/ParameterEvent"
-DIMENSIONS: Final = "autoware_adapi_v1_msgs/VehicleDimensions"
+PARAMETER_EVENTS: Final = "rcl_interfaces/ParameterEvent"
+VEHICLE_DIMENSIONS: Final = "autoware_adapi_v1_msgs/VehicleDimensions"
 LIGHT_GROUPS: Final = "autoware_perception_msgs/TrafficLightGroupArray"
 OLD_LIGHT_GROUPS: Final = "autoware_perception_msgs/TrafficSignalArray"
 TURN_INDICATORS: Final = "autoware_vehicle_msgs/TurnIndicatorsReport"
@@ -33,11 +33,11 @@ HAZARD_LIGHTS: Final = "autoware_vehicle_msgs/HazardLightsReport"
 CONTROL_MODE: Final = "autoware_vehicle_msgs/ControlModeReport"
 ENGAGE: Final = "autoware_vehicle_msgs/Engage"
 
-STAMP: Final[FieldTree] = {"sec": None, "nanosec": None, "nsec": None}
-HEADER: Final[FieldTree] = {"stamp": STAMP, "frame_id": None}
-XYZ: Final[FieldTree] = {"x": None, "y": None, "z": None}
-POSE: Final[FieldTree] = {"position": XYZ, "orientation": {**XYZ, "w": None}}
-_HYPOTHESIS: Final[FieldTree] = {"class_id": None, "score": None}
+STAMP_FIELDS: Final[FieldTree] = {"sec": None, "nanosec": None, "nsec": None}
+HEADER_FIELDS: Final[FieldTree] = {"stamp": STAMP_FIELDS, "frame_id": None}
+XYZ_FIELDS: Final[FieldTree] = {"x": None, "y": None, "z": None}
+POSE_FIELDS: Final[FieldTree] = {"position": XYZ_FIELDS, "orientation": {**XYZ_FIELDS, "w": None}}
+_HYPOTHESIS_FIELDS: Final[FieldTree] = {"class_id": None, "score": None}
 VEHICLE_LENGTHS: Final = (
     "wheel_base", "front_overhang", "rear_overhang", "wheel_tread", "left_overhang", "right_overhang",
 )  # fmt: skip
@@ -52,51 +52,52 @@ class MessageType(NamedTuple):
     fields: FieldTree
 
 
-def _autoware_objects(prefix: str, **kinematics: FieldTree | None) -> FieldTree:
+def _autoware_object_fields(prefix: str, **kinematics: FieldTree | None) -> FieldTree:
     """Return the fields of Autoware's road users; names of kinematic fields begin with `prefix`."""
     return {
-        "header": HEADER,
+        "header": HEADER_FIELDS,
         "objects": {
             "object_id": {"uuid": None}, "classification": {"label": None, "probability": None},
             "kinematics": {
-                f"{prefix}pose_with_covariance": {"pose": POSE},
-                f"{prefix}twist_with_covariance": {"twist": {"linear": XYZ}},
-                f"{prefix}acceleration_with_covariance": {"accel": {"linear": XYZ}},
+                f"{prefix}pose_with_covariance": {"pose": POSE_FIELDS},
+                f"{prefix}twist_with_covariance": {"twist": {"linear": XYZ_FIELDS}},
+                f"{prefix}acceleration_with_covariance": {"accel": {"linear": XYZ_FIELDS}},
                 **kinematics,
             },
-            "shape": {"type": None, "footprint": {"points": {"x": None, "y": None}}, "dimensions": XYZ},
+            "shape": {"type": None, "footprint": {"points": {"x": None, "y": None}}, "dimensions": XYZ_FIELDS},
         },
     }  # fmt: skip
 
 
-_ELEMENTS: Final[FieldTree] = {"color": None, "shape": None, "status": None}
-MESSAGES: Final[dict[str, MessageType]] = {
-    PREDICTED: MessageType(ROAD_USERS, "/perception/object_recognition/objects", _autoware_objects("initial_")),
-    TRACKED: MessageType(
-        ROAD_USERS,
+_ELEMENT_FIELDS: Final[FieldTree] = {"color": None, "shape": None, "status": None}
+MESSAGE_TYPES: Final[dict[str, MessageType]] = {
+    PREDICTED_OBJECTS: MessageType(ROAD_USERS_ROLE, "/perception/object_recognition/objects", _autoware_object_fields("initial_")),
+    TRACKED_OBJECTS: MessageType(
+        ROAD_USERS_ROLE,
         "/perception/object_recognition/tracking/objects",
-        _autoware_objects("", orientation_availability=None),
+        _autoware_object_fields("", orientation_availability=None),
     ),
-    DETECTED: MessageType(DETECTIONS, "/perception/object_recognition/detection/objects", {}),
+    DETECTED_OBJECTS: MessageType(DETECTIONS_ROLE, "/perception/object_recognition/detection/objects", {}),
     CARLA_OBJECTS: MessageType(
-        ROAD_USERS,
+        ROAD_USERS_ROLE,
         "/carla/[<role name>/]objects",
         {
-            "header": HEADER,
+            "header": HEADER_FIELDS,
             "objects": {
-                "header": {"frame_id": None}, "id": None, "pose": POSE, "twist": {"linear": XYZ}, "accel": {"linear": XYZ},
+                "header": {"frame_id": None}, "id": None, "pose": POSE_FIELDS, "twist": {"linear": XYZ_FIELDS},
+                "accel": {"linear": XYZ_FIELDS},
                 "shape": {"type": None, "dimensions": None}, "classification": None,
             },
         },
     ),
-    VISION: MessageType(
-        ROAD_USERS,
+    VISION_DETECTIONS: MessageType(
+        ROAD_USERS_ROLE,
         "any",
         {
-            "header": HEADER,
+            "header": HEADER_FIELDS,
             "detections": {
-                "header": {"frame_id": None}, "results": {"hypothesis": _HYPOTHESIS, "id": None, "score": None},
-                "bbox": {"center": POSE, "size": XYZ}, "id": None, "tracking_id": None,
+                "header": {"frame_id": None}, "results": {"hypothesis": _HYPOTHESIS_FIELDS, "id": None, "score": None},
+                "bbox": {"center": POSE_FIELDS, "size": XYZ_FIELDS}, "id": None, "tracking_id": None,
             },
         },
     ),
@@ -104,8 +105,8 @@ MESSAGES: Final[dict[str, MessageType]] = {
         ODOMETRY_ROLE,
         "/localization/kinematic_state",
         {
-            "header": HEADER, "child_frame_id": None, "pose": {"pose": POSE},
-            "twist": {"twist": {"linear": XYZ, "angular": XYZ}},
+            "header": HEADER_FIELDS, "child_frame_id": None, "pose": {"pose": POSE_FIELDS},
+            "twist": {"twist": {"linear": XYZ_FIELDS, "angular": XYZ_FIELDS}},
         },
     ),
     TRANSFORMS: MessageType(
@@ -113,13 +114,13 @@ MESSAGES: Final[dict[str, MessageType]] = {
         "/tf",
         {
             "transforms": {
-                "header": HEADER, "child_frame_id": None,
-                "transform": {"translation": XYZ, "rotation": {**XYZ, "w": None}},
+                "header": HEADER_FIELDS, "child_frame_id": None,
+                "transform": {"translation": XYZ_FIELDS, "rotation": {**XYZ_FIELDS, "w": None}},
             },
         },
     ),
-    PARAMETERS: MessageType(
-        EGO_SIZE,
+    PARAMETER_EVENTS: MessageType(
+        EGO_SIZE_ROLE,
         "/parameter_events",
         {
             "node": None,
@@ -129,21 +130,21 @@ MESSAGES: Final[dict[str, MessageType]] = {
             },
         },
     ),
-    DIMENSIONS: MessageType(EGO_SIZE, "/api/vehicle/dimensions", dict.fromkeys((*VEHICLE_LENGTHS, "height"))),
+    VEHICLE_DIMENSIONS: MessageType(EGO_SIZE_ROLE, "/api/vehicle/dimensions", dict.fromkeys((*VEHICLE_LENGTHS, "height"))),
     LIGHT_GROUPS: MessageType(
         "traffic lights",
         "/perception/traffic_light_recognition/traffic_signals",
-        {"stamp": STAMP, "traffic_light_groups": {"traffic_light_group_id": None, "elements": _ELEMENTS}},
+        {"stamp": STAMP_FIELDS, "traffic_light_groups": {"traffic_light_group_id": None, "elements": _ELEMENT_FIELDS}},
     ),
     OLD_LIGHT_GROUPS: MessageType(
         "traffic lights",
         "/perception/traffic_light_recognition/traffic_signals",
-        {"stamp": STAMP, "signals": {"traffic_signal_id": None, "elements": _ELEMENTS}},
+        {"stamp": STAMP_FIELDS, "signals": {"traffic_signal_id": None, "elements": _ELEMENT_FIELDS}},
     ),
-    TURN_INDICATORS: MessageType("lights", "/vehicle/status/turn_indicators_status", {"stamp": STAMP, "report": None}),
-    HAZARD_LIGHTS: MessageType("lights", "/vehicle/status/hazard_lights_status", {"stamp": STAMP, "report": None}),
-    CONTROL_MODE: MessageType("declared events", "/vehicle/status/control_mode", {"stamp": STAMP, "mode": None}),
-    ENGAGE: MessageType("declared events", "/autoware/engage", {"stamp": STAMP, "engage": None}),
+    TURN_INDICATORS: MessageType("lights", "/vehicle/status/turn_indicators_status", {"stamp": STAMP_FIELDS, "report": None}),
+    HAZARD_LIGHTS: MessageType("lights", "/vehicle/status/hazard_lights_status", {"stamp": STAMP_FIELDS, "report": None}),
+    CONTROL_MODE: MessageType("declared events", "/vehicle/status/control_mode", {"stamp": STAMP_FIELDS, "mode": None}),
+    ENGAGE: MessageType("declared events", "/autoware/engage", {"stamp": STAMP_FIELDS, "engage": None}),
     EGO_INFO: MessageType("ego", "/carla/<role name>/vehicle_info", {"id": None, "rolename": None}),
     WORLD_INFO: MessageType("map", "/carla/world_info", {"map_name": None, "opendrive": None}),
 }  # fmt: skip

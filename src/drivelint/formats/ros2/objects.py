@@ -13,8 +13,8 @@ import numpy as np
 
 from drivelint.drive.trace import ACTOR_CLASSES
 from drivelint.formats.coordinate_frames import rotated, unit_quaternions
-from drivelint.formats.ros2.messages import CARLA_OBJECTS, PREDICTED, TRACKED, VISION
-from drivelint.formats.ros2.recorded_poses import RecordedPoses, distinct, recorded_poses
+from drivelint.formats.ros2.messages import CARLA_OBJECTS, PREDICTED_OBJECTS, TRACKED_OBJECTS, VISION_DETECTIONS
+from drivelint.formats.ros2.recorded_poses import RecordedPoses, distinct_values, recorded_poses
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -35,13 +35,13 @@ def _class_codes(*words: str | None) -> Codes:
     return np.array([_UNKNOWN if word is None else ACTOR_CLASSES.index(word) for word in words], np.int8)
 
 
-_DERIVED = _class_codes(
+_CARLA_CODES = _class_codes(
     None, None, None, None, "pedestrian", "bicycle", "car", "truck", "motorcycle", "vehicle", "object", "object"
 )
-_AUTOWARE = _class_codes(
+_AUTOWARE_CODES = _class_codes(
     None, "car", "truck", "bus", "trailer", "motorcycle", "bicycle", "pedestrian", "animal", "object", "object", "object"
 )  # fmt: skip
-_WORDS: Final = {
+_CLASS_BY_WORD: Final = {
     **{word: word for word in ACTOR_CLASSES},
     "person": "pedestrian", "bike": "bicycle", "cyclist": "bicycle", "motorbike": "motorcycle", "lorry": "truck",
 }  # fmt: skip
@@ -49,7 +49,7 @@ _WORDS: Final = {
 
 def class_code(word: str) -> int:
     """Return the index in `ACTOR_CLASSES` of a word such as `Car`, `vehicle.car` or `PERSON`; -1 if the word is unknown."""
-    known = _WORDS.get(word.strip().lower().replace("/", ".").rsplit(".", 1)[-1])
+    known = _CLASS_BY_WORD.get(word.strip().lower().replace("/", ".").rsplit(".", 1)[-1])
     return _UNKNOWN if known is None else ACTOR_CLASSES.index(known)
 
 
@@ -82,7 +82,7 @@ def vectors(table: Table, path: str, axes: str = "xyz") -> Vectors:
     )
 
 
-def _rows(top: Table, items: Table, ids: NDArray[Any], frame: str | None, pose: str) -> RecordedPoses:
+def _rows_of_items(top: Table, items: Table, ids: NDArray[Any], frame: str | None, pose: str) -> RecordedPoses:
     """Return rows with the columns that all message types share: times, ids, frames and poses.
 
     `frame`: the path of an item's own frame, which takes precedence over the message's frame.
@@ -97,20 +97,20 @@ def _rows(top: Table, items: Table, ids: NDArray[Any], frame: str | None, pose: 
     return recorded_poses(times, poses, log_ns=items.parent.astype(np.int64), ids=ids, frames=frames)
 
 
-def _derived(top: Table) -> RecordedPoses:
+def _carla_rows(top: Table) -> RecordedPoses:
     items = top.items("objects")
-    rows = _rows(top, items, items.column("id"), "header.frame_id", "pose")
+    rows = _rows_of_items(top, items, items.column("id"), "header.frame_id", "pose")
     rows.velocity, rows.acceleration = vectors(items, "twist.linear"), vectors(items, "accel.linear")
     form, numbers = items.column("shape.type"), items.column("shape.dimensions")
     rows.size = np.where((form == _BOX)[:, None], numbers, np.nan)
     round_ = np.stack([2.0 * numbers[:, 1], 2.0 * numbers[:, 1], numbers[:, 0]], axis=1)  # height, radius
     rows.size = np.where((form == _CYLINDER)[:, None], round_, rows.size)
     rows.size = np.where((form == _SPHERE)[:, None], 2.0 * numbers[:, :1], rows.size)
-    rows.classes = _codes_of(_DERIVED, items.column("classification"))
+    rows.classes = _codes_of_numbers(_CARLA_CODES, items.column("classification"))
     return rows
 
 
-def _autoware(top: Table, prefix: str = "") -> RecordedPoses:
+def _autoware_rows(top: Table, prefix: str = "") -> RecordedPoses:
     """Return Autoware's road users.
 
     Twist and acceleration are along the object's own axes, as multi_object_tracker writes and planners read them. Predicted paths
@@ -119,12 +119,14 @@ def _autoware(top: Table, prefix: str = "") -> RecordedPoses:
     items = top.items("objects")
     ids = np.ascontiguousarray(items.column("object_id.uuid")).view("V16").reshape(-1)
     pose, twist, accel = (f"kinematics.{prefix}{name}_with_covariance" for name in ("pose", "twist", "acceleration"))
-    rows = _rows(top, items, ids, None, f"{pose}.pose")
+    rows = _rows_of_items(top, items, ids, None, f"{pose}.pose")
     rows.along[:] = True
     rows.velocity, rows.acceleration = vectors(items, f"{twist}.twist.linear"), vectors(items, f"{accel}.accel.linear")
     rows.size = vectors(items, "shape.dimensions")
     _fit_boxes(rows, items)
-    rows.classes = _codes_of(_AUTOWARE, _likeliest(items, "classification", "label", "probability", 0))
+    rows.classes = _codes_of_numbers(
+        _AUTOWARE_CODES, _likeliest_labels(items, "classification", "label", "probability", 0)
+    )
     said = items.columns.get("kinematics.orientation_availability")
     if said is not None:
         rows.turn[said == _NO_ORIENTATION] = np.nan
@@ -158,21 +160,21 @@ def _fit_boxes(rows: RecordedPoses, items: Table) -> None:
     )  # an object without an orientation keeps its place
 
 
-def _detections(top: Table) -> RecordedPoses:
+def _vision_rows(top: Table) -> RecordedPoses:
     items = top.items("detections")
     ids = items.columns.get("id", items.columns.get("tracking_id", np.zeros(items.n, "S1")))
-    rows = _rows(top, items, ids, "header.frame_id", "bbox.center")
+    rows = _rows_of_items(top, items, ids, "header.frame_id", "bbox.center")
     rows.size = vectors(items, "bbox.size")
     results = items.items("results")
     key = next((c for c in ("hypothesis.class_id", "id") if c in results.columns), None)
     score = next((c for c in ("hypothesis.score", "score") if c in results.columns), None)
     if key is not None and score is not None and results.columns[key].dtype.kind == "S":
-        words, which = distinct(_likeliest(items, "results", key, score, b""))
+        words, which = distinct_values(_likeliest_labels(items, "results", key, score, b""))
         rows.classes = np.array([class_code(each) for each in words], np.int8)[which]
     return rows
 
 
-def _likeliest(items: Table, path: str, label: str, score: str, default: Any) -> NDArray[Any]:
+def _likeliest_labels(items: Table, path: str, label: str, score: str, default: Any) -> NDArray[Any]:
     """Return for each item the label with the highest score, of equal scores the first; `default` for an item without labels."""
     listed = items.items(path)
     labels = listed.column(label)
@@ -183,19 +185,19 @@ def _likeliest(items: Table, path: str, label: str, score: str, default: Any) ->
     return result
 
 
-def _codes_of(code_table: Codes, numbers: NDArray[Any]) -> Codes:
+def _codes_of_numbers(code_table: Codes, numbers: NDArray[Any]) -> Codes:
     inside = (numbers >= 0) & (numbers < len(code_table))
     result: Codes = np.where(inside, code_table[np.where(inside, numbers, 0)], np.int8(_UNKNOWN)).astype(np.int8)
     return result
 
 
-OBJECT_ROWS: Final[dict[str, Callable[[Table], RecordedPoses]]] = {
-    PREDICTED: partial(_autoware, prefix="initial_"),
-    TRACKED: _autoware,
-    CARLA_OBJECTS: _derived,
-    VISION: _detections,
+OBJECT_CONVERTERS: Final[dict[str, Callable[[Table], RecordedPoses]]] = {
+    PREDICTED_OBJECTS: partial(_autoware_rows, prefix="initial_"),
+    TRACKED_OBJECTS: _autoware_rows,
+    CARLA_OBJECTS: _carla_rows,
+    VISION_DETECTIONS: _vision_rows,
 }
 """Message type -> the function that converts its messages to rows. `log_ns` of a row is at first the index of its message."""
-SAME_BODIES: Final = (PREDICTED, TRACKED)
+KINDS_OF_SAME_OBJECTS: Final = (PREDICTED_OBJECTS, TRACKED_OBJECTS)
 """Message types in which one perception system sends the same objects, the preferred type first: predictions have headings in the
 direction of motion, while those of tracks may be reversed."""

@@ -23,11 +23,11 @@ from drivelint.formats.tables.mapping import (
     validate,
 )
 
-TIME: Final = "t_ns"
+TIME_COLUMN: Final = "t_ns"
 """The column with the time of a message."""
 
 
-class OwnTopic(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+class MappedTopic(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     """One topic: the tables of a mapping, with fields in place of columns.
 
     `items`: the list in the message with one item per actor, whose fields `columns` names; None: the message is of one actor.
@@ -44,31 +44,31 @@ class OwnTopic(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     brake_light: WordMapping | None = None
 
 
-class OwnMessages(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
+class MessageMapping(msgspec.Struct, forbid_unknown_fields=True, frozen=True):
     """A whole mapping file.
 
     `message_files`: a folder, relative to the mapping, with files `PACKAGE/msg/NAME.msg`, for logs without message definitions.
     """
 
-    ros: list[OwnTopic]
+    ros: list[MappedTopic]
     message_files: str | None = None
     description: str = ""
     frame: Frame = Frame()
     ego: EgoChoice = EgoChoice()
 
-    def of_topic(self, topic: OwnTopic) -> Mapping:
+    def table_mapping(self, topic: MappedTopic) -> Mapping:
         """Return the mapping of the table that a topic's messages become."""
         return Mapping(
-            time=TimeColumn(TIME, "ns"), columns=topic.columns, frame=self.frame, reference=topic.reference,
+            time=TimeColumn(TIME_COLUMN, "ns"), columns=topic.columns, frame=self.frame, reference=topic.reference,
             actor_class=topic.actor_class, indicator=topic.indicator, brake_light=topic.brake_light, ego=self.ego,
         )  # fmt: skip
 
 
 # built at import, because msgspec analyses a type at its first use without a lock
-DECODER = msgspec.json.Decoder(OwnMessages)
+DECODER = msgspec.json.Decoder(MessageMapping)
 
 
-def is_for_messages(name: str) -> bool:
+def is_message_mapping(name: str) -> bool:
     """Return whether a mapping is a file with `[[ros]]`. False if it cannot be read, because the reader of mappings reports that."""
     if not os.path.isfile(name):  # noqa: PTH113 - also of a name that is too long for a file
         return False
@@ -78,17 +78,17 @@ def is_for_messages(name: str) -> bool:
         return False
 
 
-def load(path: Path) -> OwnMessages:
+def load(path: Path) -> MessageMapping:
     """Return the content of a mapping. Errors: `UsageError` with file, wrong key and the most similar valid key."""
     raw = read_toml(path)
-    refuse_unknown_keys(path, raw, OwnMessages, "")
+    refuse_unknown_keys(path, raw, MessageMapping, "")
     try:
-        own = msgspec.convert(raw, OwnMessages)
+        message_mapping = msgspec.convert(raw, MessageMapping)
     except msgspec.ValidationError as error:
         raise UsageError(f"mapping {path}: {error}") from error
-    topics = [each.topic for each in own.ros]
+    topics = [each.topic for each in message_mapping.ros]
     if not topics or len(set(topics)) < len(topics):
         raise UsageError(f"mapping {path}: each [[ros]] needs a topic of its own")
-    for topic in own.ros:
-        validate(path, own.of_topic(topic))
-    return own
+    for topic in message_mapping.ros:
+        validate(path, message_mapping.table_mapping(topic))
+    return message_mapping

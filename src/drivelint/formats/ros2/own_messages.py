@@ -23,7 +23,7 @@ from drivelint.formats.ros2 import own_mapping
 from drivelint.formats.ros2.cdr import Decoder
 from drivelint.formats.ros2.merge import concatenate_states
 from drivelint.formats.ros2.objects import stamps
-from drivelint.formats.ros2.types import parse, short_type_name
+from drivelint.formats.ros2.types import parse_definition, short_type_name
 from drivelint.formats.sqlite_bag.definitions import definition_in_files
 from drivelint.formats.tables import mapping as mappings
 from drivelint.formats.tables.mapped_table import read_sheet
@@ -41,12 +41,12 @@ if TYPE_CHECKING:
     from drivelint.formats.probe import Probe
     from drivelint.formats.protobuf.descriptors import FieldTree
     from drivelint.formats.ros2.cdr import Table
-    from drivelint.formats.ros2.own_mapping import OwnMessages, OwnTopic
+    from drivelint.formats.ros2.own_mapping import MappedTopic, MessageMapping
     from drivelint.formats.ros2.types import Types
 
 _TOPICS_APART_NS: Final = 1_000_000_000
-_MOST_FIELDS: Final = 500
-_STAMP: Final = ("sec", "nanosec", "nsec")
+_MOST_PROPOSED_FIELDS: Final = 500
+_STAMP_MEMBERS: Final = ("sec", "nanosec", "nsec")
 
 
 class MessageSheet(ParquetSheet):
@@ -68,13 +68,13 @@ def read(probe: Probe) -> Recording:
     """Read the topics of the mapping. Errors: `TraceError` for a topic or a field that the log lacks; `UsageError` for the mapping."""
     path, file = probe.path, Path(probe.options.mapping or "")
     message_mapping = own_mapping.load(file)
-    messages = _Messages(path, message_mapping, file.parent)
+    messages = _MappedMessages(path, message_mapping, file.parent)
     for part in bag.bag_files(path):
         messages.read(part)
     recordings = []
     for topic in message_mapping.ros:
         sheet = MessageSheet(path, messages.table(topic), messages.other_fields(topic))
-        recordings.append(read_sheet(path, file.stem, message_mapping.of_topic(topic), sheet))
+        recordings.append(read_sheet(path, file.stem, message_mapping.table_mapping(topic), sheet))
     recording = recordings[0]
     for other in recordings[1:]:
         recording.states = concatenate_states(*_with_same_columns(recording.states, other.states))
@@ -86,7 +86,7 @@ def read(probe: Probe) -> Recording:
         )
     recording.findings += messages.findings
     recording.lost_times += messages.lost_times
-    recording.frames_ns, recording.ends_apart_ns = messages.times(), _TOPICS_APART_NS
+    recording.frames_ns, recording.ends_apart_ns = messages.message_times(), _TOPICS_APART_NS
     first = int(recording.frames_ns.min())
     recording.utc_start_ns = first if first >= EARLIEST_UTC_NS else None
     recording.format = file.stem
@@ -94,14 +94,14 @@ def read(probe: Probe) -> Recording:
     return recording
 
 
-class _Messages:
+class _MappedMessages:
     """The decoded fields of the topics of a mapping."""
 
-    def __init__(self, path: Path, message_mapping: OwnMessages, folder: Path) -> None:
+    def __init__(self, path: Path, message_mapping: MessageMapping, folder: Path) -> None:
         self._path, self._message_mapping = path, message_mapping
         self._definitions = None if message_mapping.message_files is None else folder / message_mapping.message_files
         self._topics = {topic.topic: topic for topic in message_mapping.ros}
-        self._trees = {topic.topic: _tree(topic, message_mapping) for topic in message_mapping.ros}
+        self._trees = {topic.topic: _decoded_fields(topic, message_mapping) for topic in message_mapping.ros}
         self._parts: dict[str, list[tuple[Table, Times]]] = {}
         self._fields: dict[str, list[str]] = {}
         self.findings: list[QualityFinding] = []
@@ -112,12 +112,12 @@ class _Messages:
         container = recorded_file(file)
         decoders: dict[str, Decoder] = {}
 
-        def topic_of(channel: Channel, schema: Schema) -> str | None:
+        def mapped_topic(channel: Channel, schema: Schema) -> str | None:
             if channel.topic in self._topics and channel.topic not in decoders:
                 decoders[channel.topic] = self._decoder(file, channel, schema)
             return channel.topic if channel.topic in self._topics else None
 
-        for topic, log_messages in message_batches(container, topic_of):
+        for topic, log_messages in message_batches(container, mapped_topic):
             table, _ = decode_readable(container, log_messages, decoders[topic].table)
             if table is not None:
                 t_ns, stamped = stamps(table, self._topics[topic].time)
@@ -128,21 +128,23 @@ class _Messages:
                 self._parts.setdefault(topic, []).append((table, t_ns))
         self._add_losses(container)
 
-    def table(self, topic: OwnTopic) -> pa.Table:
+    def table(self, topic: MappedTopic) -> pa.Table:
         """Return the rows of a topic. Errors: `TraceError` if the log has no message on it."""
         if topic.topic not in self._parts:
-            known = hint(topic.topic, bag.topics(self._path))
+            known = hint(topic.topic, bag.kinds_by_topic(self._path))
             raise TraceError(f"{self._path}: no message on topic {topic.topic!r}, which the mapping names: {known}")
-        return pa.concat_tables([_rows(self._path, topic, table, t_ns) for table, t_ns in self._parts[topic.topic]])
+        return pa.concat_tables(
+            [_batch_rows(self._path, topic, table, t_ns) for table, t_ns in self._parts[topic.topic]]
+        )
 
-    def other_fields(self, topic: OwnTopic) -> list[str]:
+    def other_fields(self, topic: MappedTopic) -> list[str]:
         """Return the fields of a topic's actors that the mapping does not name."""
         prefix = f"{topic.items}." if topic.items else ""
         of_actor = [name.removeprefix(prefix) for name in self._fields[topic.topic] if name.startswith(prefix)]
-        named = set(mappings.needed_columns(self._message_mapping.of_topic(topic)))
+        named = set(mappings.needed_columns(self._message_mapping.table_mapping(topic)))
         return [name for name in of_actor if name not in named]
 
-    def times(self) -> Times:
+    def message_times(self) -> Times:
         """Return the times of all messages, also of those without actors."""
         return np.concatenate([t_ns for parts in self._parts.values() for _, t_ns in parts])
 
@@ -157,32 +159,38 @@ class _Messages:
                 "message_files in the mapping, the folder of PACKAGE/msg/NAME.msg, or convert the log with ros2 bag convert "
                 "and storage_id: mcap where ROS and its packages are installed"
             )
-        types = parse(file, schema.name, schema.data)
-        self._fields[channel.topic] = list(islice(_fields(types, short_type_name(schema.name), ""), _MOST_FIELDS))
+        types = parse_definition(file, schema.name, schema.data)
+        self._fields[channel.topic] = list(
+            islice(_field_paths(types, short_type_name(schema.name), ""), _MOST_PROPOSED_FIELDS)
+        )
         return Decoder(file, schema, self._trees[channel.topic])
 
     def _add_losses(self, container: Container) -> None:
         """Add the findings of a file; what it lost may be of any time, because its log times are not those of the messages."""
         self.findings += container.findings
-        for lost in container.losses.times(container.path):
+        for lost in container.losses.lost_times(container.path):
             self.lost_times.append(lost._replace(since_ns=None, until_ns=None))
 
 
-def _fields(types: Types, kind: str, prefix: str) -> Iterator[str]:
+def _field_paths(types: Types, kind: str, prefix: str) -> Iterator[str]:
     """Yield the paths of the fields of a message and of the messages in it."""
     for member in types[kind]:
         if member.kind in types:
-            yield from _fields(types, member.kind, f"{prefix}{member.name}.")
+            yield from _field_paths(types, member.kind, f"{prefix}{member.name}.")
         elif member.count is None:
             yield f"{prefix}{member.name}"
 
 
-def _tree(topic: OwnTopic, message_mapping: OwnMessages) -> FieldTree:
+def _decoded_fields(topic: MappedTopic, message_mapping: MessageMapping) -> FieldTree:
     """Return the fields of a message that are decoded."""
-    names = [name for name in mappings.needed_columns(message_mapping.of_topic(topic)) if name != own_mapping.TIME]
+    names = [
+        name
+        for name in mappings.needed_columns(message_mapping.table_mapping(topic))
+        if name != own_mapping.TIME_COLUMN
+    ]
     prefix = f"{topic.items}." if topic.items else ""
     tree: dict[str, Any] = {}
-    for path in (*(f"{topic.time}.{part}" for part in _STAMP), *(f"{prefix}{name}" for name in names)):
+    for path in (*(f"{topic.time}.{part}" for part in _STAMP_MEMBERS), *(f"{prefix}{name}" for name in names)):
         *above, last = path.split(".")
         at = tree
         for name in above:
@@ -191,18 +199,18 @@ def _tree(topic: OwnTopic, message_mapping: OwnMessages) -> FieldTree:
     return tree
 
 
-def _rows(path: Path, topic: OwnTopic, table: Table, t_ns: Times) -> pa.Table:
+def _batch_rows(path: Path, topic: MappedTopic, table: Table, t_ns: Times) -> pa.Table:
     """Return the rows of a batch: numbers as they are, texts as strings; fields with several values have no column."""
     if topic.items is not None:
         if topic.items not in table.children:
             known = hint(topic.items, table.children)
             raise TraceError(f"{path}: a message on {topic.topic!r} has no list {topic.items!r} (items): {known}")
         table, t_ns = table.children[topic.items], t_ns[table.children[topic.items].parent]
-    columns = {name: _column(values) for name, values in table.columns.items() if values.ndim == 1}
-    return pa.table({**columns, own_mapping.TIME: t_ns})
+    columns = {name: _arrow_column(values) for name, values in table.columns.items() if values.ndim == 1}
+    return pa.table({**columns, own_mapping.TIME_COLUMN: t_ns})
 
 
-def _column(values: NDArray[Any]) -> pa.Array:
+def _arrow_column(values: NDArray[Any]) -> pa.Array:
     if values.dtype.kind == "S":
         return pa.array([each.decode("utf-8", "backslashreplace") for each in values.tolist()], pa.string())
     return pa.array(values.astype(values.dtype.newbyteorder("=")))

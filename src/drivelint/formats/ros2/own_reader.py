@@ -23,7 +23,7 @@ def accepts(probe: Probe) -> bool:
         return False
     from drivelint.formats.ros2 import own_mapping
 
-    return own_mapping.is_for_messages(probe.options.mapping)
+    return own_mapping.is_message_mapping(probe.options.mapping)
 
 
 def read(probe: Probe) -> Recording:

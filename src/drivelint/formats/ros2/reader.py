@@ -18,37 +18,37 @@ from drivelint.drive.trace import QualityFinding, Recording, States, single_map
 from drivelint.errors import TraceError
 from drivelint.formats.coordinate_frames import TransformTree, fixed_frame
 from drivelint.formats.mcap import bag
-from drivelint.formats.mcap.silent import silent_topics
+from drivelint.formats.mcap.silent import silent_topics_text
 from drivelint.formats.ros2 import ego as ros_ego
 from drivelint.formats.ros2 import traffic_lights
-from drivelint.formats.ros2.ego_frame import ego_rows, within_chain
-from drivelint.formats.ros2.log import LIGHTS, Log
+from drivelint.formats.ros2.ego_frame import drop_unplaced_ends, ego_rows_or_reason
+from drivelint.formats.ros2.log import LIGHT_KINDS, Log
 from drivelint.formats.ros2.merge import DEFAULT_EGO_ID, FORMAT, SQLITE_FORMAT, merge_ego
 from drivelint.formats.ros2.messages import (
     CARLA_OBJECTS,
     CONTROL_MODE,
-    DIMENSIONS,
     EGO_INFO,
     ENGAGE,
     HAZARD_LIGHTS,
-    MESSAGES,
+    MESSAGE_TYPES,
     ODOMETRY,
-    PARAMETERS,
+    PARAMETER_EVENTS,
     TRANSFORMS,
     TURN_INDICATORS,
+    VEHICLE_DIMENSIONS,
     WORLD_INFO,
 )
-from drivelint.formats.ros2.objects import OBJECT_ROWS, SAME_BODIES, stamps
+from drivelint.formats.ros2.objects import KINDS_OF_SAME_OBJECTS, OBJECT_CONVERTERS, stamps
 from drivelint.formats.ros2.recorded_poses import (
     RecordedPoses,
     choose_clock,
-    distinct,
+    distinct_values,
+    frame_times_and_start,
     join_batches,
-    message_times,
     states_in_fixed_frame,
 )
 from drivelint.formats.ros2.types import message_kind
-from drivelint.formats.ros2.vehicle import at_axle, vehicle_box
+from drivelint.formats.ros2.vehicle import is_axle_frame, vehicle_box
 from drivelint.phrases import name_list
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ STATIC_TOPIC_SUFFIX = "tf_static"
 """The end of the topic name of static transforms; the messages themselves do not show that they are static."""
 TOPICS_APART_NS = 1_000_000_000
 """A recorder subscribes to topics one after another, so their recordings may begin and end a second apart."""
-_REPORTS = {TURN_INDICATORS: "report", HAZARD_LIGHTS: "report", CONTROL_MODE: "mode", ENGAGE: "engage"}
+_VALUE_FIELD_BY_REPORT = {TURN_INDICATORS: "report", HAZARD_LIGHTS: "report", CONTROL_MODE: "mode", ENGAGE: "engage"}
 """Message type of a report about the ego -> the field with its value."""
 
 
@@ -74,24 +74,24 @@ def read(path: Path, options: IngestOptions) -> Recording:
     log = Log(path, requested_topics)
     log.read(bag.bag_files(path))
     log.refuse_unknown_topics()
-    objects = log.select_topic(OBJECT_ROWS, "road users")
-    log.unread.refuse(path, OBJECT_ROWS, objects or log.topics.get(ODOMETRY, ()))
+    objects = log.select_topic(OBJECT_CONVERTERS, "road users")
+    log.unread.refuse_kinds(path, OBJECT_CONVERTERS, objects or log.topics.get(ODOMETRY, ()))
     parts = {topic: join_batches(batches) for topic, batches in objects.items()}
     odometry, is_centre = _ego_rows(log, options)
     parts |= odometry
     if not sum(map(len, parts.values())):
-        raise _nothing_to_read(path, log)
+        raise _nothing_to_read_error(path, log)
     findings = log.findings
-    findings += [] if objects else [_no_road_users(log)]
+    findings += [] if objects else [_no_road_users_finding(log)]
     own_times = choose_clock(parts, findings)
     frames = _transform_tree(log, own_times=own_times)
     for topic in objects:
         parts[topic] = _rows_with_ids(parts[topic], topic, log)
-        findings += _outlined(parts[topic], topic)
-    used = [sorted(distinct(parts[topic].frames)[0]) for topic in (*odometry, *objects)]
+        findings += _polygon_findings(parts[topic], topic)
+    used = [sorted(distinct_values(parts[topic].frames)[0]) for topic in (*odometry, *objects)]
     fixed = fixed_frame(frames, chain.from_iterable(used))
     if log.ego_frame:
-        parts |= {topic: within_chain(parts[topic], frames, fixed, TOPICS_APART_NS) for topic in odometry}
+        parts |= {topic: drop_unplaced_ends(parts[topic], frames, fixed, TOPICS_APART_NS) for topic in odometry}
     states: dict[str, States] = {}
     for topic in (*objects, *odometry):
         states[topic], new_findings = states_in_fixed_frame(parts[topic], frames, fixed, topic)
@@ -101,68 +101,76 @@ def read(path: Path, options: IngestOptions) -> Recording:
     object_states, odometry_states = (
         next(((topic, states[topic]) for topic in source if len(states[topic])), None) for source in (objects, odometry)
     )
-    carla = log.carla and not objects.keys().isdisjoint(log.topics.get(CARLA_OBJECTS, ()))
+    is_carla = log.has_carla_messages and not objects.keys().isdisjoint(log.topics.get(CARLA_OBJECTS, ()))
     # topic of the CARLA bridge's ego info -> the ego's id in its last message
-    infos = {topic: str(number) for topic, (table, _) in log.parts(EGO_INFO) for number in table.column("id").tolist()}
+    ego_ids_by_topic = {
+        topic: str(number) for topic, (table, _) in log.batches(EGO_INFO) for number in table.column("id").tolist()
+    }
     ego_id = options.ego if log.ego_frame and options.ego == log.ego_frame else DEFAULT_EGO_ID
     recording = merge_ego(
-        object_states, odometry_states, infos, findings, carla=carla, is_centre=is_centre, ego_id=ego_id
+        object_states,
+        odometry_states,
+        ego_ids_by_topic,
+        findings,
+        is_carla=is_carla,
+        is_centre=is_centre,
+        ego_id=ego_id,
     )
     recording.format = SQLITE_FORMAT if log.is_sqlite else FORMAT
-    reports = _reports(log, own_times=own_times)
+    reports = _ego_reports(log, own_times=own_times)
     for ego in recording.ego_ids[:1]:
         all_states = recording.states
         if ego in all_states.ids and reports.keys() & {TURN_INDICATORS, HAZARD_LIGHTS}:
             mine = all_states.actor == all_states.ids.index(ego)
             all_states.codes["indicator"] = np.full(len(all_states), -1, np.int8)
-            all_states.codes["indicator"][mine] = ros_ego.indicators(all_states.t_ns[mine], reports)
-        recording.events = ros_ego.engagement(reports, ego)
-    for topic, batches in log.select_topic(LIGHTS, "traffic lights").items():
+            all_states.codes["indicator"][mine] = ros_ego.indicator_codes(all_states.t_ns[mine], reports)
+        recording.events = ros_ego.engagement_events(reports, ego)
+    for topic, batches in log.select_topic(LIGHT_KINDS, "traffic lights").items():
         t_ns = recording.states.t_ns
         span_ns = int(t_ns.min()), int(t_ns.max())
         recording.signals, new_findings = traffic_lights.signal_states(batches, span_ns, topic, own_times=own_times)
         recording.findings += new_findings
     recording.lost_times = [*log.lost_times, *log.silences(objects, odometry)]
-    recording.frames_ns, recording.ends_apart_ns = log.frames(parts, own_times=own_times), TOPICS_APART_NS
-    recording.embedded_map, trouble = single_map(_maps(log))
+    recording.frames_ns, recording.ends_apart_ns = log.times_of_topics(parts, own_times=own_times), TOPICS_APART_NS
+    recording.embedded_map, trouble = single_map(_topic_by_map(log))
     recording.findings += trouble
-    recording.frame_times, recording.utc_start_ns = message_times(list(parts.values()))
-    recording.notes += [*log.notes, *_own_vehicle_missing(log), f"positions are in the frame {fixed!r}"]
+    recording.frame_times, recording.utc_start_ns = frame_times_and_start(list(parts.values()))
+    recording.notes += [*log.notes, *_missing_ego_notes(log), f"positions are in the frame {fixed!r}"]
     return recording
 
 
 def _transform_tree(log: Log, *, own_times: bool) -> TransformTree:
     frames = TransformTree()
-    for topic, (table, log_ns) in log.parts(TRANSFORMS):
+    for topic, (table, log_ns) in log.batches(TRANSFORMS):
         static = topic.endswith(STATIC_TOPIC_SUFFIX)
         ros_ego.add_transforms(frames, table, log_ns, static=static, own_times=own_times)
     return frames
 
 
-def _nothing_to_read(path: Path, log: Log) -> TraceError:
+def _nothing_to_read_error(path: Path, log: Log) -> TraceError:
     """Return the error for a log without poses of road users or of the ego."""
-    silent = silent_topics(bag.bag_files(path), lambda name: message_kind(name) in {*OBJECT_ROWS, ODOMETRY})
-    if silent or log.detections or not log.topics.keys().isdisjoint(OBJECT_ROWS):
-        why = silent or f"{', '.join(sorted(OBJECT_ROWS))} are read"
+    silent = silent_topics_text(bag.bag_files(path), lambda name: message_kind(name) in {*OBJECT_CONVERTERS, ODOMETRY})
+    if silent or log.n_detections or not log.topics.keys().isdisjoint(OBJECT_CONVERTERS):
+        why = silent or f"{', '.join(sorted(OBJECT_CONVERTERS))} are read"
         return TraceError(f"{path}: no road users and no odometry in this ROS log: {why}")
-    return TraceError(f"{path}: no {ODOMETRY} and no road users: {bag.topics_text(path)}; {log.no_ego}")
+    return TraceError(f"{path}: no {ODOMETRY} and no road users: {bag.topics_text(path)}; {log.why_no_ego}")
 
 
-def _own_vehicle_missing(log: Log) -> list[str]:
+def _missing_ego_notes(log: Log) -> list[str]:
     """Return a note if a bag of Autoware's road users has neither odometry nor transforms of its own vehicle."""
-    if not log.no_ego or log.topics.keys().isdisjoint(SAME_BODIES):
+    if not log.why_no_ego or log.topics.keys().isdisjoint(KINDS_OF_SAME_OBJECTS):
         return []
     note = (
-        f"no {ODOMETRY}, and {log.no_ego}: the vehicle that recorded the bag is not among the actors: "
-        f"record {MESSAGES[ODOMETRY].topic} too"
+        f"no {ODOMETRY}, and {log.why_no_ego}: the vehicle that recorded the bag is not among the actors: "
+        f"record {MESSAGE_TYPES[ODOMETRY].topic} too"
     )
     return [note]
 
 
-def _maps(log: Log) -> dict[bytes, str]:
+def _topic_by_map(log: Log) -> dict[bytes, str]:
     """Return the distinct OpenDRIVE maps of a log, each with the first topic that has it."""
     maps: dict[bytes, str] = {}
-    for topic, (table, _) in log.parts(WORLD_INFO):
+    for topic, (table, _) in log.batches(WORLD_INFO):
         for text in filter(bytes.strip, table.column("opendrive").tolist()):
             maps.setdefault(text, topic)
     return maps
@@ -174,8 +182,8 @@ def _ego_rows(log: Log, options: IngestOptions) -> tuple[dict[str, RecordedPoses
     In the axle's frame, the log's own vehicle box gives the centre, if there is one; otherwise the option `ego_size` does.
     """
     box, found = vehicle_box(
-        (table for _, (table, _) in log.parts(PARAMETERS)),
-        ((topic, table) for topic, (table, _) in log.parts(DIMENSIONS)),
+        (table for _, (table, _) in log.batches(PARAMETER_EVENTS)),
+        ((topic, table) for topic, (table, _) in log.batches(VEHICLE_DIMENSIONS)),
     )
     log.findings += found
     ahead_m = 0.0 if options.ego_size is None else options.ego_size.forward_m
@@ -183,25 +191,25 @@ def _ego_rows(log: Log, options: IngestOptions) -> tuple[dict[str, RecordedPoses
     is_centre = ahead_m != 0.0
     odometry = log.select_topic([ODOMETRY], "odometry")
     for topic, batches in odometry.items():
-        rows[topic] = join_batches([ros_ego.odometry(table, log_ns, box, ahead_m) for table, log_ns in batches])
-        if box is not None and all(at_axle(table.column("child_frame_id")).all() for table, _ in batches):
-            log.findings += _other_centre(box, ahead_m)
+        rows[topic] = join_batches([ros_ego.odometry_poses(table, log_ns, box, ahead_m) for table, log_ns in batches])
+        if box is not None and all(is_axle_frame(table.column("child_frame_id")).all() for table, _ in batches):
+            log.findings += _centre_mismatch_findings(box, ahead_m)
             is_centre = True
     if not odometry:
-        rows = _rows_of_transforms(log, box, ahead_m, options.ego)
+        rows = _ego_rows_by_transforms(log, box, ahead_m, options.ego)
         is_centre = is_centre or (box is not None and bool(rows))
     if box is not None and rows:
-        log.notes.append(f"the ego's box is taken from {box.source}: {box.described()}")
+        log.notes.append(f"the ego's box is taken from {box.source}: {box.text()}")
     return rows, is_centre
 
 
-def _rows_of_transforms(
+def _ego_rows_by_transforms(
     log: Log, box: VehicleBox | None, ahead_m: float, ego_name: str | None
 ) -> dict[str, RecordedPoses]:
     """Return the ego's rows by the transforms of its frame; none if there is no chain to that frame."""
-    found = ego_rows(log.parts(TRANSFORMS), box, ahead_m, STATIC_TOPIC_SUFFIX, ego_name)
+    found = ego_rows_or_reason(log.batches(TRANSFORMS), box, ahead_m, STATIC_TOPIC_SUFFIX, ego_name)
     if isinstance(found, str):
-        log.no_ego = found
+        log.why_no_ego = found
         return {}
     log.notes.append(f"no {ODOMETRY}: the ego is placed by the transforms of {found.frame!r} on {found.topic}")
     log.add_times(found.topic, found.rows)
@@ -209,7 +217,7 @@ def _rows_of_transforms(
     return {found.topic: found.rows}
 
 
-def _other_centre(box: VehicleBox, ahead_m: float) -> list[QualityFinding]:
+def _centre_mismatch_findings(box: VehicleBox, ahead_m: float) -> list[QualityFinding]:
     said = box.centre[0]
     if ahead_m == 0.0 or abs(ahead_m - said) <= MOST_SIZE_DIFFERENCE_M:
         return []
@@ -220,14 +228,14 @@ def _other_centre(box: VehicleBox, ahead_m: float) -> list[QualityFinding]:
     return [QualityFinding("ego_size", "warning", message)]
 
 
-def _no_road_users(log: Log) -> QualityFinding:
+def _no_road_users_finding(log: Log) -> QualityFinding:
     """Return the finding that no other actor is known. Detections without ids do not count, because they cannot be linked to tracks."""
-    n = sum(log.detections.values())
+    n = sum(log.n_detections.values())
     cause = "no topic of this log has road users"
     if n:
         cause = (
-            f"the only road users of this log, on {name_list(sorted(log.detections))}, are detections without ids, which form no tracks: "
-            f"record {' or '.join(SAME_BODIES)} too"
+            f"the only road users of this log, on {name_list(sorted(log.n_detections))}, are detections without ids, which form no tracks: "
+            f"record {' or '.join(KINDS_OF_SAME_OBJECTS)} too"
         )
     else:
         cause += (
@@ -237,7 +245,7 @@ def _no_road_users(log: Log) -> QualityFinding:
     return QualityFinding("no_road_users", "warning", message, max(n, 1))
 
 
-def _outlined(rows: RecordedPoses, topic: str) -> list[QualityFinding]:
+def _polygon_findings(rows: RecordedPoses, topic: str) -> list[QualityFinding]:
     if rows.outlined is None or not rows.outlined.any():
         return []
     n = int(rows.outlined.sum())
@@ -259,9 +267,9 @@ def _rows_with_ids(rows: RecordedPoses, topic: str, log: Log) -> RecordedPoses:
     return rows.take(~nameless)
 
 
-def _reports(log: Log, *, own_times: bool) -> dict[str, tuple[Times, NDArray[Any]]]:
+def _ego_reports(log: Log, *, own_times: bool) -> dict[str, tuple[Times, NDArray[Any]]]:
     reports = {}
-    for kind, column in _REPORTS.items():
+    for kind, column in _VALUE_FIELD_BY_REPORT.items():
         for parts in log.select_topic([kind], kind.split("/")[1]).values():
             t_ns = [stamps(table, "stamp")[0] if own_times else log_ns for table, log_ns in parts]
             values = [table.column(column) for table, _ in parts]

@@ -21,13 +21,13 @@ if TYPE_CHECKING:
     from drivelint.arrays import Codes, Indices, Mask, Times
     from drivelint.formats.coordinate_frames import TransformTree, Vectors
 
-MOVING_MPS = 2.0
+LEAST_MOVING_MPS = 2.0
 """Below this speed, noise of the positions hides in which frame a velocity is given."""
 FIT_RATIO = 3.0
 """Velocities that should be along the actor's axes are read as along the frame's, or vice versa, if that fits this many times better."""
 MAX_FIT_ERROR_MPS = 0.5
 """The largest median difference to the positions' changes in the frame that is then used."""
-SAMPLED_ACTORS = 8
+MOST_SAMPLED_ACTORS = 8
 """Only this many actors are compared: those that move most."""
 MIN_SAMPLES = 20
 """The fewest moving samples that can show in which frame velocities are given."""
@@ -90,7 +90,7 @@ def recorded_poses(stamps: tuple[Times, Mask], poses: tuple[Vectors, Vectors], *
     return RecordedPoses(stamp_ns=stamp_ns, stamped=stamped, t_ns=stamp_ns, place=place, turn=turn, **unknown | columns)
 
 
-def distinct(values: NDArray[Any]) -> tuple[list[str], NDArray[np.int32]]:
+def distinct_values(values: NDArray[Any]) -> tuple[list[str], NDArray[np.int32]]:
     """Return the distinct values as text, in the order in which they first appear, and each row's index in them.
 
     Values of numpy's kind S are texts; values of kind V, with sixteen bytes, are UUIDs. Hashing is four times faster than sorting.
@@ -120,14 +120,14 @@ def states_in_fixed_frame(
 
     A pose without a transform to the fixed frame at its time is kept as a state without a position.
     """
-    ids, actor = distinct(rows.ids)
+    ids, actor = distinct_values(rows.ids)
     place, turn = rows.place.copy(), unit_quaternions(rows.turn)
     along = rows.along[:, None]
     outward = rotated(turn, rows.velocity)
     velocity, swapped = np.where(along, outward, rows.velocity), np.where(along, rows.velocity, outward)
     acceleration = np.where(along, rotated(turn, rows.acceleration), rows.acceleration)
     findings: list[QualityFinding] = []
-    names, which = distinct(rows.frames)
+    names, which = distinct_values(rows.frames)
     at_ns = rows.t_ns if rows.at_ns is None else rows.at_ns
     for i, frame in enumerate(map(clean_frame_name, names)):
         if frame == fixed:
@@ -140,7 +140,7 @@ def states_in_fixed_frame(
             vectors[here] = rotated(outer.turn, vectors[here])
         lost = np.isnan(outer.place[:, 0])
         if lost.any():
-            findings.append(_unresolved_frame(topic, frame, fixed, frames, rows.t_ns[here[lost]]))
+            findings.append(_unresolved_frame_finding(topic, frame, fixed, frames, rows.t_ns[here[lost]]))
     states = States(
         ids,
         actor,
@@ -157,11 +157,11 @@ def states_in_fixed_frame(
     )  # fmt: skip
     for name, values in states.numbers.items():
         states.numbers[name] = np.where(np.isfinite(values), values, np.nan)
-    findings += _other_frame(states, swapped, rows.along, topic)
+    findings += _correct_velocity_frame(states, swapped, rows.along, topic)
     return states, findings
 
 
-def _unresolved_frame(topic: str, frame: str, fixed: str, frames: TransformTree, t_ns: Times) -> QualityFinding:
+def _unresolved_frame_finding(topic: str, frame: str, fixed: str, frames: TransformTree, t_ns: Times) -> QualityFinding:
     if frame in frames.ambiguous:
         why = f"several frames have the child frame {frame!r}"
     elif frames.chain(frame, fixed) is None:
@@ -173,15 +173,17 @@ def _unresolved_frame(topic: str, frame: str, fixed: str, frames: TransformTree,
     return QualityFinding("frame_unresolved", "error", message, len(t_ns), first)
 
 
-def _other_frame(states: States, swapped: Vectors, along: Mask, topic: str) -> list[QualityFinding]:
+def _correct_velocity_frame(states: States, swapped: Vectors, along: Mask, topic: str) -> list[QualityFinding]:
     """Replace velocities by `swapped` if only these fit the positions, and return the finding.
 
     `swapped`: the velocities under the assumption that the log gives them in the other frame.
     """
     vx, vy = states.numbers["vx_mps"], states.numbers["vy_mps"]
-    fast = np.bincount(states.actor[np.hypot(swapped[:, 0], swapped[:, 1]) > MOVING_MPS], minlength=len(states.ids))
+    fast = np.bincount(
+        states.actor[np.hypot(swapped[:, 0], swapped[:, 1]) > LEAST_MOVING_MPS], minlength=len(states.ids)
+    )
     chosen = np.zeros(len(states.ids), np.bool_)
-    chosen[np.argsort(-fast, kind="stable")[:SAMPLED_ACTORS]] = True
+    chosen[np.argsort(-fast, kind="stable")[:MOST_SAMPLED_ACTORS]] = True
     some = np.flatnonzero(chosen[states.actor])
     order = some[np.lexsort((states.t_ns[some], states.actor[some]))]
     track = states.take(order)
@@ -189,7 +191,7 @@ def _other_frame(states: States, swapped: Vectors, along: Mask, topic: str) -> l
         return []
     step = steps(track)
     dx, dy = time_derivative(track.numbers["x_m"], step), time_derivative(track.numbers["y_m"], step)
-    moving = np.hypot(dx, dy) > MOVING_MPS
+    moving = np.hypot(dx, dy) > LEAST_MOVING_MPS
     wrong = np.hypot(track.numbers["vx_mps"] - dx, track.numbers["vy_mps"] - dy)[moving]
     other = np.hypot(swapped[order, 0] - dx, swapped[order, 1] - dy)[moving]
     known = np.isfinite(wrong) & np.isfinite(other)
@@ -244,7 +246,7 @@ def choose_clock(parts: dict[str, RecordedPoses], findings: list[QualityFinding]
     return why is None
 
 
-def message_times(parts: Sequence[RecordedPoses]) -> tuple[FrameTimes, int | None]:
+def frame_times_and_start(parts: Sequence[RecordedPoses]) -> tuple[FrameTimes, int | None]:
     """Return the messages' own times and log times, sorted by log time, and the log's start in UTC (None: unknown)."""
     t_ns, log_ns = np.concatenate([part.t_ns for part in parts]), np.concatenate([part.log_ns for part in parts])
     new = np.r_[True, (t_ns[1:] != t_ns[:-1]) | (log_ns[1:] != log_ns[:-1])]

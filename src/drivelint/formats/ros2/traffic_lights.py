@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 LONGEST_HOLD_NS: Final = 5_000_000_000
 """Without a new message, a state is valid for at most this time, as in Autoware for lights that roadside units report."""
-NUMBERS: Final = {
+ELEMENT_NUMBERS: Final = {
     "RED": 1, "AMBER": 2, "GREEN": 3,
     "CIRCLE": 1, "LEFT_ARROW": 2, "RIGHT_ARROW": 3, "UP_ARROW": 4, "UP_LEFT_ARROW": 5, "UP_RIGHT_ARROW": 6, "DOWN_ARROW": 7,
     "DOWN_LEFT_ARROW": 8, "DOWN_RIGHT_ARROW": 9,
@@ -37,8 +37,8 @@ _LIT_RED_BIT, _DARK_RED_BIT, _ARROW_RED_BIT = 1, 8, 64
 _COLOUR_MASK: Final = 0b111
 """The bits for red, amber and green of one kind, after a shift to the lowest bits."""
 _FLASHING_BIT, _DOUBT_BIT = 512, 1024
-_FULL_STATES: Final = {1: "red", 3: "red_amber", 2: "amber", 4: "green"}
-_GROUPS: Final = (("traffic_light_groups", "traffic_light_group_id"), ("signals", "traffic_signal_id"))
+_STATE_BY_LIT_COLOURS: Final = {1: "red", 3: "red_amber", 2: "amber", 4: "green"}
+_GROUP_AND_ID_FIELDS: Final = (("traffic_light_groups", "traffic_light_group_id"), ("signals", "traffic_signal_id"))
 
 
 class GroupStates(NamedTuple):
@@ -56,18 +56,18 @@ def group_states(table: Table, log_ns: Times, constants: Mapping[str, Mapping[st
 
     `constants`: message type -> constant -> value, from the log's definition.
     """
-    path, name = next((pair for pair in _GROUPS if pair[0] in table.children), _GROUPS[0])
+    path, name = next((pair for pair in _GROUP_AND_ID_FIELDS if pair[0] in table.children), _GROUP_AND_ID_FIELDS[0])
     groups = table.items(path)
-    state = _states(groups, _element_numbers(constants))
+    state = _states_of_groups(groups, _element_numbers(constants))
     return GroupStates(stamps(table, "stamp")[0], log_ns, groups.parent, groups.column(name).astype(np.int64), state)
 
 
 def _element_numbers(constants: Mapping[str, Mapping[str, int]]) -> Mapping[str, int]:
     needed = {*_COLOURS, "CIRCLE", "SOLID_OFF", "SOLID_ON", "FLASHING"}
-    return next((numbers for numbers in constants.values() if numbers.keys() >= needed), NUMBERS)
+    return next((numbers for numbers in constants.values() if numbers.keys() >= needed), ELEMENT_NUMBERS)
 
 
-def _states(groups: Table, number: Mapping[str, int]) -> Codes:
+def _states_of_groups(groups: Table, number: Mapping[str, int]) -> Codes:
     elements = groups.items("elements")
     color, shape, status = (elements.column(name) for name in ("color", "shape", "status"))
     full = shape == number["CIRCLE"]
@@ -86,7 +86,7 @@ def _states(groups: Table, number: Mapping[str, int]) -> Codes:
     return _STATE_OF_BITS[of_group]
 
 
-def _state(bits: int) -> int:
+def _state_of_bits(bits: int) -> int:
     """Return the state of a light that applies to every turn, as an index in `SIGNAL_STATES`; -1 if turns differ or it is unknown.
 
     The map does not state to which turns an arrow applies. So the state is unknown if an arrow has another colour than the full lamp:
@@ -103,13 +103,13 @@ def _state(bits: int) -> int:
     elif bits & _FLASHING_BIT:
         word = "flashing" if not (full or arrows) else None
     elif full:
-        word = _FULL_STATES.get(full) if arrows in {0, full} else None
+        word = _STATE_BY_LIT_COLOURS.get(full) if arrows in {0, full} else None
     elif dark == _COLOUR_MASK and not arrows:  # with fewer dark lamps listed, another may be lit
         word = "off"
     return -1 if word is None else SIGNAL_STATES.index(word)
 
 
-_STATE_OF_BITS: Final = np.array([_state(bits) for bits in range(2 * _DOUBT_BIT)], np.int8)
+_STATE_OF_BITS: Final = np.array([_state_of_bits(bits) for bits in range(2 * _DOUBT_BIT)], np.int8)
 
 
 def signal_states(
@@ -139,7 +139,7 @@ def signal_states(
     step = step[message]
     order = np.lexsort((step, group))
     step, group, state = step[order], group[order], state[order]
-    end = _ends(times, step, group)
+    end = _end_times(times, step, group)
     ended = np.flatnonzero(end <= until)
     ids = np.concatenate([group, group[ended]])
     words = pa.array([*SIGNAL_STATES, None], pa.string())
@@ -158,7 +158,7 @@ def signal_states(
     return (pa.table(rows) if len(ids) else None), findings
 
 
-def _ends(times: Times, step: NDArray[np.intp], group: NDArray[np.int64]) -> Times:
+def _end_times(times: Times, step: NDArray[np.intp], group: NDArray[np.int64]) -> Times:
     """Return the time at which each state ends: at the next message, but at most `LONGEST_HOLD_NS` after its own.
 
     If the next message is in time and has the group, the end is the far future. Rows are sorted by group and step.

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 from mcap.opcode import Opcode
 
 from drivelint import __version__
-from drivelint.formats.mcap.original import index_arrays
+from drivelint.formats.mcap.original import message_index
 from drivelint.formats.sqlite_bag.reader import SqliteFile
 
 if TYPE_CHECKING:
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from drivelint.formats.mcap.writer import Sink
 
 CHUNK_BYTES: Final = 4 << 20
-_HEAD: Final = struct.Struct("<BQHIQQ")
-_MESSAGE_HEAD_BYTES: Final = 22
+_MESSAGE_RECORD_HEADER: Final = struct.Struct("<BQHIQQ")
+_MESSAGE_HEADER_BYTES: Final = 22
 
 
 def copy_messages(path: Path, sink: Sink) -> None:
@@ -32,31 +32,31 @@ def copy_messages(path: Path, sink: Sink) -> None:
     entries: list[tuple[int, int, int, int]] = []
     size = 0
 
-    def end_chunk() -> None:
+    def write_chunk() -> None:
         nonlocal size
         if entries:
-            sink.add_chunk(b"".join(records), index_arrays(entries))
+            sink.add_chunk(b"".join(records), message_index(entries))
         records.clear()
         entries.clear()
         size = 0
 
     for message in file.messages():
         if not channels:
-            channels = _channels(file, sink)
+            channels = _write_channels(file, sink)
         number = channels[message.channel.id]
-        length = _MESSAGE_HEAD_BYTES + len(message.data)
-        head = _HEAD.pack(Opcode.MESSAGE, length, number, 0, message.log_time_ns, message.log_time_ns)
+        length = _MESSAGE_HEADER_BYTES + len(message.data)
+        head = _MESSAGE_RECORD_HEADER.pack(Opcode.MESSAGE, length, number, 0, message.log_time_ns, message.log_time_ns)
         entries.append((number, 0, message.log_time_ns, size))
         records += [head, message.data]
         size += len(head) + len(message.data)
         if size >= CHUNK_BYTES:
-            end_chunk()
-    end_chunk()
+            write_chunk()
+    write_chunk()
     if not channels:
-        _channels(file, sink)  # topics without a message
+        _write_channels(file, sink)  # topics without a message
 
 
-def _channels(file: SqliteFile, sink: Sink) -> dict[int, int]:
+def _write_channels(file: SqliteFile, sink: Sink) -> dict[int, int]:
     """Write the channels of a file, with their schemas, to the sink; return their ids there. A channel of an earlier file keeps its id."""
     numbers: dict[int, int] = {}
     for number, channel in file.channels.items():

@@ -20,15 +20,15 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 MAGIC: Final = b"SQLite format 3\0"
-COLUMNS: Final = {
+COLUMNS_BY_TABLE: Final = {
     "topics": {"id", "name", "type", "serialization_format"},
     "messages": {"topic_id", "timestamp", "data"},
 }
 """Table -> the columns that are read."""
-DEFINITIONS: Final = "message_definitions"
+DEFINITIONS_TABLE: Final = "message_definitions"
 _DEFINITION_COLUMNS: Final = {"topic_type", "encoding", "encoded_message_definition"}
-_HEAD_BYTES: Final = 100
-_STEPS: Final = 100_000
+_FILE_HEADER_BYTES: Final = 100
+_STEPS_PER_CALLBACK: Final = 100_000
 """SQLite returns to Python after so many of its steps, so that reading can be interrupted."""
 
 
@@ -39,14 +39,14 @@ def is_sqlite(path: Path) -> bool:
 
 
 @contextmanager
-def database(path: Path) -> Iterator[sqlite3.Connection]:
+def open_database(path: Path) -> Iterator[sqlite3.Connection]:
     """Open a file of a bag whose tables have been checked. Errors: `TraceError` if it is damaged, not closed, or no bag."""
     _refuse_unfinished(path)
-    with reading(path):
+    with convert_errors(path):
         connection = sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro&immutable=1", uri=True)
         try:
             connection.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MAX_CHUNK_BYTES)
-            connection.set_progress_handler(lambda: 0, _STEPS)
+            connection.set_progress_handler(lambda: 0, _STEPS_PER_CALLBACK)
             connection.execute("PRAGMA trusted_schema = OFF")
             connection.execute("PRAGMA cell_size_check = ON")
             _check_tables(path, connection)
@@ -56,15 +56,15 @@ def database(path: Path) -> Iterator[sqlite3.Connection]:
 
 
 @contextmanager
-def reading(path: Path) -> Iterator[None]:
+def convert_errors(path: Path) -> Iterator[None]:
     """Convert errors of SQLite about a file to `TraceError`."""
     try:
         yield
     except (sqlite3.Error, UnicodeError, OverflowError) as error:
-        raise damaged(path, str(error)) from error
+        raise damage_error(path, str(error)) from error
 
 
-def damaged(path: Path, problem: str) -> TraceError:
+def damage_error(path: Path, problem: str) -> TraceError:
     """Return the error for a file that cannot be read."""
     return TraceError(
         f"{path}: a SQLite file that is damaged or cut off ({' '.join(problem.split())}): copy it again, or repair it with "
@@ -76,28 +76,28 @@ def check_pages(path: Path, connection: sqlite3.Connection) -> None:
     """Raise `TraceError` if the pages of the file contradict each other: rows could be missing without an error."""
     found = connection.execute("PRAGMA quick_check(1)").fetchone()
     if found is None or found[0] != "ok":
-        raise damaged(path, "its check failed" if found is None else str(found[0])[:200])
+        raise damage_error(path, "its check failed" if found is None else str(found[0])[:200])
 
 
 def has_definitions(path: Path, connection: sqlite3.Connection) -> bool:
     """Return whether the file has message definitions. Errors: `TraceError` if their table is not as rosbag2 writes it."""
-    found = connection.execute("SELECT 1 FROM sqlite_master WHERE name = ?", (DEFINITIONS,)).fetchone()
+    found = connection.execute("SELECT 1 FROM sqlite_master WHERE name = ?", (DEFINITIONS_TABLE,)).fetchone()
     if found is not None:
-        _check_table(path, connection, DEFINITIONS, _DEFINITION_COLUMNS)
+        _check_table(path, connection, DEFINITIONS_TABLE, _DEFINITION_COLUMNS)
     return found is not None
 
 
 def _refuse_unfinished(path: Path) -> None:
     """Raise `TraceError` for a file that is shorter than it says, or whose last changes are in another file."""
     with path.open("rb") as file:
-        head = file.read(_HEAD_BYTES)
+        head = file.read(_FILE_HEADER_BYTES)
     size = path.stat().st_size
-    if len(head) < _HEAD_BYTES:
-        raise damaged(path, f"{size} bytes")
+    if len(head) < _FILE_HEADER_BYTES:
+        raise damage_error(path, f"{size} bytes")
     (page,), (pages,) = struct.unpack_from(">H", head, 16), struct.unpack_from(">I", head, 28)
     said = pages * (65536 if page == 1 else page)
     if size < said:
-        raise damaged(path, f"{size} of {said} bytes")
+        raise damage_error(path, f"{size} of {said} bytes")
     for suffix in ("-wal", "-journal"):
         beside = path.with_name(path.name + suffix)
         if report_searched_path(beside).is_file() and beside.stat().st_size:
@@ -108,7 +108,7 @@ def _refuse_unfinished(path: Path) -> None:
 
 
 def _check_tables(path: Path, connection: sqlite3.Connection) -> None:
-    for table, columns in COLUMNS.items():
+    for table, columns in COLUMNS_BY_TABLE.items():
         _check_table(path, connection, table, columns)
 
 

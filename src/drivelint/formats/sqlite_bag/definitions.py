@@ -15,20 +15,20 @@ from drivelint.receipts.events import report_searched_path
 if TYPE_CHECKING:
     from pathlib import Path
 
-_TYPE: Final = re.compile(r"^([a-z]\w*/\w+)", re.MULTILINE)
-_MEMBER: Final = re.compile(r"^\s*([A-Za-z][\w/]*)(?:<=\d+)?(?:\[[^\]]*\])?\s+\w+", re.MULTILINE)
+_MESSAGE_TYPE_PATTERN: Final = re.compile(r"^([a-z]\w*/\w+)", re.MULTILINE)
+_MEMBER_PATTERN: Final = re.compile(r"^\s*([A-Za-z][\w/]*)(?:<=\d+)?(?:\[[^\]]*\])?\s+\w+", re.MULTILINE)
 _MOST_FILE_BYTES: Final = 1 << 20
 _MOST_MESSAGES: Final = 200
-_RULE: Final = "=" * 80
+_SEPARATOR: Final = "=" * 80
 
 
-def candidates(kind: str) -> list[str]:
+def candidate_definitions(kind: str) -> list[str]:
     """Return the definitions that a message type may have, each with all messages that it contains; [] for a type that is not known."""
     messages, variants = _definition_tables()
     if kind not in messages:
         return []
     newest = messages | variants
-    return list(dict.fromkeys(_definition(kind, each) for each in (messages, newest)))
+    return list(dict.fromkeys(_definition_with_members(kind, each) for each in (messages, newest)))
 
 
 def definition_in_files(folder: Path, kind: str) -> str:
@@ -36,24 +36,24 @@ def definition_in_files(folder: Path, kind: str) -> str:
 
     Messages that drivelint knows need no file. Errors: `UsageError` for a file that is missing or cannot be read.
     """
-    messages = {kind: _text(folder, kind)}
+    messages = {kind: _definition_file_text(folder, kind)}
     waiting = [kind]
     while waiting:
         container = waiting.pop()
-        for word in dict.fromkeys(_MEMBER.findall(messages[container])):
-            inner = _full_name(word, container)
+        for word in dict.fromkeys(_MEMBER_PATTERN.findall(messages[container])):
+            inner = _full_type_name(word, container)
             if inner is None or inner in messages:
                 continue
             known = _definition_tables()[0].get(inner)
-            messages[inner] = known if known is not None else _text(folder, inner)
+            messages[inner] = known if known is not None else _definition_file_text(folder, inner)
             waiting.append(inner)
             if len(messages) > _MOST_MESSAGES:
                 raise UsageError(f"{folder}: {kind} contains more than {_MOST_MESSAGES} messages")
-    others = (f"{_RULE}\nMSG: {each}\n{text}" for each, text in messages.items() if each != kind)
+    others = (f"{_SEPARATOR}\nMSG: {each}\n{text}" for each, text in messages.items() if each != kind)
     return "\n".join([messages[kind], *others])
 
 
-def _full_name(word: str, container: str) -> str | None:
+def _full_type_name(word: str, container: str) -> str | None:
     """Return the full name of a member's type; None for a primitive."""
     if word in NUMPY_CODES or word in TEXT_TYPES:
         return None
@@ -63,7 +63,7 @@ def _full_name(word: str, container: str) -> str | None:
     return name if "/" in name else f"{container.split('/', maxsplit=1)[0]}/{name}"
 
 
-def _text(folder: Path, kind: str) -> str:
+def _definition_file_text(folder: Path, kind: str) -> str:
     package, name = kind.split("/", maxsplit=1)
     path = folder / package / "msg" / f"{name}.msg"
     try:
@@ -82,8 +82,8 @@ def _definition_tables() -> tuple[dict[str, str], dict[str, str]]:
     return tables["messages"], tables["variants"]
 
 
-def _definition(kind: str, messages: dict[str, str]) -> str:
+def _definition_with_members(kind: str, messages: dict[str, str]) -> str:
     used = [kind]
     for each in used:  # grows while it is read
-        used += [inner for inner in dict.fromkeys(_TYPE.findall(messages[each])) if inner not in used]
-    return "\n".join([messages[kind], *(f"{_RULE}\nMSG: {each}\n{messages[each]}" for each in used[1:])])
+        used += [inner for inner in dict.fromkeys(_MESSAGE_TYPE_PATTERN.findall(messages[each])) if inner not in used]
+    return "\n".join([messages[kind], *(f"{_SEPARATOR}\nMSG: {each}\n{messages[each]}" for each in used[1:])])

@@ -12,10 +12,16 @@ from drivelint.errors import TraceError
 from drivelint.formats.mcap.reader import Container, LogMessage, MessageError
 from drivelint.formats.mcap.summary import Summary
 from drivelint.formats.ros2.cdr import Decoder
-from drivelint.formats.ros2.messages import MESSAGES
+from drivelint.formats.ros2.messages import MESSAGE_TYPES
 from drivelint.formats.ros2.types import short_type_name
-from drivelint.formats.sqlite_bag.database import DEFINITIONS, check_pages, damaged, database, has_definitions
-from drivelint.formats.sqlite_bag.definitions import candidates
+from drivelint.formats.sqlite_bag.database import (
+    DEFINITIONS_TABLE,
+    check_pages,
+    damage_error,
+    has_definitions,
+    open_database,
+)
+from drivelint.formats.sqlite_bag.definitions import candidate_definitions
 
 if TYPE_CHECKING:
     import sqlite3
@@ -24,11 +30,11 @@ if TYPE_CHECKING:
 
 MOST_TOPICS: Final = (1 << 16) - 1
 """MCAP numbers schemas and channels with 16 bits."""
-NO_DEFINITION: Final = ""
+NO_DEFINITION_ENCODING: Final = ""
 """The encoding of a schema whose message definition is not known."""
-_SAMPLES: Final = 20
+_MOST_SAMPLES: Final = 20
 """The definition of a type that has several is chosen by so many of its longest messages."""
-_LATEST: Final = (1 << 63) - 1
+_LATEST_NS: Final = (1 << 63) - 1
 
 
 class RowMessage(LogMessage):
@@ -40,75 +46,77 @@ class RowMessage(LogMessage):
         return MessageError(f"{path}: {where}: {problem}: record or copy the log again")
 
 
-class AssumedMessage(RowMessage):
+class AssumedTypeMessage(RowMessage):
     """A message whose definition is not in its bag."""
 
     def error(self, path: Path, problem: str) -> MessageError:
         """Return the error of `RowMessage`, with the remedy for a definition that does not fit."""
         text = str(super().error(path, problem)).removesuffix(": record or copy the log again")
-        return MessageError(f"{text}: the bag has no message definitions: {REMEDY}")
+        return MessageError(f"{text}: the bag has no message definitions: {CONVERSION_REMEDY}")
 
 
-REMEDY: Final = (
+CONVERSION_REMEDY: Final = (
     "convert it where ROS and its packages are installed, with ros2 bag convert and storage_id: mcap: that adds them"
 )
 
 
 @dataclass
 class SqliteFile(Container):
-    """A SQLite file of a bag, with the interface of an MCAP file. `assumed`: types whose definitions are not in the file."""
+    """A SQLite file of a bag, with the interface of an MCAP file. `assumed_kinds`: types whose definitions are not in the file."""
 
-    assumed: set[str] = field(default_factory=set)
+    assumed_kinds: set[str] = field(default_factory=set)
     _numbers: dict[Any, int] = field(default_factory=dict)
 
     def messages(self) -> Iterator[LogMessage]:
-        """Yield every message in the order of recording; only the first of each channel in `counts.unused` has its data.
+        """Yield every message in the order of recording; only the first of each channel in `counts.unread_channels` has its data.
 
         Errors: `TraceError` if the file is damaged, or has more data than bytes.
         """
         size = self.path.stat().st_size
-        with database(self.path) as connection:
+        with open_database(self.path) as connection:
             check_pages(self.path, connection)
             self._read_topics(connection)
             rows = connection.execute("SELECT rowid, topic_id, timestamp FROM messages ORDER BY rowid")
             n_bytes = 0
             for row, topic, t_ns in rows:
                 number = self._numbers.get(topic)
-                if number is None or type(t_ns) is not int or not 0 <= t_ns <= _LATEST:
-                    raise damaged(self.path, f"row {row} of messages has the topic {topic!r} and the time {t_ns!r}")
-                data = b"" if number in self.counts.unused else self._data(connection, row)
+                if number is None or type(t_ns) is not int or not 0 <= t_ns <= _LATEST_NS:
+                    raise damage_error(
+                        self.path, f"row {row} of messages has the topic {topic!r} and the time {t_ns!r}"
+                    )
+                data = b"" if number in self.counts.unread_channels else self._message_data(connection, row)
                 n_bytes += len(data) + 1
                 if n_bytes > size:
-                    raise damaged(self.path, f"its messages are longer than its {size} bytes")
+                    raise damage_error(self.path, f"its messages are longer than its {size} bytes")
                 channel = self.channels[number]
                 self.counts.add(number, t_ns)
-                self.losses.message(t_ns)
-                is_assumed = self.schemas[channel.schema_id].name in self.assumed
-                yield (AssumedMessage if is_assumed else RowMessage)(channel, t_ns, data, row)
+                self.losses.bound_by_message(t_ns)
+                is_assumed = self.schemas[channel.schema_id].name in self.assumed_kinds
+                yield (AssumedTypeMessage if is_assumed else RowMessage)(channel, t_ns, data, row)
         message = "a SQLite file has no checksums: damage may remain undetected"
         self.findings.append(QualityFinding("unprotected", "info", message))
 
     def index(self) -> Summary:
         """Return the topics and their types. Errors: `TraceError`."""
-        with database(self.path) as connection:
+        with open_database(self.path) as connection:
             self._read_topics(connection)
         return Summary(schemas=self.schemas, channels=self.channels)
 
-    def _data(self, connection: sqlite3.Connection, row: int) -> bytes:
+    def _message_data(self, connection: sqlite3.Connection, row: int) -> bytes:
         found = connection.execute("SELECT data FROM messages WHERE rowid = ?", (row,)).fetchone()
         if found is None or not isinstance(found[0], bytes):
-            raise damaged(self.path, f"row {row} of messages has no data")
+            raise damage_error(self.path, f"row {row} of messages has no data")
         return found[0]
 
     def _read_topics(self, connection: sqlite3.Connection) -> None:
-        definitions = self._written_definitions(connection)
+        definitions = self._definitions_in_file(connection)
         names = {name for _, name, *_ in connection.execute("PRAGMA table_xinfo(topics)")}
         qos = "offered_qos_profiles" if "offered_qos_profiles" in names else "''"
         rows = connection.execute(f"SELECT id, name, type, serialization_format, {qos} FROM topics ORDER BY id")
         of_kind: dict[str, int] = {}
         for key, topic, kind, encoding, profiles in rows:
             if not all(isinstance(each, str) for each in (topic, kind, encoding)) or len(self._numbers) >= MOST_TOPICS:
-                raise damaged(self.path, f"row {key} of topics is not as rosbag2 writes it")
+                raise damage_error(self.path, f"row {key} of topics is not as rosbag2 writes it")
             if kind not in of_kind:
                 of_kind[kind] = len(of_kind) + 1
                 self.schemas[of_kind[kind]] = self._schema(connection, of_kind[kind], kind, definitions)
@@ -116,21 +124,21 @@ class SqliteFile(Container):
             metadata = {"offered_qos_profiles": profiles} if isinstance(profiles, str) and profiles else {}
             self.channels[number] = Channel(number, topic, encoding, metadata, of_kind[kind])
 
-    def _written_definitions(self, connection: sqlite3.Connection) -> dict[str, tuple[str, bytes]]:
+    def _definitions_in_file(self, connection: sqlite3.Connection) -> dict[str, tuple[str, bytes]]:
         """Return type -> encoding and text of the definitions in the file."""
         if not has_definitions(self.path, connection):
             return {}
         found: dict[str, tuple[str, bytes]] = {}
         rows = connection.execute(
-            f"SELECT topic_type, encoding, encoded_message_definition FROM {DEFINITIONS} ORDER BY rowid"
+            f"SELECT topic_type, encoding, encoded_message_definition FROM {DEFINITIONS_TABLE} ORDER BY rowid"
         )
         n_bytes, size = 0, self.path.stat().st_size
         for kind, encoding, text in rows:
             if not all(isinstance(each, str) for each in (kind, encoding, text)):
-                raise damaged(self.path, f"the definition of {kind!r} is not text")
+                raise damage_error(self.path, f"the definition of {kind!r} is not text")
             n_bytes += len(text) + 1
             if n_bytes > size:
-                raise damaged(self.path, f"its message definitions are longer than its {size} bytes")
+                raise damage_error(self.path, f"its message definitions are longer than its {size} bytes")
             if text:
                 found.setdefault(kind, (encoding, text.encode()))
         return found
@@ -144,24 +152,28 @@ class SqliteFile(Container):
             return Schema(id=number, name=kind, encoding=encoding, data=text)
         known = [
             Schema(id=number, name=kind, encoding="ros2msg", data=text.encode())
-            for text in candidates(short_type_name(kind))
+            for text in candidate_definitions(short_type_name(kind))
         ]
         if not known:
-            return Schema(id=number, name=kind, encoding=NO_DEFINITION, data=b"")
-        self.assumed.add(kind)
-        return next((each for each in known if self._fits(connection, each)), known[0]) if len(known) > 1 else known[0]
+            return Schema(id=number, name=kind, encoding=NO_DEFINITION_ENCODING, data=b"")
+        self.assumed_kinds.add(kind)
+        return (
+            next((each for each in known if self._fits_longest_messages(connection, each)), known[0])
+            if len(known) > 1
+            else known[0]
+        )
 
-    def _fits(self, connection: sqlite3.Connection, schema: Schema) -> bool:
+    def _fits_longest_messages(self, connection: sqlite3.Connection, schema: Schema) -> bool:
         """Return whether a definition fits the longest messages of its type, which contain most objects."""
         rows = connection.execute(
             "SELECT messages.rowid, data FROM messages JOIN topics ON topics.id = topic_id WHERE type = ? "
             "ORDER BY length(data) DESC, messages.rowid LIMIT ?",
-            (schema.name, _SAMPLES),
+            (schema.name, _MOST_SAMPLES),
         )
         channel = Channel(0, "", "cdr", {}, schema.id)
         samples = [RowMessage(channel, 0, data, row) for row, data in rows if isinstance(data, bytes)]
         try:
-            Decoder(self.path, schema, MESSAGES[short_type_name(schema.name)].fields).table(samples)
+            Decoder(self.path, schema, MESSAGE_TYPES[short_type_name(schema.name)].fields).table(samples)
         except TraceError:
             return False
         return True

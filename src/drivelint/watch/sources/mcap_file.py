@@ -172,9 +172,9 @@ class _WindowWriter:
         """Write the schemas, channels and metadata."""
         self._sink.begin(LIBRARY)
         for schema in stream.schemas.values():
-            self._sink.announce_schema(schema)
+            self._sink.write_schema(schema)
         for channel in stream.channels.values():
-            self._sink.announce_channel(channel)
+            self._sink.write_channel(channel)
         for name, content in stream.metadata.items():
             self._sink.add_metadata(name, content)
 

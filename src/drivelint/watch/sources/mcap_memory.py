@@ -11,16 +11,16 @@ from collections import deque
 from typing import TYPE_CHECKING, Final, Protocol
 
 from drivelint.formats.foxglove.decode import SCENE
-from drivelint.formats.mcap.bag import FOXGLOVE_ROLES, OSI_SCHEMAS, ROS_ROLES
+from drivelint.formats.mcap.bag import FOXGLOVE_ROLE_BY_SCHEMA, OSI_SCHEMAS, ROS_ROLE_BY_SCHEMA
 from drivelint.formats.osi.metadata import EVENT_MESSAGE
 from drivelint.formats.osi.schema import OPEN_DRIVE
 from drivelint.formats.ros2.messages import (
-    DETECTIONS,
+    DETECTIONS_ROLE,
     LIGHT_GROUPS,
     ODOMETRY_ROLE,
     OLD_LIGHT_GROUPS,
-    PARAMETERS,
-    ROAD_USERS,
+    PARAMETER_EVENTS,
+    ROAD_USERS_ROLE,
 )
 from drivelint.formats.ros2.types import message_kind
 from drivelint.watch.sources.mcap_scene import SceneMemory
@@ -38,12 +38,12 @@ MOST_FIRST_EVENTS: Final = 20_000
 end of the log; `MOST_FIRST_MESSAGES` for other channels."""
 _MOST_FIRST_MESSAGES_BY_KIND: Final = {
     EVENT_MESSAGE: MOST_FIRST_EVENTS,
-    PARAMETERS: MOST_FIRST_EVENTS,
+    PARAMETER_EVENTS: MOST_FIRST_EVENTS,
     LIGHT_GROUPS: 0,
     OLD_LIGHT_GROUPS: 0,
 }
 MOST_FIRST_BYTES: Final = 64 << 20
-_READABLE_KINDS: Final = {*OSI_SCHEMAS, OPEN_DRIVE, EVENT_MESSAGE, *ROS_ROLES, *FOXGLOVE_ROLES}
+_READABLE_KINDS: Final = {*OSI_SCHEMAS, OPEN_DRIVE, EVENT_MESSAGE, *ROS_ROLE_BY_SCHEMA, *FOXGLOVE_ROLE_BY_SCHEMA}
 
 
 class ChannelMemory(Protocol):
@@ -68,7 +68,7 @@ def memory_for(channel: Channel, schema: str) -> ChannelMemory:
     kind = message_kind(schema)
     if kind == SCENE:
         return SceneMemory(channel.message_encoding)
-    if kind in OSI_SCHEMAS or ROS_ROLES.get(kind) in {ROAD_USERS, DETECTIONS, ODOMETRY_ROLE}:
+    if kind in OSI_SCHEMAS or ROS_ROLE_BY_SCHEMA.get(kind) in {ROAD_USERS_ROLE, DETECTIONS_ROLE, ODOMETRY_ROLE}:
         return EmptyMemory()
     return LatchedMemory(_MOST_FIRST_MESSAGES_BY_KIND.get(kind, MOST_FIRST_MESSAGES))
 

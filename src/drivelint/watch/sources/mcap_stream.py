@@ -13,7 +13,7 @@ from mcap.records import Channel, Metadata, Schema
 
 from drivelint.errors import TraceError
 from drivelint.formats.mcap import reader
-from drivelint.formats.mcap.chunk import MAX_CHUNK_BYTES, ChunkError, chunk_head, chunk_records
+from drivelint.formats.mcap.chunk import MAX_CHUNK_BYTES, ChunkError, chunk_records, parse_chunk
 from drivelint.formats.mcap.resume import MAGIC
 
 if TYPE_CHECKING:
@@ -161,10 +161,10 @@ class McapStream:
 
     def _messages_of_chunk(self, record: bytes, at: int) -> Iterator[MessageRecord | DamagedChunk]:
         try:
-            head = chunk_head(memoryview(record)[RECORD_HEADER.size :])
+            head = parse_chunk(memoryview(record)[RECORD_HEADER.size :])
             records = chunk_records(head, f"{self._where}: byte {at}")
         except ChunkError as error:
-            if not error.framed:
+            if not error.has_valid_length:
                 self._stop_reading(at, str(error))
                 return
             self.notes.append(f"{self._where}: {error} at byte {at}: its content is lost")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 from mcap.opcode import Opcode
 
 from drivelint.errors import TraceError
-from drivelint.formats.mcap.original import index_arrays
+from drivelint.formats.mcap.original import message_index
 from drivelint.formats.mcap.writer import Sink
 
 if TYPE_CHECKING:
@@ -73,7 +73,7 @@ class McapRecording:
             entries.append((channel, number, each.log_ns, at))
             at += len(head) + len(each.content)
         if entries:
-            self._sink.add_chunk(b"".join(records), index_arrays(entries))
+            self._sink.add_chunk(b"".join(records), message_index(entries))
         self._file.flush()
 
     def finish(self) -> None:
