@@ -12,7 +12,7 @@ import pyarrow.parquet as pq
 from drivelint import __version__, catalogue
 from drivelint.engine.profiles import DEFAULT_PROFILES
 from drivelint.errors import DriveLintError
-from drivelint.incident import sheet_ids
+from drivelint.incident import possible_sheet_ids
 from drivelint.pack import again, finding_rows, finding_sql, sheets, signature
 from drivelint.pack.bag import DATA, Problem
 from drivelint.pack.contents import EVIDENCE, FINDINGS, FORM, OUTPUTS, RESULT, SAID_OF_FINDINGS, facts, summary_of
@@ -97,7 +97,7 @@ def _of_evidence(folder: Path, result: Result, evidence: dict[str, Any]) -> list
     keys = differing(evidence, due, result.findings.select(SAID_OF_FINDINGS).to_pylist(), result.rules.to_pylist())
     keys += sorted(evidence.keys() - due.keys() - set(_NOT_FACTS))
     keys += _misplaced(json.loads((folder / RESULT / "run.json").read_text("utf-8")), evidence)
-    keys += sheets.invalid_sheets(folder, evidence, sheet_ids(result))
+    keys += sheets.invalid_sheets(folder, evidence, possible_sheet_ids(result))
     wrong = [Problem("evidence.json does not match the result", key) for key in keys]
     said, counted = summary_of(folder), json.loads(summary.render(result))
     keys = sorted(key for key in counted.keys() | said.keys() if key != "tool" and said.get(key) != counted.get(key))

@@ -24,7 +24,7 @@ def of_result(folder: Path, result: Result, check_request: RunRequest) -> dict[s
 
     `check_request` has the paths of the logs. A PDF is included only if the HTML page beside it equals the page that is written again.
     """
-    ids = incident.sheet_ids(result)
+    ids = incident.possible_sheet_ids(result)
     found = {}
     for page in sorted((folder / incident.FOLDER).glob(f"*{_PAGE}")):
         if page.stem in ids:
@@ -62,4 +62,6 @@ def invalid_sheets(folder: Path, evidence: Mapping[str, Any], sheet_ids: Iterabl
 
 
 def _page(folder: Path, finding_id: str, check_request: RunRequest) -> bytes:
-    return incident.render(incident.open_case(incident.IncidentRequest(finding_id, folder), check_request))
+    return incident.sheet_html(
+        incident.judge_parties_again(incident.IncidentRequest(finding_id, folder), check_request)
+    )
