@@ -68,7 +68,7 @@ def test_its_sheet_is_packed(folder: Path, case_of: CaseOf) -> None:
     page = folder / "incidents" / f"{case_of(NAME).finding.row['finding_id']}.html"
     page.parent.mkdir(exist_ok=True)
     page.write_bytes(sheet_html(case_of(NAME)))
-    packed = sheets.of_result(folder, load_result(folder), run_request.load(folder))
+    packed = sheets.sheets_of_result(folder, load_result(folder), run_request.load(folder))
     assert packed == {f"data/incidents/{page.name}": page.read_bytes()}
     page.unlink()
 

@@ -59,11 +59,17 @@ def delta_v_text(motion: Motion, party: int, step_before: int | None, trace: Tra
         return "not known: the log has only a mean of its velocity, which hides an impact"
     found = greatest_delta_v(motion, party, step_before)
     if found is None:
-        return f"not known: its velocity is missing in part, from {_signed_time_text(motion.t[step_before])} to {_signed_time_text(IMPACT_WINDOW_S)}"
+        return (
+            f"not known: its velocity is missing in part, from {_signed_time_text(motion.t[step_before])} "
+            f"to {_signed_time_text(IMPACT_WINDOW_S)}"
+        )
     least = "at least " if found.is_least else ""
     derived = "; velocities computed from positions" if "velocity_derived" in checks else ""
     turned = _speeds_and_course_text(motion, party, step_before, found)
-    return f"{least}{speed_text(found.mps)}, from {_signed_time_text(motion.t[step_before])} to {_signed_time_text(found.at_s)}{turned}{derived}"
+    return (
+        f"{least}{speed_text(found.mps)}, from {_signed_time_text(motion.t[step_before])} "
+        f"to {_signed_time_text(found.at_s)}{turned}{derived}"
+    )
 
 
 def _speeds_and_course_text(motion: Motion, party: int, step_before: int, velocity_change: DeltaV) -> str:

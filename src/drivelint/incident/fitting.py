@@ -91,7 +91,8 @@ def is_first_page_full(sheet_values: dict[str, Any]) -> bool:
     facts = [
         8
         + _n_wrapped_lines(
-            f"{drive['map_name']} {sheet_values['road_id']} {sheet_values['place'].lanelet_id} {sheet_values['coordinates']} {sheet_values['hand']}",
+            f"{drive['map_name']} {sheet_values['road_id']} {sheet_values['place'].lanelet_id} "
+            f"{sheet_values['coordinates']} {sheet_values['hand']}",
             _FACT_LINE_CHARACTERS,
         ),
         10 + _n_wrapped_lines(rests, _FACT_LINE_CHARACTERS) + _n_wrapped_lines(sure["by"], _FACT_LINE_CHARACTERS),

@@ -41,7 +41,8 @@ def party_values(
 ) -> dict[str, Any]:
     """Return the values of one party: kind, size, lane, speeds, delta-v, braking and brake lights.
 
-    `party_no`: 0 for A, 1 for B; `step_no`: the step that the sheet describes; `last_before_contact_s`: the time of the last step before a contact.
+    `party_no`: 0 for A, 1 for B; `step_no`: the step that the sheet describes;
+    `last_before_contact_s`: the time of the last step before a contact.
     """
     actor_id = case.finding.parties[party_no]
     tables = case.drive.trace.tables

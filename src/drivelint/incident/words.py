@@ -112,8 +112,9 @@ def story_sentence(
 ) -> str:
     """Return in one sentence the events up to the step `step_no`; '' if there is only one party or `step_no` is None.
 
-    `slowings`: the result of `slowing_periods` for each party; `party_kinds`: the class of each party, None: not recorded; `manoeuvre_text`: the first party's
-    manoeuvre; `closing_mps`: the finding's closing speed; `moment_from_start_s`: the moment in seconds from the drive's start.
+    `slowings`: the result of `slowing_periods` for each party; `party_kinds`: the class of each party, None: not recorded;
+    `manoeuvre_text`: the first party's manoeuvre; `closing_mps`: the finding's closing speed;
+    `moment_from_start_s`: the moment in seconds from the drive's start.
     """
     if step_no is None or len(slowings) < 2:
         return ""
@@ -166,7 +167,8 @@ def collision_title(
 ) -> str:
     """Return a title for a contact of A and B: their directions, the time, A's lane, and the closing speed.
 
-    The title does not state who is at fault. `step_no`: the last step before the contact; `is_in_oncoming_lane`: A was in the oncoming lane at `step_no`.
+    The title does not state who is at fault. `step_no`: the last step before the contact; `is_in_oncoming_lane`: A was there at
+    `step_no`.
     """
     turn = math.nan if step_no is None else float(motion.turn[step_no])
     how = "" if math.isnan(turn) else f" {_heading_difference_text(turn)}"
