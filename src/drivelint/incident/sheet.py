@@ -41,7 +41,7 @@ from drivelint.incident.place import (
 from drivelint.incident.record import elements_by_presence
 from drivelint.incident.scene import plan_view_at_moment
 from drivelint.incident.sizes import size_source_text
-from drivelint.incident.strips import charts_over_time
+from drivelint.incident.strips import charts_over_time, gap_and_finding_courses
 from drivelint.incident.words import (
     amount_text,
     box_overlap_text,
@@ -51,7 +51,6 @@ from drivelint.incident.words import (
     profile_text,
     story_sentence,
     text_with_minus_signs,
-    unit_text,
 )
 from drivelint.report.html.pictures import cameras_by_moment
 from drivelint.result.certainty import LEAST_KEEPING_SHARE, POSSIBLE, SURE, certainty
@@ -141,7 +140,7 @@ def template_values(case: Case) -> dict[str, Any]:
         **plan_view_at_moment(case),
         "cameras": cameras_by_moment(case.result.pictures).get((row["drive_id"], row["t_worst_ns"]), []),
         "pictured_at": seconds(row["t_worst_ns"], finding.start_ns),
-        "strips": charts_over_time(motion, _party_names(finding), *_gap_and_finding_courses(case), finding.moment_ns),
+        "strips": charts_over_time(motion, _party_names(finding), *gap_and_finding_courses(case), finding.moment_ns),
         "seconds": [{**each, "drive_s": offset_s + float(motion.t[each["i"]])} for each in rows],
         "step_s": motion.step_s,
         "span": {
@@ -386,31 +385,6 @@ def _sudden_contact_sentence(case: Case, motion: Motion) -> str:
     assumed = any(size_source_text(case.drive.trace, who) for who in case.finding.parties)
     sizes = "; sizes are assumed, not recorded" if assumed else ""
     return f"It is based on a sudden change of speed: {boxes} ({told}{sizes})."
-
-
-def _gap_and_finding_courses(case: Case) -> tuple[list[dict[str, Any]], dict[str, Any] | None]:
-    """Return the distances that rules required between the two parties over time, and the finding's own measured values.
-
-    The measured values are None if the rule requires a distance or measures a contact in metres: the gap is always drawn.
-    """
-    rules = {rule["rule_id"]: rule for rule in case.result.rules.to_pylist()}
-    units = {row["finding_id"]: row["unit"] for row in case.result.findings.to_pylist()}
-    about, near_miss_keys = case.finding.row, ("rule_id", "profile", "occurrence")
-    if case.finding.is_near_miss:
-        units[None] = about["unit"]  # the courses of near misses have no finding
-    gaps, own = [], None
-    for row in case.result.courses.to_pylist():
-        rule, unit = rules[row["rule_id"]], units.get(row["finding_id"])
-        if row["finding_id"] is None and any(row[key] != about[key] for key in near_miss_keys):
-            continue
-        if unit is None or any(row[key] != about[key] for key in ("drive_id", "ego_id", "object_id")):
-            continue
-        title = f"\u201c{rule['title']}\u201d"
-        if unit == "m" and any((value or 0.0) > 0.0 for value in row["required"]):
-            gaps.append({**row, "title": title, "planned": profile_text(row["profile"])})
-        elif row["finding_id"] in {None, about["finding_id"]} and not (unit == "m" and CONTACT_TAG in rule["tags"]):
-            own = {**row, "title": f"{rule['observes'] or title}, {unit_text(unit)}"}
-    return gaps, own if own and any(value is not None for value in own["observed"]) else None
 
 
 def _rules_sha256(result: Result) -> str:

@@ -6,11 +6,14 @@ import math
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
+from drivelint.catalogue.header import CONTACT_TAG
+from drivelint.incident.words import profile_text, unit_text
 from drivelint.report.html.svg import Axis, axis_around, svg_number
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from drivelint.incident.case import Case
     from drivelint.incident.motion import Motion
     from drivelint.result.text import Row
 
@@ -66,6 +69,31 @@ def charts_over_time(
         lines = [_course_line(finding_course, name, name, moment_ns, t) for name in ("observed", "required")]
         charts.append(_chart_values(finding_course["title"][:1].upper() + finding_course["title"][1:], lines, x))
     return [chart for chart in charts if chart["lines"]]
+
+
+def gap_and_finding_courses(case: Case) -> tuple[list[dict[str, Any]], dict[str, Any] | None]:
+    """Return the distances that rules required between the two parties over time, and the finding's own measured values.
+
+    The measured values are None if the rule requires a distance or measures a contact in metres: the gap is always drawn.
+    """
+    rules = {rule["rule_id"]: rule for rule in case.result.rules.to_pylist()}
+    units = {row["finding_id"]: row["unit"] for row in case.result.findings.to_pylist()}
+    about, near_miss_keys = case.finding.row, ("rule_id", "profile", "occurrence")
+    if case.finding.is_near_miss:
+        units[None] = about["unit"]  # the courses of near misses have no finding
+    gaps, own = [], None
+    for row in case.result.courses.to_pylist():
+        rule, unit = rules[row["rule_id"]], units.get(row["finding_id"])
+        if row["finding_id"] is None and any(row[key] != about[key] for key in near_miss_keys):
+            continue
+        if unit is None or any(row[key] != about[key] for key in ("drive_id", "ego_id", "object_id")):
+            continue
+        title = f"\u201c{rule['title']}\u201d"
+        if unit == "m" and any((value or 0.0) > 0.0 for value in row["required"]):
+            gaps.append({**row, "title": title, "planned": profile_text(row["profile"])})
+        elif row["finding_id"] in {None, about["finding_id"]} and not (unit == "m" and CONTACT_TAG in rule["tags"]):
+            own = {**row, "title": f"{rule['observes'] or title}, {unit_text(unit)}"}
+    return gaps, own if own and any(value is not None for value in own["observed"]) else None
 
 
 def _course_line(course_row: Row, column: str, name: str, moment_ns: int, t: Sequence[float]) -> _ChartLine:
