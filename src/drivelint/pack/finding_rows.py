@@ -101,13 +101,11 @@ def _fewest_sufficient_rows(
     if not are_sufficient(chosen):
         return None
     for table, each in choices.items():
-        chosen[table] = _first_sufficient_choice(
-            each, lambda rows, table=table: are_sufficient({**chosen, table: rows})
-        )  # type: ignore[misc]
+        chosen[table] = _first_sufficient(each, lambda rows, table=table: are_sufficient({**chosen, table: rows}))  # type: ignore[misc]
     return chosen
 
 
-def _first_sufficient_choice(choices: Sequence[pa.Table], is_sufficient: Callable[[pa.Table], bool]) -> pa.Table:
+def _first_sufficient(choices: Sequence[pa.Table], is_sufficient: Callable[[pa.Table], bool]) -> pa.Table:
     """Return the first choice of rows that gives the numbers. The last choice is known to give them."""
     return next((rows for rows in choices[:-1] if is_sufficient(rows)), choices[-1])
 
